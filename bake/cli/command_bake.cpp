@@ -164,7 +164,6 @@ void addBake(CLI::App& app, Action& action) {
     verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
         ->option_text("OUT.relief");
     addFields(verb, command->request);
-    addListDevices(verb, command->request.gpu);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
     verb.callback([command, &verb, &action] {

@@ -1,4 +1,4 @@
-// relief query: the field at points, by the CPU or by the simulation's own shader.
+// relief query: the field at points.
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
@@ -7,20 +7,15 @@
 #include <optional>
 
 #include "bake/cli/command.h"
-#include "bake/director/gl_options.h"
 #include "bake/report/points_csv.h"
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
-#include "runtime/collider/field_query.h"
 #include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {
-
-// Between two feedings of the watchdog.
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;
 
 enum class DistanceTo : std::uint8_t { kNearest, kPlane };
 
@@ -31,8 +26,6 @@ struct QueryCommand {
     ContainerLimits limits;
     std::string output;
     std::optional<DistanceTo> distance;
-    bool gpu = false;
-    GpuOptions gpu_options;
 };
 
 /// What is printed of the nearest surface: its distance, normal and map.
@@ -40,7 +33,7 @@ FieldSample toSample(const SurfaceSample& nearest) {
     return {nearest.distance, nearest.normal, nearest.map};
 }
 
-std::vector<FieldSample> askCpu(const Collider& collider, std::span<const glm::vec3> points, bool plane) {
+std::vector<FieldSample> sampled(const Collider& collider, std::span<const glm::vec3> points, bool plane) {
     std::vector<FieldSample> samples(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         samples[i] = plane ? evaluate(collider, points[i]) : toSample(nearestSurface(collider, points[i]));
@@ -48,33 +41,8 @@ std::vector<FieldSample> askCpu(const Collider& collider, std::span<const glm::v
     return samples;
 }
 
-Result<std::vector<FieldSample>> askGpu(const Collider& collider, std::span<const glm::vec3> points,
-                                        const QueryCommand& command) {
-    const WatchedContext gl = RELIEF_TRY(openGl(command.gpu_options));
-    spdlog::debug("{}", gl.context->description());
-    gl.watchdog->feed("uploading the collider");
-    const FieldQuery query = RELIEF_TRY(FieldQuery::create(collider));
-    std::vector<FieldSample> samples;
-    samples.reserve(points.size());
-    for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
-        const std::span<const glm::vec3> some =
-            points.subspan(first, std::min(kAtOnce, points.size() - first));
-        gl.watchdog->feed("points " + std::to_string(first + 1) + " to " +
-                          std::to_string(first + some.size()));
-        const std::vector<FieldSample> evaluated = RELIEF_TRY(query.evaluate(some));
-        samples.insert(samples.end(), evaluated.begin(), evaluated.end());
-    }
-    gl.watchdog->rest();
-    return samples;
-}
-
 Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     startLogging(command.common);
-    if (!command.gpu) {
-        RELIEF_TRY(refuseGpuOptions(command.gpu_options, "--gpu"));
-    } else if (command.distance == DistanceTo::kNearest) {
-        return fail(ErrorCode::kUsage, "--gpu evaluates planes; leave out --gpu, or take --distance plane");
-    }
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
                     "FILE and --points cannot both be standard input; give one of them a file");
@@ -88,8 +56,7 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
                                command.points == "-" ? "standard input" : command.points));
     const std::vector<FieldSample> samples =
-        RELIEF_TRY(command.gpu ? askGpu(collider, points, command)
-                               : askCpu(collider, points, command.distance == DistanceTo::kPlane));
+        sampled(collider, points, command.distance == DistanceTo::kPlane);
     const std::string csv = formatSamples(points, samples);
     return writeFile(command.output, std::as_bytes(std::span(csv)));
 }
@@ -117,9 +84,6 @@ void addQuery(CLI::App& app, Action& action) {
              WordsFor<DistanceTo>{{"nearest", DistanceTo::kNearest}, {"plane", DistanceTo::kPlane}},
              "To the nearest surface, which is searched for (default), or to the plane that decides\n"
              "the side, which is what particles collide with");
-    verb.add_flag("--gpu", command->gpu,
-                  "Evaluate planes with the simulation's shader (OpenGL 3.3; llvmpipe will do)");
-    addGpuOptions(verb, command->gpu_options);
     addMemoryOption(verb, command->limits);
     verb.callback(
         [command, &action] { action = [command](FileGuard& files) { return runQuery(*command, files); }; });

@@ -55,12 +55,6 @@ void fields(Visitor& visit, R& report) {
                       {"Budget of the plan; null without a plan", "bytes of texels"});
         visit_setting("quality", options.quality, {"--quality"});
         visit_setting("prefer", options.prefer, {"--prefer"});
-        visit_setting("backend", result.raster ? "raster" : "raycast",
-                      {.help = "Backend that baked", .words = kWords<"raycast", "raster">});
-        visit_setting("backend_reason", nonEmpty(result.backend_reason),
-                      {"Reason for the choice of --backend auto; null with another --backend"});
-        visit_setting("device", onlyIf(result.raster, result.device),
-                      {"OpenGL version, renderer and platform of raster; null for raycast"});
         visit_setting("threads", result.threads(), {"Threads used", {}, kFromOne});
         visit_setting("compress", report.compress, {"zstd level; 0: none", {}, {0.0, 19.0}});
         visit_setting("holes", request.holes, {"--holes"});
@@ -97,7 +91,6 @@ void fields(Visitor& visit, R& report) {
         ms("trace", stages.trace_ms, "Rays");
         ms("encode", stages.encode_ms, "Texels");
         ms("fit", stages.fit_ms, "Planes");
-        ms("raster", stages.raster_ms, "Drawing on the GPU");
         ms("refine", stages.refine_ms, "Refinement of texels by the other maps");
         ms("check", all.check_ms, "Measuring the result");
         ms("write", all.write_ms, "Writing");

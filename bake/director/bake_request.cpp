@@ -91,6 +91,9 @@ bool isRecorded(std::string_view name) {
 
 /// Takes one option of a record. \return whether it is one that a bake records, with a value that makes sense.
 bool take(std::string_view name, std::string_view value, BakeRequest& request) {
+    if (name == "backend") {
+        return true;  // of older versions: raster, whose bakes were drawn on the GPU
+    }
     BakeRequest changed = request;
     if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
         !checkRepair(changed.repair.method) || (name == "map" && !parseMapSpec(value))) {

@@ -16,7 +16,6 @@
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
 #include "formats/fields/text.h"
-#include "runtime/command_line/gpu_tool.h"
 
 namespace relief {
 
@@ -25,10 +24,6 @@ inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; where no
 enum class Holes : std::uint8_t { kClose, kKeep };
 template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Holes>{"close", "keep"};
-
-enum class BackendChoice : std::uint8_t { kRaycast, kRaster, kAuto };
-template <>
-inline constexpr std::array<std::string_view, 3> kWordsOf<BackendChoice>{"raycast", "raster", "auto"};
 
 enum class FrontBackDepth : std::uint8_t { kUnorm16, kHalf };
 template <>
@@ -54,8 +49,6 @@ struct BakeRequest {
     std::optional<unsigned> threads;
     Holes holes = Holes::kClose;
     bool no_check = false;
-    BackendChoice backend = BackendChoice::kRaycast;
-    GpuOptions gpu;
     ImportOptions import;
     ImportLimits import_limits;
     RepairOptions repair;
@@ -133,12 +126,6 @@ void fields(Visitor& visit, Request& request) {
         {.help = "close: make solids of what --as says; keep: bake the surface as it is", .recorded = true});
     visit("no_check", request.no_check,
           {.help = "Do not measure what was planned (a few percent of the time)"});
-    visit("backend", request.backend,
-          {.help = "Bakes maps that are named: raycast (on the CPU), raster (on the GPU, texels' "
-                   "centres alone: implies --quality fast), or auto: raster where the options allow it and "
-                   "the OpenGL is a GPU's. Only raycast gives the same bytes on every machine",
-           .recorded = true});
-    fields(visit, request.gpu);
     fields(visit, request.import);
     fields(visit, request.import_limits);
     fields(visit, request.repair);

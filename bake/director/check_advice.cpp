@@ -36,7 +36,6 @@ class Advisor {
         truth_.near.assign(input.truth.near.begin(), input.truth.near.begin() + truth_.options.samples);
         planned_.mesh = input.mesh_file;
         planned_.map.clear();
-        planned_.backend = BackendChoice::kRaycast;
         planned_.budget = roundBudget(input.collider.gpuBytes());
         // A default thickness follows the budget of the next bake.
         if (planned_.thickness && planned_.thickness->by_part) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <span>
 
-#include "bake/director/backend.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/budget_search.h"
 #include "bake/plan/plan_file.h"
@@ -128,27 +127,13 @@ class Director {
             return fail(ErrorCode::kUsage,
                         "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
         }
-        const bool has_quality = RELIEF_TRY(readPlan());
-        BakeOptions& options = result_.settings.bake;
-        backend_ = RELIEF_TRY(chooseBackend(
-            request().backend, request().gpu,
-            {result_.settings.source == MapSource::kPlanner, has_quality, options.quality, options.prefer,
-             std::ranges::any_of(options.maps,
-                                 [](const MapSpec& spec) { return spec.compare == Compare::kGap; })}));
-        options.rasterize = result_.raster = backend_.raster;
-        result_.device = backend_.device;
-        result_.backend_reason = backend_.reason;
-        if (backend_.raster) {
-            options.quality = Quality::kFast;
-        }
-        return {};
+        return readPlan();
     }
 
     /// The maps of --plan, and its quality, preference and thickness where the request has none.
-    /// \return whether a quality is given.
-    Result<bool> readPlan() {
+    Result<void> readPlan() {
         if (request().plan.empty()) {
-            return request().quality.has_value();
+            return {};
         }
         // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
         const auto bytes = readFile(request().plan);
@@ -164,7 +149,7 @@ class Director {
         for (const PlanFileMap& map : plan.maps) {
             options.maps.push_back(map.spec);
         }
-        return true;
+        return {};
     }
 
     /// \param given  instead of the file's.
@@ -262,9 +247,6 @@ class Director {
 
     Result<void> makeCollider() {
         Result<Baked> baked = makeMaps();
-        if (backend_.raster) {
-            backend_.gl.watchdog->rest();
-        }
         const PreparedMesh& mesh = result_.mesh.mesh;
         if (!baked && baked.error().code != ErrorCode::kUsage) {
             if (const auto stray = strayText(result_.parts, mesh->unit)) {
@@ -365,15 +347,10 @@ class Director {
             result_.notices.push_back(mesh.name + ": closed " + countText(mesh.closed_holes, "hole") +
                                       " for baking: the mesh is nearly closed");
         }
-        if (!result_.backend_reason.empty()) {
-            result_.notices.push_back(std::string("backend ") + (result_.raster ? "raster" : "raycast") +
-                                      ": " + result_.backend_reason);
-        }
     }
 
     const BakeWatcher& watcher_;
     BakeResult result_;
-    Backend backend_;
     std::string plan_hash_;
     std::optional<PreparedMesh> imported_;  // as it came, where --max-error looks back at it after a repair
 };

@@ -28,11 +28,8 @@ struct BakeWatcher {
 
 /// The collider, and what the stages found out.
 struct BakeResult {
-    BakeRequest request;    ///< with the choices of a plan file
-    BakeSettings settings;  ///< in effect
-    bool raster = false;
-    std::string device;                 ///< of raster
-    std::string backend_reason;         ///< of --backend auto
+    BakeRequest request;                ///< with the choices of a plan file
+    BakeSettings settings;              ///< in effect
     std::uint64_t unused_vertices = 0;  ///< of the mesh file; repair discards this count
     RepairedMesh mesh;                  ///< the solid that was baked
     ShapeReport shape;
@@ -53,7 +50,7 @@ struct BakeResult {
 
 /// Writes nothing. Warnings are in baked.report.
 /// \param mesh  as finishMesh leaves it: instead of a file.
-/// Errors: those of settingsOf, loadPlan, chooseBackend, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePlanned
+/// Errors: those of settingsOf, loadPlan, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePlanned
 /// and bake; kUsage: an option that needs the mesh's file.
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
                                       std::optional<TriangleMesh> mesh = {});

@@ -21,7 +21,6 @@
 #include "bake/texels/encode.h"
 #include "bake/texels/fitted_map.h"
 #include "bake/texels/gap_map.h"
-#include "bake/texels/rasterize.h"
 #include "bake/texels/refine.h"
 #include "bake/texels/scan_convert.h"
 #include "formats/base/stopwatch.h"
@@ -78,11 +77,6 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
         View view = RELIEF_TRY(makeView(complete, *mesh, blocks));
-        if (options.rasterize && view.compare == Compare::kGap) {
-            return fail(ErrorCode::kUsage,
-                        "--map '" + toString(complete) +
-                            "': only rays find gaps between solids; leave out compare=gap");
-        }
         view.centre_on_surface = RELIEF_TRY(centreIsOnSurface(mesh, view));
         jobs.push_back({complete, view, spec.compare.has_value()});
         bytes += jobs.back().texels() * texelSize(view.format);
@@ -103,9 +97,7 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
         recorded.push_back({"map", toString(job.spec)});
         has_planes = has_planes || job.spec.decode == Decode::kPlane;
     }
-    if (options.rasterize) {
-        recorded.push_back({"backend", "raster"});
-    } else if (has_planes) {
+    if (has_planes) {
         recorded.push_back({"quality", std::string(wordOf(options.quality))});
         if (options.prefer != Prefer::kNeither) {
             recorded.push_back({"prefer", std::string(wordOf(options.prefer))});
@@ -275,7 +267,7 @@ class Bake {
             texels_ += job.texels();
             has_planes_ = has_planes_ || job.spec.decode == Decode::kPlane;
         }
-        RELIEF_TRY(options_.rasterize ? rasterizeMaps() : raycastMaps());
+        RELIEF_TRY(makeMaps());
         RELIEF_TRY(checkCovered());
         RELIEF_TRY(refine());
         warnAbout(mesh_, jobs_, baked_.report);
@@ -303,23 +295,7 @@ class Bake {
         baked_.report.maps.push_back(std::move(report));
     }
 
-    Result<void> rasterizeMaps() {
-        std::optional<Rasterizer> rasterizer;
-        {
-            const TimeAdder watch(baked_.report.build_ms);
-            rasterizer = RELIEF_TRY(Rasterizer::create(mesh_));
-        }
-        const TimeAdder watch(baked_.report.raster_ms);
-        for (const Job& job : jobs_) {
-            MapReport report{job.spec, 0, job.texels()};
-            DepthMap map =
-                RELIEF_TRY(rasterizer->bake(job.view, job.spec.decode, report.covered, rowsDone(job.view)));
-            add(std::move(map), std::move(report));
-        }
-        return {};
-    }
-
-    Result<void> raycastMaps() {
+    Result<void> makeMaps() {
         std::optional<RayScene> scene;
         {
             const TimeAdder watch(baked_.report.build_ms);
@@ -448,7 +424,7 @@ class Bake {
 
     Result<void> refine() {
         const bool wanted = options_.quality != Quality::kFast || options_.prefer != Prefer::kNeither;
-        if (has_planes_ && wanted && !options_.rasterize) {
+        if (has_planes_ && wanted) {
             const TimeAdder watch(baked_.report.refine_ms);
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
             refineTexels(baked_.collider, query, refineOptions(*mesh_, options_));
@@ -469,8 +445,7 @@ class Bake {
 }  // namespace
 
 Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
-    // A GL context is one thread's: no arena that could run it on another.
-    if (options.threads == 0 || options.rasterize) {
+    if (options.threads == 0) {
         return Bake(mesh, options).run();
     }
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, options.threads);

@@ -23,9 +23,6 @@ struct BakeOptions {
     /// than were planned, and it is not recorded.
     std::uint64_t planned_budget = 0;
     unsigned threads = 0;  ///< 0: all cores. Never changes the result.
-    /// On the GPU (rasterize.h) instead of by rays: needs a current context, and quality and prefer have no
-    /// effect. Not the same bytes on every machine.
-    bool rasterize = false;
     /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1]. It may throw:
     /// what it throws comes out of bake(), and ends it.
     std::function<void(double)> progress;
@@ -42,7 +39,6 @@ struct BakeReport {
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
     double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane
-    double raster_ms = 0.0;  ///< maps of the GPU, read back
     double refine_ms = 0.0;  ///< texels of those maps chosen anew, knowing the other maps
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each
@@ -54,7 +50,7 @@ struct Baked {
 };
 
 /// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
-/// any map meets the mesh); with rasterize those of rasterize.h too.
+/// any map meets the mesh).
 [[nodiscard]] Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options);
 
 }  // namespace relief

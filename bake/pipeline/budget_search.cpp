@@ -139,7 +139,6 @@ Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery&
     ViewOptions view_options;
     view_options.prefer = options.bake.prefer;
     view_options.max_maps = options.max_maps;
-    view_options.gaps = !options.bake.rasterize;  // which sees the outer surfaces alone
     ViewChoice views = RELIEF_TRY(chooseViews(query, view_options));
     return Search(query, truth, std::move(views), options).run();
 }

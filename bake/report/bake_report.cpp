@@ -155,15 +155,10 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     const BakeReport& report = baked.report;
     text += std::to_string(std::llround(times.total_ms)) + " ms: " + ms("import", times.import_ms) + ", " +
             ms(searched ? "search" : "plan", searched ? times.search_ms : times.plan_ms) + ", ";
-    if (report.raster_ms > 0.0) {
-        text += ms("upload", report.build_ms) + ", " + ms("drawing", report.raster_ms) + ", ";
-    } else {
-        text += (searched ? "its last bake: " : "") + ms("tree", report.build_ms) + ", " +
-                ms("rays", report.trace_ms) + ", " + ms("texels", report.encode_ms) + ", " +
-                ms("planes", report.fit_ms) + ", " + ms("refining", report.refine_ms) +
-                (searched ? "; " : ", ");
-    }
-    text += ms("writing", times.write_ms) + "\n";
+    text += (searched ? "its last bake: " : "") + ms("tree", report.build_ms) + ", " +
+            ms("rays", report.trace_ms) + ", " + ms("texels", report.encode_ms) + ", " +
+            ms("planes", report.fit_ms) + ", " + ms("refining", report.refine_ms) + (searched ? "; " : ", ") +
+            ms("writing", times.write_ms) + "\n";
     if (summary.wrong) {
         text += "wrong near the surface: " + shortNumber(summary.wrong->total()) + " %\n";
     }

@@ -2,18 +2,14 @@
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o bunny.relief -q --paper --resolution 32
-echo "0,0,0" >points.csv
-echo "older" >out.csv
 
-# Both executables list the same devices under the same numbers.
+# Devices are listed under their numbers.
 expect 0 "$relief_sim" --list-devices --json
 cp stdout devices.json
 json devices.json 'len(d["devices"]) >= 1 and [x["index"] for x in d["devices"]] == list(range(len(d["devices"])))'
 json devices.json 'all(list(x) == ["index", "name", "drm_device", "vendor", "renderer", "version", "software", "problem"] for x in d["devices"])'
 json devices.json 'any(x["software"] and "llvmpipe" in x["renderer"] and x["problem"] is None for x in d["devices"])'
-expect 0 "$relief" bake --list-devices --json
-cmp stdout devices.json || die "relief and relief-sim list different devices"
-expect 0 "$relief" query --list-devices
+expect 0 "$relief_sim" --list-devices
 [ "$(wc -l <stdout)" -eq "$(grep -c '"index"' devices.json)" ] || die "not a line a device: $(cat stdout)"
 grep -qE '^[0-9]+  llvmpipe.*, software' stdout || die "no software device: $(cat stdout)"
 
@@ -22,19 +18,11 @@ number=$(python3 -c 'import json; print(next(x["index"] for x in json.load(open(
 expect 0 "$relief_sim" bunny.relief --steps 3 --device "$number" --json
 json stdout 'd["device"].endswith(", device '"$number"'")'
 expect 0 "$relief_sim" bunny.relief --steps 3 --device "$number" --api gles --json
-expect 0 "$relief" query bunny.relief --points points.csv -o gpu.csv --gpu --device "$number" --gpu-timeout 60
-"$relief" query bunny.relief --points points.csv -o cpu.csv --distance plane
-same_field bunny.relief gpu.csv cpu.csv || die "the device does not answer as the CPU does"
 expect_error 1 'no device 97.*EGL has [1-9]' "$relief_sim" bunny.relief --steps 3 --device 97
-expect_error 1 'no device 97.*EGL has [1-9]' "$relief" query bunny.relief --points points.csv -o out.csv --gpu --device 97
 expect_error 1 'device.*number' "$relief_sim" bunny.relief --steps 3 --device first
 expect_error 1 'gpu-timeout.*seconds' "$relief_sim" bunny.relief --steps 3 --gpu-timeout soon
 expect_error 1 'gpu-timeout.*seconds' "$relief_sim" bunny.relief --steps 3 --gpu-timeout -1
-expect_error 1 'device does nothing' "$relief" query bunny.relief --points points.csv -o out.csv --device 0
-expect_error 1 'device does nothing' "$relief" bake "$bunny" -o x.relief --device 0
-expect_error 1 'gpu-timeout does nothing' "$relief" bake "$bunny" -o x.relief --gpu-timeout 5
 expect_error 1 'device does nothing' "$relief_sim" bunny.relief --check --device 0
-[ "$(cat out.csv)" = older ] && [ ! -e x.relief ] || die "something was written"
 
 # Without a driver, or without the library of EGL or the GL: one line and exit code 5; what needs no GPU works.
 mkdir no_egl no_gl
@@ -43,7 +31,6 @@ mkdir no_egl no_gl
 : >no_gl/libGL.so.1
 for missing in __EGL_VENDOR_LIBRARY_DIRS=/nonexistent LD_LIBRARY_PATH=no_egl LD_LIBRARY_PATH=no_gl; do
     expect_error 5 'no OpenGL 3.3 context.*install' env $missing "$relief_sim" bunny.relief --steps 3
-    expect_error 5 'no OpenGL 3.3 context.*install' env $missing "$relief" query bunny.relief --points points.csv -o out.csv --gpu
     expect 0 env $missing "$relief" bake "$bunny" -o again.relief -q --paper --resolution 32
     cmp bunny.relief again.relief || die "another collider without a GPU"
     rm again.relief
@@ -65,8 +52,6 @@ stall_fails() { # WHERE PATTERN COMMAND…
 }
 stall_fails wait 'steps 1 to 10' "$relief_sim" bunny.relief --frames empty --size 16x16 --dump empty/x.ply --dump-frames empty/d
 stall_fails read 'picture 0' "$relief_sim" bunny.relief --frames empty --size 16x16 --dump empty/x.ply
-stall_fails read 'points 1 to 1' "$relief" query bunny.relief --points points.csv -o out.csv --gpu
-[ "$(cat out.csv)" = older ] || die "an older output was touched"
 [ -z "$(find empty -type f)" ] || die "left behind: $(find empty -type f)"
 
 # Without a limit the watchdog stays silent: `timeout` ends the run.

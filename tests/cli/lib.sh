@@ -51,27 +51,6 @@ matches() {
     grep "$@" >/dev/null
 }
 
-# same_field RELIEF A B: two outputs of relief query agree: distances within 4e-6 of the longest side (of the distance,
-# where a point lies farther off than that: no float holds more), normals within 4e-6, all else to the letter. A GPU need
-# not round as the CPU does.
-same_field() {
-    "$relief" info "$1" --json >"$work/info.json" || return 1
-    python3 - "$work/info.json" "$2" "$3" <<'P'
-import csv, json, sys
-bounds = json.load(open(sys.argv[1]))["bounds"]
-side = max(h - l for l, h in zip(bounds["min"], bounds["max"]))
-a, b = (list(csv.reader(open(f))) for f in sys.argv[2:])
-def same(head, x, y):
-    if x == y:
-        return True
-    if head not in ("f", "nx", "ny", "nz") or "" in (x, y):
-        return False
-    return abs(float(x) - float(y)) <= 4e-6 * (max(side, abs(float(x))) if head == "f" else 1.0)
-sys.exit(0 if len(a) == len(b) and a[0] == b[0] and all(
-    len(r) == len(s) and all(map(same, a[0], r, s)) for r, s in zip(a, b)) else 1)
-P
-}
-
 # json FILE EXPRESSION: evaluates a Python expression over the document `d`; must be true.
 json() {
     python3 - "$1" "$2" <<'P' || die "not true of $1: $2"

@@ -25,7 +25,6 @@
 #   blender the add-on of samples/blender bakes, shows errors and plays particles in Debian's Blender, without a window
 #   packages  cpack's .deb files pass lintian, and their users' programs and commands work in a minimal Debian 12 that has
 #           nothing else (tests/long/try_packages.sh). Needs root.
-#   query   `relief query` and `--gpu` agree at 100,000 points of each map format (tests/cli/query_gpu.sh)
 #   embree4 a build for Embree 4's functions, done by Embree 3 (tests/bake/mesh/embree4), bakes the same bytes.
 #   slurm   samples/slurm bakes the models of sweethome3d-furniture on a cluster of one node, with a task that is begun again,
 #           one that is killed, and broken meshes; a second run bakes the rest, and a third nothing. Needs root.
@@ -142,12 +141,6 @@ bytes() { tests/long/determinism.sh; }
 mutants() { tests/long/mutants.sh 2000; }
 
 outputs() { tests/long/all_or_nothing.sh; }
-
-query() {
-    local bin
-    bin=$(scripts/build.sh release relief) || return 1
-    RELIEF_BIN=$bin RELIEF_SOURCE=$PWD RELIEF_QUERY_POINTS=100000 bash tests/cli/query_gpu.sh
-}
 
 # A cluster of this machine alone, until its function ends.
 slurm_cluster() { # FOLDER
@@ -379,10 +372,7 @@ bare() {
         $bin/relief check bunny.relief --mesh $bunny >/dev/null
         echo 0,0,0 >points.csv
         $bin/relief query bunny.relief --points points.csv -o answers.csv
-        refused $bin/relief query bunny.relief --points points.csv -o gpu.csv --gpu
-        refused $bin/relief bake $bunny -o gpu.relief -q --paper --backend raster
-        refused $bin/relief-sim bunny.relief --steps 3
-        [ ! -e gpu.csv ] && [ ! -e gpu.relief ]' || return 1
+        refused $bin/relief-sim bunny.relief --steps 3' || return 1
     echo "bare: without a GL the CPU bakes, and what needs a GPU says what to install"
 }
 

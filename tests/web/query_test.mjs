@@ -1,7 +1,7 @@
 // A collider of every format, asked at 10,000 points in the browser: by the same C++ as WebAssembly, which must give what
 // the native tool gives, digit by digit; and by the shader in WebGL2.
 //
-// Tolerance of the shader: as tests/cli/query_gpu.sh has it for OpenGL. Distance within 1e-5 of the box's longest side
+// Tolerance of the shader: distance within 1e-5 of the box's longest side
 // and normal within 1e-5, on all points but one in 1,000, which may lie on a texel's edge and fall to the neighbour.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";

@@ -72,8 +72,6 @@ WAYS = [
     (dict(maps=["front-back:dir=-x", "fixed8:dir=+y,size=16x8"], resolution=24, decode="projected", depth="half"),
      ["--map", "front-back:dir=-x", "--map", "fixed8:dir=+y,size=16x8", "--resolution", "24", "--decode", "projected",
       "--depth", "half"]),
-    (dict(maps="front-back:dir=-z,size=32", backend="raster", device=0, gpu_timeout=60),
-     ["--map", "front-back:dir=-z,size=32", "--backend", "raster"]),
 ]
 
 
@@ -110,7 +108,7 @@ def test_every_option_gives_the_bytes_and_warnings_of_the_tool(arguments, words,
 def test_no_option_of_the_tool_is_missing():
     """Those left out are about the command's output and about recipes; compress is save()'s."""
     said = set(re.findall(r"(?:^ +| -.,)--([a-z][a-z-]*)", tool("bake", "--help").stdout, re.MULTILINE))
-    others = {"help", "quiet", "verbose", "warnings-only", "output", "json", "depfile", "compress", "list-devices", "recipe",
+    others = {"help", "quiet", "verbose", "warnings-only", "output", "json", "depfile", "compress", "recipe",
               "events", "shard", "stamp", "root", "timeout", "fail-fast", "keep-going", "dry-run", "prune"}
     has = {name for name in inspect.signature(relief.bake).parameters if name not in ("mesh", "triangles", "name")}
     assert others < said
@@ -193,7 +191,6 @@ def test_checks_refuse_other_meshes(mesh, tmp_path):
     (dict(max_error=-1), "^max_error is '-1' but must be a share in percent"),
     (dict(budget="--paper"), "^budget is '--paper' but must be"),
     (dict(unit="ell"), "^unit is 'ell' but must be"),
-    (dict(device=3), "^device does nothing|^device"),
 ])
 def test_wrong_values_are_value_errors_that_name_the_argument(arguments, words, mesh):
     with pytest.raises(ValueError, match=words) as error:
