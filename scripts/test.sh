@@ -2,7 +2,7 @@
 # Installs what is missing, builds everything and runs every test. Needs no GPU. scripts/test.sh [--quick]
 #
 #   (nothing)  the release build and all tests; the runtime as WebAssembly, and its tests in a real browser; then the
-#              sanitizer build, and what a sanitizer can find: no slow tests, and none of numbers alone
+#              sanitizer build, and what a sanitizer can find: no slow tests, and none of numbers and pictures
 #   --quick    for the work in between: the release build, and its tests but for the slow ones and those that only
 #              repeat another in OpenGL ES, or by compute shaders
 set -euo pipefail

@@ -25,6 +25,7 @@
 #   blender the add-on of samples/blender bakes, shows errors and plays particles in Debian's Blender, without a window
 #   packages  cpack's .deb files pass lintian, and their users' programs and commands work in a minimal Debian 12 that has
 #           nothing else (tests/long/try_packages.sh). Needs root.
+#   sanitize  every test passes under the address and undefined-behaviour sanitizers, those of numbers too
 #   embree4 a build for Embree 4's functions, done by Embree 3 (tests/bake/mesh/embree4), bakes the same bytes.
 #   slurm   samples/slurm bakes the models of sweethome3d-furniture on a cluster of one node, with a task that is begun again,
 #           one that is killed, and broken meshes; a second run bakes the rest, and a third nothing. Needs root.
@@ -33,7 +34,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes seeds cases level clang load bare packages query embree4 outputs blender slurm
+all_runs=(sweep rest import mutants package headers bytes seeds cases level clang sanitize load bare packages embree4 outputs blender slurm
     corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
@@ -70,6 +71,11 @@ for test in tests:
 sys.exit(0 if tests else 'sweep: no such test')
 P
     return "$status"
+}
+
+sanitize() {
+    built sanitize --preset sanitize -DRELIEF_BUILD_NUMBER_TESTS=ON &&
+        logged sanitize env LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp" ctest --test-dir "$work/sanitize" -LE night -j "$(nproc)"
 }
 
 package() {
