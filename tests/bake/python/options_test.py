@@ -105,6 +105,37 @@ def test_every_option_gives_the_bytes_and_warnings_of_the_tool(arguments, words,
     assert [issubclass(one.category, relief.ReliefWarning) for one in caught] == [True] * done.stderr.count("warning: ")
 
 
+def toml(words):
+    """Words of a command line as keys of a recipe's asset."""
+    keys = {}
+    for word in words:
+        if word.startswith("--"):
+            name = word[2:]
+            keys.setdefault(name, [])
+        else:
+            keys[name].append(word)
+    keys.pop("threads", None)  # the recipe's own, and without effect on the bytes
+    for name, values in keys.items():
+        number = re.fullmatch(r"\d+(\.\d+)?", values[0]) if values else None
+        yield f"{name} = " + ("true" if not values else number[0] if number else
+                              json.dumps(values[0] if len(values) == 1 and name not in ("map", "as") else values))
+
+
+def test_a_recipe_gives_the_same_bytes(mesh, tmp_path):
+    (tmp_path / "scene.obj").write_bytes(mesh.read_bytes())
+    assets = []
+    for index, (arguments, words) in enumerate(WAYS):
+        no_check = ["--no-check"] if arguments.get("no_check") and "--no-check" not in words else []
+        assets.append("\n".join(["[[asset]]", 'mesh = "scene.obj"', f'output = "{index}.relief"', *toml(words + no_check)]))
+    (tmp_path / "all.toml").write_text("version = 1\n" + "\n".join(assets))
+    done = tool("bake", "--recipe", tmp_path / "all.toml")
+    assert done.returncode == 0, done.stderr
+    for index, (arguments, words) in enumerate(WAYS):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            assert relief.bake(mesh, **arguments).to_bytes() == (tmp_path / f"{index}.relief").read_bytes(), words
+
+
 def test_no_option_of_the_tool_is_missing():
     """Those left out are about the command's output and about recipes; compress is save()'s."""
     said = set(re.findall(r"(?:^ +| -.,)--([a-z][a-z-]*)", tool("bake", "--help").stdout, re.MULTILINE))
@@ -161,6 +192,26 @@ def test_checks_judge_the_solid_that_the_tool_judges(words, mesh, tmp_path):
     assert [place.position for place in accuracy.places] == [
         pytest.approx(place["position"], abs=1e-6) for place in said["worst_places"]]
     assert [str(one.message) for one in caught] == said["warnings"]
+
+
+CHECKS = [dict(samples=3000), dict(samples=3000, seed=9), dict(samples=3000, detail=0.5),
+          dict(samples=3000, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100)]
+
+
+@pytest.mark.parametrize("arguments", CHECKS, ids=str)
+def test_every_option_of_a_check_gives_the_numbers_of_the_tool(arguments, mesh, tmp_path):
+    assert set().union(*CHECKS) == set(inspect.signature(relief.check).parameters) - {"collider", "mesh", "triangles"}
+    frame = {name: arguments[name] for name in ("unit", "up") if name in arguments}
+    relief.bake(mesh, budget="60kB", **frame).save(tmp_path / "a.relief")
+    words = [word for name, value in arguments.items() for word in ("--" + name.replace("_", "-"), str(value))]
+    said = json.loads(tool("check", tmp_path / "a.relief", "--mesh", mesh, "--json", *words).stdout)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        accuracy = relief.check(relief.load(tmp_path / "a.relief"), mesh, **arguments)
+    assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
+    assert [place.position for place in accuracy.places] == [
+        pytest.approx(place["position"], abs=1e-6) for place in said["worst_places"]]
+    assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
 
 
 def test_checks_refuse_other_meshes(mesh, tmp_path):
