@@ -89,7 +89,7 @@ struct Soup {
     }
 };
 
-/// Another surface with the source's name, hash and unit.
+/// Another surface of the same file.
 Result<TriangleMesh> meshOf(const TriangleMesh& source, std::vector<glm::vec3> positions,
                             std::vector<glm::uvec3> triangles) {
     TriangleMesh mesh;
@@ -97,6 +97,9 @@ Result<TriangleMesh> meshOf(const TriangleMesh& source, std::vector<glm::vec3> p
     mesh.content_hash = source.content_hash;
     mesh.unit = source.unit;
     mesh.dropped_triangles = source.dropped_triangles;
+    mesh.dependencies = source.dependencies;
+    mesh.dependency_hashes = source.dependency_hashes;
+    mesh.warnings = source.warnings;
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(triangles);
     return finishMesh(std::move(mesh));
