@@ -23,9 +23,7 @@ struct DiffCommand {
     std::string a;
     std::string b;
     ContainerLimits limits;
-    std::optional<float> max_sides;     // percent
-    std::optional<float> max_distance;  // object units
-    bool strict_metadata = false;
+    DiffReport report;  // its limits
     bool json = false;
 };
 
@@ -48,21 +46,16 @@ Result<void> runDiff(const DiffCommand& command) {
     }
     const Loaded a = RELIEF_TRY(load(command.a, command.limits));
     const Loaded b = RELIEF_TRY(load(command.b, command.limits));
-    DiffSummary summary{.a = shownInput(command.a),
-                        .b = shownInput(command.b),
-                        .unit = a.collider.unit,
-                        .difference = compareColliders(a.collider, b.collider),
-                        .fields = {},
-                        .limits = {command.max_sides, command.max_distance, command.strict_metadata},
-                        .same_bytes = a.bytes == b.bytes};
-    if (summary.difference.any()) {
-        summary.fields = compareFields(a.collider, b.collider);
-    }
+    DiffReport report = command.report;
+    report.a = shownInput(command.a);
+    report.b = shownInput(command.b);
+    report.same_bytes = a.bytes == b.bytes;
+    report.compare(a.collider, b.collider);
     if (command.json || !command.common.quiet) {
-        RELIEF_TRY(printOut(command.json ? jsonText(jsonOf(summary)) : diffText(summary)));
+        RELIEF_TRY(printOut(command.json ? jsonText(jsonOf(report)) : report.text()));
     }
-    if (const std::string verdict = diffVerdict(summary); !verdict.empty()) {
-        return fail(ErrorCode::kDifference, summary.a + " and " + summary.b + " differ: " + verdict);
+    if (const std::string verdict = report.verdict(); !verdict.empty()) {
+        return fail(ErrorCode::kDifference, report.a + " and " + report.b + " differ: " + verdict);
     }
     return {};
 }
@@ -71,32 +64,28 @@ Result<void> runDiff(const DiffCommand& command) {
 
 void addDiff(CLI::App& app, Action& action) {
     auto command = std::make_shared<DiffCommand>();
-    CLI::App& verb = addVerb(app, command->common, "diff",
-                             "Compares two colliders\n\nMap i of A with map i of B: frames, and whether "
-                             "every texel is the same. Where "
-                             "they differ, both are\nevaluated at the same points: how many lie on another "
-                             "side of the surface, and by "
-                             "how much distances\ndiffer. Exit code 7 for any difference; with --max-sides "
-                             "or --max-distance, only for "
-                             "fields beyond them,\nwhatever the maps.",
-                             "relief diff before.relief after.relief\n"
-                             "relief diff raycast.relief raster.relief --max-sides 0.1%\n"
-                             "relief diff small.relief large.relief --max-sides 1% --max-distance 0.002\n"
-                             "relief bake bunny.obj -o - -q | relief diff golden.relief - --json");
+    CLI::App& verb =
+        addVerb(app, command->common, "diff",
+                "Compares two colliders\n\nLists the fields that differ, of the colliders and of map i "
+                "of A and map i of B, and then\nevaluates both at the same points near their surfaces. "
+                "Exit code 7 for any difference; with --max-sides or\n--max-distance, only for points "
+                "beyond them, whatever the maps.",
+                "relief diff before.relief after.relief\n"
+                "relief diff raycast.relief raster.relief --max-sides 0.1%\n"
+                "relief diff small.relief large.relief --max-sides 1% --max-distance 0.002\n"
+                "relief bake bunny.obj -o - -q | relief diff golden.relief - --json");
     verb.add_option("A", command->a, "A collider; - for standard input")->type_name("")->required();
     verb.add_option("B", command->b, "The one to compare it with; - for standard input")
         ->type_name("")
         ->required();
-    verb.add_option("--max-sides", command->max_sides,
+    verb.add_option("--max-sides", command->report.max_sides,
                     "Share of the points near the surfaces, in percent, that may be on another side")
         ->option_text("PCT")
         ->transform(percent());
-    verb.add_option("--max-distance", command->max_distance,
+    verb.add_option("--max-distance", command->report.max_distance,
                     "Length, in object units, by which 99 % of the distances near the surfaces may differ")
         ->option_text("LENGTH")
         ->transform(number(0.0F, kMost, "a length in object units, 0 or more"));
-    verb.add_flag("--strict-metadata", command->strict_metadata,
-                  "Mesh, tool and options of the bake count too; otherwise they are only shown");
     addMemoryOption(verb, command->limits);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command](FileGuard&) { return runDiff(*command); }; });
