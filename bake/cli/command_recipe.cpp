@@ -10,11 +10,11 @@
 #include <thread>
 
 #include "bake/cli/bake_outputs.h"
-#include "bake/cli/recipe_keys.h"
 #include "bake/director/bake_request.h"
+#include "bake/import/import_format.h"
+#include "bake/import/mesh_import.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
-#include "bake/recipe/prune.h"
 #include "bake/recipe/recipe_run.h"
 #include "bake/recipe/recipe_stamp.h"
 #include "bake/report/recipe_report.h"
@@ -34,6 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kShardsMax = 1'000'000;
+constexpr std::string_view kPlan = "--plan=";
 constexpr float kTimeoutMax = 1e7F;  // seconds
 
 /// Options of a bake that a run of a recipe has its own place for: they are no keys.
@@ -135,11 +136,6 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
     if (call.output == "-") {
         return fail(ErrorCode::kUsage, "--output is a folder beside --recipe, and not standard output");
     }
-    if (options.prune && options.recipe == "-") {
-        return fail(ErrorCode::kUsage,
-                    "--prune removes what this recipe has baked, and a recipe on standard input has no name "
-                    "to know it by; name a file");
-    }
     return run;
 }
 
@@ -172,14 +168,11 @@ Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& cal
     return files.writes(options.events, "--events");
 }
 
-Result<void> printDryRun(const std::vector<AssetResult>& assets, const std::vector<PrunedOutput>& pruned) {
+Result<void> printDryRun(const std::vector<AssetResult>& assets) {
     std::vector<std::vector<std::string>> rows = {{"output", "mesh", "why"}};
     for (const AssetResult& asset : assets) {
         rows.push_back({cleanUtf8(asset.job.output), cleanUtf8(asset.job.mesh),
                         asset.reason.empty() ? "up to date" : asset.reason});
-    }
-    for (const PrunedOutput& output : pruned) {
-        rows.push_back({cleanUtf8(output.output), cleanUtf8(output.mesh), prunedReason(output, true)});
     }
     return printOut(table(rows));
 }
@@ -229,79 +222,89 @@ Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& ca
     return work;
 }
 
-/// Bakes what is not up to date, and shows progress.
+/// Bakes what is not up to date, and shows progress: a line for each asset that was baked.
 Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events) {
-    RecipeDisplay display(work.jobs.size(), shown);
     RecipeRun run = work.run;
+    std::size_t done = 0;
     run.started = [&](const AssetResult& asset) {
         events.write(AssetEvent{{asset, true}});
-        display.wipe();
         spdlog::debug("{}: {}", cleanUtf8(asset.job.output), asset.reason);
-        display.started(asset);
     };
-    run.ended = [&](const AssetResult& asset) {
+    run.ended = [&, all = work.jobs.size()](const AssetResult& asset) {
         events.write(AssetEvent{{asset, true}});
-        display.wipe();
+        ++done;
+        const std::string name = cleanUtf8(asset.job.output);
         if (asset.state == AssetState::kFailed) {
-            spdlog::error("{}: {}", cleanUtf8(asset.job.output), asset.error.message);
+            spdlog::error("{}: {}", name, asset.error.message);
+        } else if (shown && asset.state == AssetState::kBaked) {
+            std::fprintf(stderr, "[%zu/%zu] %s: %s\n", done, all, name.c_str(), bakedText(asset).c_str());
         }
-        display.ended(asset);
     };
-    run.warn = [&](const std::string& warning) {
-        display.wipe();
-        spdlog::warn(warning);
-    };
-    run.waiting = [&] { display.tick(); };
+    run.warn = [](const std::string& warning) { spdlog::warn(warning); };
     Result<RecipeResult> result = runRecipe(std::move(work.jobs), run);
-    display.wipe();
     for (const std::string& line : result ? warningLines(result->assets) : std::vector<std::string>()) {
         spdlog::warn(line);
     }
     return result;
 }
 
-/// Removes what is no longer named, once everything that is named is up to date.
-Result<std::vector<PrunedOutput>> prune(const RecipeOptionsOfBake& options, const RecipeCall& call,
-                                        RecipeWork& work, const RecipeCounts& counts, RecipeEvents& events) {
-    if (!options.prune) {
-        return std::vector<PrunedOutput>();
+/// The mesh and all that it refers to; nullopt if that cannot be read.
+std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
+    const std::string extension = job.mesh_path.extension().string();
+    const MeshFormat* const format = extension.empty() ? nullptr : meshFormat(extension.substr(1));
+    if (format != nullptr && format->whole) {
+        const std::optional<std::string> hash = hashOfFile(job.mesh_path);
+        return hash ? std::optional(std::vector<InputFile>{{job.mesh, *hash}}) : std::nullopt;
     }
-    if (counts.of(AssetState::kFailed) + counts.of(AssetState::kCancelled) > 0) {
-        spdlog::warn("--prune removes nothing, as not everything is baked");
-        return std::vector<PrunedOutput>();
+    const Result<TriangleMesh> mesh = importMeshInWorker(job.mesh_path);
+    if (!mesh) {
+        return std::nullopt;
     }
-    const RecipeRun& run = work.run;
-    const Shard shard = options.shard.value_or(Shard{});
-    const auto wanted = [&](const std::string& output) {
-        // An output that is still named, an input by now, or written beside the outputs.
-        return !inShard(output, shard) || work.files.claim(run.output_folder / output, "--prune") != nullptr;
-    };
-    std::vector<PrunedOutput> pruned = RELIEF_TRY(
-        pruneOutputs(run.output_folder, recipeName(run.recipe, run.output_folder), wanted, options.dry_run));
-    for (const PrunedOutput& output : pruned) {
-        events.write(PrunedEvent{{output, options.dry_run}});
-        const std::string line = cleanUtf8(output.output) + ": " + prunedReason(output, options.dry_run);
-        if (!output.kept.empty()) {
-            spdlog::warn(line);
-        } else if (!call.common.quiet && !options.dry_run) {
-            std::fputs((line + "\n").c_str(), stderr);
+    std::vector<InputFile> files;
+    for (std::size_t i = 0; i < mesh->dependencies.size(); ++i) {
+        files.push_back(
+            {i == 0 ? job.mesh : nameInRecipe(mesh->dependencies[i], folder), mesh->dependency_hashes[i]});
+    }
+    return files;
+}
+
+std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& tool, const fs::path& folder) {
+    std::optional<std::vector<InputFile>> files = filesOfMesh(job, folder);
+    for (const std::string& argument : job.arguments) {
+        if (files && argument.starts_with(kPlan)) {
+            const fs::path plan = argument.substr(kPlan.size());
+            const std::optional<std::string> hash = hashOfFile(plan);
+            if (!hash) {
+                return std::nullopt;
+            }
+            files->push_back({nameInRecipe(plan, folder), *hash});
         }
     }
-    return pruned;
+    return files ? std::optional(assetKey(tool, job.options, std::move(*files))) : std::nullopt;
+}
+
+/// Gives keys to the assets of a dry run. Reads their meshes as far as other files belong to them; an asset whose mesh or
+/// plan cannot be read gets none.
+Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
+    const std::string tool = RELIEF_TRY(toolIdentity());
+    const fs::path folder = recipeFolder(run.recipe);
+    for (AssetResult& asset : assets) {
+        if (asset.key.empty()) {
+            asset.key = assetKeyOf(asset.job, tool, folder).value_or("");
+        }
+    }
+    return {};
 }
 
 /// Chooses what standard output carries.
 Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
-                         const RecipeResult& result, const std::vector<PrunedOutput>& pruned, double ms) {
+                         const RecipeResult& result, double ms) {
     if (!call.json) {
-        return options.dry_run && options.events != "-" ? printDryRun(result.assets, pruned) : Result<void>();
+        return options.dry_run && options.events != "-" ? printDryRun(result.assets) : Result<void>();
     }
     RecipeJson report{options.recipe, run.output_folder.string(), options.shard, countAssets(result.assets),
                       ms};
     report.assets = viewsOf<AssetReport>(result.assets, false);
-    if (options.prune) {
-        report.pruned = viewsOf<PrunedReport>(pruned, options.dry_run);
-    }
     return printOut(jsonText(jsonOf(report)));
 }
 
@@ -361,18 +364,10 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
         ->option_text("SECONDS")
         ->transform(number(0.0F, kTimeoutMax, "a number of seconds, 0 for any"))
         ->needs(recipe);
-    CLI::Option* fast = verb.add_flag("--fail-fast", options.fail_fast,
-                                      "Of --recipe: begin no further asset once one has failed");
-    CLI::Option* going = verb.add_flag("--keep-going", options.keep_going,
-                                       "Of --recipe: bake the others when one fails (default)");
-    fast->needs(recipe);
-    going->needs(recipe)->excludes(fast);
-    verb.add_flag("--dry-run", options.dry_run, "Of --recipe: only say what would be baked, and why")
+    verb.add_flag("--fail-fast", options.fail_fast,
+                  "Of --recipe: begin no further asset once one has failed; otherwise the others are baked")
         ->needs(recipe);
-    verb.add_flag(
-            "--prune", options.prune,
-            "Of --recipe: remove the outputs that it baked earlier and no longer names, as their meshes\n"
-            "are gone; with --dry-run only say which")
+    verb.add_flag("--dry-run", options.dry_run, "Of --recipe: only print what would be baked, and why")
         ->needs(recipe);
 }
 
@@ -390,21 +385,15 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
         RELIEF_TRY(addKeys(result.assets, work.run));
     }
     const RecipeCounts counts = countAssets(result.assets);
-    std::vector<PrunedOutput> pruned;
-    if (result.signal == 0) {
-        pruned = RELIEF_TRY(prune(options, call, work, counts, events));
-    }
     const double ms = watch.ms();
     events.write(RecipeEnd{counts, ms, result.signal});
     if (!call.common.quiet) {
-        const std::string slowest = slowestText(result.assets);
-        std::fputs((recipeSummary(counts, ms) + (slowest.empty() ? "" : "; ") + slowest + "\n").c_str(),
-                   stderr);
+        std::fputs((recipeSummary(counts, ms) + "\n").c_str(), stderr);
     }
     if (result.signal != 0) {
         ChildProcesses::endBySignal(result.signal);
     }
-    RELIEF_TRY(printResult(options, call, work.run, result, pruned, ms));
+    RELIEF_TRY(printResult(options, call, work.run, result, ms));
     RELIEF_TRY(verdict(result.assets, counts));
     if (options.dry_run) {
         return {};

@@ -18,9 +18,7 @@ struct RecipeOptionsOfBake {
     std::string root;         ///< a folder; empty: none
     float timeout = 3600.0F;  ///< seconds for one asset; 0: any
     bool fail_fast = false;
-    bool keep_going = false;
     bool dry_run = false;
-    bool prune = false;
 };
 
 /// Options that --recipe shares with a bake of one mesh.

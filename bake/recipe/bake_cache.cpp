@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "formats/base/descriptor.h"
-#include "formats/base/destination.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
@@ -45,9 +44,6 @@ BakeCacheEntry entryOf(const Json& json) {
     entry.output_hash = json.at("output_hash").get<std::string>();
     entry.output_bytes = json.at("output_bytes").get_ref<const Json::number_unsigned_t&>();
     entry.options = json.at("options").get<std::vector<std::string>>();
-    if (json.contains("recipe")) {
-        entry.recipe = json.at("recipe").get<std::string>();
-    }
     const Json& inputs = json.at("inputs");
     static_cast<void>(inputs.at(0));  // an entry without inputs would hold for ever
     for (const Json& input : inputs) {
@@ -103,14 +99,11 @@ std::string bakeCacheText(const BakeCacheEntries& entries) {
         for (const InputFile& input : entry.inputs) {
             inputs.push_back({{"file", cleanUtf8(input.path)}, {"hash", input.hash}});
         }
-        Json& output = outputs[cleanUtf8(name)] = {{"tool", entry.tool},
-                                                   {"options", entry.options},
-                                                   {"inputs", std::move(inputs)},
-                                                   {"output_hash", entry.output_hash},
-                                                   {"output_bytes", entry.output_bytes}};
-        if (!entry.recipe.empty()) {
-            output["recipe"] = entry.recipe;
-        }
+        outputs[cleanUtf8(name)] = {{"tool", entry.tool},
+                                    {"options", entry.options},
+                                    {"inputs", std::move(inputs)},
+                                    {"output_hash", entry.output_hash},
+                                    {"output_bytes", entry.output_bytes}};
     }
     const Json json = {{"format", kFormat}, {"version", kCacheVersion}, {"outputs", std::move(outputs)}};
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -131,19 +124,13 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
                    parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
-std::string recipeName(const fs::path& recipe, const fs::path& output_folder) {
-    std::error_code error;
-    const fs::path file = destination(recipe, error);
-    const fs::path folder = error ? fs::path() : destination(output_folder, error);
-    return recipe == "-" || error ? "" : cleanUtf8(file.lexically_relative(folder).string());
-}
-
-Result<void> editBakeCache(const fs::path& output_folder,
-                           const std::function<void(BakeCacheEntries&)>& edit) {
+Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
     const FolderLock lock(output_folder);
     // A cache that cannot be read is replaced.
     BakeCacheEntries all = loadBakeCache(output_folder).value_or(BakeCacheEntries{});
-    edit(all);
+    for (const auto& [name, entry] : entries) {
+        all.insert_or_assign(name, entry);
+    }
     std::erase_if(all, [&](const auto& named) {
         std::error_code error;
         return !fs::exists(output_folder / named.first, error);
@@ -158,12 +145,25 @@ Result<void> editBakeCache(const fs::path& output_folder,
     return writeFile(path, std::as_bytes(std::span(text)));
 }
 
-Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
-    return editBakeCache(output_folder, [&](BakeCacheEntries& all) {
-        for (const auto& [name, entry] : entries) {
-            all.insert_or_assign(name, entry);
-        }
-    });
+std::string assetKey(const std::string& tool, const std::vector<std::string>& options,
+                     std::vector<InputFile> inputs) {
+    std::ranges::sort(inputs, {}, &InputFile::path);
+    // Each part behind its length, so that no two lists give one text.
+    std::string text;
+    const auto add = [&](const std::string& part) { text += std::to_string(part.size()) + ":" + part; };
+    add(tool);
+    add(std::to_string(options.size()));
+    std::ranges::for_each(options, add);
+    for (const InputFile& input : inputs) {
+        add(input.path);
+        add(input.hash);
+    }
+    return xxh3_128Hex(std::as_bytes(std::span(text)));
+}
+
+std::string nameInRecipe(const fs::path& file, const fs::path& recipe_folder) {
+    const fs::path inside = file.lexically_normal().lexically_relative(recipe_folder.lexically_normal());
+    return inside.empty() ? file.string() : inside.string();
 }
 
 std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry* entry,

@@ -7,7 +7,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,7 +24,6 @@ struct BakeCacheEntry {
     std::vector<InputFile> inputs;     ///< from the recipe's folder; the mesh first
     std::string output_hash;           ///< XXH3-128
     std::uint64_t output_bytes = 0;
-    std::string recipe = {};  ///< recipeName() of the run that baked it; empty: unknown
 
     bool operator==(const BakeCacheEntry&) const = default;
 };
@@ -47,20 +45,22 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 /// next update. Errors: kInvalidInput, kIo, kLimit: name the file; everything is to be baked again.
 [[nodiscard]] Result<BakeCacheEntries> loadBakeCache(const std::filesystem::path& output_folder);
 
-/// A recipe as the cache beside its outputs names it: from the output folder, whatever links lead there; empty for "-".
-[[nodiscard]] std::string recipeName(const std::filesystem::path& recipe,
-                                     const std::filesystem::path& output_folder);
-
-/// Changes the cache file while nobody else does. Errors: those of updateBakeCache().
-[[nodiscard]] Result<void> editBakeCache(const std::filesystem::path& output_folder,
-                                         const std::function<void(BakeCacheEntries&)>& edit);
-
 /// Puts entries into the cache file, beside those that others have put there meanwhile; entries of outputs
 /// that are gone are left out. Safe against any number of processes at once: the folder is locked (flock)
 /// meanwhile. Where it cannot be locked, entries may get lost, which costs a bake and is never wrong. Errors:
 /// kIo.
 [[nodiscard]] Result<void> updateBakeCache(const std::filesystem::path& output_folder,
                                            const BakeCacheEntries& entries);
+
+/// XXH3-128 of the program, the options and the inputs' names and contents: equal keys are equal outputs, byte for byte.
+/// For caches of other programs. \param tool  toolIdentity(). \param options  RecipeJob::options.
+/// \param inputs  named from the recipe's folder, in any order.
+[[nodiscard]] std::string assetKey(const std::string& tool, const std::vector<std::string>& options,
+                                   std::vector<InputFile> inputs);
+
+/// A file that a bake read, named from the recipe's folder; as it is if it lies elsewhere.
+[[nodiscard]] std::string nameInRecipe(const std::filesystem::path& file,
+                                       const std::filesystem::path& recipe_folder);
 
 /// Why a job has to be done, in a few words; nullopt if its output is up to date.
 /// \param entry  null if there is none.

@@ -1,8 +1,7 @@
 #include "bake/recipe/child_process.h"
 
 #include <fcntl.h>
-#include <poll.h>
-#include <sys/signalfd.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,97 +25,66 @@ bool isIgnored(int signal) {
     return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
+/// The last bytes of a file, `most` of them.
+std::string tailOf(const Descriptor& file, std::size_t most) {
+    const auto size = static_cast<std::size_t>(std::max<off_t>(::lseek(file.get(), 0, SEEK_END), 0));
+    std::string text(std::min(size, most), '\0');
+    const ssize_t got = ::pread(file.get(), text.data(), text.size(), static_cast<off_t>(size - text.size()));
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    return text;
+}
+
 }  // namespace
 
 struct ChildProcesses::Child {
     Process process;
-    Descriptor out;  ///< the ends of its pipes, not blocking; closed at their end
+    Descriptor out;  ///< files in memory
     Descriptor err;
-    Clock::time_point start;
+    Clock::time_point start = Clock::now();
     Clock::time_point deadline = Clock::time_point::max();
-    ChildEnd end;
+    ChildEnd end = {};
 
-    /// Takes what lies in a pipe.
-    void drain(Descriptor& pipe, std::string& text) {
-        std::array<char, 1 << 16> buffer;
-        while (pipe) {
-            const ssize_t got = ::read(pipe.get(), buffer.data(), buffer.size());
-            if (got > 0) {
-                text.append(buffer.data(), static_cast<std::size_t>(got));
-                trim();
-            } else if (got == 0 || (errno != EINTR && errno != EAGAIN)) {
-                pipe.reset();
-            } else if (errno == EAGAIN) {
-                return;
-            }
-        }
-    }
-    void drain() {
-        drain(out, end.out);
-        drain(err, end.err);
-    }
-    void trim() {
-        end.out.resize(std::min(end.out.size(), kChildOutputMax));
-        if (end.err.size() > 2 * kChildErrorMax) {
-            end.err.erase(0, end.err.size() - kChildErrorMax);
-        }
-    }
     void kill(int signal) const { ::kill(-process.pid(), signal); }
 };
 
 ChildProcesses::ChildProcesses() {
-    sigset_t wanted;
-    ::sigemptyset(&wanted);
-    ::sigaddset(&wanted, SIGCHLD);
+    ::sigemptyset(&wanted_);
+    ::sigaddset(&wanted_, SIGCHLD);
     for (const int signal : kEndSignals) {
         if (!isIgnored(signal)) {
-            ::sigaddset(&wanted, signal);
+            ::sigaddset(&wanted_, signal);
         }
     }
-    ::sigprocmask(SIG_BLOCK, &wanted, &mask_before_);
-    signals_ = Descriptor(::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK));
+    ::sigprocmask(SIG_BLOCK, &wanted_, &mask_before_);
 }
 
 ChildProcesses::~ChildProcesses() {
     endAll();
     if (asked_ != 0) {
-        readSignals();  // to ask again is to ask once; what nobody was told of is delivered now
+        static_cast<void>(askedToEnd());  // one request is enough; others would be delivered now
     }
     ::sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
 }
 
 Result<void> ChildProcesses::startSelf(const std::vector<std::string>& arguments, double seconds_max,
                                        std::size_t tag) {
-    const auto failed = [](const char* what, int code) {
-        return fail(ErrorCode::kFailure, std::string("cannot ") + what + ": " +
-                                             std::system_category().message(code) +
-                                             "; choose a smaller -j, or raise the limits (ulimit -n -u)");
-    };
     Child child;
     const Descriptor nothing(openRetry("/dev/null", O_RDONLY));
-    Descriptor out;
-    Descriptor err;
-    int code = nothing ? makePipe(child.out, out) : errno;
-    code = code == 0 ? makePipe(child.err, err) : code;
-    if (code != 0) {
-        return failed("make a pipe", code);
-    }
-    ::fcntl(child.out.get(), F_SETFL, O_NONBLOCK);
-    ::fcntl(child.err.get(), F_SETFL, O_NONBLOCK);
+    child.out = Descriptor(::memfd_create("stdout", MFD_CLOEXEC));
+    child.err = Descriptor(::memfd_create("stderr", MFD_CLOEXEC));
     ProcessStart start;
     start.program = "/proc/self/exe";
     start.arguments = {"relief"};
     start.arguments.insert(start.arguments.end(), arguments.begin(), arguments.end());
-    start.files = {nothing.get(), out.get(), err.get()};
+    start.files = {nothing.get(), child.out.get(), child.err.get()};
     start.blocked_signals = mask_before_;
     start.signal_on_orphan = SIGTERM;
     start.own_group = true;
     start.oom_score = kOomScore;
-    code = child.process.start(start);
-    if (code != 0) {
-        return failed("start a process", code);
+    if (const int code = nothing && child.out && child.err ? child.process.start(start) : errno) {
+        return fail(ErrorCode::kFailure, "cannot start a process: " + std::system_category().message(code) +
+                                             "; choose a smaller -j, or raise the limits (ulimit -n -u)");
     }
-    child.start = Clock::now();
     if (seconds_max > 0.0) {
         child.deadline = child.start + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(seconds_max));
@@ -131,18 +99,17 @@ std::size_t ChildProcesses::running() const {
     return children_.size();
 }
 
-void ChildProcesses::readSignals() {
-    signalfd_siginfo info{};
-    while (::read(signals_.get(), &info, sizeof(info)) == static_cast<ssize_t>(sizeof(info))) {
-        const int signal = static_cast<int>(info.ssi_signo);
-        if (asked_ == 0 && std::find(kEndSignals.begin(), kEndSignals.end(), signal) != kEndSignals.end()) {
-            asked_ = signal;
-        }
-    }
+bool ChildProcesses::takeSignal(std::chrono::nanoseconds at_most) {
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(at_most);
+    const timespec time{seconds.count(), (at_most - seconds).count()};
+    const int signal = ::sigtimedwait(&wanted_, nullptr, &time);
+    asked_ = asked_ == 0 && signal > 0 && signal != SIGCHLD ? signal : asked_;
+    return signal > 0;
 }
 
 int ChildProcesses::askedToEnd() {
-    readSignals();
+    while (takeSignal({})) {
+    }
     return asked_;
 }
 
@@ -157,11 +124,9 @@ void ChildProcesses::collect(std::vector<ChildEnd>& ended) {
         }
         child->kill(SIGKILL);  // what it has started and left behind; while its number is still its own
         const ProcessEnd how = child->process.wait();
-        child->drain();
         ChildEnd end = std::move(child->end);
-        if (end.err.size() > kChildErrorMax) {
-            end.err.erase(0, end.err.size() - kChildErrorMax);
-        }
+        end.out = tailOf(child->out, kChildOutputMax);
+        end.err = tailOf(child->err, kChildErrorMax);
         end.signal = how.signal;
         end.exit_code = how.exit_code;
         end.ms = std::chrono::duration<double, std::milli>(Clock::now() - child->start).count();
@@ -174,32 +139,21 @@ std::vector<ChildEnd> ChildProcesses::wait(std::chrono::milliseconds at_most) {
     std::vector<ChildEnd> ended;
     const Clock::time_point until = Clock::now() + at_most;
     while (true) {
-        readSignals();
+        const Clock::time_point now = Clock::now();
+        Clock::time_point next = until;
         for (Child& child : children_) {
-            child.drain();
-            if (Clock::now() >= child.deadline) {
+            if (now >= child.deadline) {
                 child.end.timed_out = true;
                 child.deadline = Clock::time_point::max();
                 child.kill(SIGKILL);
             }
+            next = std::min(next, child.deadline);
         }
         collect(ended);
-        const Clock::time_point now = Clock::now();
-        if (!ended.empty() || asked_ != 0 || now >= until || children_.empty()) {
+        if (!ended.empty() || askedToEnd() != 0 || now >= until || children_.empty()) {
             return ended;
         }
-        Clock::time_point next = until;
-        std::vector<pollfd> watched{{signals_.get(), POLLIN, 0}};
-        for (const Child& child : children_) {
-            next = std::min(next, child.deadline);
-            for (const Descriptor* pipe : {&child.out, &child.err}) {
-                if (*pipe) {
-                    watched.push_back({pipe->get(), POLLIN, 0});
-                }
-            }
-        }
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(next - now).count();
-        ::poll(watched.data(), watched.size(), static_cast<int>(std::max<std::int64_t>(left, 1)));
+        takeSignal(next - now);
     }
 }
 
@@ -210,17 +164,11 @@ std::vector<ChildEnd> ChildProcesses::endAll() {
     }
     const Clock::time_point until = Clock::now() + kPatience;
     while (!children_.empty()) {
-        const bool late = Clock::now() >= until;
-        for (Child& child : children_) {
-            child.drain();
-            if (late) {
-                child.kill(SIGKILL);
-            }
+        takeSignal(std::chrono::milliseconds(10));
+        if (Clock::now() >= until) {
+            std::ranges::for_each(children_, [](const Child& child) { child.kill(SIGKILL); });
         }
         collect(ended);
-        if (!children_.empty()) {
-            ::poll(nullptr, 0, 10);
-        }
     }
     return ended;
 }

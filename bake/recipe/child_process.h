@@ -23,7 +23,7 @@ struct ChildEnd {
     int signal = 0;          ///< that ended it
     bool timed_out = false;  ///< it was ended for taking longer than its time
     double ms = 0.0;         ///< from its start
-    std::string out;         ///< its standard output, at most kChildOutputMax of it
+    std::string out;         ///< its standard output: the end of it, at most kChildOutputMax
     std::string err;         ///< its standard error: the end of it, at most kChildErrorMax
 };
 
@@ -66,12 +66,13 @@ class ChildProcesses {
   private:
     struct Child;
 
-    void readSignals();
+    /// Waits for a signal. \return whether one came.
+    bool takeSignal(std::chrono::nanoseconds at_most);
     void collect(std::vector<ChildEnd>& ended);
 
     std::vector<Child> children_;
-    Descriptor signals_;
     int asked_ = 0;
+    sigset_t wanted_{};
     sigset_t mask_before_{};
 };
 

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "bake/recipe/asset_key.h"
 #include "bake/recipe/child_process.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -96,11 +95,6 @@ class Runner {
                 asset.bytes = entry->second.output_bytes;
                 asset.inputs = entry->second.inputs;
                 asset.key = assetKey(tool_, asset.job.options, asset.inputs);
-                if (!run_.dry_run && entry->second.recipe != recipe_name_) {
-                    // It came from another recipe, whose --prune must leave it alone from now on.
-                    fresh_[asset.job.output] = entry->second;
-                    fresh_[asset.job.output].recipe = recipe_name_;
-                }
                 tell(run_.ended, asset);
             } else {
                 asset.reason = *reason;
@@ -127,9 +121,6 @@ class Runner {
             }
             for (const ChildEnd& end : children_.wait(std::chrono::seconds(1))) {
                 take(end);
-            }
-            if (run_.waiting) {
-                run_.waiting();
             }
             if (!fresh_.empty() && Clock::now() - cached > kCacheInterval) {
                 // Should it fail, the last time says so.
@@ -233,14 +224,12 @@ class Runner {
         asset.state = AssetState::kBaked;
         asset.hash = *hash;
         asset.bytes = bytes;
-        fresh_[asset.job.output] = {tool_,      asset.job.options, asset.inputs,
-                                    asset.hash, asset.bytes,       recipe_name_};
+        fresh_[asset.job.output] = {tool_, asset.job.options, asset.inputs, asset.hash, asset.bytes};
         tell(run_.ended, asset);
     }
 
     const RecipeRun& run_;
     std::string tool_;
-    std::string recipe_name_ = recipeName(run_.recipe, run_.output_folder);
     ChildProcesses children_;
     RecipeResult result_;
     BakeCacheEntries fresh_;  ///< not yet in the cache file

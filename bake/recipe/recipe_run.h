@@ -49,7 +49,6 @@ struct RecipeRun {
     // Called between the work; may be empty.
     std::function<void(const AssetResult&)> started;
     std::function<void(const AssetResult&)> ended;  ///< up to date, baked, failed or cancelled
-    std::function<void()> waiting;                  ///< about once a second while assets are baked
     std::function<void(const std::string&)> warn;
 };
 

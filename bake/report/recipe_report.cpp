@@ -1,7 +1,6 @@
 #include "bake/report/recipe_report.h"
 
 #include <fcntl.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,8 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <numeric>
 #include <span>
 
@@ -46,12 +43,6 @@ Result<void> checkOlderLog(const std::string& path) {
                                        "give --events another file");
 }
 
-/// Whether lines can be drawn again where standard error goes.
-bool canRedraw() {
-    const char* terminal = std::getenv("TERM");
-    return ::isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
-}
-
 }  // namespace
 
 std::size_t RecipeCounts::all() const {
@@ -65,6 +56,10 @@ RecipeCounts countAssets(const std::vector<AssetResult>& assets) {
         counts.bytes += asset.bytes;
     }
     return counts;
+}
+
+std::string bakedText(const AssetResult& asset) {
+    return "baked, " + bytesText(asset.bytes) + ", " + seconds(asset.ms);
 }
 
 std::string recipeSummary(const RecipeCounts& counts, double ms) {
@@ -84,12 +79,6 @@ std::string recipeSummary(const RecipeCounts& counts, double ms) {
     add(AssetState::kFailed, "failed");
     add(AssetState::kCancelled, "not baked");
     return assets + text + "; " + bytesText(counts.bytes) + "; " + seconds(ms);
-}
-
-std::string prunedReason(const PrunedOutput& output, bool dry_run) {
-    return output.kept.empty()
-               ? std::string(dry_run ? "to be removed" : "removed") + ", as the recipe no longer names it"
-               : "the recipe no longer names it, but it stays: " + output.kept + "; remove it yourself";
 }
 
 std::optional<std::string> shardText(const std::optional<Shard>& shard) {
@@ -112,21 +101,12 @@ std::vector<AssetReport> AssetReport::kinds() {
     return reports;
 }
 
-std::vector<PrunedReport> PrunedReport::kinds() {
-    static const PrunedOutput kept{.output = "", .mesh = "", .kept = "changed"};
-    return {{}, {kept}};
-}
-
 std::vector<AssetEvent> AssetEvent::kinds() {
     std::vector<AssetEvent> events;
     for (const AssetReport& asset : AssetReport::kinds()) {
         events.push_back({{asset.asset, true}});
     }
     return events;
-}
-
-std::vector<PrunedEvent> PrunedEvent::kinds() {
-    return {{{}}, {PrunedReport::kinds().back()}};
 }
 
 // --- events ---
@@ -165,142 +145,41 @@ Result<void> RecipeEvents::finish() const {
     return {};
 }
 
-// --- the display ---
-
-RecipeDisplay::RecipeDisplay(std::size_t assets, bool wanted)
-    : assets_(assets), wanted_(wanted), terminal_(wanted && canRedraw()) {}
-
-RecipeDisplay::~RecipeDisplay() {
-    wipe();
-}
-
-void RecipeDisplay::started(const AssetResult& asset) {
-    running_.push_back({cleanUtf8(asset.job.output)});
-    draw();
-}
-
-void RecipeDisplay::ended(const AssetResult& asset) {
-    const std::string name = cleanUtf8(asset.job.output);
-    const auto found =
-        std::find_if(running_.begin(), running_.end(), [&](const Running& one) { return one.name == name; });
-    if (found != running_.end()) {
-        running_.erase(found);
-    }
-    ++done_;
-    failed_ += asset.state == AssetState::kFailed ? 1 : 0;
-    if (wanted_ && !terminal_ && asset.state == AssetState::kBaked) {
-        std::fprintf(stderr, "%s %s: baked, %s, %s\n", place().c_str(), name.c_str(),
-                     bytesText(asset.bytes).c_str(), seconds(asset.ms).c_str());
-    }
-    draw();
-}
-
-void RecipeDisplay::tick() {
-    for (Running& one : running_) {
-        const double ms = one.watch.ms();
-        if (wanted_ && !terminal_ && ms >= one.tell_ms) {
-            std::fprintf(stderr, "%s %s: still baking, %s\n", place().c_str(), one.name.c_str(),
-                         seconds(ms).c_str());
-            one.tell_ms = 2.0 * one.tell_ms;
-        }
-    }
-    draw();
-}
-
-std::string RecipeDisplay::place() const {
-    return "[" + std::to_string(done_) + "/" + std::to_string(assets_) + "]";
-}
-
-void RecipeDisplay::wipe() {
-    if (drawn_) {
-        std::fputs("\r\033[K", stderr);
-        drawn_ = false;
-    }
-}
-
-void RecipeDisplay::draw() {
-    if (!terminal_) {
-        return;
-    }
-    std::string line = place();
-    if (failed_ > 0) {
-        line += " " + std::to_string(failed_) + " failed";
-    }
-    for (std::size_t i = 0; i < running_.size(); ++i) {
-        line += (i == 0 ? " baking " : ", ") + running_[i].name;
-        if (running_[i].watch.ms() >= kLong / 10.0) {
-            line += " (" + seconds(running_[i].watch.ms()) + ")";
-        }
-    }
-    winsize size{};
-    const std::size_t columns =
-        ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1U : 79U;
-    std::fprintf(stderr, "\r%s\033[K", cleanUtf8(line, columns).c_str());
-    std::fflush(stderr);
-    drawn_ = true;
-}
-
 // --- at the end ---
 
 std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
     constexpr std::size_t kNamed = 3;
     struct Group {
         std::string warning;  // of the first
-        std::string_view kind;
         std::vector<std::string> assets;
     };
     std::vector<Group> groups;
     for (const AssetResult& asset : assets) {
         // Warnings begin with the mesh's name, which would tell equal ones apart.
         const std::string mesh = cleanUtf8(std::filesystem::path(asset.job.mesh).filename().string()) + ": ";
-        for (const std::string& said : asset.warnings) {
-            const std::string warning = said.starts_with(mesh) ? said.substr(mesh.size()) : said;
-            // Only the size of the box differs.
-            const std::string_view kind = warning.starts_with(kNoUnit) ? kNoUnit : "";
-            auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) {
-                return one.warning == warning || (!kind.empty() && one.kind == kind);
+        for (const std::string& full : asset.warnings) {
+            const std::string warning = full.starts_with(mesh) ? full.substr(mesh.size()) : full;
+            // Only the size of the box differs where no unit is named.
+            auto group = std::ranges::find_if(groups, [&](const Group& one) {
+                return one.warning == warning ||
+                       (one.warning.starts_with(kNoUnit) && warning.starts_with(kNoUnit));
             });
-            if (group == groups.end()) {
-                groups.push_back({warning, kind, {}});
-                group = groups.end() - 1;
-            }
+            group = group == groups.end() ? groups.insert(group, {warning, {}}) : group;
             group->assets.push_back(cleanUtf8(asset.job.output));
         }
     }
     std::vector<std::string> out;
     for (const Group& group : groups) {
         const std::size_t count = group.assets.size();
-        std::string names;
-        for (std::size_t i = 0; i < std::min(count, kNamed); ++i) {
-            names += (i == 0 ? "" : ", ") + group.assets[i];
-        }
-        if (count > kNamed) {
-            names += ", and " + std::to_string(count - kNamed) + " more";
-        }
-        const std::string whose = count > 1 && !group.kind.empty() ? "of the first: " : "";
-        out.push_back((count == 1 ? names : std::to_string(count) + " assets (" + names + ")") + ": " +
-                      whose + group.warning);
+        const std::vector<std::string_view> named(group.assets.begin(),
+                                                  group.assets.begin() + std::min(count, kNamed));
+        const std::string more = count > kNamed ? ", and " + std::to_string(count - kNamed) + " more" : "";
+        const std::string first = count > 1 && group.warning.starts_with(kNoUnit) ? "of the first: " : "";
+        out.push_back((count == 1 ? group.assets.front()
+                                  : std::to_string(count) + " assets (" + listed(named) + more + ")") +
+                      ": " + first + group.warning);
     }
     return out;
-}
-
-std::string slowestText(const std::vector<AssetResult>& assets) {
-    std::vector<const AssetResult*> baked;
-    for (const AssetResult& asset : assets) {
-        if (asset.state == AssetState::kBaked) {
-            baked.push_back(&asset);
-        }
-    }
-    std::stable_sort(baked.begin(), baked.end(),
-                     [](const AssetResult* a, const AssetResult* b) { return a->ms > b->ms; });
-    std::string text;
-    for (std::size_t i = 0; i < std::min<std::size_t>(baked.size(), 3); ++i) {
-        if (baked[i]->ms > 2.0 * baked[baked.size() / 2]->ms) {
-            text += (text.empty() ? "the slowest: " : ", ") + cleanUtf8(baked[i]->job.output) + " " +
-                    seconds(baked[i]->ms);
-        }
-    }
-    return text;
 }
 
 }  // namespace relief

@@ -1,4 +1,4 @@
-// The reports of a run of a recipe: events for programs and a display for people while it runs, and both at its end.
+// The reports of a run of a recipe: events for programs while it runs, and its end for both people and programs.
 #pragma once
 
 #include <array>
@@ -7,11 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "bake/recipe/prune.h"
 #include "bake/recipe/recipe_run.h"
 #include "bake/report/bake_report.h"
 #include "formats/base/descriptor.h"
-#include "formats/base/stopwatch.h"
 
 namespace relief {
 
@@ -24,11 +22,11 @@ struct RecipeCounts {
 };
 [[nodiscard]] RecipeCounts countAssets(const std::vector<AssetResult>& assets);
 
+/// "baked, 255 kB, 0.8 s"
+[[nodiscard]] std::string bakedText(const AssetResult& asset);
+
 /// "12 assets: 3 baked, 8 up to date, 1 failed; 1.2 MB; 4.5 s", or "12 assets up to date".
 [[nodiscard]] std::string recipeSummary(const RecipeCounts& counts, double ms);
-
-/// "removed, as the recipe no longer names it", or why it stays.
-[[nodiscard]] std::string prunedReason(const PrunedOutput& output, bool dry_run);
 
 // --- The same as fields.
 
@@ -88,32 +86,6 @@ void fields(Visitor& visit, C& counts) {
     visit("bytes", counts.bytes, {"Size of all outputs that are up to date now", "bytes"});
 }
 
-struct PrunedReport {
-    const PrunedOutput& output = kNone<PrunedOutput>;
-    bool dry_run = false;
-
-    [[nodiscard]] static std::vector<PrunedReport> kinds();
-};
-
-template <class Visitor, FieldsOf<PrunedReport> R>
-void fields(Visitor& visit, R& report) {
-    const PrunedOutput& output = report.output;
-    const bool kept = !output.kept.empty();
-    visit("asset", output.output, {"Output, relative to the output folder"});
-    visit("mesh", output.mesh, {"Mesh that it was baked from, relative to the folder of the recipe"});
-    visit(
-        "state",
-        kept             ? "kept"
-        : report.dry_run ? "to remove"
-                         : "removed",
-        {.help = "Result of --prune",
-         .words = kept ? std::span<const std::string_view>(kWords<"kept">) : kWords<"removed", "to remove">});
-    visit("bytes", output.bytes, {"Size of the file", "bytes"});
-    if (kept) {
-        visit("reason", output.kept, {"Reason why it is kept"});
-    }
-}
-
 /// "2/4"; null without --shard.
 [[nodiscard]] std::optional<std::string> shardText(const std::optional<Shard>& shard);
 inline constexpr FieldInfo kShardField{.help = "--shard; null without it", .pattern = "^[0-9]+/[0-9]+$"};
@@ -126,7 +98,6 @@ struct RecipeJson {
     RecipeCounts counts = {};
     double ms = 0.0;
     std::vector<AssetReport> assets = {};
-    std::optional<std::vector<PrunedReport>> pruned = {};  ///< of --prune
 };
 
 template <class Visitor, FieldsOf<RecipeJson> R>
@@ -137,8 +108,6 @@ void fields(Visitor& visit, R& report) {
     visit("counts", report.counts, {"Numbers of assets"});
     visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
     visit("assets", report.assets, {"Assets, in the order of the recipe"});
-    visit("pruned", report.pruned,
-          {.help = "Outputs that the recipe no longer names; only with --prune", .left_out = true});
 }
 
 // --- Events
@@ -175,18 +144,6 @@ void fields(Visitor& visit, E& event) {
     fields(visit, event.asset);
 }
 
-struct PrunedEvent {
-    PrunedReport output = {};
-
-    [[nodiscard]] static std::vector<PrunedEvent> kinds();
-};
-
-template <class Visitor, FieldsOf<PrunedEvent> E>
-void fields(Visitor& visit, E& event) {
-    visit("event", "pruned", {.help = "Kind of event", .words = kWords<"pruned">});
-    fields(visit, event.output);
-}
-
 struct RecipeEnd {
     RecipeCounts counts = {};
     double ms = 0.0;
@@ -202,7 +159,7 @@ void fields(Visitor& visit, E& end) {
           {"Signal that ended the run; null if none did", {}, kFromOne});
 }
 
-using RecipeEvent = std::variant<RecipeStart, AssetEvent, PrunedEvent, RecipeEnd>;
+using RecipeEvent = std::variant<RecipeStart, AssetEvent, RecipeEnd>;
 
 /// Lines of JSON, each written as it happens.
 class RecipeEvents {
@@ -222,49 +179,8 @@ class RecipeEvents {
     int error_ = 0;
 };
 
-/// On a terminal one line that is drawn again, elsewhere a line for each asset that was baked; on standard
-/// error.
-class RecipeDisplay {
-  public:
-    /// \param wanted  false: draws nothing.
-    RecipeDisplay(std::size_t assets, bool wanted);
-    RecipeDisplay(const RecipeDisplay&) = delete;
-    RecipeDisplay& operator=(const RecipeDisplay&) = delete;
-    ~RecipeDisplay();
-
-    void started(const AssetResult& asset);
-    void ended(const AssetResult& asset);
-    /// Now and then: tells what takes long, its first time after half a minute, and then each time that it has taken twice
-    /// as long.
-    void tick();
-    /// Wipes the line, so that something else can be written.
-    void wipe();
-
-  private:
-    static constexpr double kLong = 30'000.0;  // ms
-    struct Running {
-        std::string name;
-        Stopwatch watch = {};
-        double tell_ms = kLong;
-    };
-    void draw();
-    [[nodiscard]] std::string place() const;
-
-    std::size_t assets_;
-    bool wanted_;
-    bool terminal_;
-    bool drawn_ = false;
-    std::size_t done_ = 0;
-    std::size_t failed_ = 0;
-    std::vector<Running> running_;
-};
-
 /// "2 assets (a.relief, b.relief): it is skinned": the warnings, one line each, in the order of the assets; one that several
 /// have is told once, that of a missing unit too, with the size of the first.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);
-
-/// "the slowest: a.relief 12.3 s, b.relief 4.0 s": up to three that were baked and took more than twice the median; "" where
-/// none did.
-[[nodiscard]] std::string slowestText(const std::vector<AssetResult>& assets);
 
 }  // namespace relief

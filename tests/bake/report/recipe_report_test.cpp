@@ -69,15 +69,5 @@ TEST(RecipeReport, OnlyAnOlderLogIsEmptied) {
     std::filesystem::remove(file);
 }
 
-TEST(RecipeReport, NamesWhatTookLong) {
-    EXPECT_EQ(slowestText({}), "");
-    EXPECT_EQ(slowestText({baked("a", 1), baked("b", 1.5), baked("c", 1.2)}), "");
-    std::vector<AssetResult> assets{baked("a", 1), baked("b", 30), baked("c", 1), baked("d", 12),
-                                    baked("e", 0.5)};
-    EXPECT_EQ(slowestText(assets), "the slowest: b.relief 30.0 s, d.relief 12.0 s");
-    assets[1].state = AssetState::kFailed;
-    EXPECT_EQ(slowestText(assets), "the slowest: d.relief 12.0 s");
-}
-
 }  // namespace
 }  // namespace relief
