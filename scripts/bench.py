@@ -35,7 +35,7 @@ CHANCE = 0.001
 SIX_MAPS = [word for way in ("-x", "-y", "-z")
             for word in ("--map", f"front-back:dir={way},depth=half,decode=projected")]
 PAPER_MAPS = ["--map", "front-back:dir=-z,size=512,depth=half,decode=projected", "--map", "cube:size=512,decode=projected"]
-PROMISES = {("picture", "all"): "at most 1.2 on a GPU", ("depth-maps", "maps"): "at most 1.3 on a GPU"}
+PROMISES = {("picture", "all"): "at most 1.2 on a GPU", ("mesh", "maps"): "at most 1.3 on a GPU"}
 
 
 class Unusable(Exception):
@@ -197,8 +197,8 @@ def print_tables(report):
                 touching = row["touching"]
                 line += (f"; {100 * touching['in_contact'] / touching['alive']:.0f} % touch, "
                          f"{touching['contacts_a_step']:.2f} contacts a step")
-            notes = (row.get("what"), PROMISES.get((report["case"], row["name"])))
-            print(line + "".join(f": {note}" for note in notes if note))
+            note = PROMISES.get((report["case"], row["name"]))
+            print(line + (f": {note}" if note else ""))
 
 
 def print_report(tools):
@@ -222,10 +222,8 @@ def print_report(tools):
     collider = f"{tools.folder}/planned.relief"
     print_tables(tools.bench("step", collider))
     print_tables(tools.bench("picture", collider))
-    print_tables(tools.bench("sort"))
-    print_tables(tools.bench("births"))
     if tools.mesh.endswith((".obj", ".ply")):
-        print_tables(tools.bench("depth-maps", tools.mesh))
+        print_tables(tools.bench("mesh", tools.mesh))
 
 
 def above_zero(text):

@@ -23,15 +23,14 @@ double cpuMs() {
 /// Milliseconds of a call, a value a block.
 struct Times {
     std::vector<double> wall;
-    std::vector<double> calls;
     std::vector<double> cpu;
     std::vector<double> gpu;  ///< empty: this GL does not measure it
 };
 
-/// 0 of no values.
-double median(std::vector<double> values) {
+/// Null of no values.
+Json median(std::vector<double> values) {
     if (values.empty()) {
-        return 0.0;
+        return nullptr;
     }
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -50,11 +49,9 @@ Result<double> timeBlock(const Work& work, int calls, GpuTimer& timer, Times& ti
         glFlush();
     }
     timer.end();
-    const double called = watch.ms();
     glFinish();
     const double all = watch.ms();
     times.wall.push_back(all / calls);
-    times.calls.push_back(called / calls);
     times.cpu.push_back((cpuMs() - cpu_before) / calls);
     if (const StageTime gpu = gpuTime(); gpu.gpu_runs > gpu_before.gpu_runs) {
         times.gpu.push_back((gpu.gpu_ms - gpu_before.gpu_ms) / calls);
@@ -71,7 +68,7 @@ Result<int> callsOfBlock(const Work& work, GpuTimer& timer) {
     return calls;
 }
 
-Json ratioOf(const std::vector<double>& above, const std::vector<double>& below) {
+Json ratioOf(const std::string& of, const std::vector<double>& above, const std::vector<double>& below) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < std::min(above.size(), below.size()); ++i) {
         ratios.push_back(above[i] / below[i]);
@@ -80,46 +77,36 @@ Json ratioOf(const std::vector<double>& above, const std::vector<double>& below)
         return nullptr;
     }
     const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
-    return {{"median", median(ratios)}, {"least", *least}, {"most", *most}};
-}
-
-Result<void> warmUp(const Work& work, const Blocks& blocks) {
-    const Stopwatch watch;
-    while (watch.ms() < blocks.warm_ms) {
-        if (blocks.warm) {
-            blocks.warm();
-        } else {
-            RELIEF_TRY(work.run());
-        }
-        glFinish();
-    }
-    return {};
+    return {{"median", median(ratios)}, {"least", *least}, {"most", *most}, {"of", of}};
 }
 
 }  // namespace
 
+void warmUp(const Bench& bench, double ms, const std::function<void()>& run) {
+    const Stopwatch watch;
+    while (!bench.software && watch.ms() < ms) {
+        run();
+        glFinish();
+    }
+}
+
 Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, const Blocks& blocks) {
     GpuTimer timer;
     std::vector<Times> times(works.size());
-    std::vector<int> calls(works.size(), blocks.calls);
-    for (std::size_t i = 0; i < works.size(); ++i) {
-        RELIEF_TRY(works[i].run());
+    std::vector<int> calls;
+    for (const Work& work : works) {
+        RELIEF_TRY(work.run());
         glFinish();
-        calls[i] = blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsOfBlock(works[i], timer));
+        calls.push_back(blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsOfBlock(work, timer)));
     }
-    const int rounds = bench.options.rounds != 0 ? bench.options.rounds : blocks.rounds;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < (bench.rounds != 0 ? bench.rounds : blocks.rounds); ++round) {
         for (std::size_t i = 0; i < works.size(); ++i) {
-            const Work& work = works[i];
-            if (work.before) {
-                work.before();
+            if (works[i].before) {
+                works[i].before();
             }
-            if (!bench.software) {
-                RELIEF_TRY(warmUp(work, blocks));
-            }
-            RELIEF_TRY(timeBlock(work, calls[i], timer, times[i]));
-            if (work.after) {
-                work.after();
+            RELIEF_TRY(timeBlock(works[i], calls[i], timer, times[i]));
+            if (works[i].after) {
+                works[i].after();
             }
         }
     }
@@ -128,16 +115,13 @@ Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, con
     };
     Json rows = Json::array();
     for (std::size_t i = 0; i < works.size(); ++i) {
-        rows.push_back(
-            {{"name", works[i].name},
-             {"ms", median(times[i].wall)},
-             {"call_ms", median(times[i].calls)},
-             {"cpu_ms", median(times[i].cpu)},
-             {"gpu_ms", bench.software || times[i].gpu.empty() ? Json() : Json(median(times[i].gpu))}});
+        rows.push_back({{"name", works[i].name},
+                        {"ms", median(times[i].wall)},
+                        {"cpu_ms", median(times[i].cpu)},
+                        {"gpu_ms", bench.software ? Json() : median(times[i].gpu)}});
         for (std::size_t k = 0; k < works.size(); ++k) {
             if (works[k].name == works[i].over) {
-                rows.back()["over"] = ratioOf(compared(times[i]), compared(times[k]));
-                rows.back()["over"]["of"] = works[k].name;
+                rows.back()["over"] = ratioOf(works[k].name, compared(times[i]), compared(times[k]));
             }
         }
     }

@@ -11,7 +11,6 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/camera.h"
-#include "runtime/picture/collider_light.h"
 #include "runtime/picture/collider_view.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/particle_renderer.h"
@@ -20,8 +19,8 @@ namespace relief {
 namespace {
 
 constexpr std::uint32_t kSortFrames = 30;
-constexpr float kDt = 1e-5F;          // of a step: thousands of them leave the particles where they are
-constexpr float kPointPixels = 2.0F;  // a side of the small points
+constexpr float kDt = 1e-5F;  // of a step: thousands of them leave the particles where they are
+constexpr double kWarmUpMs = 20.0;
 constexpr float kLeastPixels = 1.5F;  // ParticleRenderer draws none smaller
 
 /// The bare draw.
@@ -59,17 +58,12 @@ class BarePoints {
     GlVertexArray array_;
 };
 
-/// The scene of the pictures, drawn to targets of any size.
-struct Stage {
-    const Bench& bench;
-    const BenchScene& scene;
-    BenchSystem& system;
-    ColliderView view;
-};
-
-Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool small) {
-    const ParticleSystem& particles = *stage.system.particles;
-    const auto count = static_cast<std::uint32_t>(stage.scene.births.size());
+/// \param point_pixels  diameter of the points; 0: as relief-sim draws them unless told otherwise
+Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem& system, GLsizei width,
+                       GLsizei height, float point_pixels) {
+    const ParticleSystem& particles = *system.particles;
+    const ColliderView view{system.textures.get(), scene.collider.bounds, finestTexel(scene.collider)};
+    const auto count = static_cast<std::uint32_t>(scene.births.size());
     const GlTexture color = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
     const std::vector<float> far(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 1.0F);
     const auto depthTexture = [&] {
@@ -80,28 +74,28 @@ Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool s
     const auto framebuffer = RELIEF_TRY(makeFramebuffer({color.name()}, depth.name()));
     const RenderTarget target{framebuffer.name(), width, height};
     Camera camera;
-    camera.target = stage.view.bounds.center();
-    camera.eye = defaultEye(camera.target, 0.5F * glm::length(stage.view.bounds.size()), camera.fov);
-    setClipPlanes(camera, stage.view.bounds);
-    // As relief-sim draws unless told otherwise, but nobody fades.
+    camera.target = view.bounds.center();
+    camera.eye = defaultEye(camera.target, 0.5F * glm::length(view.bounds.size()), camera.fov);
+    setClipPlanes(camera, view.bounds);
     const float unit = 0.5F * static_cast<float>(height) /
                        (camera.tanHalfFov() * glm::length(camera.eye - camera.target));  // pixels
-    const float diameter = small ? kPointPixels / unit : 0.0065F * stage.scene.side;
+    const float diameter = point_pixels > 0.0F ? point_pixels / unit : 0.0065F * scene.side;
 
     const auto bare = RELIEF_TRY(BarePoints::create("#define RELIEF_ALPHA 0.95\n"));  // as the style's
     const auto opaque = RELIEF_TRY(BarePoints::create(""));
-    const StepPath path = picturePath(stage.scene.path);
+    const StepPath path = picturePath(bench.path);
     auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt, path));
-    auto lit = RELIEF_TRY(ParticleRenderer::create(stage.view, path));
-    auto sorter = RELIEF_TRY(DepthSorter::create(count));
-    const auto sort = [&](std::uint32_t passes) -> Result<void> {
-        sorter.update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,
-                      passes);
+    auto lit = RELIEF_TRY(ParticleRenderer::create(view, path));
+    auto merge = RELIEF_TRY(DepthSorter::create(count, StepPath::kFragment));
+    auto sorter = RELIEF_TRY(DepthSorter::create(count, path));
+    const auto sort = [&](DepthSorter& by, std::uint32_t passes) -> Result<void> {
+        by.update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye, passes);
         return {};
     };
-    RELIEF_TRY(sort(DepthSorter::sequencePasses(count)));
+    const std::uint32_t all = DepthSorter::sequencePasses(count);
+    RELIEF_TRY(sort(sorter, all));
     const auto step = [&]() -> Result<void> {
-        stage.system.particles->step(kDt);
+        system.particles->step(kDt);
         return {};
     };
     const auto drawBare = [&](const BarePoints& points) -> Result<void> {
@@ -111,26 +105,28 @@ Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool s
     const auto draw = [&](ParticleRenderer& renderer, bool soft, bool ordered,
                           Sprite sprite = Sprite::kPoint) {
         ParticleStyle style{.diameter = diameter, .fade_in = 0.0F, .fade_out = 0.0F};
-        style.soft = soft ? 0.02F * stage.scene.side : 0.0F;
+        style.soft = soft ? 0.02F * scene.side : 0.0F;
         style.sprite = sprite;
         const ParticleOrder order =
             ordered ? ParticleOrder{&sorter.order(), sorter.count()} : ParticleOrder{};
         return renderer.draw(particles, camera, style, target, order, &behind);
     };
-    std::vector<Work> works{{"bare", [&] { return drawBare(bare); }},
-                            {"bare, opaque", [&] { return drawBare(opaque); }},
-                            {"open", [&] { return draw(open, false, false); }},
-                            {"soft", [&] { return draw(open, true, false); }},
-                            {"order", [&] { return draw(open, false, true); }},
-                            {"light", [&] { return draw(lit, false, false); }},
-                            {"all", [&] { return draw(lit, true, true); }},
-                            {"all, quads", [&] { return draw(lit, true, true, Sprite::kQuad); }},
-                            {"step", step},
-                            {"sort", [&] { return sort(DepthSorter::passesPerFrame(count, kSortFrames)); }},
-                            {"step and all", [&]() -> Result<void> {
-                                 RELIEF_TRY(step());
-                                 return draw(lit, true, true);
-                             }}};
+    std::vector<Work> works{
+        {"bare", [&] { return drawBare(bare); }},
+        {"bare, opaque", [&] { return drawBare(opaque); }},
+        {"open", [&] { return draw(open, false, false); }},
+        {"soft", [&] { return draw(open, true, false); }},
+        {"order", [&] { return draw(open, false, true); }},
+        {"light", [&] { return draw(lit, false, false); }},
+        {"all", [&] { return draw(lit, true, true); }},
+        {"all, quads", [&] { return draw(lit, true, true, Sprite::kQuad); }},
+        {"step", step},
+        {"sort", [&] { return sort(sorter, DepthSorter::passesPerFrame(count, kSortFrames)); }},
+        {"sort, merge at once", [&] { return sort(merge, all); }},
+        {"step and all", [&]() -> Result<void> {
+             RELIEF_TRY(step());
+             return draw(lit, true, true);
+         }}};
     for (Work& work : works) {
         work.over = "bare";
         work.before = [&] {
@@ -140,44 +136,26 @@ Result<Json> benchSize(const Stage& stage, GLsizei width, GLsizei height, bool s
             glClearBufferfv(GL_COLOR, 0, black.data());
             glClearBufferfv(GL_DEPTH, 0, &nearest_is_one);
             glBindFramebuffer(GL_FRAMEBUFFER, 0);
+            warmUp(bench, kWarmUpMs, [&] { (void)work.run(); });
         };
     }
-    const Blocks blocks{.rounds = stage.bench.software ? 3 : 7, .warm_ms = 20.0};
     return Json{{"particles", count},
                 {"picture", {width, height}},
                 {"pixels_of_a_point", diameter * unit},
-                {"rows", RELIEF_TRY(timeInTurns(stage.bench, works, blocks))}};
-}
-
-/// The light among the collider, made anew.
-Result<Json> benchLight(const Stage& stage) {
-    auto light = RELIEF_TRY(ColliderLight::create(stage.view));
-    const Work anew{"light anew", [&] {
-                        const PassState state;
-                        stage.system.textures->noteLiveUpdate();
-                        return light.update();
-                    }};
-    return Json{{"rows", RELIEF_TRY(timeInTurns(stage.bench, {anew}, {.rounds = 5}))}};
+                {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = bench.software ? 3 : 7}))}};
 }
 
 }  // namespace
 
 Result<Json> benchPicture(const Bench& bench) {
-    const auto collider = RELIEF_TRY(loadCollider(bench.options.file));
+    const BenchScene scene =
+        makeBenchScene(RELIEF_TRY(loadCollider(bench.file)), bench.particlesOr(1U << 20, 1U << 16));
+    auto system = RELIEF_TRY(makeBenchSystem(scene, bench.path));
+    system.begin(scene);
     Json tables = Json::array();
-    for (const std::uint32_t count : bench.particlesOr({bench.large() ? 1U << 20 : 1U << 16})) {
-        BenchScene scene = makeBenchScene(collider, count);
-        scene.path = bench.options.path;
-        scene.liveForever();
-        auto system = RELIEF_TRY(makeBenchSystem(scene));
-        system.begin(scene);
-        const Stage stage{
-            bench, scene, system, {system.textures.get(), collider.bounds, finestTexel(collider)}};
-        tables.push_back(RELIEF_TRY(benchLight(stage)));
-        for (const bool small : {false, true}) {
-            for (const auto& [width, height] : {std::pair{1280, 720}, std::pair{1920, 1080}}) {
-                tables.push_back(RELIEF_TRY(benchSize(stage, width, height, small)));
-            }
+    for (const float point_pixels : {0.0F, 2.0F}) {
+        for (const auto& [width, height] : {std::pair{1280, 720}, std::pair{1920, 1080}}) {
+            tables.push_back(RELIEF_TRY(benchSize(bench, scene, system, width, height, point_pixels)));
         }
     }
     return tables;

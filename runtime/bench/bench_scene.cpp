@@ -1,6 +1,5 @@
 #include "runtime/bench/bench_scene.h"
 
-#include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <utility>
 
@@ -13,11 +12,8 @@ namespace {
 
 constexpr Collision kSnow{.restitution = 0.0F, .friction = 1.0F};
 
-std::vector<Pose> posesOf(const BenchScene& scene, Solids solids) {
-    if (solids == Solids::kOneBody) {
-        return {Pose{}};
-    }
-    // Half as large, in every other corner of the box.
+/// Half as large, in every other corner of the box.
+std::vector<Pose> fourPoses(const BenchScene& scene) {
     std::vector<Pose> poses;
     const glm::vec3 center = scene.collider.bounds.center();
     const glm::vec3 quarter = 0.25F * scene.collider.bounds.size();
@@ -33,7 +29,7 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
         return ColliderTextures::create(scene.collider);
     }
     std::vector<ColliderBody> bodies;
-    for (const Pose& pose : posesOf(scene, solids)) {
+    for (const Pose& pose : fourPoses(scene)) {
         bodies.push_back({&scene.collider, pose, 1.0F, 0.0F});
     }
     return ColliderTextures::create(bodies);
@@ -62,18 +58,8 @@ Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
     return particles.setTypes({&type, 1});
 }
 
-Result<void> setGround(ParticleSystem& particles, const BenchScene& scene) {
-    return particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
-}
-
-BenchFeature sweepOf(float share) {
-    return [share](ParticleSystem& particles, const BenchScene& scene) {
-        return particles.setSweep(share * scene.side);
-    };
-}
-
 /// A swirl on 32³ nodes.
-AirSettings flowAir(const BenchScene& scene) {
+void addFlow(AirSettings& air, const BenchScene& scene) {
     constexpr std::uint32_t kNodes = 32;
     FlowField flow;
     flow.size = {kNodes, kNodes, kNodes};
@@ -84,35 +70,30 @@ AirSettings flowAir(const BenchScene& scene) {
         const auto z = static_cast<float>(i / (kNodes * kNodes)) / kNodes - 0.5F;
         flow.nodes.push_back(0.25F * scene.side * glm::vec3(-z, 0.0F, x));
     }
-    AirSettings air;
-    air.wind = scene.forces.wind;
     air.flow = std::make_shared<const FlowField>(std::move(flow));
-    return air;
 }
 
-AirSettings curlAir(const BenchScene& scene) {
-    AirSettings air;
-    air.wind = scene.forces.wind;
+void addCurlNoise(AirSettings& air, const BenchScene& scene) {
     air.curl_noise = CurlNoise{.amplitude = 0.25F * scene.side,
                                .scale = 0.2F * scene.side,
                                .octaves = 2,
                                .drift = 0.1F * scene.side};
-    return air;
 }
 
-AirSettings attractorAir(const BenchScene& scene) {
-    AirSettings air;
-    air.wind = scene.forces.wind;
-    for (const Pose& pose : posesOf(scene, Solids::kFourBodies)) {
+void addAttractors(AirSettings& air, const BenchScene& scene) {
+    for (const Pose& pose : fourPoses(scene)) {
         air.attractors.push_back(
             {.position = pose.position, .strength = 0.5F * scene.side, .radius = 0.1F * scene.side});
     }
-    return air;
 }
 
-BenchFeature airOf(AirSettings (*make)(const BenchScene&)) {
-    return
-        [make](ParticleSystem& particles, const BenchScene& scene) { return particles.setAir(make(scene)); };
+auto airWith(void (*add)(AirSettings&, const BenchScene&)) {
+    return [add](ParticleSystem& particles, const BenchScene& scene) {
+        AirSettings air;
+        air.wind = scene.forces.wind;
+        add(air, scene);
+        return particles.setAir(air);
+    };
 }
 
 Result<void> setEvents(ParticleSystem& particles, const BenchScene& /*scene*/) {
@@ -130,23 +111,9 @@ std::function<void()> turning(ColliderTextures* textures, std::vector<Pose> pose
     };
 }
 
-/// A point's place on a Morton curve through the bounds.
-std::uint32_t mortonCode(const glm::vec3& p, const Bounds& bounds) {
-    constexpr std::uint32_t kBits = 10;
-    std::uint32_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float share = (p[axis] - bounds.min[axis]) / bounds.longestSide();
-        const auto cell = static_cast<std::uint32_t>(std::clamp(share, 0.0F, 0.9999F) * float(1U << kBits));
-        for (std::uint32_t bit = 0; bit < kBits; ++bit) {
-            code |= (cell >> bit & 1U) << (3 * bit + static_cast<std::uint32_t>(axis));
-        }
-    }
-    return code;
-}
-
 }  // namespace
 
-BenchScene makeBenchScene(Collider collider, std::uint32_t particles, bool sorted) {
+BenchScene makeBenchScene(Collider collider, std::uint32_t particles, float lifetime) {
     BenchScene scene;
     scene.collider = std::move(collider);
     const Bounds& bounds = scene.collider.bounds;
@@ -159,23 +126,13 @@ BenchScene makeBenchScene(Collider collider, std::uint32_t particles, bool sorte
     settings.burst = particles;
     settings.velocity = {0.0F, -0.8F * side, 0.0F};
     settings.velocity_spread = glm::vec3(0.12F, 0.1F, 0.12F) * side;
-    settings.lifetime_min = settings.lifetime_max = kBenchLifetime;
+    settings.lifetime_min = settings.lifetime_max = lifetime;
     Emitter emitter(settings, 1);
     emitter.emit(1.0, particles, scene.births);
-    if (sorted) {
-        std::ranges::stable_sort(scene.births, {},
-                                 [&](const Birth& birth) { return mortonCode(birth.position, bounds); });
-    }
     for (std::size_t i = 0; i < scene.births.size(); ++i) {
         scene.births[i].type = static_cast<std::uint32_t>(i % kParticleTypesMax);
     }
     return scene;
-}
-
-void BenchScene::liveForever() {
-    for (Birth& birth : births) {
-        birth.lifetime = 1e6F;
-    }
 }
 
 void BenchSystem::step() {
@@ -190,11 +147,11 @@ void BenchSystem::begin(const BenchScene& scene) {
     step();
 }
 
-Result<BenchSystem> makeBenchSystem(const BenchScene& scene, const BenchVariant& variant) {
+Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, const BenchVariant& variant) {
     auto particles =
         RELIEF_TRY(ParticleSystem::create({.capacity = static_cast<std::uint32_t>(scene.births.size()),
                                            .integrator = variant.integrator,
-                                           .path = scene.path}));
+                                           .path = path}));
     BenchSystem system;
     system.particles = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(system.particles->setForces(scene.forces));
@@ -207,7 +164,7 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, const BenchVariant&
         RELIEF_TRY(variant.set(*system.particles, scene));
     }
     if (variant.each_step == EachStep::kPoses) {
-        system.before_step = turning(system.textures.get(), posesOf(scene, variant.solids));
+        system.before_step = turning(system.textures.get(), fourPoses(scene));
     } else if (variant.each_step == EachStep::kEvents) {
         system.before_step = [particles = system.particles.get()] {
             particles->requestEvents(0);
@@ -219,33 +176,27 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, const BenchVariant&
 }
 
 std::vector<BenchVariant> benchVariants() {
+    const auto sweep = [](ParticleSystem& particles, const BenchScene& scene) {
+        return particles.setSweep(0.01F * scene.side);
+    };
+    const auto ground = [](ParticleSystem& particles, const BenchScene& scene) {
+        return particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
+    };
     return {
-        {.name = "no_collider", .what = "nothing solid at all", .solids = Solids::kNone},
-        {.name = "collider", .what = "one type, no radius, no ground, Euler"},
-        {.name = "types_16", .what = "16 types in turn", .set = setSixteenTypes},
-        {.name = "radius", .what = "of half a percent of the longest side", .set = setRadius},
-        {.name = "sweep", .what = "in pieces of 1 % of the longest side", .set = sweepOf(0.01F)},
-        {.name = "sweep_fine", .what = "in pieces of 0.25 % of the longest side", .set = sweepOf(0.0025F)},
-        {.name = "verlet", .what = "Verlet instead of Euler", .integrator = Integrator::kVerlet},
-        {.name = "one_body", .what = "the collider as a body with a pose", .solids = Solids::kOneBody},
-        {.name = "one_body_turning",
-         .what = "the same with a new pose each step",
-         .solids = Solids::kOneBody,
-         .each_step = EachStep::kPoses},
-        {.name = "four_bodies", .what = "four of half the size", .solids = Solids::kFourBodies},
-        {.name = "four_bodies_turning",
-         .what = "the same with new poses each step",
-         .solids = Solids::kFourBodies,
-         .each_step = EachStep::kPoses},
-        {.name = "ground", .what = "a floor a tenth of the longest side up", .set = setGround},
-        {.name = "flow", .what = "a flow field of 32 x 32 x 32 nodes", .set = airOf(flowAir)},
-        {.name = "curl_noise", .what = "two octaves of curl noise", .set = airOf(curlAir)},
-        {.name = "attractors", .what = "four attractors", .set = airOf(attractorAir)},
-        {.name = "events", .what = "writing what happened to each particle", .set = setEvents},
-        {.name = "events_listed",
-         .what = "and lists of up to 65,536 events, which come to the CPU",
-         .set = setEvents,
-         .each_step = EachStep::kEvents},
+        {.name = "no_collider", .solids = Solids::kNone},
+        {.name = "collider"},
+        {.name = "types_16", .set = setSixteenTypes},
+        {.name = "radius", .set = setRadius},
+        {.name = "sweep", .set = sweep},
+        {.name = "verlet", .integrator = Integrator::kVerlet},
+        {.name = "four_bodies", .solids = Solids::kFourBodies},
+        {.name = "four_bodies_turning", .solids = Solids::kFourBodies, .each_step = EachStep::kPoses},
+        {.name = "ground", .set = ground},
+        {.name = "flow", .set = airWith(addFlow)},
+        {.name = "curl_noise", .set = airWith(addCurlNoise)},
+        {.name = "attractors", .set = airWith(addAttractors)},
+        {.name = "events", .set = setEvents},
+        {.name = "events_listed", .set = setEvents, .each_step = EachStep::kEvents},
     };
 }
 

@@ -19,8 +19,7 @@ inline constexpr int kBenchStepsMost = 16;  ///< of a block
 /// Seconds: longer than a block and the step before it, so that nobody dies within.
 inline constexpr float kBenchLifetime = 0.5F;
 static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMost + 2));
-/// Seconds of a step that nobody survives.
-inline constexpr float kBenchEnd = 1.0F;
+inline constexpr float kBenchForever = 1e6F;  ///< seconds
 
 /// Snow as in samples/, but born all through the collider's box at once: from the first step on there is
 /// something to collide with. Types 0…15 in turn; a system with a single type takes them all for that one.
@@ -29,13 +28,10 @@ struct BenchScene {
     float side = 1.0F;  ///< longest of the bounds, object units
     Forces forces;
     std::vector<Birth> births;
-    StepPath path = StepPath::kFragment;  ///< of the systems
-
-    void liveForever();
 };
 
-/// \param sorted  neighbours in space are neighbours on the GPU; else these are anywhere, as an emitter's are
-[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles, bool sorted = false);
+[[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles,
+                                        float lifetime = kBenchForever);
 
 /// A particle system with what it collides with.
 struct BenchSystem {
@@ -46,20 +42,17 @@ struct BenchSystem {
     void step();
     /// Everybody born, and a first step, for which the driver compiles.
     void begin(const BenchScene& scene);
-    void end() { particles->step(kBenchEnd); }
 };
 
-enum class Solids : std::uint8_t { kNone, kCollider, kOneBody, kFourBodies };
+enum class Solids : std::uint8_t { kNone, kCollider, kFourBodies };
 /// Work of each step beside the step: nothing, new poses of the bodies, or lists of events that come to the CPU.
 enum class EachStep : std::uint8_t { kNothing, kPoses, kEvents };
-using BenchFeature = std::function<Result<void>(ParticleSystem&, const BenchScene&)>;
 
 struct BenchVariant {
     std::string name;
-    std::string what;  ///< one line for a person
     Solids solids = Solids::kCollider;
     Integrator integrator = Integrator::kEuler;
-    BenchFeature set = {};  ///< may be empty
+    std::function<Result<void>(ParticleSystem&, const BenchScene&)> set = {};  ///< may be empty
     EachStep each_step = EachStep::kNothing;
 };
 
@@ -67,6 +60,7 @@ struct BenchVariant {
 [[nodiscard]] std::vector<BenchVariant> benchVariants();
 
 /// The system takes the scene's number of particles. Without a variant: that of "collider".
-[[nodiscard]] Result<BenchSystem> makeBenchSystem(const BenchScene& scene, const BenchVariant& variant = {});
+[[nodiscard]] Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path,
+                                                  const BenchVariant& variant = {});
 
 }  // namespace relief

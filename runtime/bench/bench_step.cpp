@@ -98,17 +98,13 @@ Json touching(const BenchSystem& system, int steps_taken) {
 /// The variant that is called for, beside those that it is compared with.
 Result<std::vector<BenchVariant>> variantsFor(const std::string& only) {
     std::vector<BenchVariant> variants = benchVariants();
-    if (only.empty()) {
-        return variants;
-    }
-    const auto named = [](const std::string& name) {
-        return [&name](const BenchVariant& variant) { return variant.name == name; };
-    };
-    if (std::ranges::none_of(variants, named(only))) {
+    const auto named = [&](const BenchVariant& variant) { return variant.name == only; };
+    if (!only.empty() && std::ranges::none_of(variants, named)) {
         return fail(ErrorCode::kUsage, "--only " + only + ": no such variant; without it all are named");
     }
     std::erase_if(variants, [&](const BenchVariant& variant) {
-        return variant.name != only && variant.name != "collider" && variant.name != "no_collider";
+        return !only.empty() && !named(variant) && variant.name != "collider" &&
+               variant.name != "no_collider";
     });
     return variants;
 }
@@ -118,65 +114,60 @@ std::string comparedWith(const std::string& variant) {
     return variant == "no_collider" ? "copy" : variant == "collider" ? "no_collider" : "collider";
 }
 
-Result<Json> benchSteps(const Bench& bench, const Collider& collider, std::uint32_t count) {
-    BenchScene scene = makeBenchScene(collider, count, bench.options.sorted);
-    scene.path = bench.options.path;
-    const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.options.only));
+}  // namespace
+
+Result<Json> benchStep(const Bench& bench) {
+    const std::uint32_t count = bench.particlesOr(1U << 20, 1U << 17);
+    if (count % ParticleSystem::kStateWidth != 0) {
+        return fail(ErrorCode::kUsage, "--particles must be a multiple of " +
+                                           std::to_string(ParticleSystem::kStateWidth) + " for step");
+    }
+    const BenchScene scene = makeBenchScene(RELIEF_TRY(loadCollider(bench.file)), count, kBenchLifetime);
+    const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.only));
     const int steps = bench.software ? 4 : kBenchStepsMost;
-    auto copy = RELIEF_TRY(Copy::create(count, scene.path));
-    std::vector<Work> works{{"copy", [&]() -> Result<void> {
+    auto copy = RELIEF_TRY(Copy::create(count, bench.path));
+    const auto copies = [&] {
+        for (int i = 0; i < kBenchStepsMost; ++i) {
+            copy.step();
+        }
+    };
+    const auto warm = [&] { warmUp(bench, kWarmUpMs, copies); };
+    std::vector<Work> works{{.name = "copy",
+                             .run = [&]() -> Result<void> {
                                  copy.step();
                                  return {};
-                             }}};
+                             },
+                             .before = warm}};
     std::vector<BenchSystem> systems(variants.size());
     std::vector<Json> touch(variants.size());
     for (std::size_t i = 0; i < variants.size(); ++i) {
-        BenchSystem& system = systems[i] = RELIEF_TRY(makeBenchSystem(scene, variants[i]));
+        BenchSystem& system = systems[i] = RELIEF_TRY(makeBenchSystem(scene, bench.path, variants[i]));
         works.push_back({variants[i].name,
                          [&system]() -> Result<void> {
                              system.step();
                              return {};
                          },
-                         comparedWith(variants[i].name), [&] { system.begin(scene); },
+                         comparedWith(variants[i].name),
+                         [&] {
+                             warm();
+                             system.begin(scene);
+                         },
                          [&system, &touch = touch[i], steps] {
                              if (touch.is_null()) {
                                  touch = touching(system, steps + 1);
                              }
-                             system.end();
+                             system.particles->step(2.0F * kBenchLifetime);  // nobody survives it
                          }});
     }
-    Blocks blocks{.rounds = bench.software       ? 5
-                            : count > (1U << 20) ? 3
-                                                 : 11,
-                  .calls = steps,
-                  .warm_ms = kWarmUpMs};
-    blocks.warm = [&] {
-        for (int i = 0; i < kBenchStepsMost; ++i) {
-            copy.step();
-        }
-    };
-    Json rows = RELIEF_TRY(timeInTurns(bench, works, blocks));
+    const int rounds = bench.software ? 5 : count > (1U << 20) ? 3 : 11;
+    Json rows = RELIEF_TRY(timeInTurns(bench, works, {.rounds = rounds, .calls = steps}));
     for (std::size_t i = 0; i < variants.size(); ++i) {
-        rows[i + 1]["what"] = variants[i].what;
         rows[i + 1]["touching"] = touch[i];
     }
-    return Json{
-        {"particles", count}, {"maps", collider.maps.size()}, {"steps", steps}, {"rows", std::move(rows)}};
-}
-
-}  // namespace
-
-Result<Json> benchStep(const Bench& bench) {
-    const auto collider = RELIEF_TRY(loadCollider(bench.options.file));
-    Json tables = Json::array();
-    for (const std::uint32_t count : bench.particlesOr({bench.large() ? 1U << 20 : 1U << 17})) {
-        if (count % ParticleSystem::kStateWidth != 0) {
-            return fail(ErrorCode::kUsage, "--particles must be a multiple of " +
-                                               std::to_string(ParticleSystem::kStateWidth) + " for step");
-        }
-        tables.push_back(RELIEF_TRY(benchSteps(bench, collider, count)));
-    }
-    return tables;
+    return Json{{{"particles", count},
+                 {"maps", scene.collider.maps.size()},
+                 {"steps", steps},
+                 {"rows", std::move(rows)}}};
 }
 
 }  // namespace relief

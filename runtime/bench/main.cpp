@@ -1,6 +1,5 @@
-// relief-bench CASE [FILE]: prints JSON, times of the runtime's parts on this machine. scripts/bench.py reads it.
+// relief-bench CASE FILE: prints JSON, times of the runtime's parts on this machine. scripts/bench.py reads it.
 #include <CLI/CLI.hpp>
-#include <array>
 
 #include "formats/fields/json.h"
 #include "runtime/bench/bench.h"
@@ -12,62 +11,34 @@
 namespace relief {
 namespace {
 
-struct Case {
-    std::string_view name;
-    const char* file;  ///< that it needs; "": none
-    Result<Json> (*run)(const Bench&);
-};
-constexpr std::array<Case, 7> kCases{{{"step", "COLLIDER.relief", benchStep},
-                                      {"picture", "COLLIDER.relief", benchPicture},
-                                      {"births", "", benchBirths},
-                                      {"sort", "", benchSort},
-                                      {"statistics", "", benchStatistics},
-                                      {"depth-maps", "MESH (.obj or .ply)", benchDepthMaps},
-                                      {"live", "MESH (.obj or .ply)", benchLive}}};
-
-void define(CLI::App& app, std::string& name, BenchOptions& options) {
-    setUpHelp(app);
-    app.footer("relief-bench step bunny.relief --path compute --particles 1048576");
-    std::vector<std::string_view> names;
-    for (const Case& one : kCases) {
-        names.push_back(one.name);
-    }
-    app.add_option("CASE", name, "step, picture, births, sort, statistics, depth-maps or live")
-        ->required()
-        ->transform(oneOf(names));
-    app.add_option("FILE", options.file, "The collider of step and picture; the mesh of depth-maps and live");
-    const auto whole = [&](const char* option, auto& field, std::uint64_t least, std::uint64_t most,
-                           const char* help) {
-        return app.add_option(option, field, help)->option_text("N")->transform(wholeNumber(least, most));
-    };
-    whole("--particles", options.particles, 4, ParticleSystem::kCapacityMax,
-          "Particles, a table for each number; for step, a multiple of 1024")
-        ->delimiter(',')
-        ->allow_extra_args(false);
-    whole("--births", options.births, 1, 1U << 24U, "Births a step of births");
-    whole("--blocks", options.rounds, 1, 1000, "Rounds of measurements");
-    addWords(app, "--path", options.path,
-             WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
-             "Of step and picture");
-    app.add_option("--only", options.only, "One variant of step, beside those it is compared with");
-    app.add_flag("--large", options.large, "Sizes for a GPU, even where there is none");
-    app.add_flag("--sorted", options.sorted,
-                 "Neighbours in space are neighbours on the GPU, so that the lanes of a warp do the same");
-}
+using Case = Result<Json> (*)(const Bench&);
+const std::map<std::string_view, Case> kCases{
+    {"step", benchStep}, {"picture", benchPicture}, {"mesh", benchMesh}};
 
 Result<void> run(int argc, char** argv) {
     CLI::App app("Times of the runtime's parts, as JSON", "relief-bench");
+    setUpHelp(app);
+    app.footer("relief-bench step bunny.relief --path compute --particles 1048576");
     std::string name;
     Bench bench;
-    define(app, name, bench.options);
+    app.add_option("CASE", name, "step, picture or mesh")
+        ->required()
+        ->transform(oneOf({"step", "picture", "mesh"}));
+    app.add_option("FILE", bench.file, "The collider of step and picture; the .obj or .ply of mesh")
+        ->required();
+    app.add_option("--particles", bench.particles, "For step, a multiple of 1024")
+        ->option_text("N")
+        ->transform(wholeNumber(4, ParticleSystem::kCapacityMax));
+    app.add_option("--blocks", bench.rounds, "Rounds of measurements")
+        ->option_text("N")
+        ->transform(wholeNumber(1, 1000));
+    addWords(app, "--path", bench.path,
+             WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
+             "Of the particles");
+    app.add_option("--only", bench.only, "One variant of step, beside those it is compared with");
+    app.add_flag("--large", bench.large, "Sizes for a GPU, even where there is none");
     if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
         return {};
-    }
-    const Case& chosen =
-        *std::find_if(kCases.begin(), kCases.end(), [&](const Case& one) { return one.name == name; });
-    if (bench.options.file.empty() != (*chosen.file == '\0')) {
-        return fail(ErrorCode::kUsage, *chosen.file == '\0' ? name + " takes no file; leave it out"
-                                                            : name + " needs a " + chosen.file);
     }
     const auto context = RELIEF_TRY(GlContext::create());
     bench.software = context->software();
@@ -75,8 +46,8 @@ Result<void> run(int argc, char** argv) {
               {"device", context->description()},
               {"renderer", reinterpret_cast<const char*>(glGetString(GL_RENDERER))},
               {"software", bench.software},
-              {"path", bench.options.path == StepPath::kCompute ? "compute" : "fragment"}};
-    json["tables"] = RELIEF_TRY(chosen.run(bench));
+              {"path", bench.path == StepPath::kCompute ? "compute" : "fragment"}};
+    json["tables"] = RELIEF_TRY(kCases.at(name)(bench));
     return printOut(jsonText(json));
 }
 

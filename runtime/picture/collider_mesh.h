@@ -19,7 +19,7 @@ class ColliderMesh {
     [[nodiscard]] static Result<ColliderMesh> create(const PictureMesh& mesh);
 
     /// Moves the vertices: copies 24 bytes a vertex, position and normal as floats, from the beginning of a
-    /// buffer of the GPU (deform_pass.h). As many as the mesh was created with, which then has normals.
+    /// buffer of the GPU (wobble_pass.h). As many as the mesh was created with, which then has normals.
     void setVertices(const GlBuffer& buffer);
 
     /// A camera's view of it, pixel by pixel.

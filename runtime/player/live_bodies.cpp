@@ -19,7 +19,7 @@ Result<LiveBodies> LiveBodies::create(const LoadedScene& loaded) {
                     LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames)));
         auto pass =
             RELIEF_TRY(inFront(origin + ": collider.deform",
-                               DeformPass::create(live.deformation, live.mesh.positions, live.mesh.normals)));
+                               WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals)));
         out.bodies_.push_back({i, std::move(collider), std::move(pass)});
     }
     return out;
@@ -41,13 +41,9 @@ const GpuMesh* LiveBodies::mesh(std::size_t index) const {
 }
 
 Result<LivePicture> LivePicture::create(const LiveMesh& live) {
-    // Doubled vertices would come apart along a crease if each moved along its own normal.
-    const bool smooth = live.deformation.kind == DeformKind::kWobble;
-    const PictureMesh creased = smooth ? PictureMesh{} : withNormals(live.mesh);
-    const PictureMesh& drawn = smooth ? live.mesh : creased;
-    auto mesh = RELIEF_TRY(ColliderMesh::create(drawn));
-    auto pass = RELIEF_TRY(DeformPass::create(live.deformation, drawn.positions, drawn.normals,
-                                              DeformPass::Output::kPositionsAndNormals));
+    auto mesh = RELIEF_TRY(ColliderMesh::create(live.mesh));
+    auto pass = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
+                                              WobblePass::Output::kPositionsAndNormals));
     return LivePicture(std::make_unique<ColliderMesh>(std::move(mesh)), std::move(pass));
 }
 

@@ -6,8 +6,8 @@
 
 #include "formats/base/result.h"
 #include "runtime/collider/collider_textures.h"
-#include "runtime/collider/deform_pass.h"
 #include "runtime/collider/live_collider.h"
+#include "runtime/collider/wobble_pass.h"
 #include "runtime/picture/collider_mesh.h"
 #include "runtime/scene/loaded_scene.h"
 
@@ -16,7 +16,7 @@ namespace relief {
 class LiveBodies {
   public:
     /// Needs a current context; empty without live colliders.
-    /// Fails as LiveCollider and DeformPass do; messages begin with the place in the scene.
+    /// Fails as LiveCollider and WobblePass do; messages begin with the place in the scene.
     [[nodiscard]] static Result<LiveBodies> create(const LoadedScene& loaded);
 
     [[nodiscard]] bool empty() const { return bodies_.empty(); }
@@ -30,7 +30,7 @@ class LiveBodies {
     struct Body {
         std::size_t index;  // in the scene
         LiveCollider collider;
-        DeformPass pass;
+        WobblePass pass;
     };
     std::vector<Body> bodies_;
 };
@@ -38,17 +38,17 @@ class LiveBodies {
 /// The picture of a collider that deforms: of its mesh at a time.
 class LivePicture {
   public:
-    /// Fails as ColliderMesh and DeformPass do.
+    /// Fails as ColliderMesh and WobblePass do.
     [[nodiscard]] static Result<LivePicture> create(const LiveMesh& live);
     void show(double time);
     [[nodiscard]] const ColliderMesh& mesh() const { return *mesh_; }
 
   private:
-    LivePicture(std::unique_ptr<ColliderMesh> mesh, DeformPass pass)
+    LivePicture(std::unique_ptr<ColliderMesh> mesh, WobblePass pass)
         : mesh_(std::move(mesh)), pass_(std::move(pass)) {}
 
     std::unique_ptr<ColliderMesh> mesh_;  // at one place: renderers point to it
-    DeformPass pass_;
+    WobblePass pass_;
 };
 
 }  // namespace relief

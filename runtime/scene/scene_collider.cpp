@@ -39,29 +39,6 @@ std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const cha
     return std::nullopt;
 }
 
-std::optional<FieldFault> check(SceneLive& live, const GivenFields& /*given*/) {
-    Deformation& d = live.deformation;
-    if (d.kind == DeformKind::kWobble) {
-        return std::nullopt;
-    }
-    if (std::abs(d.amplitude) > 360.0F) {
-        return FieldFault{"amplitude", "is out of range; choose -360 to 360 degrees"};
-    }
-    if (live.has_range && !(d.range_low < d.range_high)) {
-        return FieldFault{"range", "does not rise; give the lower end first"};
-    }
-    if (d.kind == DeformKind::kBend) {
-        // A person need not write a direction that is exactly perpendicular.
-        const glm::vec3 across = d.along - glm::dot(d.along, d.axis) * d.axis;
-        if (!(glm::length(across) > 0.7F)) {
-            return FieldFault{"along",
-                              "lies along collider.deform.axis, about which it bends; choose one across it"};
-        }
-        d.along = glm::normalize(across);
-    }
-    return std::nullopt;
-}
-
 std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given) {
     if (given("mesh") && !collider.live) {
         return FieldFault{

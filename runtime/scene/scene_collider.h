@@ -11,7 +11,6 @@
 #include "formats/base/scene_limits.h"
 #include "formats/collider.h"
 #include "runtime/collider/collider_textures.h"
-#include "runtime/collider/deformation.h"
 #include "runtime/collider/pose_keys.h"
 
 namespace relief {
@@ -60,56 +59,22 @@ inline constexpr std::size_t kPoseKeysMax = 1024;
 /// \param instead  of a single key, in words.
 [[nodiscard]] std::optional<FieldFault> checkKeys(const std::vector<SceneKey>& keys, const char* instead);
 
-template <>
-inline constexpr std::array<std::string_view, 3> kWordsOf<DeformKind>{"bend", "twist", "wobble"};
-
-/// collider.deform; what it leaves open depends on the mesh.
+/// collider.deform.
 struct SceneLive {
-    Deformation deformation;      ///< angles in degrees
-    bool has_center = false;      ///< else the middle of the mesh's box
-    bool has_range = false;       ///< else the mesh's whole extent along the axis, or along `along`
-    bool has_wavelength = false;  ///< else half of the box's longest side
+    float amplitude = 0.0F;
+    float frequency = 1.0F;
+    float phase = 0.0F;  ///< degrees
+    std::optional<float> wavelength;
 };
 
 template <class Visitor, FieldsOf<SceneLive> L>
 void fields(Visitor& visit, L& live) {
-    auto& d = live.deformation;
-    FieldPair range{d.range_low, d.range_high};
-    visit("kind", d.kind, {"Bends, twists or wobbles", {}, {}, {}, {.required = true, .selects = true}});
-    visit("amplitude", d.amplitude,
-          {"Largest angle, up to 360 degrees; of a wobble a length", "degrees", kPointRange, {}, kRequired});
-    visit("frequency", d.frequency, {"Oscillations a second", "1/s", {0.0, 1000.0}, {}, kRequired});
-    visit("phase", d.phase, {"Phase at time 0", "degrees", within(kAngleMax)});
-    visit("axis", d.axis,
-          {"Axis of a bend or twist, of any length",
-           "[x, y, z]",
-           kPointRange,
-           {},
-           {.only = "bend twist", .unit_length = true}});
-    visit("along", d.along,
-          {"Direction of the beam that a bend winds, across the axis",
-           "[x, y, z]",
-           kPointRange,
-           {},
-           {.only = "bend", .required = true, .unit_length = true}});
-    visit("center", FieldMaybe{d.center, live.has_center},
-          leftOut({"A point of the axis",
-                   "[x, y, z]",
-                   kPointRange,
-                   "middle of the mesh's box",
-                   {.only = "bend twist"}}));
-    visit("range", FieldMaybe{range, live.has_range},
-          leftOut(
-              {"From the center, along the axis or, of a bend, `along`: the angle grows from 0 to all of it",
-               "[low, high]",
-               kPointRange,
-               "the whole mesh",
-               {.only = "bend twist"}}));
-    visit("wavelength", FieldMaybe{d.wavelength, live.has_wavelength},
-          leftOut({"Wavelength of a wobble", {}, kSizeRange, "half the longest side", {.only = "wobble"}}));
+    visit("amplitude", live.amplitude, {"Height of the waves", "object units", kPointRange, {}, kRequired});
+    visit("frequency", live.frequency, {"Oscillations a second", "1/s", {0.0, 1000.0}, {}, kRequired});
+    visit("phase", live.phase, {"Phase at time 0", "degrees", within(kAngleMax)});
+    visit("wavelength", live.wavelength,
+          leftOut({"Length of the waves", "object units", kSizeRange, "half the longest side"}));
 }
-/// `along` is made perpendicular to the axis.
-[[nodiscard]] std::optional<FieldFault> check(SceneLive& live, const GivenFields& given);
 
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
@@ -118,7 +83,7 @@ struct SceneCollider {
     float scale = 1.0F;
     float restitution = 1.0F;        ///< factor of the particles' own
     float friction = 0.0F;           ///< on top of the particles' own
-    std::optional<SceneLive> live;   ///< deforms: `path` is a mesh, not a container
+    std::optional<SceneLive> live;   ///< wobbles: `path` is a mesh, not a container
     std::uint32_t resolution = 256;  ///< of its maps
     std::vector<SceneKey> given_keys;
     // Filled by check(), which also completes the pose and the keys above:
@@ -139,7 +104,7 @@ void fields(Visitor& visit, C& c) {
         "mesh", FieldMaybe{path, live},
         leftOut(
             {"An .obj or .ply file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}}));
-    visit("deform", c.live, leftOut({"How the mesh deforms", {}, {}, "required by mesh", {.needs = "mesh"}}));
+    visit("deform", c.live, leftOut({"How the mesh wobbles", {}, {}, "required by mesh", {.needs = "mesh"}}));
     visit(
         "resolution", c.resolution,
         leftOut(

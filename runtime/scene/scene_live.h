@@ -1,26 +1,22 @@
-// A scene's collider that deforms: a mesh instead of a container, how it moves, and what its maps are.
+// A scene's collider that wobbles: a mesh instead of a container, how it moves, and what its maps are.
 #pragma once
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/collider/deformation.h"
+#include "runtime/collider/wobble_pass.h"
 #include "runtime/picture/picture_mesh.h"
 #include "runtime/scene/scene_collider.h"
 
 namespace relief {
 
-/// The mesh of a live collider, ready to deform.
+/// The mesh of a live collider, ready to wobble.
 struct LiveMesh {
-    /// One normal a vertex, so that a wobble tears nothing.
-    PictureMesh mesh;
-    Deformation deformation;  ///< complete
-    Collider frames;          ///< bounds of the whole motion, and three maps without texels
+    PictureMesh mesh;  ///< with one normal a vertex, so that waves tear nothing
+    Wobble wobble;
+    Collider frames;  ///< bounds of the whole motion, and three maps without texels
 };
 
-/// With angles in radians; what the scene leaves open is not filled in.
-[[nodiscard]] Deformation deformationOf(const SceneLive& live);
-
-/// Reads the mesh, completes its deformation, and chooses maps that hold its whole motion.
+/// Reads the mesh, completes its wobble, and chooses maps that hold its whole motion.
 /// \param from  with `live`.
 /// Fails as loadPictureMesh does, and with kInvalidInput (a mesh without extent); messages begin with the place in the scene.
 [[nodiscard]] Result<LiveMesh> loadLiveMesh(const SceneCollider& from);

@@ -1,4 +1,4 @@
-// The cheapest draw of a mesh into a depth map: the baseline of `relief-bench depth-maps`.
+// The cheapest draw of a mesh into a depth map: the baseline of `relief-bench mesh`.
 layout(location = 0) in vec3 a_position;
 
 uniform mat4 u_clip;

@@ -18,6 +18,4 @@ enum MapFlag : std::int32_t {
 /// The shader storage binding of the collider in a tour (collider_tour.glsl).
 inline constexpr int kTourStorage = 0;
 
-enum class DeformKind : std::uint8_t { kBend = 0, kTwist = 1, kWobble = 2 };
-
 }  // namespace relief

@@ -22,7 +22,7 @@ steps = 3
 file = "box.relief"
 [[collider]]
 mesh = "live.obj"
-deform = { kind = "wobble", amplitude = 0.1, frequency = 2 }
+deform = { amplitude = 0.1, frequency = 2 }
 resolution = 16
 [particles]
 capacity = 50

@@ -14,7 +14,7 @@ steps = 4
 file = "box.relief"
 [[collider]]
 mesh = "box.obj"
-deform = { kind = "wobble", amplitude = 0.1, frequency = 2 }
+deform = { amplitude = 0.1, frequency = 2 }
 resolution = 16
 [particles]
 capacity = 100

@@ -202,7 +202,7 @@ cat >live.toml <<'T'
 [collider]
 mesh = "box.obj"
 resolution = 32
-deform = { kind = "twist", amplitude = 20.0, frequency = 1.0 }
+deform = { amplitude = 0.1, frequency = 1.0 }
 [time]
 prewarm = 0.1
 [emitter]

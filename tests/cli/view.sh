@@ -121,7 +121,7 @@ f 2 3 7 6
 f 4 1 5 8
 O
 cp box.obj scene/
-printf '[collider]\nmesh = "box.obj"\ndeform = { kind = "wobble", amplitude = 0.1, frequency = 1.0 }\nresolution = 32\n' >scene/live.toml
+printf '[collider]\nmesh = "box.obj"\ndeform = { amplitude = 0.1, frequency = 1.0 }\nresolution = 32\n' >scene/live.toml
 expect 0 "$relief" view scene/live.toml
 data scene/live.html
 holds box.obj 'd["files"]["box.obj"]'

@@ -57,7 +57,7 @@ test("the page's GL state is unchanged", { timeout: 60_000 }, async (t) => {
         collider.dispose();
         const wobbling = new relief.ParticleSystem(gl, {
             scene: {
-                collider: { mesh: "cube.obj", resolution: 32, deform: { kind: "wobble", amplitude: 0.1, frequency: 1 } },
+                collider: { mesh: "cube.obj", resolution: 32, deform: { amplitude: 0.1, frequency: 1 } },
                 particles: { capacity: 4096 },
             },
             files: { "cube.obj": new Uint8Array(await (await fetch("/files/cube.obj")).arrayBuffer()) },

@@ -36,62 +36,32 @@ SceneLive good(const std::string& deform) {
     return *scene->colliders.front().live;
 }
 
-TEST(SceneLive, Bend) {
+TEST(SceneLive, Keys) {
     const SceneLive live = good(
-        "deform = { kind = \"bend\", amplitude = 90, frequency = 0.5, phase = 180, axis = [0, 0, -2], "
-        "along = [3, 0, 0.1], center = [1, 2, 3], range = [-1, 4] }\nresolution = 100\n");
-    const Deformation d = deformationOf(live);
-    EXPECT_EQ(d.kind, DeformKind::kBend);
-    EXPECT_FLOAT_EQ(d.amplitude, 0.5F * std::numbers::pi_v<float>);
-    EXPECT_FLOAT_EQ(d.frequency, 0.5F);
-    EXPECT_FLOAT_EQ(d.phase, std::numbers::pi_v<float>);
-    EXPECT_EQ(d.axis, glm::vec3(0.0F, 0.0F, -1.0F));
-    EXPECT_EQ(d.along, glm::vec3(1.0F, 0.0F, 0.0F));
-    EXPECT_EQ(d.center, glm::vec3(1.0F, 2.0F, 3.0F));
-    EXPECT_EQ(d.range_low, -1.0F);
-    EXPECT_EQ(d.range_high, 4.0F);
-    EXPECT_TRUE(live.has_center && live.has_range);
-    EXPECT_TRUE(checkDeformation(d));
-}
-
-TEST(SceneLive, Defaults) {
-    const SceneLive live = good("deform = { kind = \"wobble\", amplitude = 0.2, frequency = 2 }\n");
-    EXPECT_EQ(live.deformation.kind, DeformKind::kWobble);
-    EXPECT_FALSE(live.has_wavelength);
-    EXPECT_TRUE(
-        deformationOf(good("deform = { kind = \"twist\", amplitude = 360, frequency = 0 }\n")).amplitude >
-        6.0F);
+        "deform = { amplitude = 0.2, frequency = 0.5, phase = 180, wavelength = 3 }\nresolution = 100\n");
+    EXPECT_FLOAT_EQ(live.amplitude, 0.2F);
+    EXPECT_FLOAT_EQ(live.frequency, 0.5F);
+    EXPECT_FLOAT_EQ(live.phase, 180.0F);
+    EXPECT_EQ(live.wavelength, 3.0F);
+    EXPECT_FALSE(good("deform = { amplitude = 0.2, frequency = 2 }\n").wavelength);
 }
 
 TEST(SceneLive, Mistakes) {
-    const std::string twist = "deform = { kind = \"twist\", amplitude = 40, frequency = 1";
+    const std::string wobble = "deform = { amplitude = 40, frequency = 1";
     expectError("", "2:8", "collider.mesh needs collider.deform");
-    expectError("file = \"b.relief\"\n" + twist + " }\n", "2:8", "exclude each other");
+    expectError("file = \"b.relief\"\n" + wobble + " }\n", "2:8", "exclude each other");
     expectError("deform = 3\n", "3:10", "collider.deform");
-    expectError("deform = { amplitude = 40, frequency = 1 }\n", "3:10", "kind is missing");
-    expectError("deform = { kind = \"melt\", amplitude = 40, frequency = 1 }\n", "3:19", "melt");
-    expectError("deform = { kind = \"twist\", frequency = 1 }\n", "3:10", "amplitude is missing");
-    expectError("deform = { kind = \"twist\", amplitude = 40 }\n", "3:10", "frequency is missing");
-    expectError("deform = { kind = \"twist\", amplitude = 400, frequency = 1 }\n", "3:40", "amplitude");
-    expectError("deform = { kind = \"twist\", amplitude = 40, frequency = -1 }\n", "3:56", "frequency");
-    expectError(twist + ", axis = [0, 0, 0] }\n", "3:66", "no direction");
-    expectError(twist + ", along = [1, 0, 0] }\n", "3:67",
-                "does nothing for collider.deform.kind = \"twist\"");
-    expectError(twist + ", range = [1, 1] }\n", "3:67", "does not rise");
-    expectError(twist + ", range = [1] }\n", "3:67", "[low, high]");
-    expectError(twist + ", sped = 1 }\n", "3:59", "sped");
-    expectError(twist + " }\nresolution = 8\n", "4:14", "16");
-    expectError("deform = { kind = \"bend\", amplitude = 40, frequency = 1 }\n", "3:19", "along");
-    expectError("deform = { kind = \"bend\", amplitude = 40, frequency = 1, along = [0, 1, 0] }\n", "3:66",
-                "along collider.deform.axis");
-    expectError("deform = { kind = \"wobble\", amplitude = 1, frequency = 1, axis = [0, 1, 0] }\n", "3:66",
-                "does nothing for collider.deform.kind = \"wobble\"");
-    expectError("deform = { kind = \"wobble\", amplitude = 1, frequency = 1, wavelength = 0 }\n", "3:72",
-                "wavelength");
-    expectError(twist + " }\n[render]\nmesh = \"b.obj\"\n", "5:8", "name collider.mesh");
-    expectSceneError("[collider]\nmesh = \"../a.obj\"\n" + twist + " }\n",
+    expectError("deform = { kind = \"twist\", amplitude = 40, frequency = 1 }\n", "3:12", "kind");
+    expectError("deform = { frequency = 1 }\n", "3:10", "amplitude is missing");
+    expectError("deform = { amplitude = 40 }\n", "3:10", "frequency is missing");
+    expectError("deform = { amplitude = 40, frequency = -1 }\n", "3:40", "frequency");
+    expectError("deform = { amplitude = 1, frequency = 1, wavelength = 0 }\n", "3:55", "wavelength");
+    expectError(wobble + ", sped = 1 }\n", "3:43", "sped");
+    expectError(wobble + " }\nresolution = 8\n", "4:14", "16");
+    expectError(wobble + " }\n[render]\nmesh = \"b.obj\"\n", "5:8", "name collider.mesh");
+    expectSceneError("[collider]\nmesh = \"../a.obj\"\n" + wobble + " }\n",
                      "dir/scene.toml:2:8: ", "collider.mesh");
-    expectSceneError("[collider]\nfile = \"a.relief\"\n" + twist + " }\n",
+    expectSceneError("[collider]\nfile = \"a.relief\"\n" + wobble + " }\n",
                      "dir/scene.toml:3:10: ", "without collider.mesh");
     expectSceneError("[collider]\nfile = \"a.relief\"\nresolution = 64\n",
                      "dir/scene.toml:3:14: ", "without collider.mesh");
@@ -106,21 +76,18 @@ TEST(SceneLive, TheMeshIsReadAndItsMapsHoldTheMotion) {
     collider.path = folder / "bar.obj";
     collider.origin = "scene.toml:2:8";
     collider.live.emplace();
-    collider.live->deformation.kind = DeformKind::kTwist;
-    collider.live->deformation.axis = glm::vec3(1.0F, 0.0F, 0.0F);
-    collider.live->deformation.amplitude = 180.0F;
+    collider.live->amplitude = 0.25F;
+    collider.live->phase = 180.0F;
     const auto live = loadLiveMesh(collider);
     ASSERT_TRUE(live) << live.error().message;
     EXPECT_EQ(live->mesh.positions.size(), 5U) << "no vertex is doubled";
     EXPECT_EQ(live->mesh.normals.size(), 5U);
-    EXPECT_EQ(live->deformation.center, glm::vec3(2.0F, 0.5F, 0.5F));
-    EXPECT_EQ(live->deformation.range_low, -2.0F);
-    EXPECT_EQ(live->deformation.range_high, 2.0F);
+    EXPECT_FLOAT_EQ(live->wobble.phase, std::numbers::pi_v<float>);
+    EXPECT_EQ(live->wobble.wavelength, 2.0F) << "half of the longest side";
     ASSERT_EQ(live->frames.maps.size(), 3U);
-    // The far end, 0.7 from the axis, turns all the way round.
-    EXPECT_LE(live->frames.bounds.min.z, 0.5F - 0.7F);
-    EXPECT_GE(live->frames.bounds.max.z, 0.5F + 0.7F);
-    EXPECT_LE(live->frames.bounds.max.z, 0.5F + 0.85F);
+    EXPECT_LE(live->frames.bounds.min.z, -0.25F);
+    EXPECT_GE(live->frames.bounds.max.x, 4.25F);
+    EXPECT_LE(live->frames.bounds.max.x, 4.5F);
 
     collider.path = folder / "none.obj";
     const auto missing = loadLiveMesh(collider);

@@ -1,5 +1,8 @@
-// Deforms the vertices of a mesh on the GPU, by shaders/collider/deform.vert and transform feedback, into a buffer:
+// Makes the vertices of a mesh wobble, on the GPU, by shaders/collider/wobble.vert and transform feedback into a buffer:
 // for LiveCollider::setPositions(buffer), and for the mesh's picture.
+//
+//     p + n · amplitude/3 · Σ_k sin(2π (p_k / wavelength − r_k frequency·t) + phase + k)
+//     for k = 0, 1, 2 of x, y, z; r = (1, 1.25, 0.8); n the normal of the vertex
 //
 //     bytes on the GPU = 24 · vertices, and the buffers that are written: 12 or 24 a vertex
 #pragma once
@@ -8,13 +11,20 @@
 #include <span>
 
 #include "formats/base/result.h"
-#include "runtime/collider/deformation.h"
-#include "runtime/collider/pose.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {
 
-class DeformPass {
+/// A box that is larger than the mesh by the amplitude on every side holds the whole motion.
+struct Wobble {
+    float amplitude = 0.0F;   ///< object units
+    float frequency = 1.0F;   ///< 1/s, ≥ 0
+    float phase = 0.0F;       ///< radians
+    float wavelength = 1.0F;  ///< object units, > 0
+    friend bool operator==(const Wobble&, const Wobble&) = default;
+};
+
+class WobblePass {
   public:
     /// The output of a vertex.
     enum class Output : std::uint8_t {
@@ -24,26 +34,23 @@ class DeformPass {
 
     /// Needs a current context, as run() does.
     /// \param positions  at rest, object units, finite; at least one.
-    /// \param normals    as many, of length 1 or zero; or none where neither a wobble nor kPositionsAndNormals
-    ///                   needs them.
-    /// Errors: kUsage (checkDeformation; normals that are missing; no vertex), kFailure (the driver's
-    /// compiler).
-    [[nodiscard]] static Result<DeformPass> create(const Deformation& deformation,
-                                                   std::span<const glm::vec3> positions,
+    /// \param normals    as many, of length 1 or zero.
+    /// Errors: kUsage (a number that is not finite or out of its range; no vertex, or not as many normals), kFailure (the
+    /// driver's compiler).
+    [[nodiscard]] static Result<WobblePass> create(const Wobble& wobble, std::span<const glm::vec3> positions,
                                                    std::span<const glm::vec3> normals,
                                                    Output output = Output::kPositions);
 
     /// Writes all vertices as they are at `time`, in seconds, into buffer(). Does not wait. Restores the GL
     /// state; no transform feedback of the caller's may be active.
-    /// \param pose  comes after the deformation.
-    void run(double time, const Pose& pose = {});
+    void run(double time);
 
     /// Of bytes(), rewritten by every run().
     [[nodiscard]] const GlBuffer& buffer() const { return output_; }
     [[nodiscard]] std::size_t bytes() const;
 
   private:
-    Deformation deformation_;
+    Wobble wobble_;
     Output what_ = Output::kPositions;
     GLsizei vertices_ = 0;
     float inch_ = 0.0F;

@@ -1,7 +1,8 @@
-#include "runtime/collider/deform_pass.h"
+#include "runtime/collider/wobble_pass.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/collider.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
@@ -44,38 +46,40 @@ class FeedbackState {
 
 }  // namespace
 
-Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<const glm::vec3> positions,
+Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm::vec3> positions,
                                       std::span<const glm::vec3> normals, Output output) {
     RELIEF_TRY(checkContext());
-    RELIEF_TRY(checkDeformation(deformation));
-    if (deformation.kind == DeformKind::kWobble && normals.empty()) {
-        return fail(ErrorCode::kUsage, "a wobble goes along the normals of the mesh; give them");
+    const bool numbers = std::isfinite(wobble.amplitude) && std::isfinite(wobble.phase) &&
+                         wobble.frequency >= 0.0F && std::isfinite(wobble.frequency) &&
+                         wobble.wavelength > 0.0F && std::isfinite(wobble.wavelength);
+    if (!numbers) {
+        return fail(ErrorCode::kUsage,
+                    "a wobble needs finite numbers, a frequency of at least 0 and a wavelength above 0");
     }
-    if (positions.empty() || positions.size() > std::numeric_limits<std::int32_t>::max()) {
-        return fail(ErrorCode::kUsage, "a deformation needs 1 to 2^31 - 1 vertices");
+    if (positions.empty() || positions.size() > std::numeric_limits<std::int32_t>::max() ||
+        normals.size() != positions.size()) {
+        return fail(ErrorCode::kUsage, "a wobble needs 1 to 2^31 - 1 vertices and as many normals; it has " +
+                                           std::to_string(positions.size()) + " and " +
+                                           std::to_string(normals.size()));
     }
     const bool wants_normals = output == Output::kPositionsAndNormals;
-    if (normals.size() != positions.size() && (wants_normals || !normals.empty())) {
-        return fail(ErrorCode::kUsage, std::to_string(positions.size()) + " vertices to deform have " +
-                                           std::to_string(normals.size()) + " normals; give as many");
-    }
     std::vector<RestVertex> rest(positions.size());
     Bounds bounds;
     for (std::size_t i = 0; i < rest.size(); ++i) {
-        rest[i] = {positions[i], normals.empty() ? glm::vec3(0.0F) : normals[i]};
+        rest[i] = {positions[i], normals[i]};
         bounds.add(positions[i]);
     }
 
     const PassState state;
     constexpr std::array<const char*, 2> kOutputs{"v_position", "v_normal"};
-    DeformPass pass;
-    pass.deformation_ = deformation;
+    WobblePass pass;
+    pass.wobble_ = wobble;
     pass.what_ = output;
     pass.vertices_ = static_cast<GLsizei>(positions.size());
     pass.inch_ = std::max(kInch * bounds.longestSide(), std::numeric_limits<float>::min());
-    pass.program_ = RELIEF_TRY(makeFeedbackProgram("collider/deform.vert",
+    pass.program_ = RELIEF_TRY(makeFeedbackProgram("collider/wobble.vert",
                                                    std::span(kOutputs).first(wants_normals ? 2 : 1),
-                                                   wants_normals ? "#define RELIEF_DEFORM_NORMALS 1\n" : ""));
+                                                   wants_normals ? "#define RELIEF_WOBBLE_NORMALS 1\n" : ""));
     pass.rest_ = makeBuffer();
     pass.output_ = makeBuffer();
     pass.array_ = makeVertexArray();
@@ -96,32 +100,27 @@ Result<DeformPass> DeformPass::create(const Deformation& deformation, std::span<
     return pass;
 }
 
-std::size_t DeformPass::bytes() const {
+std::size_t WobblePass::bytes() const {
     return static_cast<std::size_t>(vertices_) * (what_ == Output::kPositions ? 12 : 24);
 }
 
-void DeformPass::run(double time, const Pose& pose) {
+void WobblePass::run(double time) {
     const PassState state;
     const FeedbackState feedback;
-    program_.use();
-    const glm::mat3 turn = glm::mat3_cast(pose.rotation);
-    std::array<glm::vec4, 3> rows;
-    for (int i = 0; i < 3; ++i) {
-        rows[static_cast<std::size_t>(i)] =
-            glm::vec4(pose.scale * glm::vec3(turn[0][i], turn[1][i], turn[2][i]), pose.position[i]);
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    constexpr std::array<double, 3> kRates{1.0, 1.25, 0.8};
+    const double turns = static_cast<double>(wobble_.frequency) * time;
+    glm::vec3 phases(0.0F);
+    for (int k = 0; k < 3; ++k) {
+        phases[k] = static_cast<float>(std::fmod(
+            static_cast<double>(wobble_.phase) + k - kTurn * kRates[static_cast<std::size_t>(k)] * turns,
+            kTurn));
     }
-    program_.set("u_row", rows);
+    program_.use();
     program_.set("u_inch", inch_);
-    const DeformMoment moment = momentOf(deformation_, time);
-    program_.set("u_kind", static_cast<GLint>(deformation_.kind));
-    program_.set("u_angle", moment.angle);
-    program_.set("u_phases", moment.phases);
-    program_.set("u_amplitude", deformation_.amplitude);
-    program_.set("u_number", 2.0F * std::numbers::pi_v<float> / deformation_.wavelength);
-    program_.set("u_center", deformation_.center);
-    program_.set("u_axis", deformation_.axis);
-    program_.set("u_along", deformation_.along);
-    program_.set("u_range", glm::vec2(deformation_.range_low, deformation_.range_high));
+    program_.set("u_phases", phases);
+    program_.set("u_amplitude", wobble_.amplitude);
+    program_.set("u_number", static_cast<float>(kTurn) / wobble_.wavelength);
     glBindVertexArray(array_.name());
     glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
     glEnable(GL_RASTERIZER_DISCARD);
