@@ -25,7 +25,9 @@ Collider withoutSurface() {
 TEST(DiffReport, WithoutAPointToCompareNothingIsWithinTheLimits) {
     Collider other = withoutSurface();
     other.maps[0].empty_is_outside = !other.maps[0].empty_is_outside;
-    DiffReport report{.a = "'a'", .b = "'b'"};
+    DiffReport report;
+    report.a = "'a'";
+    report.b = "'b'";
     report.max_sides = 100.0;
     report.compare(withoutSurface(), other);
     ASSERT_TRUE(report.points);
