@@ -1,6 +1,6 @@
 # The import worker killed and failed at its system calls, and its parent short of descriptors, processes and memory: the
 # collider is the same, or one line says what the system says and what helps; the older file stays, and nothing else.
-#   RELIEF_FAULTS_PAGE=FILE  tries every call, not every third of the dynamic loader's, and writes what was counted,
+#   RELIEF_FAULTS_PAGE=FILE  tries every call, not every ninth of the dynamic loader's, and writes what was counted,
 #                            for bake/measure/trust.md
 . "$(dirname "$0")/lib.sh"
 
@@ -44,7 +44,7 @@ cmp out/a.relief new.relief || die "a traced worker gives another file"
 
 # The worker's calls as "SYSCALL N PART", N counted for each thread as strace's when= does. A call that two threads make
 # for the same time is listed once, as the first's. PART: the dynamic loader's, or the worker's own.
-python3 - "$([ -n "${RELIEF_FAULTS_PAGE:-}" ] && echo 1 || echo 3)" >calls <<'P'
+python3 - "$([ -n "${RELIEF_FAULTS_PAGE:-}" ] && echo 1 || echo 9)" >calls <<'P'
 import re, sys
 step = int(sys.argv[1])
 seen, listed, own = {}, set(), False
