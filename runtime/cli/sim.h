@@ -2,7 +2,7 @@
 #pragma once
 
 #include "formats/base/result.h"
-#include "runtime/command_line/gpu_tool.h"
+#include "runtime/cli/gpu_tool.h"
 #include "runtime/player/player.h"
 
 namespace relief {

@@ -14,7 +14,6 @@
 #include "formats/base/ending_signals.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/command_line/gpu_tool.h"
 
 namespace relief {
 namespace {
@@ -199,8 +198,8 @@ Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments)
         return answer(helpText(app));
     } catch (const CLI::CallForVersion& version) {
         return answer(std::string(version.what()) + "\n");
-    } catch (const ListDevices& what) {
-        return answer(RELIEF_TRY(devicesAnswer(what)));
+    } catch (const Answer& instead) {
+        return answer(RELIEF_TRY(instead.text));
     } catch (const CLI::ParseError& error) {
         // Whoever asks for help gets it, whatever is wrong beside it.
         const CLI::Option* help = calledOf(app).get_help_ptr();

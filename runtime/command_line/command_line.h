@@ -1,5 +1,4 @@
-// What the command lines of both executables share: help, version and devices are answered here, and so is what cannot
-// be read.
+// What the command lines of both executables share: help and version are answered here, and so is what cannot be read.
 #pragma once
 
 #include <functional>
@@ -18,10 +17,15 @@ namespace relief {
 /// lines of the footer. \param help  what the help says of --help.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
 
-/// Parses the command line. Prints what --help, --version and --list-devices ask for.
+/// Thrown by the callback of an option that is answered instead of doing anything, as --help is: the text to print.
+struct Answer {
+    Result<std::string> text;
+};
+
+/// Parses the command line. Prints the answers of --help, --version and of options that throw one.
 /// \param arguments  without the program's name.
 /// \return whether there is anything left to do.
-/// Fails with kUsage and one line that names the option and the cure; with kIo if the answer cannot be printed.
+/// Fails with kUsage and one line that names the option and the cure; with kIo if the answer cannot be printed; as the answer.
 [[nodiscard]] Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments);
 
 /// All arguments but the program's name.

@@ -26,15 +26,6 @@ struct DepthMapFrame {
     /// The rays of the near and of the far end start in free space. Where they may not, a surface met from
     /// its inner side leaves the texel empty.
     bool starts_free[2] = {true, true};
-    bool inside_out = false;  ///< the triangles are clockwise seen from outside
-    /// Decides by the triangles themselves which texels' centres they hold, and which is the nearest, to
-    /// float precision: for baking. Otherwise texels whose centre lies within 1/256 of a texel of an edge may
-    /// take the triangle beside it, or what lies behind a silhouette. Takes three vertices a triangle and a
-    /// test a fragment more; not with motion.
-    bool exact = false;
-    /// Plane alone: a standing plane that leaves no more free space behind it than this is kept, in units of
-    /// map depth.
-    double good_enough = 0.0;
 };
 
 /// The frame of a map. Its rays start in free space if `encloses` is set.
@@ -47,14 +38,5 @@ struct DepthMapFrame {
 /// Errors: kUsage (a size that no map has, a compare that does not go with the format, axes or an origin that
 /// floats cannot hold).
 [[nodiscard]] Result<void> checkFrame(const DepthMapFrame& frame);
-
-/// A rectangle of texels of one face of a map.
-struct TexelWindow {
-    std::uint32_t face = 0;
-    std::uint32_t x = 0;
-    std::uint32_t y = 0;
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-};
 
 }  // namespace relief

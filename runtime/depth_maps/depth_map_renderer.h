@@ -1,11 +1,10 @@
-// Depth maps of every format, rendered from a mesh on the GPU: the texels are those of formats/README.md, as
-// `relief bake --backend raycast` makes them from one ray through the centre of each texel, to a unit of the
-// last place of the depth.
+// Depth maps of every format, rendered from a mesh on the GPU: the texels are those of formats/README.md, as `relief bake`
+// makes them from one ray through the centre of each texel, to a unit of the last place of the depth.
 //
-// The rasteriser only finds the triangle that a texel's ray meets; the depth is that of the triangle's own plane
-// at the texel's centre, because rasterisers move vertices to a grid of 1/256 pixel (see DepthMapFrame::exact
-// for what that grid still decides). Of surfaces on one ray LESS keeps the nearest, GREATER the farthest;
-// front-back maps are drawn twice into one target.
+// The rasteriser only finds the triangle that a texel's ray meets; the depth is that of the triangle's own plane at the
+// texel's centre, because rasterisers move vertices to a grid of 1/256 pixel. Texels whose centre lies so near to an edge
+// may take the triangle beside it, or what lies behind a silhouette. Of surfaces on one ray LESS keeps the nearest, GREATER
+// the farthest; front-back maps are drawn twice into one target.
 //
 // Maps whose decode is Plane hold, in each texel, the plane of the triangle that its centre's ray meets:
 // moved outwards to the next depth code, standing along the ray where it is steep, and facing the viewer
@@ -35,14 +34,11 @@ class DepthMapRenderer {
     /// target of another format or too small), kFailure.
     [[nodiscard]] Result<void> render(GpuMesh& mesh, const DepthMapFrame& frame,
                                       const DepthMapTarget& target);
-    /// Renders a part of a map to (x, y) of the target: for maps that are larger than a texture.
-    [[nodiscard]] Result<void> render(GpuMesh& mesh, const DepthMapFrame& frame, const TexelWindow& window,
-                                      const DepthMapTarget& target, std::uint32_t x = 0, std::uint32_t y = 0);
 
   private:
     [[nodiscard]] Result<const GlProgram*> programFor(const DepthMapFrame& frame, bool motion);
     static void setUniforms(const GlProgram& program, const GpuMesh& mesh, const DepthMapFrame& frame,
-                            const TexelWindow& window, std::uint32_t x, std::uint32_t y);
+                            std::uint32_t face);
 
     std::map<std::string, GlProgram> programs_;  // by their defines
 };

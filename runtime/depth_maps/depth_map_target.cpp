@@ -36,15 +36,18 @@ TexelLayout layoutOf(MapFormat format) {
 
 }  // namespace
 
-Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t width, std::uint32_t height,
-                                              bool motion) {
+Result<DepthMapTarget> DepthMapTarget::create(const DepthMapFrame& frame, bool motion) {
     RELIEF_TRY(checkContext());
+    RELIEF_TRY(checkFrame(frame));
+    const MapFormat format = frame.format;
+    const std::uint32_t width = frame.width;
+    const std::uint32_t height = frame.height * faceCount(frame);
     GLint side = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
     GLint viewport[2] = {};
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
     const auto most = static_cast<std::uint32_t>(std::min({side, viewport[0], viewport[1]}));
-    if (width == 0 || height == 0 || std::max(width, height) > most) {
+    if (std::max(width, height) > most) {
         return fail(ErrorCode::kLimit, "depth maps of " + std::to_string(width) + " x " +
                                            std::to_string(height) +
                                            " texels cannot be rendered at once; this GL takes 1 to " +
@@ -75,11 +78,6 @@ Result<DepthMapTarget> DepthMapTarget::create(MapFormat format, std::uint32_t wi
     }
     target.framebuffer_ = RELIEF_TRY(makeFramebuffer(colors, target.depth_.name()));
     return target;
-}
-
-Result<DepthMapTarget> DepthMapTarget::create(const DepthMapFrame& frame, bool motion) {
-    RELIEF_TRY(checkFrame(frame));
-    return create(frame.format, frame.width, frame.height * faceCount(frame), motion);
 }
 
 Result<void> DepthMapTarget::read(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,

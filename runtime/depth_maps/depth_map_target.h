@@ -15,14 +15,11 @@ namespace relief {
 /// Texels on the GPU, laid out as the container has them, and a depth buffer.
 class DepthMapTarget {
   public:
-    /// The texture of a format is RGBA32F (float), RGBA8 (fixed8, cube) or RGBA16UI (front-back).
-    /// \param width, height  of the texture: a cube's six faces are stacked.
+    /// For all of a map, a cube's six faces stacked. The texture of a format is RGBA32F (float), RGBA8 (fixed8, cube) or
+    /// RGBA16UI (front-back).
     /// \param motion  with two RGBA32F textures for the motion of the surface.
-    /// Errors: kLimit (beyond this GL's textures), kUnsupported (does not render to them; names the extension
-    /// that is missing).
-    [[nodiscard]] static Result<DepthMapTarget> create(MapFormat format, std::uint32_t width,
-                                                       std::uint32_t height, bool motion = false);
-    /// A target for all of a map: width × height · faces.
+    /// Errors: those of checkFrame; kLimit (beyond this GL's textures), kUnsupported (does not render to them; names the
+    /// extension that is missing).
     [[nodiscard]] static Result<DepthMapTarget> create(const DepthMapFrame& frame, bool motion = false);
 
     [[nodiscard]] MapFormat format() const { return format_; }

@@ -175,7 +175,6 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     planes_program_.set("u_positions", 0);
     planes_program_.set("u_corners", 1);
     planes_program_.set("u_shift", vertex_shift_);
-    no_attributes_ = makeVertexArray();
 
     slots_ = makeBuffer();
     indices_ = makeBuffer();
@@ -278,11 +277,6 @@ GLuint GpuMesh::planes() {
 void GpuMesh::draw() const {
     glBindVertexArray(array_.name());
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangle_count_), GL_UNSIGNED_INT, nullptr);
-}
-
-void GpuMesh::drawApart() const {
-    glBindVertexArray(no_attributes_.name());
-    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * triangle_count_));
 }
 
 }  // namespace relief

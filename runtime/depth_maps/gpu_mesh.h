@@ -76,9 +76,6 @@ class GpuMesh {
     /// Draws all triangles with the current program; attribute 0 is the slot's vertex, an unsigned integer.
     /// Binds a vertex array.
     void draw() const;
-    /// Draws them without attributes: vertex 3·i + j is corner j of triangle i, its own last. Binds a vertex
-    /// array.
-    void drawApart() const;
 
   private:
     [[nodiscard]] Result<void> createTextures(std::span<const glm::uvec3> triangles);
@@ -99,7 +96,6 @@ class GpuMesh {
     GlTexture planes_;
     GlFramebuffer planes_target_;
     GlProgram planes_program_;
-    GlVertexArray no_attributes_;
     GlBuffer slots_;
     GlBuffer indices_;
     GlVertexArray array_;

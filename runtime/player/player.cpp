@@ -7,7 +7,6 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
-#include "runtime/command_line/gpu_tool.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"
 #include "runtime/player/scene_warnings.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "formats/base/file_guard.h"
-#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gpu_timer.h"
 #include "runtime/particles/particle_system.h"
+#include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
 
 namespace relief {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/stage_timer.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/player/live_bodies.h"
+#include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
 
 namespace relief {

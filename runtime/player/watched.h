@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/command_line/watchdog.h"
+#include "runtime/player/watchdog.h"
 
 namespace relief {
 

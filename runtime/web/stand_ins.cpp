@@ -4,11 +4,11 @@
 #include <string>
 
 #include "formats/compression.h"
-#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/player/watchdog.h"
 
 extern "C" {
 int relief_js_has_extension(const char* name);

@@ -6,7 +6,6 @@
 //     texel        RELIEF_FLOAT, RELIEF_BYTES or RELIEF_WORDS, with RELIEF_HALF or without
 //     decode       RELIEF_PLANE or projected
 //     projection   RELIEF_CUBE, with RELIEF_BOUNDED where its volume does not hold the mesh, or orthographic
-//     coverage     RELIEF_EXACT, for depth_map_exact.vert, or the rasteriser's
 //     motion       RELIEF_MOTION or none
 //!include depth_maps/normal_index.glsl
 uniform highp sampler2D u_positions;
@@ -16,16 +15,14 @@ uniform ivec2 u_shift;
 uniform vec3 u_center;
 uniform vec4 u_row[3];
 uniform mat3 u_object;  // cube: the face's axes sc, tc, ma in map space
-uniform vec2 u_origin;  // of gl_FragCoord: where the window starts; cube: where the face does
+uniform vec2 u_origin;  // of gl_FragCoord: where the face starts
 uniform vec3 u_residual;
 uniform vec3 u_scale;        // object units for one unit along each map axis
 uniform float u_width;       // cube: texels of a face
 uniform bool u_far;          // the far end: rays run against the depth
 uniform bool u_starts_free;  // otherwise inner sides leave the texel empty
-uniform bool u_inside_out;
 uniform vec3 u_ray;           // orthographic: along growing depth, unit length
 uniform float u_range;        // of standing planes, object units
-uniform float u_good_enough;  // see DepthMapFrame
 
 flat in vec4 v_at;
 flat in vec2 v_slope;
@@ -95,11 +92,7 @@ float cornerDepth(uint vertex, vec3 ray) {
 }
 
 bool outsideVolume(float depth) {
-#ifdef RELIEF_EXACT
-    return depth < -RELIEF_DEPTH_SLACK || depth > 1.0 + RELIEF_DEPTH_SLACK;
-#else
     return false;  // clipped
-#endif
 }
 
 #endif
@@ -178,7 +171,7 @@ Stored stored(uint normal, vec3 ray, float depth) {
         float kept = (2.0 * code / float(RELIEF_DEPTH_STEPS) - 1.0) * u_range - from_zero;
         float free = along > 0.0 ? min(u, kept / along) : u - max(0.0, kept / along);
         float facing_free = u - facing_code / float(RELIEF_DEPTH_STEPS) * kDepthMax;
-        if (code >= 0.0 && code <= float(RELIEF_DEPTH_STEPS) && (free <= u_good_enough || free <= facing_free)) {
+        if (code >= 0.0 && code <= float(RELIEF_DEPTH_STEPS) && free <= max(facing_free, 0.0)) {
             return storedCode(normal, uint(code), true);
         }
     } else if (cosine <= -(RELIEF_STANDING_COSINE + kStandingMargin)) {
@@ -277,42 +270,7 @@ void writeMotion(bool any) {
 }
 #endif
 
-// Coverage.
-
-#ifdef RELIEF_EXACT
-
-uniform vec2 u_window;  // texels of the window
-uniform vec2 u_corner;  // of gl_FragCoord: where it starts
-flat in vec3 v_a;
-flat in vec3 v_b;
-flat in vec3 v_c;
-
-// True if the triangle's projection holds the texel's centre, its edges included. Corners count from the centre, so that
-// a shared edge gives both its triangles the same numbers; the slack is the rounding of their products: rather both hold
-// it than neither.
-bool holdsCentre() {
-    vec2 centre = 2.0 * (gl_FragCoord.xy - u_corner) / u_window - 1.0;
-    vec2 a = v_a.xy - v_a.z * centre;
-    vec2 b = v_b.xy - v_b.z * centre;
-    vec2 c = v_c.xy - v_c.z * centre;
-    vec3 side = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);
-    vec3 slack = 4.8e-7 * vec3(length(c - b), length(a - c), length(b - a));
-    float turn = dot(side, vec3(v_a.z, v_b.z, v_c.z));
-    return turn >= 0.0 ? all(greaterThanEqual(side, -slack)) : all(lessThanEqual(side, slack));
-}
-
-#else
-
-bool holdsCentre() {
-    return true;
-}
-
-#endif
-
 void main() {
-    if (!holdsCentre()) {
-        discard;
-    }
     vec3 ray = texelRay();
     float cosine, depth;
     intersect(ray, cosine, depth);
@@ -323,11 +281,11 @@ void main() {
         discard;
     }
     depth = clamp(depth, 0.0, kDepthMax);
-#if defined(RELIEF_CUBE) || defined(RELIEF_EXACT)
+#ifdef RELIEF_CUBE
     gl_FragDepth = depth / kDepthMax;  // otherwise the rasteriser's will do
 #endif
     bool behind = u_far ? cosine < 0.0 : cosine > 0.0;
-    if (!u_starts_free && behind != u_inside_out) {
+    if (!u_starts_free && behind) {
         // The ray started inside: the space before this surface is not free.
         writeNothing();
         writeMotion(false);

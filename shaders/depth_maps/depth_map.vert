@@ -8,10 +8,10 @@ uniform ivec2 u_shift;    // of vertices, of triangles
 uniform vec3 u_center;    // object space; positions count from here, where floats are finest
 uniform vec4 u_row[3];    // see below
 uniform mat3 u_object;    // orthographic: object vectors of a texel to the right, a texel up, a unit of depth
-uniform vec2 u_window;    // texels of the window that is drawn
+uniform vec2 u_size;      // texels of the map
 uniform vec3 u_residual;  // cube: u_center as the float it is, less the centre
 
-flat out vec4 v_at;     // orthographic: a point of the plane, texels of the window and depth; w: cosine with the ray
+flat out vec4 v_at;     // orthographic: a point of the plane, texels and depth; w: cosine with the ray
 flat out vec2 v_slope;  // of depth, a texel; cube: x is the plane's distance from the centre, object units
 flat out uvec2 v_triangle;  // x: index, y: packed normals of both sides
 #ifdef RELIEF_MOTION
@@ -32,7 +32,7 @@ void main() {
     uvec4 plane = texelFetch(u_planes, own, 0);
     vec3 n = uintBitsToFloat(plane.xyz);
     vec3 p = position - u_center;
-    // Orthographic: texels of the window and depth. Cube: x and y of clip space, and w.
+    // Orthographic: texels and depth. Cube: x and y of clip space, and w.
     vec3 q = vec3(dot(u_row[0].xyz, p) + u_row[0].w, dot(u_row[1].xyz, p) + u_row[1].w,
                   dot(u_row[2].xyz, p) + u_row[2].w);
     v_triangle = uvec2(uint(gl_VertexID), plane.w);
@@ -46,6 +46,6 @@ void main() {
     v_at = vec4(q, m.z / length(u_object[2]));
     v_slope = -m.xy / m.z;
     // RELIEF_DEPTH_SLACK of the depth range outside it is drawn too.
-    gl_Position = vec4(2.0 * q.xy / u_window - 1.0, (2.0 * q.z - 1.0) / (1.0 + 2.0 * RELIEF_DEPTH_SLACK), 1.0);
+    gl_Position = vec4(2.0 * q.xy / u_size - 1.0, (2.0 * q.z - 1.0) / (1.0 + 2.0 * RELIEF_DEPTH_SLACK), 1.0);
 #endif
 }

@@ -78,10 +78,6 @@ DepthMap drawOne(const PreparedMesh& mesh, const MapSpec& spec) {
     std::copy(std::begin(view.axis), std::end(view.axis), std::begin(frame.axis));
     frame.encloses = view.encloses;
     std::copy(std::begin(view.starts_free), std::end(view.starts_free), std::begin(frame.starts_free));
-    frame.inside_out = mesh.orientation() < 0.0;
-    // A hundredth of a texel, as for rays.
-    frame.good_enough =
-        0.01 * double{mesh->bounds.longestSide()} / std::max(view.width, view.height) / view.depthUnit();
     DepthMap map = view.emptyMap();
     map.decode = spec.decode;
     Result<GpuMesh> on_gpu = GpuMesh::create(mesh->positions, mesh->triangles);
@@ -253,9 +249,6 @@ TEST_F(DrawnOddMapsGlTest, CutAndOddMeshesAgreeToo) {
         {"cube, cut", sphere, "cube:box=-0.5/-0.5/-1.2/1.3/1.3/0.5,compare=greater,decode=projected,size=96"},
         {"cube, cut, less", sphere,
          "cube:box=0.8/-0.5/-1.2/1.3/0.4/0.5,compare=less,decode=projected,size=96"},
-        {"inside out", reversed(sphere), "float:dir=-y,decode=projected,size=160"},
-        {"inside out, cut", reversed(sphere),
-         "float:dir=-y,box=-2/-2/-2/2/0.8/2,compare=less,decode=projected,size=160"},
         {"small and away", far_away, "front-back:dir=1/1/0,decode=projected,size=160"},
         {"long", sphere, "fixed8:dir=-z,decode=projected,size=2100x40"},
     };

@@ -1,4 +1,4 @@
-#include "runtime/command_line/gpu_tool.h"
+#include "runtime/cli/gpu_tool.h"
 
 #include <unistd.h>
 
@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "formats/fields/json.h"
+#include "runtime/command_line/command_line.h"
 #include "runtime/command_line/field_options.h"
 
 namespace relief {
@@ -45,27 +46,15 @@ std::string secondsText(std::chrono::milliseconds time) {
 
 void addGpuOptions(CLI::App& app, GpuOptions& options) {
     addFields(app, options);
-    addListDevices(app, options);
-}
-
-void addListDevices(CLI::App& app, const GpuOptions& options) {
     // CLI11 runs callbacks before it looks for what is required, as it does for --help.
     app.add_flag_callback(
         "--list-devices",
         [&app, &options] {
             const CLI::Option* json = app.get_option_no_throw("--json");
-            throw ListDevices{options.api, json != nullptr && json->count() > 0};
+            const bool as_json = json != nullptr && json->count() > 0;
+            throw Answer{listGlDevices(options.api).map(as_json ? devicesJson : devicesText)};
         },
         "Print the GPUs that EGL knows, by their number, and exit; with --json as JSON");
-}
-
-Result<std::string> devicesAnswer(const ListDevices& what) {
-    const std::vector<GlDevice> devices = RELIEF_TRY(listGlDevices(what.api));
-    return what.json ? devicesJson(devices) : devicesText(devices);
-}
-
-std::chrono::milliseconds defaultGpuTimeout(bool software) {
-    return std::chrono::seconds(software ? 600 : 60);
 }
 
 std::chrono::milliseconds GpuOptions::limit(bool software) const {

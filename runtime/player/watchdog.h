@@ -8,6 +8,9 @@
 
 namespace relief {
 
+/// The limit where none is given. A software renderer does not hang, it takes its time.
+[[nodiscard]] std::chrono::milliseconds defaultGpuTimeout(bool software);
+
 /// A thread that must be fed while the GPU works. All members are for the thread that made it.
 class Watchdog {
   public:

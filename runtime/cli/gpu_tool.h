@@ -1,4 +1,4 @@
-// What both executables share about the GPU: --device, --list-devices and --gpu-timeout.
+// Options about the GPU: --device, --list-devices and --gpu-timeout.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"
-#include "runtime/command_line/watchdog.h"
 #include "runtime/gl/gl_device.h"
+#include "runtime/player/watchdog.h"
 
 namespace CLI {
 class App;
@@ -48,21 +48,8 @@ void fields(Visitor& visit, Options& options) {
            .must = "a number of seconds from 0 (never) to 1000000"});
 }
 
-/// The limit where --gpu-timeout is not given. A software renderer does not hang, it takes its time.
-[[nodiscard]] std::chrono::milliseconds defaultGpuTimeout(bool software);
-
-/// --list-devices is answered by parseCommandLine(), so that it needs no other argument.
+/// --list-devices is answered by parseCommandLine(), so that it needs no other argument. `options` must outlive the app.
 void addGpuOptions(CLI::App& app, GpuOptions& options);
-/// --list-devices alone. `options` must outlive the app.
-void addListDevices(CLI::App& app, const GpuOptions& options);
-
-/// What --list-devices throws out of CLI::App::parse.
-struct ListDevices {
-    GlApi api;
-    bool json;  ///< there is a --json, and it is given
-};
-/// The text to print. Fails as listGlDevices.
-[[nodiscard]] Result<std::string> devicesAnswer(const ListDevices& what);
 
 /// A line a device, or one that says that there is none; with a newline.
 [[nodiscard]] std::string devicesText(const std::vector<GlDevice>& devices);

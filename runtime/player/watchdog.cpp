@@ -1,4 +1,4 @@
-#include "runtime/command_line/watchdog.h"
+#include "runtime/player/watchdog.h"
 
 #include <condition_variable>
 #include <mutex>
@@ -42,6 +42,10 @@ struct Watchdog::Impl {
         }
     }
 };
+
+std::chrono::milliseconds defaultGpuTimeout(bool software) {
+    return std::chrono::seconds(software ? 600 : 60);
+}
 
 Watchdog::Watchdog(std::chrono::milliseconds limit, Starved starved) : impl_(std::make_unique<Impl>()) {
     impl_->starved = std::move(starved);

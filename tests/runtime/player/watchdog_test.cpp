@@ -1,6 +1,6 @@
 // The watchdog barks once it starves, and not before. Nothing here depends on how fast the machine is: times
 // are either none or for ever, next to each other.
-#include "runtime/command_line/watchdog.h"
+#include "runtime/player/watchdog.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <future>
 #include <thread>
 
+#include "runtime/cli/gpu_tool.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/gpu_tool.h"
 
 namespace relief {
 namespace {
