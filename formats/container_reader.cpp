@@ -3,6 +3,7 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -132,15 +133,8 @@ std::uint64_t containerSizeMax(const ContainerLimits& limits) {
 }
 
 const char* packingName(Packing packing) {
-    switch (packing) {
-        case Packing::kNone:
-            return "none";
-        case Packing::kZstd:
-            return "zstd";
-        case Packing::kRows:
-            return "rows";
-    }
-    return "unknown";
+    constexpr std::array kNames = {"none", "zstd", "rows"};
+    return kNames.at(static_cast<std::size_t>(packing));
 }
 
 void ContainerReader::add(IssueCode code, std::string message, std::optional<std::uint64_t> offset, int map) {

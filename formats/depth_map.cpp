@@ -1,6 +1,7 @@
 #include "formats/depth_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace relief {
@@ -139,27 +140,12 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
 }  // namespace
 
 const char* compareName(Compare compare) {
-    switch (compare) {
-        case Compare::kLess:
-            return "less";
-        case Compare::kGreater:
-            return "greater";
-        case Compare::kBoth:
-            return "both";
-        case Compare::kGap:
-            return "gap";
-    }
-    return "unknown";
+    constexpr std::array kNames = {"less", "greater", "both", "gap"};
+    return kNames.at(static_cast<std::size_t>(compare));
 }
 
 const char* decodeName(Decode decode) {
-    switch (decode) {
-        case Decode::kProjected:
-            return "projected";
-        case Decode::kPlane:
-            return "plane";
-    }
-    return "unknown";
+    return decode == Decode::kProjected ? "projected" : "plane";
 }
 
 float standingRange(Projection projection, const glm::vec3& object_per_map, std::uint32_t width,

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 
 namespace relief {
@@ -17,7 +16,7 @@ enum class Severity : std::uint8_t {
 
 [[nodiscard]] const char* severityName(Severity severity);  ///< "fatal", "error" or "warning"
 
-/// The codes. 1xxx: damage, 2xxx: suspicions.
+/// 1xxx: damage, 2xxx: suspicions, which are warnings.
 enum class IssueCode : std::uint16_t {
     kTooShort = 1001,
     kSignature = 1002,
@@ -60,14 +59,6 @@ enum class IssueCode : std::uint16_t {
     kTexelBits = 2208,
     kGapReversed = 2209,
 };
-
-/// One row of the table of codes.
-struct IssueKind {
-    IssueCode code;
-    Severity severity;
-    const char* meaning;  ///< as README.md has it
-};
-[[nodiscard]] std::span<const IssueKind> issueKinds();  ///< by ascending code
 
 struct Issue {
     IssueCode code = IssueCode::kTooShort;

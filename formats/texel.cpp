@@ -1,6 +1,7 @@
 #include "formats/texel.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -71,32 +72,13 @@ Texel decodeFrontBack(std::span<const std::byte> bytes, bool half) {
 }  // namespace
 
 const char* mapFormatName(MapFormat format) {
-    switch (format) {
-        case MapFormat::kFloat32:
-            return "float";
-        case MapFormat::kFixed8:
-            return "fixed8";
-        case MapFormat::kFrontBackHalf:
-        case MapFormat::kFrontBackFixed:
-            return "front-back";
-        case MapFormat::kCube8:
-            return "cube";
-    }
-    return "unknown";
+    constexpr std::array kNames = {"float", "fixed8", "front-back", "cube", "front-back"};
+    return kNames.at(static_cast<std::size_t>(format));
 }
 
 const char* depthEncodingName(MapFormat format) {
-    switch (format) {
-        case MapFormat::kFloat32:
-            return "float32";
-        case MapFormat::kFrontBackHalf:
-            return "half";
-        case MapFormat::kFixed8:
-        case MapFormat::kCube8:
-        case MapFormat::kFrontBackFixed:
-            return "unorm16";
-    }
-    return "unknown";
+    constexpr std::array kNames = {"float32", "unorm16", "half", "unorm16", "unorm16"};
+    return kNames.at(static_cast<std::size_t>(format));
 }
 
 std::uint16_t encodeFixedDepth(float depth, float depth_max) {
