@@ -3,13 +3,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <cmath>
 #include <functional>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <new>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 #include "formats/nearest_surface.h"
@@ -88,24 +88,25 @@ class Voxels {
         if (cells > kCellsMax) {
             return fail(ErrorCode::kLimit, "the box about its inside has too many voxels; ask for fewer");
         }
-        voxels.findSides();
+        voxels.inside_.resize(static_cast<std::size_t>(cells));
+        voxels.band_.resize(voxels.inside_.size());
+        voxels.forEach([&](const glm::ivec3& at, std::size_t cell) {
+            voxels.inside_[cell] = evaluateInside(collider, voxels.place(at)).inside ? 1 : 0;
+        });
         return voxels;
     }
 
     /// The outermost voxels are outside, so that the surface is closed.
     [[nodiscard]] bool closed() const {
-        for (int k = 0; k < count_[2]; ++k) {
-            for (int j = 0; j < count_[1]; ++j) {
-                for (int i = 0; i < count_[0]; ++i) {
-                    const bool border = i == 0 || j == 0 || k == 0 || i + 1 == count_[0] ||
-                                        j + 1 == count_[1] || k + 1 == count_[2];
-                    if (border && inside_[cell(i, j, k)] != 0) {
-                        return false;
-                    }
-                }
+        std::atomic<bool> closed = true;
+        forEach([&](const glm::ivec3& at, std::size_t cell) {
+            const bool border =
+                glm::any(glm::equal(at, glm::ivec3(0))) || glm::any(glm::equal(at + 1, count_));
+            if (border && inside_[cell] != 0) {
+                closed = false;
             }
-        }
-        return true;
+        });
+        return closed;
     }
 
     [[nodiscard]] bool anyInside() const {
@@ -115,10 +116,8 @@ class Voxels {
 
     /// Within kBand voxels, along each axis, of a voxel on the other side.
     void findBand() {
-        forEachRow([this](int j, int k) {
-            for (int i = 0; i < count_[0]; ++i) {
-                band_[cell(i, j, k)] = besideTheOtherSide(i, j, k) ? kBeside : kNone;
-            }
+        forEach([this](const glm::ivec3& at, std::size_t cell) {
+            band_[cell] = besideTheOtherSide(at, inside_[cell]) ? kBeside : kNone;
         });
         for (int axis = 0; axis < 3; ++axis) {
             widen(axis);
@@ -128,115 +127,84 @@ class Voxels {
     /// Of the surface, the share about which no voxel lies on the other side: parts thinner than a voxel. An estimate: of
     /// all voxels that touch a surface from outside, those that are not of the band.
     [[nodiscard]] double missing() const {
-        std::vector<std::size_t> missed(static_cast<std::size_t>(count_[2]), 0);
-        std::vector<std::size_t> seen(missed.size(), 0);
-        forEachRow([&](int j, int k) {
-            for (int i = 0; i < count_[0]; ++i) {
-                const std::size_t at = cell(i, j, k);
-                if (inside_[at] != 0) {
-                    continue;
-                }
-                const auto row = static_cast<std::size_t>(k);
-                seen[row] += band_[at] == kBeside ? 1 : 0;
-                missed[row] += band_[at] == kNone && touchesSurface(place(i, j, k)) ? 1 : 0;
+        std::atomic<std::size_t> missed = 0;
+        std::atomic<std::size_t> seen = 0;
+        forEach([&](const glm::ivec3& at, std::size_t cell) {
+            if (inside_[cell] == 0 && band_[cell] == kBeside) {
+                ++seen;
+            } else if (inside_[cell] == 0 && band_[cell] == kNone && touchesSurface(place(at))) {
+                ++missed;
             }
         });
-        const auto sum = [](const std::vector<std::size_t>& counts) {
-            return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
-        };
-        return sum(missed) / (sum(missed) + sum(seen));
+        return static_cast<double>(missed) / (static_cast<double>(missed) + static_cast<double>(seen));
     }
 
-    /// Calls use(where, distance) for each voxel of the band.
-    template <class Use>
-    void forEachOfBand(Use use) const {
-        const auto slices = distances();
-        for (int k = 0; k < count_[2]; ++k) {
-            auto distance = slices[static_cast<std::size_t>(k)].begin();
-            for (int j = 0; j < count_[1]; ++j) {
-                for (int i = 0; i < count_[0]; ++i) {
-                    if (band_[cell(i, j, k)] != kNone) {
-                        use(glm::ivec3(low_[0] + i, low_[1] + j, low_[2] + k), *distance++);
-                    }
-                }
+    [[nodiscard]] NarrowBand band() const {
+        NarrowBand all{size_, static_cast<float>(kBand * size_), {}, {}};
+        std::vector<NarrowBand> slices(static_cast<std::size_t>(count_.z));
+        forEach([&](const glm::ivec3& at, std::size_t cell) {
+            if (band_[cell] == kNone) {
+                return;
             }
+            // The surface passes between neighbours of two sides, whatever the distance.
+            const float most = static_cast<float>(band_[cell] == kBeside ? size_ : kBand * size_);
+            const SurfaceSample sample = nearestSurface(collider_, place(at));
+            const float length = sample.map < 0 ? most : std::min(std::abs(sample.distance), most);
+            if (length < all.background) {
+                NarrowBand& slice = slices[static_cast<std::size_t>(at.z)];
+                slice.at.push_back(low_ + at);
+                slice.distance.push_back(inside_[cell] != 0 ? -length : length);
+            }
+        });
+        for (const NarrowBand& slice : slices) {
+            all.at.insert(all.at.end(), slice.at.begin(), slice.at.end());
+            all.distance.insert(all.distance.end(), slice.distance.begin(), slice.distance.end());
         }
+        return all;
     }
 
   private:
     Voxels(const Collider& collider, double size) : collider_(collider), size_(size) {}
 
-    void findSides() {
-        inside_.resize(cells());
-        band_.resize(cells());
-        forEachRow([this](int j, int k) {
-            for (int i = 0; i < count_[0]; ++i) {
-                inside_[cell(i, j, k)] = evaluateInside(collider_, place(i, j, k)).inside ? 1 : 0;
-            }
-        });
+    [[nodiscard]] std::size_t cellOf(const glm::ivec3& at) const {
+        const auto wide = [](int value) { return static_cast<std::size_t>(value); };
+        return (wide(at.z) * wide(count_.y) + wide(at.y)) * wide(count_.x) + wide(at.x);
     }
-    [[nodiscard]] std::size_t cells() const {
-        return static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
-               static_cast<std::size_t>(count_[2]);
-    }
-    [[nodiscard]] std::size_t cell(int i, int j, int k) const {
-        return (static_cast<std::size_t>(k) * static_cast<std::size_t>(count_[1]) +
-                static_cast<std::size_t>(j)) *
-                   static_cast<std::size_t>(count_[0]) +
-               static_cast<std::size_t>(i);
-    }
-    [[nodiscard]] glm::vec3 place(int i, int j, int k) const {
-        return {static_cast<float>(size_ * (low_[0] + i)), static_cast<float>(size_ * (low_[1] + j)),
-                static_cast<float>(size_ * (low_[2] + k))};
-    }
-    /// Of the voxels of the band, slice by slice of equal z.
-    [[nodiscard]] std::vector<std::vector<float>> distances() const {
-        std::vector<std::vector<float>> out(static_cast<std::size_t>(count_[2]));
-        forEachRow([&](int j, int k) {
-            for (int i = 0; i < count_[0]; ++i) {
-                const std::size_t at = cell(i, j, k);
-                if (band_[at] != kNone) {
-                    // The surface passes between neighbours of two sides, whatever the distance.
-                    const float most = static_cast<float>(band_[at] == kBeside ? size_ : kBand * size_);
-                    const float length = lengthAt(place(i, j, k), most);
-                    out[static_cast<std::size_t>(k)].push_back(inside_[at] != 0 ? -length : length);
+    [[nodiscard]] glm::vec3 place(const glm::ivec3& at) const { return size_ * glm::dvec3(low_ + at); }
+
+    /// Calls use(at, cell), the voxels of a slice of equal z in order, slices at once.
+    template <class Use>
+    void forEach(Use use) const {
+        tbb::parallel_for(0, count_.z, [&](int k) {
+            std::size_t cell = cellOf({0, 0, k});
+            for (int j = 0; j < count_.y; ++j) {
+                for (int i = 0; i < count_.x; ++i) {
+                    use(glm::ivec3(i, j, k), cell++);
                 }
             }
         });
-        return out;
     }
-    /// Calls use(j, k), rows of a slice in order, slices at once.
-    template <class Use>
-    void forEachRow(Use use) const {
-        tbb::parallel_for(0, count_[2], [&](int k) {
-            for (int j = 0; j < count_[1]; ++j) {
-                use(j, k);
+    [[nodiscard]] bool besideTheOtherSide(const glm::ivec3& at, char here) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int step : {-1, 1}) {
+                glm::ivec3 other = at;
+                other[axis] += step;
+                if (other[axis] >= 0 && other[axis] < count_[axis] && inside_[cellOf(other)] != here) {
+                    return true;
+                }
             }
-        });
-    }
-    [[nodiscard]] bool besideTheOtherSide(int i, int j, int k) const {
-        const char here = inside_[cell(i, j, k)];
-        const auto other = [&](int x, int y, int z) {
-            return x >= 0 && y >= 0 && z >= 0 && x < count_[0] && y < count_[1] && z < count_[2] &&
-                   inside_[cell(x, y, z)] != here;
-        };
-        return other(i - 1, j, k) || other(i + 1, j, k) || other(i, j - 1, k) || other(i, j + 1, k) ||
-               other(i, j, k - 1) || other(i, j, k + 1);
+        }
+        return false;
     }
     /// By kBand − 1 voxels: those beside the other side are of the band already.
     void widen(int axis) {
         const std::vector<char> before = band_;
-        forEachRow([&](int j, int k) {
-            for (int i = 0; i < count_[0]; ++i) {
-                int at[3] = {i, j, k};
-                const int middle = at[axis];
-                char found = before[cell(i, j, k)];
-                for (int d = 1 - kBand; d < kBand && found == kNone; ++d) {
-                    at[axis] = middle + d;
-                    const bool there = at[axis] >= 0 && at[axis] < count_[axis];
-                    found = there && before[cell(at[0], at[1], at[2])] != kNone ? kNear : kNone;
-                }
-                band_[cell(i, j, k)] = found;
+        forEach([&](const glm::ivec3& at, std::size_t cell) {
+            for (int d = 1 - kBand; d < kBand && band_[cell] == kNone; ++d) {
+                glm::ivec3 other = at;
+                other[axis] += d;
+                const bool there = other[axis] >= 0 && other[axis] < count_[axis];
+                band_[cell] = there && before[cellOf(other)] != kNone ? kNear : kNone;
             }
         });
     }
@@ -259,29 +227,14 @@ class Voxels {
         }
         return false;
     }
-    [[nodiscard]] float lengthAt(const glm::vec3& p, float most) const {
-        const SurfaceSample sample = nearestSurface(collider_, p);
-        return sample.map < 0 ? most : std::min(std::abs(sample.distance), most);
-    }
 
     std::reference_wrapper<const Collider> collider_;
     double size_;
-    int low_[3]{};
-    int count_[3]{};
+    glm::ivec3 low_{0};
+    glm::ivec3 count_{0};
     std::vector<char> inside_;
     std::vector<char> band_;  // kNone, kNear or kBeside
 };
-
-NarrowBand bandOf(const Voxels& voxels) {
-    NarrowBand band{voxels.size(), static_cast<float>(kBand * voxels.size()), {}, {}};
-    voxels.forEachOfBand([&](const glm::ivec3& at, float distance) {
-        if (std::abs(distance) < band.background) {
-            band.at.push_back(at);
-            band.distance.push_back(distance);
-        }
-    });
-    return band;
-}
 
 Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& options) {
     if (options.voxels < kVoxelsMin || options.voxels > kVoxelsMax) {
@@ -308,12 +261,6 @@ Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& o
     return voxels;
 }
 
-template <std::size_t kCount>
-void addFace(const std::array<std::uint32_t, kCount>& corners, PlyBytes& out) {
-    out.byte(kCount);
-    std::for_each(corners.begin(), corners.end(), [&](std::uint32_t corner) { out.word(corner); });
-}
-
 std::vector<std::byte> plyOf(const GridSurface& surface) {
     PlyBytes out;
     out.text(
@@ -327,19 +274,23 @@ std::vector<std::byte> plyOf(const GridSurface& surface) {
             out.number(p[i]);
         }
     }
-    for (const auto& quad : surface.quads) {
-        addFace(quad, out);
-    }
-    for (const auto& triangle : surface.triangles) {
-        addFace(triangle, out);
-    }
+    const auto addFaces = [&](const auto& faces) {
+        for (const auto& corners : faces) {
+            out.byte(static_cast<std::uint8_t>(corners.size()));
+            for (const std::uint32_t corner : corners) {
+                out.word(corner);
+            }
+        }
+    };
+    addFaces(surface.quads);
+    addFaces(surface.triangles);
     return out.take();
 }
 
 Result<FieldGrids> makeGrids(const Collider& collider, const FieldGridOptions& options) {
     VdbWriter* const writer = RELIEF_TRY(vdbWriter());
     const Voxels voxels = RELIEF_TRY(checkedVoxels(collider, options));
-    const NarrowBand band = bandOf(voxels);
+    const NarrowBand band = voxels.band();
     FieldGrids out;
     out.voxel = voxels.size();
     out.missing = voxels.missing();
