@@ -25,7 +25,7 @@ for page in relief relief-sim "${verbs[@]/#/relief-}"; do
     esac
     mapfile -t options < <("${command[@]}" --help | grep -oE '^  (-[a-zA-Z],)?--[a-z-]+|^  -[a-zA-Z]\b' | tr -d ' ' | tr , '\n')
     [ ${#options[@]} -ge 3 ] || die "$page --help: ${options[*]}"
-    man -l "$page.1" | col -b >text
+    man -l "$page.1" | col -bx >text
     for option in "${options[@]}"; do
         grep -qE -- "^ .*$option([ ,]|\$)" text || die "$page(1) lacks $option"
     done
