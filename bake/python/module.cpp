@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,10 +37,7 @@ using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
 
 /// relief.Error and those derived from it, by ErrorCode; made by the module.
-struct Errors {
-    py::object base, usage, input, io, limit, unsupported;
-};
-Errors* g_errors = nullptr;
+std::map<ErrorCode, py::object>* g_errors = nullptr;
 
 /// A message, which may hold the bytes of a file's name, as Python has such names.
 py::object textOf(const std::string& message) {
@@ -56,27 +54,9 @@ py::list textsOf(const std::vector<std::string>& messages) {
 }
 
 [[noreturn]] void raise(const Error& error) {
-    const py::object* type = &g_errors->base;
-    switch (error.code) {
-        case ErrorCode::kUsage:
-            type = &g_errors->usage;
-            break;
-        case ErrorCode::kInvalidInput:
-            type = &g_errors->input;
-            break;
-        case ErrorCode::kIo:
-            type = &g_errors->io;
-            break;
-        case ErrorCode::kLimit:
-            type = &g_errors->limit;
-            break;
-        case ErrorCode::kUnsupported:
-            type = &g_errors->unsupported;
-            break;
-        default:
-            break;
-    }
-    PyErr_SetObject(type->ptr(), textOf(error.message).ptr());
+    const auto found = g_errors->find(error.code);
+    const py::object& type = found == g_errors->end() ? g_errors->at(ErrorCode::kFailure) : found->second;
+    PyErr_SetObject(type.ptr(), textOf(error.message).ptr());
     throw py::error_already_set();
 }
 
@@ -95,10 +75,8 @@ void need(const Result<void>& done) {
     }
 }
 
+/// \param points  of shape (n, 3), as the package makes sure.
 std::span<const glm::vec3> pointsOf(const Floats& points) {
-    if (points.ndim() != 2 || points.shape(1) != 3) {
-        raise({ErrorCode::kUsage, "points are an array of shape (n, 3)"});
-    }
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
     return {reinterpret_cast<const glm::vec3*>(points.data()), static_cast<std::size_t>(points.shape(0))};
 }
@@ -156,9 +134,6 @@ Samples sampleAll(const Floats& points, const Ask& ask) {
 }
 
 py::tuple query(const Collider& collider, const Floats& points, const std::string& distance) {
-    if (distance != "plane" && distance != "nearest") {
-        raise({ErrorCode::kUsage, "distance is 'plane' or 'nearest'"});
-    }
     Samples s = distance == "plane"
                     ? sampleAll(points, [&](const glm::vec3& p) { return evaluate(collider, p); })
                     : sampleAll(points, [&](const glm::vec3& p) { return nearestSurface(collider, p); });
@@ -168,10 +143,7 @@ py::tuple query(const Collider& collider, const Floats& points, const std::strin
 /// The stored texels of a map, without a copy: they live as long as the collider.
 py::array texelsOf(const py::object& self, std::size_t index) {
     const auto& collider = self.cast<const Collider&>();
-    if (index >= collider.maps.size()) {
-        throw py::index_error("no such map");
-    }
-    const DepthMap& map = collider.maps[index];
+    const DepthMap& map = collider.maps.at(index);
     const auto faces = static_cast<py::ssize_t>(map.faceCount());
     const auto height = static_cast<py::ssize_t>(map.height);
     const auto width = static_cast<py::ssize_t>(map.width);
@@ -187,10 +159,7 @@ py::array texelsOf(const py::object& self, std::size_t index) {
 
 /// Depth of the front, or of the back, of every texel: NaN where there is none.
 Floats depthOf(const Collider& collider, std::size_t index, bool back) {
-    if (index >= collider.maps.size()) {
-        throw py::index_error("no such map");
-    }
-    const DepthMap& map = collider.maps[index];
+    const DepthMap& map = collider.maps.at(index);
     Floats out({static_cast<py::ssize_t>(map.faceCount()), static_cast<py::ssize_t>(map.height),
                 static_cast<py::ssize_t>(map.width)});
     float* depth = out.mutable_data();
@@ -212,37 +181,33 @@ py::dict describe(const Collider& collider, std::size_t index) {
     for (const glm::vec4& row : map.object_to_map.row) {
         rows.append(py::make_tuple(row.x, row.y, row.z, row.w));
     }
-    py::dict out;
-    out["format"] = mapFormatName(map.format);
-    out["encoding"] = depthEncodingName(map.format);
-    out["compare"] = compareName(map.compare);
-    out["decode"] = decodeName(map.decode);
-    out["width"] = map.width;
-    out["height"] = map.height;
-    out["faces"] = map.faceCount();
-    out["object_to_map"] = rows;
-    out["encloses"] = map.encloses;
-    out["empty_is_outside"] = map.empty_is_outside;
-    return out;
+    return py::dict(py::arg("format") = mapFormatName(map.format),
+                    py::arg("encoding") = depthEncodingName(map.format),
+                    py::arg("compare") = compareName(map.compare), py::arg("decode") = decodeName(map.decode),
+                    py::arg("width") = map.width, py::arg("height") = map.height,
+                    py::arg("faces") = map.faceCount(), py::arg("object_to_map") = rows,
+                    py::arg("encloses") = map.encloses, py::arg("empty_is_outside") = map.empty_is_outside);
 }
 
 // --- bake
 
-Result<TriangleMesh> meshOf(const Floats& vertices, const Indices& triangles, const std::string& name) {
-    const auto positions = pointsOf(vertices);
-    if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
-        return fail(ErrorCode::kUsage, "triangles are an array of indices of shape (n, 3)");
+/// Nothing of a file, which is read later.
+std::optional<TriangleMesh> meshOf(const std::optional<std::filesystem::path>& file, const Floats& vertices,
+                                   const Indices& triangles, const std::string& name) {
+    if (file) {
+        return std::nullopt;
     }
+    const auto positions = pointsOf(vertices);
     TriangleMesh mesh;
     mesh.name = cleanUtf8(name);
     if (mesh.name.size() > kMeshNameMax) {
-        return fail(ErrorCode::kUsage, "name has " + std::to_string(mesh.name.size()) + " bytes, " +
-                                           std::to_string(kMeshNameMax) + " are allowed");
+        raise({ErrorCode::kUsage, "name has " + std::to_string(mesh.name.size()) + " bytes, " +
+                                      std::to_string(kMeshNameMax) + " are allowed"});
     }
     mesh.positions.assign(positions.begin(), positions.end());
     const auto* corners = reinterpret_cast<const glm::uvec3*>(triangles.data());
     mesh.triangles.assign(corners, corners + triangles.shape(0));
-    return finishMesh(std::move(mesh));
+    return need(finishMesh(std::move(mesh)));
 }
 
 /// Names of fields, and words for them.
@@ -258,14 +223,16 @@ Request requestOf(const Words& words) {
     return request;
 }
 
-/// Of each field its name, kind ("flag", "value" or "list"), sentence, default and values.
+/// Of each field its name, kind ("flag", "value" or "list"), and its sentence with the default.
 template <class Request>
 py::list describeFields() {
     constexpr std::array<const char*, 3> kKinds = {"flag", "value", "list"};
     py::list described;
     for (const FieldWords& field : fieldsOf(Request())) {
-        described.append(py::make_tuple(field.name, kKinds.at(static_cast<std::size_t>(field.kind)),
-                                        std::string(field.info.help), defaultText(field), valueText(field)));
+        const std::string fallback = defaultText(field);
+        described.append(py::make_tuple(
+            field.name, kKinds.at(static_cast<std::size_t>(field.kind)),
+            std::string(field.info.help) + (fallback.empty() ? "" : "; default: " + fallback)));
     }
     return described;
 }
@@ -316,20 +283,39 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
             return relief::check(request, *collider, std::move(mesh), checkpoint);
         }));
     const FieldAccuracy& accuracy = run.judged().accuracy.field;
-    py::dict out;
-    out["false_inside_percent"] = accuracy.near.false_inside;
-    out["false_outside_percent"] = accuracy.near.false_outside;
-    out["distance_mean"] = accuracy.distance_mean;
-    out["distance_p99"] = accuracy.distance_p99;
-    out["normal_mean"] = accuracy.normal_mean;
-    out["unknown_percent"] = accuracy.unknown_percent;
-    out["lost_parts"] = run.part_accuracy.countOf(PartVerdict::kLost);
-    out["grade"] = gradeOf(run.wrongPercent(), run.part_accuracy);
-    out["places"] = placesOf(run.places);
-    return py::make_tuple(out, textsOf(run.warnings));
+    const py::dict measured(
+        py::arg("false_inside_percent") = accuracy.near.false_inside,
+        py::arg("false_outside_percent") = accuracy.near.false_outside,
+        py::arg("distance_mean") = accuracy.distance_mean, py::arg("distance_p99") = accuracy.distance_p99,
+        py::arg("normal_mean") = accuracy.normal_mean, py::arg("unknown_percent") = accuracy.unknown_percent,
+        py::arg("lost_parts") = run.part_accuracy.countOf(PartVerdict::kLost),
+        py::arg("grade") = gradeOf(run.wrongPercent(), run.part_accuracy),
+        py::arg("places") = placesOf(run.places));
+    return py::make_tuple(measured, textsOf(run.warnings));
 }
 
 // --- simulate
+
+struct Hit : ParticleEvent {
+    std::uint64_t step = 0;  ///< its number
+};
+
+/// One member of all, as an array: (n,), or of vectors (n, 3).
+template <class T, class Class, class Item>
+auto column(const std::vector<Item>& items, T Class::*member) {
+    const auto count = static_cast<py::ssize_t>(items.size());
+    if constexpr (std::is_same_v<T, glm::vec3>) {
+        Floats array({count, py::ssize_t{3}});
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            std::copy_n(&(items[i].*member).x, 3, array.mutable_data() + 3 * i);
+        }
+        return array;
+    } else {
+        py::array_t<T> array(count);
+        std::ranges::transform(items, array.mutable_data(), [&](const Item& item) { return item.*member; });
+        return array;
+    }
+}
 
 /// A scene without a window. One at a time holds the context of its thread.
 class HeadlessSimulation {
@@ -350,11 +336,11 @@ class HeadlessSimulation {
             });
         })));
         if (hits) {
-            hits_ = std::make_unique<Hits>();
+            hits_ = std::make_unique<std::vector<Hit>>();
             need(simulation_->listHits(0.0F, [to = hits_.get()](const StepEvents& step) {
                 for (const ParticleEvent& event : step.events) {
                     if (event.hit && !event.lasts) {
-                        to->emplace_back(step.tag, event);
+                        to->push_back({event, step.tag});
                     }
                 }
                 return Result<void>();
@@ -387,32 +373,14 @@ class HeadlessSimulation {
     [[nodiscard]] py::dict read() const {
         need(context_->makeCurrent());
         const auto states = need(simulation_->particles().readState());
-        const auto count = static_cast<py::ssize_t>(states.size());
-        Floats position({count, py::ssize_t{3}});
-        Floats velocity({count, py::ssize_t{3}});
-        Floats age(count);
-        Floats lifetime(count);
-        Indices id(count);
-        Indices type(count);
-        Indices collisions(count);
-        for (std::size_t i = 0; i < states.size(); ++i) {
-            std::copy_n(&states[i].position.x, 3, position.mutable_data() + 3 * i);
-            std::copy_n(&states[i].velocity.x, 3, velocity.mutable_data() + 3 * i);
-            age.mutable_data()[i] = states[i].age;
-            lifetime.mutable_data()[i] = states[i].lifetime;
-            id.mutable_data()[i] = states[i].id;
-            type.mutable_data()[i] = states[i].type;
-            collisions.mutable_data()[i] = states[i].collisions;
-        }
-        py::dict out;
-        out["positions"] = position;
-        out["velocities"] = velocity;
-        out["ages"] = age;
-        out["lifetimes"] = lifetime;
-        out["ids"] = id;
-        out["types"] = type;
-        out["collisions"] = collisions;
-        return out;
+        using State = ParticleState;
+        return py::dict(py::arg("positions") = column(states, &State::position),
+                        py::arg("velocities") = column(states, &State::velocity),
+                        py::arg("ages") = column(states, &State::age),
+                        py::arg("lifetimes") = column(states, &State::lifetime),
+                        py::arg("ids") = column(states, &State::id),
+                        py::arg("types") = column(states, &State::type),
+                        py::arg("collisions") = column(states, &State::collisions));
     }
 
     /// Those of all steps since the last call; waits for the GPU.
@@ -422,40 +390,13 @@ class HeadlessSimulation {
         }
         need(context_->makeCurrent());
         need(simulation_->finishEvents());
-        const auto count = static_cast<py::ssize_t>(hits_->size());
-        py::array_t<std::uint64_t> step(count);
-        py::array_t<double> time(count);
-        Indices id(count);
-        Indices type(count);
-        py::array_t<std::int32_t> body(count);
-        Floats position({count, py::ssize_t{3}});
-        Floats normal({count, py::ssize_t{3}});
-        Floats velocity({count, py::ssize_t{3}});
-        Floats speed(count);
-        for (std::size_t i = 0; i < hits_->size(); ++i) {
-            const auto& [number, event] = (*hits_)[i];
-            step.mutable_data()[i] = number;
-            time.mutable_data()[i] = event.time;
-            id.mutable_data()[i] = event.id;
-            type.mutable_data()[i] = event.type;
-            body.mutable_data()[i] = event.body;
-            std::copy_n(&event.position.x, 3, position.mutable_data() + 3 * i);
-            std::copy_n(&event.normal.x, 3, normal.mutable_data() + 3 * i);
-            std::copy_n(&event.velocity.x, 3, velocity.mutable_data() + 3 * i);
-            speed.mutable_data()[i] = event.speed;
-        }
-        hits_->clear();
-        py::dict out;
-        out["step"] = step;
-        out["time"] = time;
-        out["id"] = id;
-        out["type"] = type;
-        out["body"] = body;
-        out["position"] = position;
-        out["normal"] = normal;
-        out["velocity"] = velocity;
-        out["speed"] = speed;
-        return out;
+        const std::vector<Hit> hits = std::exchange(*hits_, {});
+        return py::dict(
+            py::arg("step") = column(hits, &Hit::step), py::arg("time") = column(hits, &Hit::time),
+            py::arg("id") = column(hits, &Hit::id), py::arg("type") = column(hits, &Hit::type),
+            py::arg("body") = column(hits, &Hit::body), py::arg("position") = column(hits, &Hit::position),
+            py::arg("normal") = column(hits, &Hit::normal),
+            py::arg("velocity") = column(hits, &Hit::velocity), py::arg("speed") = column(hits, &Hit::speed));
     }
 
     [[nodiscard]] double time() const { return simulation_->particles().time(); }
@@ -464,14 +405,9 @@ class HeadlessSimulation {
   private:
     std::unique_ptr<GlContext> context_;
     std::unique_ptr<LoadedScene> loaded_;
-    using Hits = std::vector<std::pair<std::uint64_t, ParticleEvent>>;  // each with the number of its step
-    std::unique_ptr<Hits> hits_;                                        // null: nobody wants them
+    std::unique_ptr<std::vector<Hit>> hits_;  // null: not kept
     std::unique_ptr<Simulation> simulation_;
 };
-
-py::tuple vectorOf(const glm::vec3& v) {
-    return py::make_tuple(v.x, v.y, v.z);
-}
 
 }  // namespace
 }  // namespace relief
@@ -480,27 +416,30 @@ PYBIND11_MODULE(_relief, m) {
     using namespace relief;  // NOLINT: a module is one scope
     m.attr("version") = RELIEF_VERSION;
 
-    auto errors = std::make_unique<Errors>();
-    const auto derive = [&](const char* name, const py::object& base) {
+    auto* const errors = new std::map<ErrorCode, py::object>;  // as long as the process
+    const auto derive = [&](ErrorCode code, const char* name, const py::object& base) {
         const std::string full = std::string("relief.") + name;
-        py::object made =
+        (*errors)[code] =
             py::reinterpret_steal<py::object>(PyErr_NewException(full.c_str(), base.ptr(), nullptr));
-        m.attr(name) = made;
-        return made;
+        m.attr(name) = (*errors)[code];
     };
-    errors->base = derive("Error", py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
-    // Also Python's own, for what a function cannot do anything with.
-    errors->usage = derive("UsageError", py::make_tuple(errors->base, py::handle(PyExc_ValueError)));
-    errors->input = derive("InputError", errors->base);
-    errors->io = derive("FileError", errors->base);
-    errors->limit = derive("LimitError", errors->base);
-    errors->unsupported = derive("UnsupportedError", errors->base);
-    g_errors = errors.release();  // as long as the process
+    derive(ErrorCode::kFailure, "Error", py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
+    const py::object base = (*errors)[ErrorCode::kFailure];
+    // Also Python's own, for arguments that a function cannot take.
+    derive(ErrorCode::kUsage, "UsageError", py::make_tuple(base, py::handle(PyExc_ValueError)));
+    derive(ErrorCode::kInvalidInput, "InputError", base);
+    derive(ErrorCode::kIo, "FileError", base);
+    derive(ErrorCode::kLimit, "LimitError", base);
+    derive(ErrorCode::kUnsupported, "UnsupportedError", base);
+    g_errors = errors;
 
     py::class_<Collider, SharedCollider>(m, "Collider")
         .def_property_readonly(
             "bounds",
-            [](const Collider& c) { return py::make_tuple(vectorOf(c.bounds.min), vectorOf(c.bounds.max)); })
+            [](const Collider& c) {
+                const auto& [low, high] = c.bounds;
+                return Floats({2, 3}, std::array{low.x, low.y, low.z, high.x, high.y, high.z}.data());
+            })
         .def_property_readonly("unit", [](const Collider& c) { return c.unit; })
         .def_property_readonly("mesh_name", [](const Collider& c) { return c.provenance.mesh_name; })
         .def_property_readonly("options", [](const Collider& c) { return c.provenance.optionsText(); })
@@ -518,36 +457,26 @@ PYBIND11_MODULE(_relief, m) {
         return std::make_shared<Collider>(need(readContainer(std::as_bytes(std::span(view)))));
     });
     m.def("save", [](const Collider& collider, const std::filesystem::path& path, int compression) {
-        ContainerWriteOptions options;
-        options.compression_level = compression;
-        need(released([&] { return saveCollider(path, collider, options); }));
+        need(released([&] { return saveCollider(path, collider, {compression}); }));
     });
     m.def("to_bytes", [](const Collider& collider, int compression) {
-        ContainerWriteOptions options;
-        options.compression_level = compression;
-        const auto bytes = need(released([&] { return writeContainer(collider, options); }));
+        const auto bytes = need(released([&] { return writeContainer(collider, {compression}); }));
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     });
     m.def("bake_fields", &describeFields<BakeRequest>);
     m.def("check_fields", &describeFields<CheckRequest>);
-    m.def("bake_file", [](const Words& words, const std::filesystem::path& path) {
+    m.def("bake", [](const Words& words, const std::optional<std::filesystem::path>& file,
+                     const Floats& vertices, const Indices& triangles, const std::string& name) {
         auto request = requestOf<BakeRequest>(words);
-        request.mesh = path;
-        return bake(std::move(request), std::nullopt);
+        request.mesh = file.value_or("");
+        return bake(std::move(request), meshOf(file, vertices, triangles, name));
     });
-    m.def("bake_mesh",
-          [](const Words& words, const Floats& vertices, const Indices& triangles, const std::string& name) {
-              return bake(requestOf<BakeRequest>(words), need(meshOf(vertices, triangles, name)));
-          });
-    m.def("check_file",
-          [](const SharedCollider& collider, const Words& words, const std::filesystem::path& path) {
-              auto request = requestOf<CheckRequest>(words);
-              request.mesh = path;
-              return check(collider, request, std::nullopt);
-          });
-    m.def("check_mesh", [](const SharedCollider& collider, const Words& words, const Floats& vertices,
-                           const Indices& triangles) {
-        return check(collider, requestOf<CheckRequest>(words), need(meshOf(vertices, triangles, "mesh")));
+    m.def("check", [](const SharedCollider& collider, const Words& words,
+                      const std::optional<std::filesystem::path>& file, const Floats& vertices,
+                      const Indices& triangles, const std::string& name) {
+        auto request = requestOf<CheckRequest>(words);
+        request.mesh = file.value_or("");
+        return check(collider, request, meshOf(file, vertices, triangles, name));
     });
     py::class_<HeadlessSimulation>(m, "Simulation")
         .def(py::init<const std::filesystem::path&, std::optional<std::uint64_t>,

@@ -13,13 +13,12 @@ wrong type is a TypeError.
 """
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import inspect
 import os
 import re
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, NoReturn, Optional, Union
 
 import numpy as np
@@ -44,11 +43,9 @@ class _Field(NamedTuple):
     about: str
 
 
-def _named(fields: list[tuple[str, str, str, str, str]]) -> dict[str, _Field]:
+def _named(fields: list[tuple[str, str, str]]) -> dict[str, _Field]:
     """Fields by the names of arguments: Python has the words "map" and "as" itself."""
-    return {{"map": "maps", "as": "as_"}.get(name, name):
-            _Field(name, kind, about + (f"; default: {default}" if default else ""))
-            for name, kind, about, default, _ in fields}
+    return {{"map": "maps", "as": "as_"}.get(field[0], field[0]): _Field(*field) for field in fields}
 
 
 _BAKE = _named(_relief.bake_fields())
@@ -106,6 +103,10 @@ class DepthMap:
         return f"<DepthMap {self.index}: {self.format}, {self.width} x {self.height}>"
 
 
+def _of_handle(name: str, about: str) -> Any:
+    return property(lambda self: getattr(self._handle, name), doc=about)
+
+
 class Collider:
     """Depth maps that stand for a body; made by bake() and load(). Nothing changes one, so that a copy is itself; it can
     be pickled."""
@@ -124,25 +125,10 @@ class Collider:
     def __reduce__(self) -> tuple[Any, ...]:
         return load, (self.to_bytes(),)
 
-    @property
-    def bounds(self) -> np.ndarray:
-        """(2, 3): the least and the largest corner of the mesh's box."""
-        return np.array(self._handle.bounds, dtype=np.float32)
-
-    @property
-    def unit(self) -> str:
-        """Of lengths: "m", or "" where the mesh does not say."""
-        return self._handle.unit
-
-    @property
-    def options(self) -> str:
-        """How it was baked, as options of `relief bake`."""
-        return self._handle.options
-
-    @property
-    def gpu_bytes(self) -> int:
-        """What its maps take on a GPU."""
-        return self._handle.gpu_bytes
+    bounds = _of_handle("bounds", "(2, 3): the least and the largest corner of the mesh's box.")
+    unit = _of_handle("unit", 'Of lengths: "m", or "" where the mesh does not say.')
+    options = _of_handle("options", "How it was baked, as options of `relief bake`.")
+    gpu_bytes = _of_handle("gpu_bytes", "What its maps take on a GPU.")
 
     @property
     def maps(self) -> list[DepthMap]:
@@ -266,24 +252,23 @@ def _coordinates(values: Any, name: str) -> np.ndarray:
         return np.ascontiguousarray(array, dtype=np.float32)
 
 
-def _mesh(vertices: Any, triangles: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
+def _source(mesh: Any, triangles: Any, name: str) -> tuple[Optional[str], np.ndarray, np.ndarray, bytes]:
+    """A mesh as the module takes it: the path of a file, or vertices and triangles."""
+    if isinstance(mesh, (str, os.PathLike)):
+        if triangles is not None:
+            raise UsageError("a file has its own triangles")
+        return _path(mesh, "mesh"), np.empty((0, 3), np.float32), np.empty((0, 3), np.uint32), b""
     if triangles is None:
         raise UsageError("vertices need triangles")
-    positions = _coordinates(vertices, "vertices")
+    if not isinstance(name, str):
+        _wrong_type(name, "name", "text")
+    positions = _coordinates(mesh, "vertices")
     corners = _array(triangles, "triangles", "iu", "indices, whole numbers of an integer type")
     if corners.size and corners.min() < 0:
         raise UsageError("triangles are indices of vertices, from 0 up")
     if corners.size and corners.max() > np.iinfo(np.uint32).max:
         raise InputError(f"{name}: a triangle uses vertex {corners.max()} but there are {len(positions)}; export it again")
-    return positions, np.ascontiguousarray(corners, dtype=np.uint32)
-
-
-def _is_path(mesh: Any, triangles: Any) -> bool:
-    if not isinstance(mesh, (str, os.PathLike)):
-        return False
-    if triangles is not None:
-        raise UsageError("a file has its own triangles")
-    return True
+    return None, positions, np.ascontiguousarray(corners, dtype=np.uint32), name.encode(errors="replace")
 
 
 def _word(value: Any, name: str) -> str:
@@ -322,17 +307,15 @@ def _in_python(text: str) -> str:
     return re.sub(r"(?<![\w'-])--[a-z][a-z-]*[a-z]", lambda found: _ARGUMENTS.get(found[0], found[0]), text)
 
 
-@contextlib.contextmanager
-def _python_names() -> Iterator[None]:
+def _run(work: Callable[..., tuple[Any, list[str]]], *arguments: Any) -> Any:
+    """What the module makes; its messages name arguments, and its warnings are Python's."""
     try:
-        yield
+        made, said = work(*arguments)
     except Error as error:
         raise type(error)(_in_python(str(error))) from None
-
-
-def _warn(texts: Sequence[str]) -> None:
-    for text in texts:
+    for text in said:
         warnings.warn(_in_python(text), ReliefWarning, stacklevel=3)
+    return made
 
 
 def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
@@ -373,17 +356,7 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
     Warnings of the tool are ReliefWarnings. The other arguments are its options:
     """
     words = _words(_BAKE, locals())
-    if _is_path(mesh, triangles):
-        with _python_names():
-            made, said = _relief.bake_file(words, _path(mesh, "mesh"))
-    else:
-        if not isinstance(name, str):
-            _wrong_type(name, "name", "text")
-        arrays = _mesh(mesh, triangles, name)
-        with _python_names():
-            made, said = _relief.bake_mesh(words, *arrays, name.encode(errors="replace"))
-    _warn(said)
-    return Collider(made)
+    return Collider(_run(_relief.bake, words, *_source(mesh, triangles, name)))
 
 
 def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
@@ -413,16 +386,8 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
     if not isinstance(collider, Collider):
         _wrong_type(collider, "collider", "a relief.Collider")
     words = _words(_CHECK, locals())
-    if _is_path(mesh, triangles):
-        with _python_names():
-            measured, said = _relief.check_file(collider._handle, words, _path(mesh, "mesh"))
-    else:
-        arrays = _mesh(mesh, triangles, "mesh")
-        with _python_names():
-            measured, said = _relief.check_mesh(collider._handle, words, *arrays)
-    _warn(said)
-    places = tuple(WorstPlace(**place) for place in measured.pop("places"))
-    return Accuracy(**measured, places=places)
+    measured = _run(_relief.check, collider._handle, words, *_source(mesh, triangles, "mesh"))
+    return Accuracy(**{**measured, "places": tuple(WorstPlace(**place) for place in measured["places"])})
 
 
 for _function, _fields in ((bake, _BAKE), (check, _CHECK)):
@@ -451,6 +416,10 @@ class Hits(NamedTuple):
     """(n, 3) float32: that the particle came with."""
     speed: np.ndarray
     """(n,) float32: of approach along the normal, relative to the surface."""
+
+
+def _of_state(name: str, about: str) -> Any:
+    return property(lambda self: self._state(name), doc=about)
 
 
 class Simulation:
@@ -493,13 +462,8 @@ class Simulation:
         """Those of the steps since the last call, in the order of steps; waits for the GPU. Up to 262,144 a step."""
         return Hits(**self._handle.take_hits())
 
-    @property
-    def time(self) -> float:
-        return self._handle.time
-
-    @property
-    def alive(self) -> int:
-        return self._handle.alive
+    time = _of_handle("time", "Seconds since its beginning.")
+    alive = _of_handle("alive", "Particles.")
 
     def _state(self, name: str) -> np.ndarray:
         handle = self._handle
@@ -507,36 +471,10 @@ class Simulation:
             self._read = handle.read()
         return self._read[name]
 
-    @property
-    def positions(self) -> np.ndarray:
-        """(n, 3) float32, in the order of ids(), velocities() and the others. Read back once a step."""
-        return self._state("positions")
-
-    @property
-    def velocities(self) -> np.ndarray:
-        return self._state("velocities")
-
-    @property
-    def ids(self) -> np.ndarray:
-        """(n,) uint32: births before its own."""
-        return self._state("ids")
-
-    @property
-    def types(self) -> np.ndarray:
-        """(n,) uint32: the numbers of their [[type]]."""
-        return self._state("types")
-
-    @property
-    def ages(self) -> np.ndarray:
-        """(n,) float32: seconds since birth."""
-        return self._state("ages")
-
-    @property
-    def lifetimes(self) -> np.ndarray:
-        """(n,) float32: seconds from birth to death."""
-        return self._state("lifetimes")
-
-    @property
-    def collisions(self) -> np.ndarray:
-        """(n,) uint32: steps in contact so far."""
-        return self._state("collisions")
+    positions = _of_state("positions", "(n, 3) float32, in the order of ids, velocities and the others. Read back once a step.")
+    velocities = _of_state("velocities", "(n, 3) float32")
+    ids = _of_state("ids", "(n,) uint32: births before its own.")
+    types = _of_state("types", "(n,) uint32: the numbers of their [[type]].")
+    ages = _of_state("ages", "(n,) float32: seconds since birth.")
+    lifetimes = _of_state("lifetimes", "(n,) float32: seconds from birth to death.")
+    collisions = _of_state("collisions", "(n,) uint32: steps in contact so far.")
