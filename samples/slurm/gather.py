@@ -11,7 +11,7 @@ import sys
 
 reports, tasks = pathlib.Path(sys.argv[1]), int(sys.argv[2])
 counts = collections.Counter()
-failures, warnings, slow, unfinished = [], collections.defaultdict(list), [], []
+failures, unfinished = [], []
 for task in range(1, tasks + 1):
     ended = False
     path = reports / f"{task}.jsonl"
@@ -20,29 +20,17 @@ for task in range(1, tasks + 1):
             event = json.loads(line)
         except ValueError:
             break  # cut off with its task
-        kind = event["event"]
-        if kind in ("done", "skipped", "failed", "cancelled"):
-            counts[kind] += 1
-            counts["bytes"] += event.get("bytes", 0)
-        if kind == "failed":
+        counts[event["event"]] += 1
+        counts["bytes"] += event.get("bytes", 0) if event["event"] in ("done", "skipped") else 0
+        if event["event"] == "failed":
             failures.append((event["asset"], event["error"]))
-        if kind == "done":
-            slow.append((event["ms"], event["asset"]))
-        for warning in event.get("warnings", []):
-            warnings[warning.split(": ", 1)[-1]].append(event["asset"])
-        ended = ended or kind == "summary" and event["signal"] is None
+        ended = ended or event["event"] == "summary" and event["signal"] is None
     if not ended:
         unfinished.append(task)
 
-slow = sorted(slow, reverse=True)[:20]
-report = {
-    "tasks": tasks, "unfinished_tasks": unfinished, "baked": counts["done"], "up_to_date": counts["skipped"],
-    "failed": counts["failed"], "cancelled": counts["cancelled"], "bytes": counts["bytes"],
-    "slowest": [{"asset": asset, "ms": ms} for ms, asset in slow],
-    "warnings": [{"warning": text, "assets": len(assets), "such_as": assets[:5]}
-                 for text, assets in sorted(warnings.items(), key=lambda item: (-len(item[1]), item[0]))],
-    "failures": [{"asset": asset, "error": error} for asset, error in sorted(failures)],
-}
+report = {"tasks": tasks, "unfinished_tasks": unfinished, "baked": counts["done"], "up_to_date": counts["skipped"],
+          "failed": counts["failed"], "cancelled": counts["cancelled"], "bytes": counts["bytes"],
+          "failures": [{"asset": asset, "error": error} for asset, error in sorted(failures)]}
 (reports / "report.json").write_text(json.dumps(report, indent=2) + "\n")
 (reports / "failures.txt").write_text("".join(f"{asset}: {error}\n" for asset, error in sorted(failures)))
 print(f"{report['baked']} baked, {report['up_to_date']} up to date, {report['failed']} failed, "
