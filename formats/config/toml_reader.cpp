@@ -22,6 +22,32 @@ std::size_t tableCount(const toml::node* node) {
     return array != nullptr ? array->size() : (node != nullptr && node->is_table() ? 1 : 0);
 }
 
+/// "file:line:column"
+std::string placeIn(const TomlFile& file, const toml::source_region& region) {
+    const toml::source_position& at = region.begin;
+    return file.is_text ? file.name + ":" + std::to_string(std::max(at.line, 1U)) + ":" +
+                              std::to_string(std::max(at.column, 1U))
+                        : file.name;
+}
+
+/// Its mistakes as errors.
+Result<void> caught(const TomlFile& file, const std::function<void()>& read) {
+    try {
+        read();
+        return {};
+    } catch (const toml::parse_error& error) {
+        return fail(ErrorCode::kInvalidInput,
+                    placeIn(file, error.source()) + ": not TOML: " + oneLine(error.description()));
+    } catch (const TomlMistake& mistake) {
+        return fail(ErrorCode::kInvalidInput, mistake.message);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        return fail(ErrorCode::kInvalidInput,
+                    placeIn(file, {}) + ": cannot be read: " + oneLine(error.what()));
+    }
+}
+
 }  // namespace
 
 std::string numberText(double value) {
@@ -36,9 +62,7 @@ std::string oneLine(std::string_view text) {
 }
 
 std::string TomlValue::place() const {
-    const toml::source_position& at = node_->source().begin;
-    return file_->name + ":" + std::to_string(std::max(at.line, 1U)) + ":" +
-           std::to_string(std::max(at.column, 1U));
+    return placeIn(*file_, node_->source());
 }
 
 std::string TomlValue::full(std::string_view key) const {
@@ -218,10 +242,8 @@ void TableRules::refuseUnknown(const TomlValue& table) const {
     }
     for (const toml::key* key : keysInOrder(*table.node().as_table())) {
         if (std::find(known.begin(), known.end(), key->str()) == known.end()) {
-            const toml::source_position& at = key->source().begin;
             const std::string hint = didYouMean(key->str(), known);
-            throw TomlMistake{table.file().name + ":" + std::to_string(at.line) + ":" +
-                              std::to_string(at.column) + ": unknown " +
+            throw TomlMistake{placeIn(table.file(), key->source()) + ": unknown " +
                               (table.name().empty() ? "table" : "key") + " '" +
                               oneLine(table.full(key->str())) + "'" +
                               (hint.empty() ? "; known are " + listed(known) : hint)};
@@ -299,23 +321,18 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
 
 Result<void> readTomlFile(std::string_view text, TomlFile file,
                           const std::function<void(const TomlValue&)>& read) {
-    try {
+    return caught(file, [&] {
         const toml::table top = toml::parse(text, file.name);
         file.top = &top;
         read(TomlValue(top, "", file));
-        return {};
-    } catch (const toml::parse_error& error) {
-        const toml::source_position& at = error.source().begin;
-        return fail(ErrorCode::kInvalidInput, file.name + ":" + std::to_string(at.line) + ":" +
-                                                  std::to_string(at.column) +
-                                                  ": not TOML: " + oneLine(error.description()));
-    } catch (const TomlMistake& mistake) {
-        return fail(ErrorCode::kInvalidInput, mistake.message);
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        return fail(ErrorCode::kInvalidInput, file.name + ":1:1: cannot be read: " + oneLine(error.what()));
-    }
+    });
+}
+
+Result<void> readTomlTable(const toml::table& top, TomlFile file,
+                           const std::function<void(const TomlValue&)>& read) {
+    file.top = &top;
+    file.is_text = false;
+    return caught(file, [&] { read(TomlValue(top, "", file)); });
 }
 
 }  // namespace relief

@@ -33,6 +33,7 @@ struct TomlFile {
     std::filesystem::path root;    ///< another folder that they may lead to; empty: none
     std::string_view owner;        ///< of the folder, in messages: "scene"
     const toml::table* top = nullptr;
+    bool is_text = true;  ///< false: its values have no lines and columns
 };
 
 /// Thrown by everything below where a value is wrong; readTomlFile() turns it into an Error.
@@ -51,7 +52,7 @@ class TomlValue {
     [[nodiscard]] const toml::array* array() const { return node_->as_array(); }
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const TomlFile& file() const { return *file_; }
-    [[nodiscard]] std::string place() const;  ///< "file:line:column"
+    [[nodiscard]] std::string place() const;  ///< "file:line:column", or "file" if it is no text
     /// "table.key"
     [[nodiscard]] std::string full(std::string_view key) const;
 
@@ -302,5 +303,8 @@ void readToml(const TomlValue& from, T& value) {
 /// Errors: kInvalidInput, with file, line and column.
 [[nodiscard]] Result<void> readTomlFile(std::string_view text, TomlFile file,
                                         const std::function<void(const TomlValue&)>& read);
+/// The same of a table that is no text: messages have no line and column.
+[[nodiscard]] Result<void> readTomlTable(const toml::table& top, TomlFile file,
+                                         const std::function<void(const TomlValue&)>& read);
 
 }  // namespace relief

@@ -70,6 +70,10 @@ std::vector<fs::path> filesOf(const Scene& scene) {
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
     auto scene = RELIEF_TRY(openScene(input, overrides.root));
+    return loadAll(std::move(scene), input, overrides);
+}
+
+Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverrides& overrides) {
     scene.time.steps = overrides.steps.value_or(scene.time.steps);
     scene.render.width = overrides.width.value_or(scene.render.width);
     scene.render.height = overrides.height.value_or(scene.render.height);

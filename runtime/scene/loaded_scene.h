@@ -46,5 +46,8 @@ struct LoadedScene {
 /// Fails as the readers of these files and makeEmitters() do; errors of files that a scene names begin with its line and column.
 [[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
                                           const SceneOverrides& overrides);
+/// The same of a scene that has been read. \param input  names it in messages.
+[[nodiscard]] Result<LoadedScene> loadAll(Scene scene, const std::filesystem::path& input,
+                                          const SceneOverrides& overrides);
 
 }  // namespace relief

@@ -122,10 +122,14 @@ std::optional<FieldFault> check(FlowFile& flow, const GivenFields& /*given*/) {
     return std::nullopt;
 }
 
+void readScene(const TomlValue& top, Scene& scene) {
+    readToml(top, scene);
+}
+
 Result<Scene> parseScene(std::string_view text, const fs::path& path, const fs::path& root) {
     Scene scene;
     RELIEF_TRY(readTomlFile(text, {oneLine(path.native()), path.parent_path(), root, "scene"},
-                            [&](const TomlValue& top) { readToml(top, scene); }));
+                            [&](const TomlValue& top) { readScene(top, scene); }));
     return scene;
 }
 

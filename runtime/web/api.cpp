@@ -9,14 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "formats/base/text.h"
+#include "formats/config/toml_reader.h"
 #include "formats/texel.h"
 #include "runtime/c_api/objects.h"
 #include "runtime/c_api/relief.h"
-#include "runtime/collider/field_query.h"
-#include "runtime/files/mesh_file.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/depth_sort.h"
@@ -99,34 +98,83 @@ Json describeBodies(const std::vector<SceneCollider>& colliders, double time) {
     return bodies;
 }
 
+/// Adds a value to a toml::table, or to a toml::array, in which each has a place.
+template <class To>
+void add(To& to, const std::string& key, const Json& value) {
+    constexpr bool kTable = std::is_same_v<To, toml::table>;
+    const auto put = [&](auto made) {
+        if constexpr (kTable) {
+            to.insert_or_assign(key, std::move(made));
+        } else {
+            to.push_back(std::move(made));
+        }
+    };
+    const auto putAll = [&](auto made) {
+        for (const auto& [name, one] : value.items()) {
+            add(made, name, one);
+        }
+        put(std::move(made));
+    };
+    if (value.is_object()) {
+        putAll(toml::table());
+    } else if (value.is_array()) {
+        putAll(toml::array());
+    } else if (value.is_string()) {
+        put(value.get<std::string>());
+    } else if (value.is_boolean()) {
+        put(value.get<bool>());
+    } else if (value.is_number_integer()) {
+        put(value.get<std::int64_t>());
+    } else if (value.is_number()) {
+        put(value.get<double>());
+    } else if (!kTable) {
+        put(std::string("null"));  // nothing expects it, so that a message names the place
+    }
+}
+
+/// \param text  a scene file, or an object with its keys in JSON.
+/// \param path  of the file, which ends in .toml, or what messages call the object.
+Result<Scene> readScene(std::string_view text, const std::filesystem::path& path) {
+    if (path.extension() == ".toml") {
+        return parseScene(text, path);
+    }
+    toml::array one;
+    add(one, "", Json::parse(text));
+    Scene scene;
+    RELIEF_TRY(readTomlTable(*one[0].as_table(), {path.string(), path.parent_path(), {}, "scene"},
+                             [&](const TomlValue& top) { relief::readScene(top, scene); }));
+    return scene;
+}
+
 /// A scene that plays: all that a page keeps of it.
 struct Player {
     LoadedScene loaded;
-    std::unique_ptr<Simulation> simulation;
+    std::optional<Simulation> simulation;
     std::unique_ptr<SpriteAtlas> atlas;
-    std::unique_ptr<ParticleRenderer> renderer;
-    std::unique_ptr<DepthSorter> sorter;
+    std::optional<ParticleRenderer> renderer;
+    std::optional<DepthSorter> sorter;
     ParticleStyle style;
     std::vector<ParticleState> read;  // kept for its memory
+
+    Result<void> makeSorter(const Scene& scene) {
+        if (scene.render.sort_frames > 0 && !sorter) {
+            sorter.emplace(RELIEF_TRY(DepthSorter::create(scene.particles.capacity, StepPath::kFragment)));
+        }
+        return {};
+    }
 };
 
-Result<Player*> createPlayer(const char* path, bool shaded) {
-    const PassState state;
+Result<Player*> createPlayer(const char* text, const char* path, bool shaded) {
     auto player = std::make_unique<Player>();
-    player->loaded = RELIEF_TRY(loadAll(path, {}));
+    player->loaded = RELIEF_TRY(loadAll(RELIEF_TRY(readScene(text, path)), path, {}));
     const Scene& scene = player->loaded.scene;
-    auto simulation = RELIEF_TRY(Simulation::create(player->loaded, StepPath::kFragment, nullptr));
-    player->simulation = std::make_unique<Simulation>(std::move(simulation));
+    player->simulation.emplace(RELIEF_TRY(Simulation::create(player->loaded, StepPath::kFragment, nullptr)));
     player->atlas = RELIEF_TRY(loadAtlas(scene));
     player->style = particleStyle(scene, player->atlas.get());
     const ColliderView view = colliderView(player->loaded, player->simulation->textures());
-    auto renderer =
-        RELIEF_TRY(ParticleRenderer::create(shaded ? std::optional<ColliderView>(view) : std::nullopt));
-    player->renderer = std::make_unique<ParticleRenderer>(std::move(renderer));
-    if (scene.render.sort_frames > 0) {
-        auto sorter = RELIEF_TRY(DepthSorter::create(scene.particles.capacity, StepPath::kFragment));
-        player->sorter = std::make_unique<DepthSorter>(std::move(sorter));
-    }
+    player->renderer.emplace(
+        RELIEF_TRY(ParticleRenderer::create(shaded ? std::optional<ColliderView>(view) : std::nullopt)));
+    RELIEF_TRY(player->makeSorter(scene));
     return player.release();
 }
 
@@ -161,12 +209,11 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
     return {};
 }
 
-/// Everything of the scene at `path` that needs no other colliders, no other capacity and no other integrator.
-Result<int> changePlayer(Player& player, const char* path, bool emitters) {
-    const PassState state;
+/// Everything of a scene that needs no other colliders, no other capacity and no other integrator.
+/// \param emitters  those of the scene begin anew.
+Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters) {
     Scene& now = player.loaded.scene;
-    Scene wanted = RELIEF_TRY(loadScene(path));
-    wanted = RELIEF_TRY(withDefaults(std::move(wanted), player.loaded.bounds));
+    Scene wanted = RELIEF_TRY(withDefaults(RELIEF_TRY(readScene(text, path)), player.loaded.bounds));
     if (wanted.particles.capacity != now.particles.capacity ||
         wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size()) {
         return fail(ErrorCode::kUsage,
@@ -181,10 +228,7 @@ Result<int> changePlayer(Player& player, const char* path, bool emitters) {
     wanted.air.flow = now.air.flow;
     wanted.render.atlas = now.render.atlas;
     wanted.colliders = std::move(colliders);
-    if (wanted.render.sort_frames > 0 && !player.sorter) {
-        auto sorter = RELIEF_TRY(DepthSorter::create(wanted.particles.capacity, StepPath::kFragment));
-        player.sorter = std::make_unique<DepthSorter>(std::move(sorter));
-    }
+    RELIEF_TRY(player.makeSorter(wanted));
     now = std::move(wanted);
     player.style = particleStyle(now, player.atlas.get());
     RELIEF_TRY(player.simulation->change(std::move(made)));
@@ -193,7 +237,6 @@ Result<int> changePlayer(Player& player, const char* path, bool emitters) {
 
 Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& projection,
                        const RenderTarget& target) {
-    const PassState state;
     const ParticleSystem& particles = player.simulation->particles();
     const CameraMatrices camera(view, projection);
     ParticleOrder order;
@@ -207,11 +250,14 @@ Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& p
     return 0;
 }
 
-/// Questions of a page to a collider on the GPU.
-struct GpuQuery {
-    std::shared_ptr<const TexturesObject> textures;  // outlives the query, which points to it
-    FieldQuery query;
-};
+/// The result of body(), or `failed`; the context's state is then as before.
+template <class T, class F>
+T inPass(const char* function, T failed, const F& body) {
+    return answer(function, failed, [&](const Call&) -> Result<T> {
+        const PassState state;
+        return body();
+    });
+}
 
 }  // namespace
 }  // namespace relief
@@ -252,71 +298,22 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider,
     });
 }
 
-// --- meshes
-
-/// An OBJ or PLY file, by its name's ending.
-/// \param out  its positions, how many there are, its triangles, and how many corners these have.
-EMSCRIPTEN_KEEPALIVE PictureMesh* relief_mesh_read(const char* name, const std::byte* bytes, int size,
-                                                   std::uintptr_t* out) {
-    return answer<PictureMesh*>(__func__, nullptr, [&](const Call&) -> Result<PictureMesh*> {
-        const std::span given(bytes, static_cast<std::size_t>(size));
-        const std::string extension = lowerCase(name).ends_with(".ply") ? ".ply" : ".obj";
-        auto mesh = std::make_unique<PictureMesh>(RELIEF_TRY(parsePictureMesh(given, extension, name)));
-        out[0] = reinterpret_cast<std::uintptr_t>(mesh->positions.data());
-        out[1] = mesh->positions.size();
-        out[2] = reinterpret_cast<std::uintptr_t>(mesh->triangles.data());
-        out[3] = mesh->triangles.size();
-        return mesh.release();
-    });
-}
-
-EMSCRIPTEN_KEEPALIVE void relief_mesh_free(PictureMesh* mesh) {
-    delete mesh;
-}
-
-// --- colliders, on the GPU
-
-EMSCRIPTEN_KEEPALIVE GpuQuery* relief_gpu_query_create(const relief_textures* textures) {
-    return answer<GpuQuery*>(__func__, nullptr, [&](const Call& call) -> Result<GpuQuery*> {
-        auto of = RELIEF_TRY(call.shared(textures, "textures"));
-        auto query = RELIEF_TRY(FieldQuery::create(of->textures));
-        return new GpuQuery{std::move(of), std::move(query)};
-    });
-}
-
-EMSCRIPTEN_KEEPALIVE void relief_gpu_query_free(GpuQuery* query) {
-    delete query;
-}
-
-/// As relief_collider_query(). 0, or -1.
-EMSCRIPTEN_KEEPALIVE int relief_gpu_query(const GpuQuery* gpu, const float* xyz, std::size_t count,
-                                          relief_sample* samples) {
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    return answer(__func__, -1, [&](const Call&) -> Result<int> {
-        const auto found = RELIEF_TRY(gpu->query.evaluate({reinterpret_cast<const glm::vec3*>(xyz), count}));
-        for (const FieldSample& one : found) {
-            *samples++ = {one.distance, {one.normal.x, one.normal.y, one.normal.z}, one.map};
-        }
-        return 0;
-    });
-}
-
 // --- particles
 
-/// \param path    of a scene in emscripten's file system.
+/// \param text    a scene file, or an object with its keys in JSON.
+/// \param path    of the file, in emscripten's file system, which ends in .toml, or what messages call the object.
 /// \param shaded  1: particles are lit and shaded by the collider.
-EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* path, int shaded) {
-    return answer<Player*>(__func__, nullptr, [&](const Call&) { return createPlayer(path, shaded != 0); });
+EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* text, const char* path, int shaded) {
+    return inPass<Player*>(__func__, nullptr, [&] { return createPlayer(text, path, shaded != 0); });
 }
 
 EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
     delete player;
 }
 
-/// 0, or -1.
+/// 0, or -1, as those below.
 EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
-    return answer(__func__, -1, [&](const Call&) -> Result<int> {
-        const PassState state;
+    return inPass(__func__, -1, [&]() -> Result<int> {
         RELIEF_TRY(player->simulation->step(dt, nullptr));
         RELIEF_TRY(checkGpu("stepping particles"));
         return 0;
@@ -324,8 +321,9 @@ EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
 }
 
 /// \param emitters  1: those of the scene begin anew.
-EMSCRIPTEN_KEEPALIVE int relief_player_change(Player* player, const char* path, int emitters) {
-    return answer(__func__, -1, [&](const Call&) { return changePlayer(*player, path, emitters != 0); });
+EMSCRIPTEN_KEEPALIVE int relief_player_change(Player* player, const char* text, const char* path,
+                                              int emitters) {
+    return inPass(__func__, -1, [&] { return changePlayer(*player, text, path, emitters != 0); });
 }
 
 /// Births on top of the emitters': 8 floats each, position, velocity, lifetime, type. The number accepted.
@@ -356,7 +354,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, const float* matrice
     std::memcpy(&view, matrices, sizeof(view));
     std::memcpy(&projection, matrices + 16, sizeof(projection));
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
-    return answer(__func__, -1, [&](const Call&) { return drawPlayer(*player, view, projection, target); });
+    return inPass(__func__, -1, [&] { return drawPlayer(*player, view, projection, target); });
 }
 
 /// JSON.
@@ -411,8 +409,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_mesh(const Player* player, int body, int*
 
 /// Reads the particles back, and waits for the GPU to that end; how many live, or -1.
 EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
-    return answer(__func__, -1, [&](const Call&) -> Result<int> {
-        const PassState state;
+    return inPass(__func__, -1, [&]() -> Result<int> {
         player->read = RELIEF_TRY(player->simulation->particles().readState());
         return static_cast<int>(player->read.size());
     });

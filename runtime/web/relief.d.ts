@@ -30,24 +30,18 @@ export function init(options?: InitOptions): Promise<unknown>;
 /** Fetches and reads a .relief file. */
 export function load(source: Source): Promise<Collider>;
 
-/**
- * The mesh of an OBJ or PLY file, by the ending of its name: three numbers a vertex, three indices a triangle. init() must
- * have ended.
- */
-export function readMesh(name: string, bytes: Uint8Array): { vertices: Float32Array; triangles: Uint32Array };
-
 export interface Bounds {
     min: Vec3;
     max: Vec3;
 }
 
-/** What a collider says of n points. */
+/** A collider at n points. */
 export interface Answers {
     /** n: to the surface, below 0 inside. About 1e30 or beyond where a point is outside, and no more is known. */
     distance: Float32Array;
     /** 3 n: of the surface, outwards; 0 where there is none. */
     normal: Float32Array;
-    /** n: the map that decides; -1 where none has a say. */
+    /** n: the map that decides; -1 where none votes. */
     map: Int32Array;
 }
 
@@ -89,7 +83,7 @@ export class Collider {
     readonly bytes: Uint8Array;
     readonly info: ColliderInfo;
     readonly bounds: Bounds;
-    /** Asks the CPU. @param points 3 n numbers. */
+    /** On the CPU. @param points 3 n numbers. */
     query(points: Numbers): Answers;
     /**
      * The texels of a map, 8 numbers each: depth and normal of the front, then of the back; a depth of NaN where nothing
@@ -109,8 +103,6 @@ export class GpuCollider {
      * `bool reliefInside(ReliefField)`.
      */
     readonly glsl: string;
-    /** Asks the GPU, and waits for it; see Collider.query(). */
-    query(points: Numbers): Answers;
     /** Tells a linked program its three samplers (units `unit` to `unit` + 2) and its uniform block. Once is enough. */
     attach(program: WebGLProgram, unit?: number, block?: number): void;
     /**
@@ -122,9 +114,6 @@ export class GpuCollider {
 }
 
 // Scene, with the keys of scene.toml: package.py puts it here, made of runtime/scene/scene.schema.json.
-
-/** A scene as the text of scene.toml, as relief-sim plays it. */
-export function toToml(scene: Scene): string;
 
 export interface ParticleSystemOptions {
     /** The one collider of a scene that names none. */
@@ -219,19 +208,15 @@ export class ParticleSystem {
     textures(): { position: WebGLTexture; velocity: WebGLTexture; birth: WebGLTexture };
     /** The mesh of a body that deforms, as it is now; null of one that does not. It belongs to the system. */
     mesh(body: number): LiveMesh | null;
-    /** The scene as scene.toml. */
-    toToml(): string;
     dispose(): void;
 }
 
 export const Relief: {
     init: typeof init;
     load: typeof load;
-    readMesh: typeof readMesh;
     Collider: typeof Collider;
     GpuCollider: typeof GpuCollider;
     ParticleSystem: typeof ParticleSystem;
     ReliefError: typeof ReliefError;
-    toToml: typeof toToml;
 };
 export default Relief;

@@ -47,63 +47,75 @@ function instance() {
     return wasm;
 }
 
-/** Calls an exported function. A trap, which ends the instance, becomes a sentence. */
-function call(name, ...args) {
-    try {
-        return instance()[`_${name}`](...args);
-    } catch (error) {
-        if (error instanceof ReliefError) {
-            throw error;
-        }
-        throw new ReliefError(`Relief stopped (${error.message ?? error}); load the page again`);
-    }
-}
+/** A text of the WebAssembly, where files have no folders. */
+const textAt = (at) => wasm.UTF8ToString(at).replaceAll(/\/scene\d+\//g, "");
 
 function lastError() {
-    return new ReliefError(wasm.UTF8ToString(wasm._relief_error()));
+    return new ReliefError(textAt(wasm._relief_error()));
 }
 
-function checked(result) {
-    if (result === 0) {
-        throw lastError();
-    }
-    return result;
-}
-
-function succeeded(code) {
-    if (code < 0) {
-        throw lastError();
-    }
-    return code;
-}
-
-function allocate(bytes) {
-    const at = call("malloc", Math.max(bytes, 1));
+/** An argument in the WebAssembly's memory: a text or a typed array. */
+function copied(value) {
+    const size = typeof value === "string" ? wasm.lengthBytesUTF8(value) + 1 : Math.max(value.byteLength, 1);
+    const at = wasm._malloc(size);
     if (at === 0) {
-        throw new ReliefError(`no room for ${bytes} bytes in this page; use fewer particles, or a smaller collider`);
+        throw new ReliefError(`no room for ${size} bytes in this page; use fewer particles, or a smaller collider`);
+    }
+    if (typeof value === "string") {
+        wasm.stringToUTF8(value, at, size);
+    } else {
+        wasm.HEAPU8.set(bytesIn(value), at);
     }
     return at;
 }
 
-/** f(addresses…) with that many bytes each, freed afterwards. */
-function withMemory(sizes, f) {
-    const addresses = [];
+const bytesIn = ({ buffer, byteOffset, byteLength }) => new Uint8Array(buffer, byteOffset, byteLength);
+
+/**
+ * Calls an exported function. Texts and typed arrays go there as copies; arrays of numbers come back with what it wrote. A
+ * trap, which ends the instance, becomes a sentence.
+ */
+function call(name, ...args) {
+    const functions = instance();
+    const copies = new Map();
     try {
-        for (const size of sizes) {
-            addresses.push(allocate(size));
+        const plain = args.map((one) => {
+            if (typeof one === "number") {
+                return one;
+            }
+            copies.set(one, copied(one));
+            return copies.get(one);
+        });
+        const result = functions[`_${name}`](...plain);
+        for (const [one, at] of copies) {
+            if (ArrayBuffer.isView(one) && !(one instanceof Uint8Array)) {
+                bytesIn(one).set(wasm.HEAPU8.subarray(at, at + one.byteLength));
+            }
         }
-        return f(...addresses);
+        return result;
+    } catch (error) {
+        throw error instanceof ReliefError ? error
+            : new ReliefError(`Relief stopped (${error.message ?? error}); load the page again`);
     } finally {
-        addresses.forEach((at) => wasm._free(at));
+        copies.forEach((at) => wasm._free(at));
     }
 }
 
-function withText(text, f) {
-    const size = wasm.lengthBytesUTF8(text) + 1;
-    return withMemory([size], (at) => {
-        wasm.stringToUTF8(text, at, size);
-        return f(at);
-    });
+/** As call(), of a function that fails by null or a number below 0. */
+function made(name, ...args) {
+    const handle = call(name, ...args);
+    if (handle === 0) {
+        throw lastError();
+    }
+    return handle;
+}
+
+function done(name, ...args) {
+    const code = call(name, ...args);
+    if (code < 0) {
+        throw lastError();
+    }
+    return code;
 }
 
 /** What is kept of a context: emscripten's handle, how often it was lost, and whether its extension is on. */
@@ -167,31 +179,19 @@ function free(gl, losses, name, handle) {
 
 // --- what a page hands over
 
-const kinds = "a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array";
-
-async function fetched(source) {
-    try {
-        return source instanceof Response ? source : await fetch(source);
-    } catch (error) {
-        throw new ReliefError(`${source.url ?? source}: the server does not answer (${error.message})`);
-    }
-}
-
 async function bytesOf(source) {
     if (source instanceof Uint8Array) {
         return source;
     }
-    if (source instanceof ArrayBuffer) {
-        return new Uint8Array(source);
+    if (source instanceof ArrayBuffer || source instanceof Blob) {
+        return new Uint8Array(await new Response(source).arrayBuffer());
     }
-    if (typeof Blob !== "undefined" && source instanceof Blob) {
-        return new Uint8Array(await source.arrayBuffer());
+    if (typeof source !== "string" && ![URL, Request, Response].some((kind) => source instanceof kind)) {
+        throw new ReliefError("load() takes a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
     }
-    if (typeof source !== "string" && !(source instanceof URL) && !(source instanceof Request) &&
-        !(source instanceof Response)) {
-        throw new ReliefError(`load() takes ${kinds}`);
-    }
-    const response = await fetched(source);
+    const response = source instanceof Response ? source : await fetch(source).catch((error) => {
+        throw new ReliefError(`${source.url ?? source}: the server does not answer (${error.message})`);
+    });
     const name = response.url || source;
     if (!response.ok) {
         throw new ReliefError(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
@@ -261,49 +261,16 @@ export async function load(source) {
     }
 }
 
-export function readMesh(name, bytes) {
-    instance();
-    return withText(String(name), (text) => withMemory([bytes.length, 16], (at, out) => {
-        wasm.HEAPU8.set(bytes, at);
-        const mesh = checked(call("relief_mesh_read", text, at, bytes.length, out));
-        const [positions, count, triangles, corners] = wasm.HEAPU32.subarray(out >> 2, (out >> 2) + 4);
-        const read = { vertices: wasm.HEAPF32.slice(positions >> 2, (positions >> 2) + 3 * count),
-                       triangles: wasm.HEAPU32.slice(triangles >> 2, (triangles >> 2) + corners) };
-        wasm._relief_mesh_free(mesh);
-        return read;
-    }));
-}
-
-function query(points, ask) {
-    const xyz = checkFinite("points", numbers("points", points, 3));
-    const count = xyz.length / 3;
-    return withMemory([12 * count, 20 * count], (at, samples) => {
-        wasm.HEAPF32.set(xyz, at >> 2);
-        ask(at, count, samples);
-        const answers = { distance: new Float32Array(count), normal: new Float32Array(3 * count), map: new Int32Array(count) };
-        for (let i = 0, from = samples >> 2; i < count; ++i, from += 5) { // relief_sample of runtime/c_api/relief.h
-            answers.distance[i] = wasm.HEAPF32[from];
-            answers.normal.set(wasm.HEAPF32.subarray(from + 1, from + 4), 3 * i);
-            answers.map[i] = wasm.HEAP32[from + 4];
-        }
-        return answers;
-    });
-}
-
 export class Collider {
     #handle;
 
     constructor(bytes) {
-        instance();
         if (!(bytes instanceof Uint8Array)) {
             throw new ReliefError("a Collider is made of a Uint8Array; load() takes other things");
         }
         this.bytes = bytes;
-        this.#handle = withMemory([bytes.length], (at) => {
-            wasm.HEAPU8.set(bytes, at);
-            return checked(call("relief_collider_read", at, bytes.length));
-        });
-        Object.assign(this, { info: JSON.parse(wasm.UTF8ToString(call("relief_collider_info", this.handle))) });
+        this.#handle = made("relief_collider_read", bytes, bytes.length);
+        this.info = JSON.parse(textAt(call("relief_collider_info", this.handle)));
     }
 
     get handle() {
@@ -317,16 +284,25 @@ export class Collider {
     }
 
     query(points) {
-        return query(points, (at, count, samples) => call("relief_collider_query", this.handle, at, count, samples));
+        const xyz = checkFinite("points", numbers("points", points, 3));
+        const count = xyz.length / 3;
+        const samples = new Float32Array(5 * count); // relief_sample of runtime/c_api/relief.h
+        call("relief_collider_query", this.handle, xyz, count, samples);
+        const maps = new Int32Array(samples.buffer);
+        const answers = { distance: new Float32Array(count), normal: new Float32Array(3 * count), map: new Int32Array(count) };
+        for (let i = 0; i < count; ++i) {
+            answers.distance[i] = samples[5 * i];
+            answers.normal.set(samples.subarray(5 * i + 1, 5 * i + 4), 3 * i);
+            answers.map[i] = maps[5 * i + 4];
+        }
+        return answers;
     }
 
     texels(map) {
         const { width, height, faces } = this.info.maps[index("map", map, this.info.maps.length)];
-        const count = 8 * width * height * faces;
-        return withMemory([4 * count], (at) => {
-            succeeded(call("relief_collider_texels", this.handle, map, at));
-            return wasm.HEAPF32.slice(at >> 2, (at >> 2) + count);
-        });
+        const texels = new Float32Array(8 * width * height * faces);
+        done("relief_collider_texels", this.handle, map, texels);
+        return texels;
     }
 
     dispose() {
@@ -343,14 +319,13 @@ export class GpuCollider {
     #gl;
     #losses;
     #handle;
-    #query = 0;
 
     constructor(gl, from) {
         this.#losses = use(gl);
         this.#gl = gl;
         this.collider = collider("a GpuCollider", from);
-        this.#handle = checked(call("relief_textures_create", from.handle));
-        this.glsl = kPrecision + wasm.UTF8ToString(call("relief_textures_glsl", this.#handle));
+        this.#handle = made("relief_textures_create", from.handle);
+        this.glsl = kPrecision + textAt(call("relief_textures_glsl", this.#handle));
     }
 
     #ready() {
@@ -358,12 +333,6 @@ export class GpuCollider {
             throw new ReliefError("this GpuCollider is disposed of");
         }
         useAsOf(this.#gl, this.#losses, "make a new GpuCollider");
-    }
-
-    query(points) {
-        this.#ready();
-        this.#query ||= checked(call("relief_gpu_query_create", this.#handle));
-        return query(points, (at, count, samples) => succeeded(call("relief_gpu_query", this.#query, at, count, samples)));
     }
 
     #places(unit, block) {
@@ -403,58 +372,21 @@ export class GpuCollider {
 
     dispose() {
         if (this.#handle) {
-            free(this.#gl, this.#losses, "relief_gpu_query_free", this.#query);
             free(this.#gl, this.#losses, "relief_textures_free", this.#handle);
-            this.#handle = this.#query = 0;
+            this.#handle = 0;
         }
     }
 }
-
-// --- scenes as text
 
 const isTable = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
-const isTables = (value) => Array.isArray(value) && value.length > 0 && value.every(isTable);
 
-const tomlKey = (key) => (/^[A-Za-z0-9_-]+$/.test(key) ? key : JSON.stringify(key));
-
-function tomlValue(value) {
-    if (typeof value === "string") {
-        return JSON.stringify(value);
+/** A scene as JSON. Numbers that it has not become texts, which the reader refuses by name. */
+const jsonOf = (scene) => JSON.stringify(scene, (key, value) => {
+    if (typeof value === "function" || typeof value === "symbol") {
+        throw new ReliefError(`a scene holds numbers, texts, true, false, lists and tables, but no ${String(value)}`);
     }
-    if (Array.isArray(value) || ArrayBuffer.isView(value)) {
-        return `[${Array.from(value, tomlValue).join(", ")}]`;
-    }
-    if (isTable(value)) {
-        return `{ ${Object.entries(value).map(([key, one]) => `${tomlKey(key)} = ${tomlValue(one)}`).join(", ")} }`;
-    }
-    if (typeof value === "function" || typeof value === "symbol" || value === undefined || value === null) {
-        throw new ReliefError(`a scene holds numbers, texts, true, false, lists and tables, but no ${value}`);
-    }
-    if (typeof value === "number" && !Number.isFinite(value)) {
-        return Number.isNaN(value) ? "nan" : value > 0 ? "inf" : "-inf";
-    }
-    return String(value);
-}
-
-/** A scene as an object with the keys of scene.toml, as that file's text. */
-export function toToml(scene) {
-    const lines = [];
-    const write = (table, path) => {
-        const given = Object.entries(table).filter(([, value]) => value !== undefined && value !== null);
-        for (const [key, value] of given.filter(([, value]) => !isTable(value) && !isTables(value))) {
-            lines.push(`${tomlKey(key)} = ${tomlValue(value)}`);
-        }
-        for (const [key, value] of given.filter(([, value]) => isTable(value) || isTables(value))) {
-            const name = [...path, key].map(tomlKey).join(".");
-            for (const one of isTable(value) ? [value] : value) {
-                lines.push("", isTable(value) ? `[${name}]` : `[[${name}]]`);
-                write(one, [...path, key]);
-            }
-        }
-    };
-    write(scene, []);
-    return `${lines.join("\n").trim()}\n`;
-}
+    return ArrayBuffer.isView(value) ? [...value] : typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
+});
 
 function merged(scene, patch) {
     const result = { ...scene };
@@ -524,25 +456,15 @@ export class ParticleSystem {
         wasm.FS.writeFile(`${this.#folder}/${name}`, content instanceof Collider ? content.bytes : content);
     }
 
-    #path() {
-        const path = `${this.#folder}/scene.toml`;
-        wasm.FS.writeFile(path, this.toToml());
-        return path;
-    }
-
-    /** Errors name the scene as the page knows it. */
-    #tell(f) {
-        try {
-            return f();
-        } catch (error) {
-            throw new ReliefError(error.message.replaceAll(`${this.#folder}/`, ""));
-        }
+    /** The scene's text, and what it is called. */
+    #told() {
+        return typeof this.#scene === "string" ? [this.#scene, `${this.#folder}/scene.toml`]
+            : [jsonOf(this.#scene), `${this.#folder}/scene`];
     }
 
     #create() {
         this.#losses = use(this.#gl);
-        this.#handle = this.#tell(() =>
-            withText(this.#path(), (path) => checked(call("relief_player_create", path, this.#shaded ? 1 : 0))));
+        this.#handle = made("relief_player_create", ...this.#told(), this.#shaded ? 1 : 0);
     }
 
     get handle() {
@@ -555,10 +477,6 @@ export class ParticleSystem {
     #ready() {
         this.handle;
         useAsOf(this.#gl, this.#losses, "restart() the system");
-    }
-
-    toToml() {
-        return typeof this.#scene === "string" ? this.#scene : toToml(this.#scene);
     }
 
     /** Starts over, with nothing alive; also after 'webglcontextrestored'. */
@@ -586,9 +504,7 @@ export class ParticleSystem {
         }
         const emitters = JSON.stringify(this.#scene.emitter) !== JSON.stringify(before.emitter);
         try {
-            this.#tell(() =>
-                withText(this.#path(), (path) =>
-                    succeeded(call("relief_player_change", this.handle, path, emitters ? 1 : 0))));
+            done("relief_player_change", this.handle, ...this.#told(), emitters ? 1 : 0);
         } catch (error) {
             this.#scene = before;
             throw error;
@@ -604,7 +520,7 @@ export class ParticleSystem {
                                   "Math.min(seconds, 1 / 30)");
         }
         if (seconds > 0) {
-            succeeded(call("relief_player_step", this.handle, seconds));
+            done("relief_player_step", this.handle, seconds);
         }
     }
 
@@ -619,16 +535,13 @@ export class ParticleSystem {
             })
             : births;
         const list = checkFinite("births", numbers("births", rows, 8));
-        return withMemory([4 * list.length], (at) => {
-            wasm.HEAPF32.set(list, at >> 2);
-            return succeeded(call("relief_player_spawn", this.handle, at, list.length / 8));
-        });
+        return done("relief_player_spawn", this.handle, list, list.length / 8);
     }
 
     draw({ view, projection, framebuffer, width, height, srgb = true } = {}) {
         this.#ready();
         const gl = this.#gl;
-        const matrices = [...matrix("view", view), ...matrix("projection", projection)];
+        const matrices = Float32Array.of(...matrix("view", view), ...matrix("projection", projection));
         const target = framebuffer === undefined ? gl.getParameter(gl.DRAW_FRAMEBUFFER_BINDING) : framebuffer;
         const [wide, high] = target
             ? gl.getParameter(gl.VIEWPORT).slice(2)
@@ -643,10 +556,7 @@ export class ParticleSystem {
             wasm.GL.framebuffers[name] = target;
         }
         try {
-            withMemory([128], (at) => {
-                wasm.HEAPF32.set(matrices, at >> 2);
-                succeeded(call("relief_player_draw", this.handle, at, name, ...size, srgb ? 1 : 0));
-            });
+            done("relief_player_draw", this.handle, matrices, name, ...size, srgb ? 1 : 0);
         } finally {
             if (name) {
                 wasm.GL.framebuffers[name] = null;
@@ -655,9 +565,7 @@ export class ParticleSystem {
     }
 
     get info() {
-        const info = JSON.parse(wasm.UTF8ToString(call("relief_player_info", this.handle)));
-        info.bodies.forEach((body) => (body.file = body.file.replace(`${this.#folder}/`, "")));
-        return info;
+        return JSON.parse(textAt(call("relief_player_info", this.handle)));
     }
 
     textures() {
@@ -668,23 +576,19 @@ export class ParticleSystem {
 
     mesh(body) {
         this.#ready();
-        return withMemory([20], (at) => {
-            if (!Number.isInteger(body) || body < 0 || !call("relief_player_mesh", this.handle, body, at)) {
-                return null;
-            }
-            const [positions, corners, vertexShift, triangleShift, triangles] = wasm.HEAP32.subarray(at >> 2, (at >> 2) + 5);
-            return { positions: wasm.GL.textures[positions], corners: wasm.GL.textures[corners], vertexShift,
-                     triangleShift, triangles };
-        });
+        const names = new Int32Array(5);
+        if (!Number.isInteger(body) || body < 0 || !call("relief_player_mesh", this.handle, body, names)) {
+            return null;
+        }
+        const [positions, corners, vertexShift, triangleShift, triangles] = names;
+        return { positions: wasm.GL.textures[positions], corners: wasm.GL.textures[corners], vertexShift, triangleShift, triangles };
     }
 
     read() {
         this.#ready();
-        const count = succeeded(call("relief_player_read", this.handle));
-        return withMemory([48 * count], (at) => {
-            call("relief_player_states", this.handle, at);
-            return wasm.HEAPF32.slice(at >> 2, (at >> 2) + 12 * count);
-        });
+        const rows = new Float32Array(12 * done("relief_player_read", this.handle));
+        call("relief_player_states", this.handle, rows);
+        return rows;
     }
 
     #free() {
@@ -705,5 +609,5 @@ export class ParticleSystem {
     }
 }
 
-export const Relief = { init, load, readMesh, Collider, GpuCollider, ParticleSystem, ReliefError, toToml };
+export const Relief = { init, load, Collider, GpuCollider, ParticleSystem, ReliefError };
 export default Relief;

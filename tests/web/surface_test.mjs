@@ -39,7 +39,7 @@ const square = "v -1 0 -1\nv 1 0.3 -1\nv 1 0.3 1\nv -1 0 1\nf 4 3 2 1\n";
 async function compare([columns, rows, steps]) {
     const { view, camera, body, look, gl } = reliefView;
     look.floor = null;
-    reliefView.panel.fold();
+    document.getElementById("sheets").hidden = true;
     reliefView.panel.frame();
     view.dirty = true;
     const { error } = reliefView.pixelsNow();

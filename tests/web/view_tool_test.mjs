@@ -1,14 +1,12 @@
-// Pages as `relief view` makes them: a checked sheet, a scene of several bodies, and a page that follows its file.
+// Pages as `relief view` makes them: a checked sheet, and a scene of several bodies.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { once } from "node:events";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 import { pathToFileURL } from "node:url";
 
 import { built, launch, openPage } from "./lib/browser.mjs";
-import { bin, bunny, run, scratch } from "./lib/native.mjs";
+import { bunny, run, scratch } from "./lib/native.mjs";
 
 process.env.RELIEF_VIEW_PAGE = path.join(built, "bin/view.html");
 const kViewport = { viewport: { width: 700, height: 400 }, reducedMotion: "reduce" };
@@ -37,9 +35,8 @@ test("a check says what relief check says; a sheet is right in the middle of its
                      .replace(/^[^:]+: /, ""));
     assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
     assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+ /);
-    const { depth, median } = await page.evaluate(() => ({ depth: reliefView.measured.depth, median: reliefView.measured.median }));
+    const depth = await page.evaluate("reliefView.look.depth");
     assert.ok(depth > 1e-3, `half of the thickness is ${depth}`);
-    assert.ok(median < 0.02 * depth, `${median} off the middle of a sheet that is ${2 * depth} thick`);
     // The heat map says so too: nothing in the strong colours of the range's ends.
     const strong = await page.evaluate(() => {
         reliefView.panel.setShow("mesh");
@@ -78,7 +75,6 @@ test("the page of a check holds its findings: numbers, places to fly to, parts, 
                      said.advice.filter((one) => one.helps || !one.tried).map((one) => one.command));
     assert.match(await page.locator("#parts").textContent(), /<b>pillar<\/b>.*texels/s);
     assert.match(await page.locator("#measures").textContent(), /surface that no map sees.*points of each kind5,000seed1/);
-    assert.ok(!await page.isVisible("#what-to-do"));
     const worst = said.worst_places.at(-1);
     await page.locator("#places button").last().click();
     const target = await page.evaluate("reliefView.camera.target");
@@ -124,7 +120,7 @@ rate = 500.0
         reliefView.changed(); // a page at rest draws nothing
     });
     await page.waitForFunction((y) => reliefView.view.bodies[1].model[13] > y + 0.2, before[1], { timeout: 60_000 });
-    assert.ok(await page.evaluate("reliefView.particles.alive") > 100);
+    assert.ok(await page.evaluate("reliefView.particles.system.info.alive") > 100);
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.deepEqual(said, []);
@@ -166,7 +162,7 @@ capacity = 1024
     assert.equal(await page.locator("#message p").textContent(), "");
 });
 
-test("fingers turn and pinch; a PLY of the mesh shows the errors", { timeout: 300_000 }, async (t) => {
+test("fingers turn and pinch", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     writeFileSync(at("sheet.obj"), square);
@@ -192,43 +188,5 @@ test("fingers turn and pinch; a PLY of the mesh shows the errors", { timeout: 30
     await touch("touchEnd");
     const near = await camera();
     assert.ok(Math.abs(near.distance / turned.distance - 0.5) < 0.1, `${near.distance} of ${turned.distance}`);
-
-    const header = (format) => `ply\nformat ${format} 1.0\nelement vertex 4\nproperty float x\nproperty float y\n` +
-        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    const corners = [[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]];
-    const binary = Buffer.alloc(48 + 1 + 16);
-    corners.flat().forEach((x, i) => binary.writeFloatLE(x, 4 * i));
-    binary.writeUInt8(4, 48);
-    [3, 2, 1, 0].forEach((i, k) => binary.writeInt32LE(i, 49 + 4 * k));
-    const files = {
-        "text.ply": Buffer.from(`${header("ascii")}${corners.map((c) => c.join(" ")).join("\n")}\n4 3 2 1 0\n`),
-        "binary.ply": Buffer.concat([Buffer.from(header("binary_little_endian")), binary]),
-    };
-    const medians = [];
-    for (const [name, bytes] of Object.entries(files)) {
-        writeFileSync(at(name), bytes);
-        await page.evaluate(() => (reliefView.measured = null));
-        await page.setInputFiles("#files", at(name));
-        await page.waitForFunction("reliefView.measured", undefined, { timeout: 60_000 });
-        medians.push(await page.evaluate("reliefView.measured.median"));
-        assert.equal(await page.evaluate("reliefView.mesh.triangles.length"), 6, name);
-    }
-    assert.equal(medians[0], medians[1]);
     assert.deepEqual(said, []);
-});
-
-test("a served page is loaded anew when its file is baked anew", { timeout: 300_000 }, async (t) => {
-    const folder = scratch(t);
-    const at = (name) => path.join(folder, name);
-    const bake = (size) => run("relief", "bake", bunny, "-q", "-o", at("b.relief"), "--paper", "--resolution", String(size));
-    bake(32);
-    const server = spawn(path.join(bin, "relief"), ["view", at("b.relief"), "--serve", "0"], { stdio: ["ignore", "pipe", "inherit"] });
-    t.after(() => server.kill());
-    const [address] = await once(server.stdout, "data");
-    const { page } = await opened(t, String(address).trim());
-    const width = () => page.evaluate("reliefView.body.collider.info.maps[0].width");
-    assert.equal(await width(), 32);
-    bake(40);
-    await page.waitForFunction("window.reliefView?.ready && reliefView.body?.collider.info.maps[0].width === 40", undefined,
-                               { timeout: 60_000 });
 });

@@ -7,15 +7,14 @@ import { kBodyVertex, kHeatFragment, kSliceFragment, kSurfaceFragment } from "./
 
 const kSlack = 0.0035; // round the bounds, in longest sides: what a map calls inside farther out is not the body
 const kDeep = 0.014;
-const kFarUnit = 3; // behind those of the collider
+const kClearUnit = 3; // behind those of the collider
 const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
 export class Body {
     #programs = {};
 
-    /** @param name  of its file */
-    constructor(gl, collider, name) {
-        Object.assign(this, { gl, collider, name });
+    constructor(gl, collider) {
+        Object.assign(this, { gl, collider });
         this.place(identity());
         this.box = boxOf(collider.bounds);
         this.gpu = new GpuCollider(gl, collider);
@@ -24,11 +23,11 @@ export class Body {
         const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) =>
             [0, 1, 2].map((k) => ((i >> k) & 1 ? this.drawn.max : this.drawn.min)[k]));
         this.cells = cellsOf(collider, this.drawn);
-        this.far = gl.createTexture();
-        gl.bindTexture(gl.TEXTURE_3D, this.far);
+        this.clear = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_3D, this.clear);
         gl.texStorage3D(gl.TEXTURE_3D, 1, gl.R8, ...this.cells.n);
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-        gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, ...this.cells.n, gl.RED, gl.UNSIGNED_BYTE, this.cells.far);
+        gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, ...this.cells.n, gl.RED, gl.UNSIGNED_BYTE, this.cells.clear);
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
         gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
         gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
@@ -54,12 +53,12 @@ export class Body {
         this.use("surface").set({
             ...values, u_model: this.model, u_eye_object: transform(this.toObject, eye).slice(0, 3), u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
-            u_far: { int: kFarUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
+            u_clear: { int: kClearUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
             // A ray crosses each row and each column of a map once.
             u_steps: { int: Math.min(maps.reduce((sum, map) => sum + 2 * (map.width + map.height), 256), 60000) },
         });
-        gl.activeTexture(gl.TEXTURE0 + kFarUnit);
-        gl.bindTexture(gl.TEXTURE_3D, this.far);
+        gl.activeTexture(gl.TEXTURE0 + kClearUnit);
+        gl.bindTexture(gl.TEXTURE_3D, this.clear);
         gl.enable(gl.CULL_FACE);
         gl.cullFace(gl.FRONT);
         this.sides.draw();
@@ -75,7 +74,7 @@ export class Body {
 
     dispose() {
         this.sides.dispose();
-        this.gl.deleteTexture(this.far);
+        this.gl.deleteTexture(this.clear);
         Object.values(this.#programs).forEach((one) => this.gl.deleteProgram(one.name));
         this.gpu.dispose();
     }

@@ -136,14 +136,6 @@ void main() {
     gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
 }`;
 
-export const kLineFragment = `
-uniform vec3 u_tint;
-uniform float u_opacity;
-out vec4 o_color;
-void main() {
-    o_color = vec4(u_tint, u_opacity);
-}`;
-
 const kMeshNormal = `
 vec3 meshNormal() {
     vec3 n = normalize(cross(dFdx(v_world), dFdy(v_world)));

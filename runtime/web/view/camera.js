@@ -1,4 +1,4 @@
-// A camera that goes round a point: by mouse, by touch with two fingers, by keys.
+// A camera that goes round a point: by mouse, by touch with two fingers, by arrow keys.
 import { add, boxOf, clamp, cross, length, lookAt, multiply, normalize, perspective, scale, sub } from "./math.js";
 
 const kFov = 36 * Math.PI / 180;
@@ -79,8 +79,10 @@ export class Camera {
     }
 }
 
-/** Mouse, pen and fingers on the canvas. */
-export function followPointers(canvas, camera) {
+const kArrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/** Mouse, pen and fingers on the canvas, and keys. */
+export function followInput(canvas, camera) {
     const down = new Map();
     const spread = () => {
         const [a, b] = [...down.values()];
@@ -123,4 +125,11 @@ export function followPointers(canvas, camera) {
         const pixels = event.deltaY * (event.deltaMode === 1 ? 30 : event.deltaMode === 2 ? 300 : 1);
         camera.zoom(Math.exp(clamp(pixels, -240, 240) * (event.ctrlKey ? 0.008 : 0.0014)));
     }, { passive: false });
+    addEventListener("keydown", (event) => {
+        if (!event.target.closest?.("input, button")) { // which have keys of their own
+            const [x, y] = kArrows[event.key] ?? [0, 0];
+            camera[event.shiftKey ? "pan" : "orbit"](0.08 * x, 0.08 * y);
+            camera.zoom({ "+": 0.85, "-": 1 / 0.85 }[event.key] ?? 1);
+        }
+    });
 }

@@ -42,19 +42,6 @@ export function perspective(fov, aspect, near, far) {
                              0, 0, 2 * far * near / (near - far), 0]);
 }
 
-/** Rows [x y z w] of an affine map, undone: a function of a point. */
-export function inverseRows(rows) {
-    const [a, b, c] = rows;
-    const bc = cross(b, c);
-    const ca = cross(c, a);
-    const ab = cross(a, b);
-    const det = dot(a, bc);
-    return (q) => {
-        const v = [q[0] - a[3], q[1] - b[3], q[2] - c[3]];
-        return scale(add(add(scale(bc, v[0]), scale(ca, v[1])), scale(ab, v[2])), 1 / det);
-    };
-}
-
 /** Of an affine matrix that turns, scales evenly and moves. */
 export function inverseSimilarity(m) {
     const s2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
@@ -82,15 +69,6 @@ export function boxOf(bounds) {
     };
 }
 
-/** The value below which a share of the numbers lies. */
-export function quantile(values, share) {
-    if (values.length === 0) {
-        return 0;
-    }
-    const sorted = Float64Array.from(values).sort();
-    return sorted[Math.floor(share * (sorted.length - 1))];
-}
-
 export function shortNumber(v) {
     if (Math.abs(v) >= 1000 && Math.abs(v) < 1e7) {
         return Math.round(v).toLocaleString("en").replace("-", "−");
@@ -101,14 +79,3 @@ export function shortNumber(v) {
 
 /** unit: the collider's; empty: it has none. */
 export const lengthText = (v, unit) => shortNumber(v) + (unit ? ` ${unit}` : "");
-
-/** Of numbers in threes. */
-export function boundsOf(vertices) {
-    const min = [Infinity, Infinity, Infinity];
-    const max = [-Infinity, -Infinity, -Infinity];
-    vertices.forEach((v, i) => {
-        min[i % 3] = Math.min(min[i % 3], v);
-        max[i % 3] = Math.max(max[i % 3], v);
-    });
-    return { min, max };
-}

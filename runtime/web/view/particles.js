@@ -1,8 +1,27 @@
-// The particles on the page: one system of Relief, of a preset or of a scene that was dropped in.
+// The particles on the page: one system of Relief, with rain, snow or the page's scene in it.
 import { ParticleSystem } from "relief-particles";
-import { kDefaults, presetScene } from "./presets.js";
 
 const kStepsAFrame = 3; // where the page is slow, time goes slower
+
+/** "rain" or "snow" on a box. L: its longest side. */
+export function weather(preset, { center: c, max, longest: L, size }, capacity = 65536) {
+    const rain = preset === "rain";
+    const over = (way, height) => [0, 1, 2].map((k) => (k === 1 ? max[1] + height * L : c[k] + way * (0.6 * size[k] + 0.05 * L)));
+    const lasting = (seconds) => ({ rate: capacity / seconds, duration: 1e5 }); // as keeps that many alive
+    return {
+        particles: { capacity },
+        forces: { gravity: [0, (rain ? -3 : -2.2) * L, 0], wind: [rain ? 0 : 0.12 * L, 0, 0], drag: rain ? 0.5 : 4.5 },
+        ...(rain ? { collision: { sweep: 0.015 * L }, render: { sprite: "quad" } }
+            : { curl_noise: { amplitude: 0.12 * L, scale: 0.6 * L } }),
+        type: [rain ? { radius: 0.004 * L, restitution: 0.35, friction: 0.1, lifetime_loss: 0.12, size: 0.0035 * L, stretch: 0.025,
+                        color: [[0, 0.55, 0.72, 0.95], [1, 0.8, 0.9, 1]], opacity: [[0, 0], [0.06, 0.7], [0.85, 0.65], [1, 0]] }
+            : { radius: 0.006 * L, friction: 1, on_collision: "stop", size: 0.011 * L, color: [0.97, 0.98, 1], opacity: 0.95 }],
+        emitter: rain ? { box_min: over(-1, 0.25), box_max: over(1, 0.6), velocity: [0, -1.4 * L, 0],
+                          velocity_spread: [0.03 * L, 0.15 * L, 0.03 * L], lifetime: [1.8, 2.4], ...lasting(2.4) }
+            : { box_min: over(-1, 0.12), box_max: over(1, 0.5), velocity: [0, -0.4 * L, 0],
+                velocity_spread: [0.08 * L, 0.06 * L, 0.08 * L], lifetime: [11, 14], ...lasting(14) },
+    };
+}
 
 export class Particles {
     #owed = 0;
@@ -10,59 +29,26 @@ export class Particles {
     constructor(gl) {
         this.gl = gl;
         this.system = null;
-        this.preset = null; // "scene": a dropped one
-        this.settings = null;
         this.paused = false;
         this.steps = 0; // grows with whatever the system does
     }
 
-    /** @param body  of body.js */
-    startPreset(preset, body, settings) {
-        this.body = body;
-        const wanted = settings ?? kDefaults[preset];
-        const scene = presetScene(preset, body.name, body.box, wanted);
-        this.#replace(() => new ParticleSystem(this.gl, { scene, files: { [body.name]: body.collider } }), preset);
-        this.settings = wanted;
-    }
-
-    startScene(text, files) {
-        this.#replace(() => new ParticleSystem(this.gl, { scene: text, files }), "scene");
-        this.settings = null;
-    }
-
-    #replace(make, preset) {
-        const made = make(); // the old one plays on where this fails
+    /** @param options  of a ParticleSystem */
+    start(options) {
         this.stop();
-        this.system = made;
-        this.preset = preset;
-        this.info = made.info;
+        this.system = new ParticleSystem(this.gl, options);
+        this.dt = this.system.info.dt;
+        this.steps += 1;
     }
 
     stop() {
         this.system?.dispose();
         this.system = null;
-        this.preset = null;
         this.#owed = 0;
     }
 
-    /** Settings of the sliders. A system of another size is a new one. */
-    change(settings) {
-        const before = this.settings;
-        this.settings = { ...before, ...settings };
-        if (!this.system) {
-            return;
-        }
-        if (this.settings.count !== before.count) {
-            this.startPreset(this.preset, this.body, this.settings);
-            return;
-        }
-        const { collider, time, particles, ...rest } = presetScene(this.preset, this.body.name, this.body.box, this.settings);
-        this.system.set(rest);
-    }
-
     restart() {
-        this.system?.restart();
-        this.info = this.system?.info;
+        this.system.restart();
         this.steps += 1;
     }
 
@@ -76,20 +62,14 @@ export class Particles {
         if (!this.system || this.paused) {
             return;
         }
-        const { dt } = this.info;
-        this.#owed = Math.min(this.#owed + seconds, kStepsAFrame * dt);
-        for (let i = 0; this.#owed >= 0.98 * dt && i < kStepsAFrame; ++i) {
+        this.#owed = Math.min(this.#owed + seconds, kStepsAFrame * this.dt);
+        for (let i = 0; this.#owed >= 0.98 * this.dt && i < kStepsAFrame; ++i) {
             this.step();
-            this.#owed = Math.max(this.#owed - dt, 0);
+            this.#owed = Math.max(this.#owed - this.dt, 0);
         }
     }
 
     draw({ view, projection }, width, height) {
         this.system?.draw({ view, projection, framebuffer: null, width, height });
-    }
-
-    /** How many live: told by the CPU's books, now and then. */
-    get alive() {
-        return this.system?.info.alive ?? 0;
     }
 }

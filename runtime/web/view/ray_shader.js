@@ -11,7 +11,7 @@
 export const kRayGlsl = `
 uniform float u_tiny;       // lengths along a ray below this are none, object units
 uniform int u_steps;        // of a ray, at most
-uniform highp sampler3D u_far;  // cells.js
+uniform highp sampler3D u_clear;  // cells.js
 uniform vec3 u_cells_from;
 uniform float u_cell;           // their side
 
@@ -234,17 +234,15 @@ struct Hit {
     int border;  // as Stretch has it
 };
 
-// How many cells around that of a point are outside, as 255ths; and where the ray leaves these cells, or the point's own.
-float cellsAhead(vec3 origin, vec3 d, float t, out float ends) {
+// Whether a map sees the cell of a point outside, and where the ray leaves that cell.
+bool clearAhead(vec3 origin, vec3 d, float t, out float ends) {
     vec3 o = (origin - u_cells_from) / u_cell;
     vec3 way = d / u_cell;
-    vec3 cell = clamp(floor(o + t * way + 1e-3 * sign(d)), vec3(0.0), vec3(textureSize(u_far, 0)) - 1.0);
-    float far = floor(255.0 * texelFetch(u_far, ivec3(cell), 0).r + 0.5);
-    float more = max(far - 1.0, 0.0);
+    vec3 cell = clamp(floor(o + t * way + 1e-3 * sign(d)), vec3(0.0), vec3(textureSize(u_clear, 0)) - 1.0);
     vec3 enters, leaves;
-    slabs(o, way, cell - more, cell + 1.0 + more, enters, leaves);
+    slabs(o, way, cell, cell + 1.0, enters, leaves);
     ends = max(min(min(leaves.x, leaves.y), leaves.z), t + u_tiny);
-    return far;
+    return texelFetch(u_clear, ivec3(cell), 0).r > 0.5;
 }
 
 // d: unit length, object space. inside: what is looked for is the first point outside.
@@ -252,7 +250,7 @@ Hit follow(vec3 origin, vec3 d, float t, float far, bool inside) {
     Hit hit = Hit(NEVER, NEVER, -1, -1);
     float cell_ends = t;
     for (int n = 0; n < u_steps && t < far; ++n) {
-        if (t >= cell_ends && cellsAhead(origin, d, t, cell_ends) > 0.0) {
+        if (t >= cell_ends && clearAhead(origin, d, t, cell_ends)) {
             if (inside) {
                 hit.t = t;
                 return hit;

@@ -1,8 +1,8 @@
 // Draws all there is. The bodies are drawn when something about them changes, and kept: particles fall before the kept
 // picture, by its depths.
 import { Geometry, Target, bindTexture, drawScreen, drawnBySoftware, kScreenVertex, program } from "./gl.js";
-import { kBodyVertex, kCopyFragment, kFloorFragment, kLineFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
-import { add, identity, multiply, normalize, scale } from "./math.js";
+import { kBodyVertex, kCopyFragment, kFloorFragment, kLiveVertex, kMeshFragment, kSkyFragment } from "./body_shaders.js";
+import { add, identity, normalize, scale } from "./math.js";
 
 const kThemes = {
     dark: {
@@ -27,16 +27,13 @@ export class View {
         this.gl = gl;
         this.software = drawnBySoftware(gl); // twice as fine would take seconds
         this.bodies = []; // all that are drawn
-        this.body = null; // the one that is asked
+        this.body = null; // the one in the panel
         this.mesh = null; // Geometry, in its object space
-        this.lines = null; // Geometry
-        this.tint = [1, 1, 1]; // of the lines
         this.dirty = true;
         this.programs = {
             mesh: program(gl, kBodyVertex, kMeshFragment),
             live: program(gl, kLiveVertex, kMeshFragment),
             floor: program(gl, kBodyVertex, kFloorFragment),
-            line: program(gl, kBodyVertex, kLineFragment),
             sky: program(gl, kScreenVertex, kSkyFragment),
             copy: program(gl, kScreenVertex, kCopyFragment),
         };
@@ -109,19 +106,14 @@ export class View {
     }
 
     #drawMesh(common, theme, look) {
-        const { body } = this;
-        const heat = look.heat > 0 && body;
-        const program = heat ? body.use("heat") : this.programs.mesh;
-        program.set({ ...common, u_base: theme.mesh, u_model: body?.model ?? identity(),
-                      ...(heat ? { u_range: look.heat, u_depth: look.depth } : {}) });
+        const heat = look.heat > 0;
+        const program = heat ? this.body.use("heat") : this.programs.mesh;
+        program.set({ ...common, u_base: theme.mesh, ...(heat && { u_range: look.heat, u_depth: look.depth }) });
         this.mesh.draw();
     }
 
     #drawSlice(camera, { axis, at, range }) {
         const { body } = this;
-        if (!body) {
-            return;
-        }
         const margin = 0.1 * body.box.longest;
         const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map((side) => {
             const p = [0, 0, 0];
@@ -172,38 +164,7 @@ export class View {
     }
 
     dispose() {
-        [this.mesh, this.floor, this.plane, this.lines, this.#kept].forEach((one) => one?.dispose());
+        [this.mesh, this.floor, this.plane, this.#kept].forEach((one) => one?.dispose());
         Object.values(this.programs).forEach((one) => this.gl.deleteProgram(one.name));
-    }
-
-    /** @param segments  [from, to] each, in the world */
-    setLines(segments, tint) {
-        this.lines?.dispose();
-        const points = Float32Array.from(segments.flat(2));
-        this.lines = segments.length > 0 ? new Geometry(this.gl, points, Uint32Array.from(points.keys()).slice(0, 2 * segments.length)) : null;
-        this.tint = tint;
-    }
-
-    /** Two pixels wide, by lines beside each other; what is hidden shows faintly. */
-    drawLines(camera, width, height) {
-        if (!this.lines) {
-            return;
-        }
-        const { gl } = this;
-        gl.enable(gl.BLEND);
-        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-        gl.depthMask(false);
-        for (const [test, u_opacity] of [[gl.LEQUAL, 0.8], [gl.GREATER, 0.15]]) {
-            gl.depthFunc(test);
-            for (const [x, y] of [[0, 0], [1, 0], [0, 1]]) {
-                const aside = identity();
-                [aside[12], aside[13], aside[14]] = [2 * x / width, 2 * y / height, -1e-4];
-                this.programs.line.set({ u_camera: multiply(aside, camera), u_model: identity(), u_tint: this.tint, u_opacity });
-                this.lines.draw(gl.LINES);
-            }
-        }
-        gl.depthFunc(gl.LEQUAL);
-        gl.depthMask(true);
-        gl.disable(gl.BLEND);
     }
 }
