@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "formats/base/destination.h"
 #include "formats/base/file_io.h"
@@ -26,58 +28,46 @@ bool isOrHolds(const fs::path& outer, const fs::path& inner) {
 
 }  // namespace
 
-FileGuard::Target FileGuard::targetOf(const fs::path& path, int standard) {
+FileGuard::Keys FileGuard::keysOf(const fs::path& path, int standard) {
     const std::optional<int> descriptor = path == "-" ? std::optional(standard) : descriptorOf(path);
-    Target target;
+    Keys keys;
     struct stat status {};
     const bool exists = (descriptor ? ::fstat(*descriptor, &status) : ::stat(path.c_str(), &status)) == 0;
     if (exists && S_ISREG(status.st_mode)) {
-        target.id = Id(status.st_dev, status.st_ino);
+        keys.push_back(std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino));
     }
     if (descriptor) {
-        target.place = standard == STDOUT_FILENO && descriptor == STDOUT_FILENO ? "-" : "";
+        if (standard == STDOUT_FILENO && descriptor == STDOUT_FILENO) {
+            keys.emplace_back("-");
+        }
     } else if (!exists || S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) {
         std::error_code error;
         const fs::path place = destination(path, error);
-        target.place = error ? path.native() : place.native();
+        keys.push_back(error ? path.native() : place.native());
     }
-    return target;
+    return keys;
 }
 
-const FileGuard::File* FileGuard::find(const Target& target) const {
-    if (const auto known = target.id ? by_id_.find(*target.id) : by_id_.end(); known != by_id_.end()) {
-        return &files_[known->second];
-    }
-    if (const auto known = by_place_.find(target.place); known != by_place_.end()) {
-        return &files_[known->second];
-    }
-    const fs::path place = target.place;
-    for (const Series& series : series_) {
-        if (place.parent_path() == series.files.folder && series.files.hold(place.filename().native())) {
-            return &files_[series.file];
+const FileGuard::File* FileGuard::find(const Keys& keys) const {
+    for (const std::string& key : keys) {
+        if (const auto known = by_key_.find(key); known != by_key_.end()) {
+            return &files_[known->second];
+        }
+        const fs::path place = key;
+        for (const Series& series : series_) {
+            if (place.parent_path() == series.files.folder && series.files.hold(place.filename().native())) {
+                return &files_[series.file];
+            }
         }
     }
     return nullptr;
 }
 
-const FileGuard::File* FileGuard::findFolder(const fs::path& folder) const {
-    for (const auto& [place, file] : by_place_) {
-        if (place != "-" && !files_[file].input && isOrHolds(place, folder)) {
-            return &files_[file];
-        }
+void FileGuard::add(const Keys& keys, File file) {
+    for (const std::string& key : keys) {
+        by_key_.emplace(key, files_.size());
     }
-    return nullptr;
-}
-
-void FileGuard::add(const Target& target, File file) {
-    const std::size_t index = files_.size();
     files_.push_back(std::move(file));
-    if (target.id) {
-        by_id_.emplace(*target.id, index);
-    }
-    if (!target.place.empty()) {
-        by_place_.emplace(target.place, index);
-    }
 }
 
 Result<void> FileGuard::refusal(const File& file, const File& other) {
@@ -98,12 +88,11 @@ Result<void> FileGuard::reads(const fs::path& path) {
     if (path.empty()) {
         return {};
     }
-    File input{path, "", true};
-    const Target target = targetOf(path, STDIN_FILENO);
-    if (const File* other = find(target); other != nullptr && !other->input) {
-        return refusal(input, *other);
+    const Keys keys = keysOf(path, STDIN_FILENO);
+    if (const File* other = find(keys); other != nullptr && !other->input) {
+        return refusal({path, "", true}, *other);
     }
-    add(target, std::move(input));
+    add(keys, {path, "", true});
     return {};
 }
 
@@ -119,17 +108,17 @@ Result<void> FileGuard::writes(const fs::path& path, std::string_view option) {
 }
 
 const FileGuard::File* FileGuard::claim(const fs::path& path, std::string_view option) {
-    const Target target = targetOf(path, STDOUT_FILENO);
-    if (const File* other = find(target); other != nullptr) {
+    const Keys keys = keysOf(path, STDOUT_FILENO);
+    if (const File* other = find(keys); other != nullptr) {
         return other;
     }
     // A folder of frames that is not made yet.
     for (const Series& series : series_) {
-        if (!target.place.empty() && isOrHolds(target.place, series.files.folder)) {
+        if (!keys.empty() && isOrHolds(keys.back(), series.files.folder)) {
             return &files_[series.file];
         }
     }
-    add(target, {path, std::string(option)});
+    add(keys, {path, std::string(option)});
     return nullptr;
 }
 
@@ -142,39 +131,29 @@ Result<void> FileGuard::writes(const NumberedFiles& files, std::string_view opti
         return fail(ErrorCode::kIo, "cannot follow " + quotedPath(files.folder) + ": " + error.message() +
                                         "; choose another place for " + self.option);
     }
-    if (const File* other = findFolder(real.folder); other != nullptr) {
-        return refusal(self, *other);
-    }
-    // Files that are not there yet are known by their names alone.
-    for (const auto& [place, file] : by_place_) {
-        const fs::path path = place;
+    for (const auto& [key, file] : by_key_) {
+        const fs::path path = key;
+        if (!files_[file].input && path.is_absolute() && isOrHolds(path, real.folder)) {
+            return refusal(self, files_[file]);
+        }
+        // Files that are not there yet are known by their names alone.
         if (path.parent_path() == real.folder && real.hold(path.filename().native())) {
             return refusal({files.folder / path.filename(), self.option}, files_[file]);
         }
     }
-    std::vector<std::pair<Target, File>> found;
+    std::vector<std::pair<Keys, File>> found;
     for (fs::directory_iterator entry(real.folder, error), end; !error && entry != end;
          entry.increment(error)) {
-        const std::string name = entry->path().filename().native();
-        if (!real.hold(name)) {
-            continue;
+        const fs::path name = entry->path().filename();
+        if (real.hold(name.native())) {
+            found.emplace_back(keysOf(entry->path(), STDOUT_FILENO), File{files.folder / name, self.option});
+            if (const File* other = find(found.back().first); other != nullptr) {
+                return refusal(found.back().second, *other);
+            }
         }
-        File file{files.folder / name, self.option};
-        Target target = targetOf(entry->path(), STDOUT_FILENO);
-        if (const File* other = find(target); other != nullptr) {
-            return refusal(file, *other);
-        }
-        // A link to another of them: one picture would be written over the other.
-        const fs::path place = target.place;
-        if (place != entry->path() && place.parent_path() == real.folder &&
-            real.hold(place.filename().native())) {
-            return fail(ErrorCode::kUsage, quotedPath(file.path) + " is a link to another file of " +
-                                               self.option + "; remove it, or choose another place");
-        }
-        found.emplace_back(std::move(target), std::move(file));
     }
-    for (auto& [target, file] : found) {
-        add(target, std::move(file));
+    for (auto& [keys, file] : found) {
+        add(keys, std::move(file));
     }
     series_.push_back({std::move(real), files_.size()});
     files_.push_back(self);

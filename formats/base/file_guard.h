@@ -1,15 +1,11 @@
 // Keeps the files of a run apart: nothing that it reads is lost to what it writes, and no two outputs are one file.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "formats/base/numbered_files.h"
@@ -45,26 +41,20 @@ class FileGuard {
     [[nodiscard]] const File* claim(const std::filesystem::path& path, std::string_view option);
 
   private:
-    using Id = std::pair<dev_t, ino_t>;
-    /// What a path leads to.
-    struct Target {
-        std::optional<Id> id;  ///< of a regular file
-        std::string place;     ///< its destination, "-" for standard output; empty for devices
-    };
+    /// What a path leads to: the number of a regular file, and the destination, "-" for standard output. None for devices.
+    using Keys = std::vector<std::string>;
     struct Series {
         NumberedFiles files;  ///< in the folder's destination
         std::size_t file;     ///< in files_
     };
 
-    [[nodiscard]] static Target targetOf(const std::filesystem::path& path, int standard);
-    [[nodiscard]] const File* find(const Target& target) const;
-    [[nodiscard]] const File* findFolder(const std::filesystem::path& folder) const;
-    void add(const Target& target, File file);
+    [[nodiscard]] static Keys keysOf(const std::filesystem::path& path, int standard);
+    [[nodiscard]] const File* find(const Keys& keys) const;
+    void add(const Keys& keys, File file);
     [[nodiscard]] static Result<void> refusal(const File& file, const File& other);
 
     std::vector<File> files_;
-    std::map<Id, std::size_t> by_id_;              // in files_
-    std::map<std::string, std::size_t> by_place_;  // in files_
+    std::map<std::string, std::size_t> by_key_;  // in files_
     std::vector<Series> series_;
 };
 

@@ -11,13 +11,8 @@
 
 namespace relief {
 
-/// A temporary file beside the file that it will replace, `.relief-PID-N-RANDOM.tmp`. Removed unless it has
-/// been renamed: by the destructor, by a signal that removeTemporaryFiles() is called for, and after SIGKILL
-/// or a power cut by the next program that writes into the folder. Its writer holds a lock on it (flock), so
-/// that no other program takes it for a dead one's.
-///
-/// O_TMPFILE would need no name until the end, but a name then: linkat replaces no file. And not all file
-/// systems have it.
+/// A temporary file beside the file that it will replace, `.relief-PID-N-RANDOM.tmp`. Removed unless it has been renamed: by
+/// the destructor, and by removeAll(). After SIGKILL or a power cut it stays.
 class TemporaryFile {
   public:
     TemporaryFile() = default;
@@ -31,22 +26,19 @@ class TemporaryFile {
     [[nodiscard]] int fill(std::span<const std::byte> bytes, std::optional<mode_t> mode);
     [[nodiscard]] int renameTo(const std::filesystem::path& target);
 
-  private:
-    [[nodiscard]] int createNamed(const std::filesystem::path& name, mode_t mode);
-    void forget();
+    /// Removes all of this process, before it ends. Safe in a signal handler.
+    static void removeAll();
 
-    std::filesystem::path name_;
+  private:
+    struct Slot;
+
     Descriptor file_;
-    Descriptor lock_;  // the same file again, for the lock has to outlive file_
-    int slot_ = -1;
+    Slot* slot_ = nullptr;  // of the list of names
 };
 
-/// Removes the temporary files of this process. For a signal handler that ends the program: calls only what
-/// is safe there, and whoever creates such a file afterwards stands still. Waits for those that are being
-/// created, for a second at most.
-void removeTemporaryFiles();
-
-/// Removes temporary files in a folder whose writers are dead. What cannot be locked or removed stays.
-void removeStaleTemporaryFiles(const std::filesystem::path& folder);
+/// For the start of main(): SIGINT, SIGTERM, SIGHUP and SIGQUIT remove the temporary files, then end the program as
+/// they would have done anyway; a shell reports 128 + n. One that is ignored, as by nohup, stays ignored. SIGXFSZ is ignored:
+/// the write that failed reports EFBIG.
+void endCleanlyOnSignals();
 
 }  // namespace relief

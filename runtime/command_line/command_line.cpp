@@ -11,8 +11,8 @@
 #include <span>
 #include <sstream>
 
-#include "formats/base/ending_signals.h"
 #include "formats/base/file_io.h"
+#include "formats/base/temporary_file.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -90,7 +90,7 @@ struct Progress::Impl {
     /// The lock is kept: whoever wants it waits for the end.
     [[noreturn]] void timeIsUp() {
         wipe();
-        removeTemporaryFiles();
+        TemporaryFile::removeAll();
         options.report({ErrorCode::kLimit, options.name + ": the bake did not end within " +
                                                secondsText(double{*options.seconds}) + "; it was " + stage +
                                                ", for " + secondsText(secondsSince(stage_start)) +

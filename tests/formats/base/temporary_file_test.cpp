@@ -1,8 +1,6 @@
 #include "formats/base/temporary_file.h"
 
 #include <gtest/gtest.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <csignal>
@@ -10,7 +8,6 @@
 #include <set>
 #include <string>
 
-#include "formats/base/ending_signals.h"
 #include "formats/base/file_io.h"
 
 namespace relief {
@@ -38,46 +35,17 @@ class TemporaryFiles : public ::testing::Test {
     fs::path folder_;
 };
 
-constexpr const char* kStale = ".relief-1-0-00000000.tmp";
-
-TEST_F(TemporaryFiles, OfDeadWritersAreRemovedAndOthersStay) {
-    std::ofstream(folder_ / kStale) << "half a";
-    std::ofstream(folder_ / "kept.tmp") << "not ours";
-    std::ofstream(folder_ / ".relief-1-0") << "a film's, whose writer holds no lock";
-    fs::create_symlink("kept.tmp", folder_ / ".relief-2-0-00000000.tmp");
-    ASSERT_EQ(::mkfifo((folder_ / ".relief-3-0-00000000.tmp").c_str(), 0600), 0);
-    TemporaryFile live;
-    ASSERT_EQ(live.create(folder_, 0600), 0);
-    std::set<std::string> expected = names();
-    EXPECT_EQ(expected.count(kStale), 0U) << "the first file in a folder removes what is left";
-    EXPECT_EQ(expected.size(), 5U);
-    removeStaleTemporaryFiles(folder_);
-    EXPECT_EQ(names(), expected) << "a living writer's was removed, or what is no file of ours";
-}
-
-TEST_F(TemporaryFiles, StayLockedUntilTheyHaveTheirName) {
+TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {
+    {
+        TemporaryFile file;
+        ASSERT_EQ(file.create(folder_, 0600), 0);
+        EXPECT_EQ(names().size(), 1U);
+    }
+    EXPECT_TRUE(names().empty());
     TemporaryFile file;
     ASSERT_EQ(file.create(folder_, 0600), 0);
     ASSERT_EQ(file.fill(std::as_bytes(std::span("whole", 5)), std::nullopt), 0);
-    removeStaleTemporaryFiles(folder_);
     ASSERT_EQ(file.renameTo(folder_ / "a"), 0);
-    EXPECT_EQ(names(), std::set<std::string>{"a"});
-}
-
-TEST_F(TemporaryFiles, AKilledWriterLeavesOneThatTheNextRemoves) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-        TemporaryFile file;
-        if (file.create(folder_, 0600) == 0) {
-            ::raise(SIGKILL);
-        }
-        ::_exit(1);
-    }
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status));
-    EXPECT_EQ(names().size(), 1U);
-    ASSERT_TRUE(writeFile(folder_ / "a", std::as_bytes(std::span("x", 1))));
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
 
