@@ -1,9 +1,11 @@
 // `relief`: the offline tool. Verbs are in bake/cli/command_VERB.cpp; exit codes are those of formats/base/result.h.
 #include "bake/cli/command_line.h"
+#include "bake/recipe/child_process.h"
 #include "formats/base/heap.h"
 #include "runtime/command_line/command_line.h"
 
 int main(int argc, char** argv) {
+    relief::ChildProcesses::endWithRecipe();
     relief::prepareHeap(relief::kBakeHeapBytes);
     return relief::runProgram(
         "relief", [&] { return relief::runRelief(argc, argv); },

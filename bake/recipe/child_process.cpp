@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,6 +10,8 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <utility>
 
 namespace relief {
@@ -19,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::array<int, 3> kEndSignals = {SIGINT, SIGTERM, SIGHUP};
 constexpr auto kPatience = std::chrono::milliseconds(1000);
 constexpr int kOomScore = 500;
+constexpr const char* kParentVariable = "RELIEF_RECIPE_PROCESS";
 
 bool isIgnored(int signal) {
     struct sigaction action {};
@@ -47,7 +51,17 @@ struct ChildProcesses::Child {
     void kill(int signal) const { ::kill(-process.pid(), signal); }
 };
 
+void ChildProcesses::endWithRecipe() {
+    if (const char* const parent = std::getenv(kParentVariable)) {
+        ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+        if (std::to_string(::getppid()) != parent) {  // it died before that
+            std::_Exit(128 + SIGTERM);
+        }
+    }
+}
+
 ChildProcesses::ChildProcesses() {
+    ::setenv(kParentVariable, std::to_string(::getpid()).c_str(), 1);
     ::sigemptyset(&wanted_);
     ::sigaddset(&wanted_, SIGCHLD);
     for (const int signal : kEndSignals) {
@@ -64,6 +78,7 @@ ChildProcesses::~ChildProcesses() {
         static_cast<void>(askedToEnd());  // one request is enough; others would be delivered now
     }
     ::sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
+    ::unsetenv(kParentVariable);
 }
 
 Result<void> ChildProcesses::startSelf(const std::vector<std::string>& arguments, double seconds_max,
@@ -78,13 +93,12 @@ Result<void> ChildProcesses::startSelf(const std::vector<std::string>& arguments
     start.arguments.insert(start.arguments.end(), arguments.begin(), arguments.end());
     start.files = {nothing.get(), child.out.get(), child.err.get()};
     start.blocked_signals = mask_before_;
-    start.signal_on_orphan = SIGTERM;
     start.own_group = true;
-    start.oom_score = kOomScore;
     if (const int code = nothing && child.out && child.err ? child.process.start(start) : errno) {
         return fail(ErrorCode::kFailure, "cannot start a process: " + std::system_category().message(code) +
                                              "; choose a smaller -j, or raise the limits (ulimit -n -u)");
     }
+    std::ofstream("/proc/" + std::to_string(child.process.pid()) + "/oom_score_adj") << kOomScore;
     if (seconds_max > 0.0) {
         child.deadline = child.start + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(seconds_max));

@@ -60,6 +60,9 @@ class ChildProcesses {
     /// Ends all children and theirs: politely, and after a second by force. \return how they ended.
     std::vector<ChildEnd> endAll();
 
+    /// For the start of main(): a process that startSelf() has started ends with the process that started it (SIGTERM).
+    static void endWithRecipe();
+
     /// After everything is cleaned up: ends this process by the signal that asked for it.
     [[noreturn]] static void endBySignal(int signal);
 

@@ -1,4 +1,4 @@
-// Other programs, started and waited for: the only place that forks.
+// Other programs, started and waited for.
 #pragma once
 
 #include <sys/types.h>
@@ -22,9 +22,7 @@ struct ProcessStart {
     /// nohup); true: all have their default actions.
     bool reset_ignored_signals = false;
     sigset_t blocked_signals{};  ///< none, unless set
-    int signal_on_orphan = 0;    ///< it gets this signal when the thread that starts it ends; 0: none
     bool own_group = false;      ///< it leads a process group of its own
-    int oom_score = 0;           ///< oom_score_adj: from 0 to 1000, the last of which the system ends first
 };
 
 /// How a program ended.
