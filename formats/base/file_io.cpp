@@ -27,33 +27,25 @@ constexpr int kLinksMax = 40;                         // as Linux follows
 const char* cure(int code) {
     switch (code) {
         case ENOENT:
-            return "check the path; a folder is not created for you";
         case ENOTDIR:
-            return "a part of the path is no folder; check the path";
+            return "check the path; a folder is not created for you";
         case EISDIR:
             return "name a file, not a folder";
         case EACCES:
         case EPERM:
-            return "check the permissions of the file and of its folder";
         case EROFS:
-            return "choose a folder that can be written";
+            return "check the permissions of the file and of its folder, or choose another folder";
         case ENOSPC:
         case EDQUOT:
         case EFBIG:
             return "free some space, raise the limit, or write elsewhere";
-        case ENAMETOOLONG:
-            return "choose a shorter name";
-        case ELOOP:
-            return "the symbolic links lead in a circle; mend them";
         case EMFILE:
         case ENFILE:
             return "close other files, or raise the limit (ulimit -n)";
         case EPIPE:
             return "the program that reads the output has ended";
-        case EINVAL:
-            return "check the path";
         default:
-            return "check the disk, or choose another place";
+            return "check the path and the disk, or choose another place";
     }
 }
 

@@ -7,6 +7,7 @@
 #include <version>
 
 #if !defined(__cpp_lib_to_chars)
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -39,45 +40,25 @@ inline std::to_chars_result toChars(char* first, char* last, float value) {
 template <class Number>
 std::from_chars_result fromChars(const char* first, const char* last, Number& value, bool fixed = false) {
     if constexpr (std::is_floating_point_v<Number>) {
-        // The longest prefix that std::from_chars takes; strtod would also take blanks, a plus sign and hexadecimals.
+        // Of the characters that std::from_chars takes: strtod would also take blanks, a plus sign and hexadecimals.
         const std::string_view text(first, static_cast<std::size_t>(last - first));
-        const std::size_t sign = text.starts_with('-') ? 1 : 0;
-        std::string number;
-        if (const std::string_view word = text.substr(sign, 3); word == "inf" || word == "nan") {
-            number = text.substr(0, sign + 3);
-        } else {
-            std::size_t end = text.find_first_not_of("0123456789", sign);
-            end = end == std::string_view::npos ? text.size() : end;
-            if (end < text.size() && text[end] == '.') {
-                end = text.find_first_not_of("0123456789", end + 1);
-                end = end == std::string_view::npos ? text.size() : end;
-            }
-            if (text.substr(sign, end - sign).find_first_of("0123456789") == std::string_view::npos) {
-                return {first, std::errc::invalid_argument};
-            }
-            if (!fixed && end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
-                std::size_t digits = end + 1;
-                digits += digits < text.size() && (text[digits] == '+' || text[digits] == '-') ? 1 : 0;
-                if (digits < text.size() && text[digits] >= '0' && text[digits] <= '9') {
-                    end = text.find_first_not_of("0123456789", digits);
-                    end = end == std::string_view::npos ? text.size() : end;
-                }
-            }
-            number = text.substr(0, end);
+        const std::string number(text.substr(
+            0, std::min(text.find_first_not_of(fixed ? "+-.0123456789infaty" : "+-.0123456789infatyeE"),
+                        text.size())));
+        char* end = nullptr;
+        const auto read =
+            static_cast<Number>(std::is_same_v<Number, float> ? std::strtof(number.c_str(), &end)
+                                                              : std::strtod(number.c_str(), &end));
+        const std::string_view taken(number.c_str(), static_cast<std::size_t>(end - number.c_str()));
+        if (taken.empty() || taken.front() == '+') {
+            return {first, std::errc::invalid_argument};
         }
-        Number read{};
-        if constexpr (std::is_same_v<Number, float>) {
-            read = std::strtof(number.c_str(), nullptr);
-        } else {
-            read = std::strtod(number.c_str(), nullptr);
-        }
-        const char* const end = first + number.size();
         const bool finite = read - read == Number{0};
-        if (!finite && number.find_first_of("0123456789") != std::string::npos) {
-            return {end, std::errc::result_out_of_range};
+        if (!finite && taken.find_first_of("0123456789") != std::string_view::npos) {
+            return {first + taken.size(), std::errc::result_out_of_range};
         }
         value = read;
-        return {end, std::errc{}};
+        return {first + taken.size(), std::errc{}};
     } else {
         return std::from_chars(first, last, value);
     }

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 
@@ -33,23 +34,6 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
     return previous[b.size()];
 }
 
-/// Whether a decimal number that is well-formed and not 0 lies below 1.
-bool isBelowOne(std::string_view text) {
-    const std::size_t mantissa_end = std::min(text.find_first_of("eE"), text.size());
-    const std::string_view mantissa = text.substr(0, mantissa_end);
-    const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
-    const std::size_t digit = mantissa.find_first_of("123456789");
-    // That of the first digit but 0: 3 of 1234, -2 of 0.012.
-    const auto place =
-        static_cast<std::int64_t>(point) - static_cast<std::int64_t>(digit) - (digit < point ? 1 : 0);
-    std::string_view exponent = text.substr(std::min(mantissa_end + 1, text.size()));
-    const bool negative = exponent.starts_with('-');
-    exponent.remove_prefix(negative || exponent.starts_with('+') ? 1 : 0);
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 62;  // the sum does not wrap
-    const auto size = static_cast<std::int64_t>(std::min(parseUnsigned(exponent).value_or(0), kMost));
-    return place + (negative ? -size : size) < 0;
-}
-
 template <class T>
 std::optional<T> parseNumber(std::string_view text) {
     if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
@@ -61,7 +45,8 @@ std::optional<T> parseNumber(std::string_view text) {
         return std::nullopt;
     }
     // std::from_chars takes what rounds to 0 for as much of an error as what is too large.
-    if (error == std::errc::result_out_of_range && isBelowOne(text)) {
+    if (error == std::errc::result_out_of_range &&
+        std::abs(std::strtod(std::string(text).c_str(), nullptr)) < 1.0) {
         return text.starts_with('-') ? -T{} : T{};
     }
     return error == std::errc{} ? std::optional(value) : std::nullopt;
