@@ -96,7 +96,7 @@ bool take(std::string_view name, std::string_view value, BakeRequest& request) {
     }
     BakeRequest changed = request;
     if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
-        !checkRepair(changed.repair.method) || (name == "map" && !parseMapSpec(value))) {
+        !wrapAlpha(changed.repair.method) || (name == "map" && !parseMapSpec(value))) {
         return false;
     }
     request = std::move(changed);
@@ -114,7 +114,7 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
         return fail(ErrorCode::kUsage, conflict);
     }
     RELIEF_TRY(readMaps(request, settings));
-    RELIEF_TRY(checkRepair(request.repair.method));
+    static_cast<void>(RELIEF_TRY(wrapAlpha(request.repair.method)));
     settings.bake.quality = request.quality.value_or(settings.bake.quality);
     settings.bake.prefer = request.prefer.value_or(settings.bake.prefer);
     settings.bake.threads = request.threads.value_or(settings.bake.threads);

@@ -166,7 +166,7 @@ struct BakeSettings {
 };
 
 /// The rules across fields. Fails with kUsage for two ways to choose the maps, and for options that do nothing together; as
-/// parseMapSpec, checkMapSize, parseShapeOptions and checkRepair.
+/// parseMapSpec, checkMapSize, parseShapeOptions and wrapAlpha.
 [[nodiscard]] Result<BakeSettings> settingsOf(const BakeRequest& request);
 
 /// A request as a container records it: the maps that were baked, with their sizes, and all else that the bytes depend on.

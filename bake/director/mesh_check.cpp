@@ -20,8 +20,8 @@ constexpr double kWrapOffset = 1.0 / 30.0;
 constexpr double kWrapAlphaLeast = double{0.005F};
 
 Result<void> checkSameMesh(const Collider& collider, const std::string& repair, const TriangleMesh& mesh) {
-    const double tolerance =
-        (kBoundsTolerance + kWrapOffset * wrapAlpha(repair)) * static_cast<double>(mesh.bounds.longestSide());
+    const double tolerance = (kBoundsTolerance + kWrapOffset * wrapAlpha(repair).value_or(0.0)) *
+                             static_cast<double>(mesh.bounds.longestSide());
     for (int i = 0; i < 3; ++i) {
         // Written so that NaN fails too.
         const bool same =
@@ -148,7 +148,7 @@ bool MeshCheck::passes(std::optional<float> max_error) const {
 }
 
 Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh) {
-    const double alpha = wrapAlpha(recorded.repair.method);
+    const double alpha = RELIEF_TRY(wrapAlpha(recorded.repair.method));
     if (alpha > 0.0 && alpha < kWrapAlphaLeast) {
         return fail(ErrorCode::kUnsupported, "--repair " + recorded.repair.method + " takes long");
     }

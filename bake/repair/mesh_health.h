@@ -1,4 +1,4 @@
-// Counts of what keeps a mesh from being the boundary of a solid. Equal positions are one vertex throughout, as importers
+// Counts of the faults that keep a mesh from bounding a solid. Equal positions are one vertex throughout, as importers
 // repeat positions along seams.
 #pragma once
 
@@ -27,7 +27,7 @@ void fields(Visitor& visit, F& fault) {
 
 struct MeshHealth {
     std::uint64_t triangles = 0;
-    std::uint64_t degenerate_triangles = 0;  ///< without area; left out by the importer
+    std::uint64_t degenerate_triangles = 0;  ///< without area; dropped by the importer
     std::uint64_t duplicate_triangles = 0;   ///< of the three vertices of an earlier triangle, in any order
     std::uint64_t boundary_edges = 0;        ///< of one triangle
     std::uint64_t nonmanifold_edges = 0;     ///< of three triangles or more
@@ -70,8 +70,8 @@ void fields(Visitor& visit, H& health) {
           {"First fault of the most serious kind; null if the mesh is solid"});
 }
 
-/// The same for any number of threads.
-/// \param intersections  count these too: some seconds for a million triangles.
+/// The result does not depend on the number of threads.
+/// \param intersections  also count these: some seconds for a million triangles.
 /// Errors: those of selfIntersections (mesh_repair.h).
 [[nodiscard]] Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, bool intersections = false);
 

@@ -16,10 +16,6 @@
 #define CGAL_NDEBUG 1
 #endif
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/border.h>
-#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Random.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
@@ -32,15 +28,6 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using SurfaceMesh = CGAL::Surface_mesh<Point>;
 using Corners = std::array<std::size_t, 3>;
-namespace pmp = CGAL::Polygon_mesh_processing;
-
-/// Larger holes do without the search for the best triangulation, which takes cubic time.
-constexpr std::size_t kCubicEdgesMax = 200;
-
-glm::uvec3 cornersOf(const Corners& t) {
-    return {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-            static_cast<std::uint32_t>(t[2])};
-}
 
 /// Distinct points, and triangles, for CGAL: in units of the longest side about the middle of the box, where no product of
 /// coordinates leaves the range of a double.
@@ -68,30 +55,13 @@ struct Soup {
         }
     }
 
-    /// Keeps the first triangle of each set of corners.
-    void dropDuplicates() {
-        std::vector<SortedTriangle> sorted;
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            sorted.emplace_back(cornersOf(triangles[i]), static_cast<std::uint32_t>(i));
-        }
-        std::ranges::sort(sorted);
-        const auto [end, last] = std::ranges::unique(sorted, {}, &SortedTriangle::corners);
-        sorted.erase(end, last);
-        std::ranges::sort(sorted, {}, &SortedTriangle::index);
-        for (std::size_t i = 0; i < sorted.size(); ++i) {
-            triangles[i] = triangles[sorted[i].index];
-        }
-        triangles.resize(sorted.size());
-    }
-
     [[nodiscard]] glm::vec3 toObject(const Point& p) const {
         return center + side * glm::dvec3(p.x(), p.y(), p.z());
     }
 };
 
-/// Another surface of the same file.
-Result<TriangleMesh> meshOf(const TriangleMesh& source, std::vector<glm::vec3> positions,
-                            std::vector<glm::uvec3> triangles) {
+/// The surface, as another one of the same file.
+Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup, const SurfaceMesh& surface) {
     TriangleMesh mesh;
     mesh.name = source.name;
     mesh.content_hash = source.content_hash;
@@ -100,47 +70,19 @@ Result<TriangleMesh> meshOf(const TriangleMesh& source, std::vector<glm::vec3> p
     mesh.dependencies = source.dependencies;
     mesh.dependency_hashes = source.dependency_hashes;
     mesh.warnings = source.warnings;
-    mesh.positions = std::move(positions);
-    mesh.triangles = std::move(triangles);
-    return finishMesh(std::move(mesh));
-}
-
-Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup) {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    for (const Point& p : soup.points) {
-        positions.push_back(soup.toObject(p));
-    }
-    for (const Corners& t : soup.triangles) {
-        triangles.push_back(cornersOf(t));
-    }
-    return meshOf(source, std::move(positions), std::move(triangles));
-}
-
-Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup, const SurfaceMesh& surface) {
-    std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> index(surface.number_of_vertices() + surface.number_of_removed_vertices(), 0);
     for (const SurfaceMesh::Vertex_index v : surface.vertices()) {
-        index[v] = static_cast<std::uint32_t>(positions.size());
-        positions.push_back(soup.toObject(surface.point(v)));
+        index[v] = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.push_back(soup.toObject(surface.point(v)));
     }
-    std::vector<glm::uvec3> triangles;
     for (const SurfaceMesh::Face_index f : surface.faces()) {
-        glm::uvec3 t(0);
+        glm::uvec3& t = mesh.triangles.emplace_back();
         int corner = 0;
         for (const SurfaceMesh::Vertex_index v : surface.vertices_around_face(surface.halfedge(f))) {
             t[corner++] = index[v];
         }
-        triangles.push_back(t);
     }
-    return meshOf(source, std::move(positions), std::move(triangles));
-}
-
-tl::unexpected<Error> cgalError(const TriangleMesh& mesh, const std::string& what, const char* words) {
-    std::string line = words;
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    return fail(ErrorCode::kFailure,
-                mesh.name + ": " + what + " failed: " + line + "; repair the mesh by hand");
+    return finishMesh(std::move(mesh));
 }
 
 /// Converts exceptions into errors, and resets CGAL's random numbers.
@@ -152,7 +94,10 @@ Result<T> guarded(const TriangleMesh& mesh, const std::string& what, const std::
     } catch (const std::bad_alloc&) {
         return fail(ErrorCode::kLimit, mesh.name + ": " + what + " ran out of memory; simplify the mesh");
     } catch (const std::exception& e) {
-        return cgalError(mesh, what, e.what());
+        std::string line = e.what();
+        std::replace(line.begin(), line.end(), '\n', ' ');
+        return fail(ErrorCode::kFailure,
+                    mesh.name + ": " + what + " failed: " + line + "; repair the mesh by hand");
     }
 }
 
@@ -233,46 +178,6 @@ class IntersectionCounter {
     const Soup& soup_;
 };
 
-std::size_t edgesAround(const SurfaceMesh& surface, SurfaceMesh::Halfedge_index border) {
-    std::size_t count = 0;
-    SurfaceMesh::Halfedge_index at = border;
-    do {
-        ++count;
-        at = surface.next(at);
-    } while (at != border);
-    return count;
-}
-
-/// The soup wound consistently, as a surface.
-Result<SurfaceMesh> surfaceOf(const TriangleMesh& mesh, Soup& soup) {
-    soup.dropDuplicates();
-    pmp::orient_polygon_soup(soup.points, soup.triangles);
-    if (!pmp::is_polygon_soup_a_polygon_mesh(soup.triangles)) {
-        return fail(ErrorCode::kFailure, mesh.name +
-                                             ": its triangles cannot be wound consistently; repair the "
-                                             "mesh by hand, or try --repair wrap");
-    }
-    SurfaceMesh surface;
-    pmp::polygon_soup_to_polygon_mesh(soup.points, soup.triangles, surface);
-    return surface;
-}
-
-bool hasNonManifoldEdge(const Soup& soup) {
-    std::vector<std::pair<std::size_t, std::size_t>> edges;
-    for (const Corners& t : soup.triangles) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            edges.emplace_back(std::minmax({t[i], t[(i + 1) % 3]}));
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t i = 2; i < edges.size(); ++i) {
-        if (edges[i] == edges[i - 2]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 }  // namespace
 
 Result<SelfIntersections> selfIntersections(const TriangleMesh& mesh) {
@@ -304,44 +209,6 @@ Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha) {
                         mesh.name + ": nothing closed came of wrapping it; try another --repair wrap=ALPHA");
         }
         return meshOf(mesh, soup, wrap);
-    });
-}
-
-Result<TriangleMesh> orientMesh(const TriangleMesh& mesh) {
-    return guarded<TriangleMesh>(mesh, "orienting it", [&]() -> Result<TriangleMesh> {
-        Soup soup(mesh);
-        soup.dropDuplicates();
-        pmp::orient_polygon_soup(soup.points, soup.triangles);
-        return meshOf(mesh, soup);
-    });
-}
-
-Result<HoleFill> fillHoles(const TriangleMesh& mesh) {
-    return guarded<HoleFill>(mesh, "filling its holes", [&]() -> Result<HoleFill> {
-        Soup soup(mesh);
-        soup.dropDuplicates();
-        if (hasNonManifoldEdge(soup)) {
-            return fail(ErrorCode::kInvalidInput,
-                        mesh.name +
-                            ": three or more triangles share an edge, so that no one can say what a hole "
-                            "is; try --repair wrap");
-        }
-        SurfaceMesh surface = RELIEF_TRY(surfaceOf(mesh, soup));
-        std::vector<SurfaceMesh::Halfedge_index> borders;
-        pmp::extract_boundary_cycles(surface, std::back_inserter(borders));
-        HoleFill fill;
-        for (const SurfaceMesh::Halfedge_index border : borders) {
-            const std::size_t edges = edgesAround(surface, border);
-            std::vector<SurfaceMesh::Face_index> patch;
-            if (edges <= kHoleEdgesMax) {
-                pmp::triangulate_hole(surface, border, std::back_inserter(patch),
-                                      CGAL::parameters::do_not_use_cubic_algorithm(edges > kCubicEdgesMax));
-            }
-            ++(patch.empty() ? fill.left : fill.filled);
-            fill.triangles += patch.size();
-        }
-        fill.mesh = RELIEF_TRY(meshOf(mesh, soup, surface));
-        return fill;
     });
 }
 

@@ -1,5 +1,4 @@
-// Repair of meshes and detection of self-intersections, by CGAL. CGAL's preconditions are checked before the calls, and its
-// exceptions become errors.
+// Wraps of meshes, and their self-intersections, by CGAL, whose exceptions become errors.
 #pragma once
 
 #include <cstdint>
@@ -33,25 +32,5 @@ inline constexpr double kWrapAlphaMax = 0.5;
 /// \param alpha  in units of the mesh's longest side, in [kWrapAlphaMin, kWrapAlphaMax].
 /// Errors: kUsage (alpha), kLimit (out of memory), kFailure.
 [[nodiscard]] Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha);
-
-/// The mesh wound consistently across edges of two triangles and split at all others: positions of such edges and of vertices
-/// where surfaces only touch are repeated. The outer side is left to winding.h. Drops duplicate triangles.
-/// Errors: kFailure.
-[[nodiscard]] Result<TriangleMesh> orientMesh(const TriangleMesh& mesh);
-
-/// Edges of the largest hole that fillHoles triangulates.
-inline constexpr std::size_t kHoleEdgesMax = 2000;
-
-struct HoleFill {
-    TriangleMesh mesh;
-    std::uint64_t filled = 0;     ///< holes
-    std::uint64_t triangles = 0;  ///< that fill them, at the end of the mesh
-    std::uint64_t left = 0;       ///< holes beyond kHoleEdgesMax, or for which CGAL found no patch
-};
-
-/// Fills every hole by CGAL's triangulate_hole: flat holes as polygons, others with small area. The result is wound
-/// consistently, without duplicate triangles. Errors: kInvalidInput (an edge of three or more triangles, where holes are
-/// ambiguous), kFailure.
-[[nodiscard]] Result<HoleFill> fillHoles(const TriangleMesh& mesh);
 
 }  // namespace relief

@@ -19,7 +19,7 @@ struct Winding {
 /// that is unclear, as on sheets, it keeps the winding of most of its triangles.
 ///
 /// A mesh of a single, consistently wound patch stays unchanged, even inside out (see PreparedMesh::orientation), and keeps
-/// its edges() for shapeMesh; those of others are freed. The same for any number of threads.
+/// its edges() for shapeMesh; those of others are freed. The result does not depend on the number of threads.
 /// \param mesh  moved: a shared mesh is copied.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<Winding> windOutwards(PreparedMesh mesh);

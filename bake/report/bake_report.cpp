@@ -67,12 +67,7 @@ std::string careText(const RepairReport& care, bool verbose) {
     text += verbose ? linesOf(*care.health) : "";
     if (care.repaired) {
         text += "after --repair " + care.repair + ": " + std::to_string(care.repaired->triangles) +
-                " triangles; " + healthLine(*care.repaired);
-        if (care.filled_holes + care.holes_left > 0) {
-            text += "; " + std::to_string(care.filled_holes) + " holes filled, " +
-                    std::to_string(care.holes_left) + " left";
-        }
-        text += "\n" + (verbose ? linesOf(*care.repaired) : "");
+                " triangles; " + healthLine(*care.repaired) + "\n" + (verbose ? linesOf(*care.repaired) : "");
     } else if (care.turned > 0) {
         text += "turned " + countText(care.turned, "triangle") + " to look outwards\n";
     }

@@ -104,10 +104,8 @@ template <class Visitor, FieldsOf<RepairReport> C>
 void fields(Visitor& visit, C& care) {
     visit("mesh_health", care.health, {"Health of the mesh as imported"});
     const auto repair = [&](auto& visit_repair) {
-        visit_repair("method", care.repair, {"Value of --repair: wrap=ALPHA, orient or holes"});
+        visit_repair("method", care.repair, {"Value of --repair: wrap=ALPHA"});
         visit_repair("mesh_health", care.repaired, {"Health of the repaired mesh"});
-        visit_repair("filled_holes", care.filled_holes, {"Holes filled by --repair holes"});
-        visit_repair("holes_left", care.holes_left, {"Holes too large to fill"});
     };
     visit("repair", groupIf(!care.repair.empty(), repair), {"Results of --repair; null without it"});
     visit("turned_triangles", care.turned, {"Triangles turned to face outwards"});

@@ -51,7 +51,7 @@ diff -r strips faces || die "strips are baked to other maps than their triangles
 expect 0 "$relief" bake loose.ply -o loose.relief --map float:size=16
 grep -q '^loose.ply: 12 triangles, 1 vertex of no triangle$' stderr || die "the report says: $(cat stderr)"
 grep -q 'warning: .*1 of its 9 vertices belongs to no polygon' stderr || die "no warning: $(cat stderr)"
-expect 0 "$relief" bake loose.ply -o loose.relief --map float:size=16 --repair holes --json
+expect 0 "$relief" bake loose.ply -o loose.relief --map float:size=16 --json
 json stdout "d['unused_vertices'] == 1"
 expect_error 3 'cloud\.ply.*8 vertices but no faces' "$relief" bake cloud.ply -o x.relief
 

@@ -141,7 +141,7 @@ expect_error 1 "as is 'tub=sold' but.*did you mean 'solid'" "$relief" bake two.o
 expect_error 1 "as is '=solid' but" "$relief" bake two.obj -o x.relief --as =solid
 expect_error 1 "as is 'shell' but another --as says solid" "$relief" bake two.obj -o x.relief --as solid --as shell
 expect_error 1 "as is 'tub=shell' but another --as has the same name" "$relief" bake two.obj -o x.relief --as tub=solid --as tub=shell
-expect_error 1 'NAME=KIND.*--repair' "$relief" bake two.obj -o x.relief --as tub=solid --repair holes
+expect_error 1 'NAME=KIND.*--repair' "$relief" bake two.obj -o x.relief --as tub=solid --repair wrap
 expect_error 1 'NAME=KIND.*--holes keep' "$relief" bake two.obj -o x.relief --as tub=solid --holes keep
 [ ! -e x.relief ] || die "an error left a file"
 

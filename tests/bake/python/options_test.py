@@ -61,7 +61,7 @@ WAYS = [
     (dict(PLANNED, thickness=0.1), ["--budget", "60kB", "--thickness", "0.1"]),
     (dict(PLANNED, holes="keep"), ["--budget", "60kB", "--holes", "keep"]),
     (dict(PLANNED, repair="wrap=0.05"), ["--budget", "60kB", "--repair", "wrap=0.05"]),
-    (dict(PLANNED, repair="holes", strict=True), ["--budget", "60kB", "--repair", "holes", "--strict"]),
+    (dict(PLANNED, repair="wrap=0.1", strict=True), ["--budget", "60kB", "--repair", "wrap=0.1", "--strict"]),
     (dict(PLANNED, unit="mm", up="+z", check_intersections=True),
      ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--check-intersections"]),
     (dict(PLANNED, import_memory="1GB", import_time=9, max_triangles=100, time_limit=500),

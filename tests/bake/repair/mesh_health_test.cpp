@@ -347,40 +347,5 @@ TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
     }
 }
 
-TEST(MeshRepair, HolesAreFilled) {
-    TriangleMesh open = makeIcosphere({0, 0, 0}, 1.0, 3);
-    open.triangles.erase(open.triangles.begin() + 100, open.triangles.begin() + 104);
-    open.triangles.pop_back();
-    const MeshHealth before = healthOf(open);
-    EXPECT_GT(before.boundary_edges, 6U);
-    const Result<HoleFill> fill = fillHoles(withRandomFlips(open, 2));
-    ASSERT_TRUE(fill) << fill.error().message;
-    EXPECT_EQ(fill->filled, 2U);
-    EXPECT_EQ(fill->left, 0U);
-    EXPECT_EQ(fill->mesh.triangles.size(), open.triangles.size() + fill->triangles);
-    const MeshHealth after = healthOf(fill->mesh, true);
-    EXPECT_TRUE(after.closed);
-    EXPECT_EQ(after.nonmanifold_edges + after.inconsistent_edges + *after.self_intersections, 0U);
-
-    const Result<HoleFill> fan = fillHoles(finished({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}},
-                                                    {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}));
-    ASSERT_FALSE(fan);
-    EXPECT_EQ(fan.error().code, ErrorCode::kInvalidInput);
-}
-
-TEST(MeshRepair, OrientingTakesMeshesApartWhereTheyAreNotManifold) {
-    const TriangleMesh boxes = joined(unitBox({0, 0, 0}), unitBox({3, 0, 0}));
-    const Result<TriangleMesh> oriented = orientMesh(withRandomFlips(boxes, 5));
-    ASSERT_TRUE(oriented);
-    EXPECT_EQ(healthOf(*oriented).inconsistent_edges, 0U);
-    EXPECT_EQ(oriented->triangles.size(), boxes.triangles.size());
-    TriangleMesh twice = boxes;
-    twice.triangles.push_back(twice.triangles[4]);
-    const Result<TriangleMesh> once = orientMesh(twice);
-    ASSERT_TRUE(once);
-    EXPECT_TRUE(healthOf(*once).closed);
-    EXPECT_EQ(healthOf(*once).duplicate_triangles, 0U);
-}
-
 }  // namespace
 }  // namespace relief::test
