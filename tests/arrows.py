@@ -23,7 +23,7 @@ THIRD_PARTIES = {
     'cairo.h': ['bake/picture'],
     'openvdb': ['runtime/vdb'],
     'png.h': ['runtime/files'],
-    'flatbuffers': ['formats', 'bake/import'],
+    'flatbuffers': ['formats'],
     'zstd.h': ['formats'],
     'xxhash.h': ['formats/base'],
     'pybind11': ['bake/python'],

@@ -1,5 +1,5 @@
 // `relief-import`: reads one mesh file for its parent (import_protocol.h), with limits and without rights, so
-// that a hostile file can end nothing but this process. Started by importMeshInWorker; of no use by itself.
+// that a hostile file can harm only this process. Started by importMeshInWorker; not for direct use.
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
@@ -28,7 +28,7 @@
 namespace relief {
 namespace {
 
-/// The stack that importRaw reserves, and little things.
+/// For the stack of importRaw and small allocations.
 constexpr std::uint64_t kMemoryBeside = (std::uint64_t{1} << 30) + (std::uint64_t{64} << 20);
 /// Of the heap, whose pages may be large.
 constexpr std::uint64_t kHeapBytes = std::uint64_t{64} << 20;
@@ -43,7 +43,7 @@ bool isFolder(int file) {
     return ::fstat(file, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/// The parent went before its death could be noticed.
+/// The parent ended before PR_SET_PDEATHSIG took effect.
 bool orphaned() {
     pollfd alive{kImportAliveFd, 0, 0};
     return ::poll(&alive, 1, 0) > 0 && (alive.revents & POLLERR) != 0;
@@ -55,23 +55,22 @@ int exitOf(int number) {
 
 /// \return an exit code.
 int sendMessage(const Result<TriangleMesh>& raw) {
-    const ImportMessage message = makeImportMessage(raw);
-    if (message.size > fileSize(kImportResultFd)) {
+    const std::uint64_t size = importMessageSize(raw);
+    if (size > fileSize(kImportResultFd)) {
         return kImportExitTooLarge;
     }
-    const auto size = static_cast<off_t>(message.size);
-    // All of it now: a page that cannot be had later would end this process by SIGBUS.
-    if (const int code = reserveMemory(kImportResultFd, message.size)) {
+    // All of it now: a page that cannot be allocated later raises SIGBUS.
+    if (const int code = reserveMemory(kImportResultFd, size)) {
         return exitOf(code);
     }
-    // Not by write: no file may be written any more. The pages are the memfd's.
+    // Not by write(), which the sandbox forbids.
     void* const pages =
-        ::mmap(nullptr, message.size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, kImportResultFd, 0);
+        ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, kImportResultFd, 0);
     if (pages == MAP_FAILED) {
         return errno == ENOMEM ? kImportExitMemory : exitOf(errno);
     }
-    writeImportMessage(message, raw, {static_cast<std::byte*>(pages), message.size});
-    if (::munmap(pages, message.size) != 0 || ::ftruncate(kImportResultFd, size) != 0) {
+    writeImportMessage(raw, {static_cast<std::byte*>(pages), size});
+    if (::munmap(pages, size) != 0 || ::ftruncate(kImportResultFd, static_cast<off_t>(size)) != 0) {
         return exitOf(errno);
     }
     const int code = addSeals(kImportResultFd, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL);
@@ -95,9 +94,6 @@ int work(std::span<char*> arguments) {
         }
     }
     options.names.assign(arguments.begin() + static_cast<std::ptrdiff_t>(next) + 1, arguments.end());
-    if (memory == 0 || seconds == 0 || seconds > UINT32_MAX || triangles == 0 || triangles > kTriangleMax) {
-        return kImportExitArguments;
-    }
     const std::uint64_t size = fileSize(kImportMeshFd);
     void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, kImportMeshFd, 0);
     const int folder = isFolder(kImportFolderFd) ? kImportFolderFd : -1;
@@ -134,12 +130,12 @@ int main(int argc, char** argv) {
     if (argc < 6) {
         return relief::kImportExitArguments;
     }
-    mallopt(M_ARENA_MAX, 1);  // one heap, that the limit is exact for
+    mallopt(M_ARENA_MAX, 1);  // one heap, so that the limit is exact
     int code = relief::kImportExitMemory;
     try {
         code = relief::work({argv, static_cast<std::size_t>(argc)});
     } catch (...) {
         code = relief::kImportExitMemory;
     }
-    ::_exit(code);  // nothing is worth cleaning up
+    ::_exit(code);  // without cleaning up
 }

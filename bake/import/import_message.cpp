@@ -1,193 +1,172 @@
 #include "bake/import/import_message.h"
 
-#include <flatbuffers/flatbuffers.h>
-
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "bake/import/import_files.h"
 #include "formats/base/text.h"
-#include "formats/validate.h"
-#include "import_message_generated.h"
 
 namespace relief {
 namespace {
 
-constexpr std::size_t kPrefixBytes = 16;
-constexpr flatbuffers::uoffset_t kDepthMax = 4;
 constexpr std::size_t kErrorBytesMax = 4096;
 constexpr std::size_t kWarningsMax = 100;
 constexpr std::size_t kFilesMax = 100'000;
-static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::uvec3) == 12);
 
-std::uint64_t padded(std::uint64_t size) {
-    return (size + 15) / 16 * 16;
+/// Counts the bytes of a message, and writes them where there is a target.
+class Writer {
+  public:
+    explicit Writer(std::byte* target = nullptr) : target_(target) {}
+
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+
+    template <class T>
+    void number(const T& value) {
+        put(&value, sizeof(value));
+    }
+    template <class List>
+    void array(const List& values, std::uint64_t /*most*/) {
+        number(std::uint64_t{values.size()});
+        put(values.data(), values.size() * sizeof(values[0]));
+    }
+    template <class T, class Each>
+    void list(const std::vector<T>& values, std::uint64_t /*most*/, const Each& each) {
+        number(std::uint64_t{values.size()});
+        std::for_each(values.begin(), values.end(), each);
+    }
+
+  private:
+    void put(const void* bytes, std::uint64_t size) {
+        if (target_ != nullptr && size > 0) {
+            std::memcpy(target_ + size_, bytes, size);
+        }
+        size_ += size;
+    }
+
+    std::byte* target_;
+    std::uint64_t size_ = 0;
+};
+
+/// Reads the bytes of a Writer; of any other bytes, nothing after the first invalid length.
+class Reader {
+  public:
+    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+    /// Everything was read, and was there.
+    [[nodiscard]] bool done() const { return good_ && bytes_.empty(); }
+
+    template <class T>
+    void number(T& value) {
+        take(&value, sizeof(value));
+    }
+    template <class List>
+    void array(List& values, std::uint64_t most) {
+        values.resize(length(most, sizeof(values[0])));
+        take(values.data(), values.size() * sizeof(values[0]));
+    }
+    template <class T, class Each>
+    void list(std::vector<T>& values, std::uint64_t most, const Each& each) {
+        values.resize(length(most, sizeof(std::uint64_t)));  // each element has at least a length
+        std::for_each(values.begin(), values.end(), each);
+    }
+
+  private:
+    std::uint64_t length(std::uint64_t most, std::uint64_t element_bytes) {
+        std::uint64_t length = 0;
+        number(length);
+        good_ = good_ && length <= most && length <= bytes_.size() / element_bytes;
+        return good_ ? length : 0;
+    }
+    void take(void* target, std::uint64_t size) {
+        good_ = good_ && size <= bytes_.size();
+        if (good_ && size > 0) {
+            std::memcpy(target, bytes_.data(), size);
+            bytes_ = bytes_.subspan(size);
+        }
+    }
+
+    std::span<const std::byte> bytes_;
+    bool good_ = true;
+};
+
+/// Writes or reads a mesh.
+template <class Channel, class Mesh>
+void exchange(Channel& channel, Mesh& mesh, std::uint64_t triangle_max) {
+    const auto text = [&](auto& value) { channel.array(value, kImportBytesMax); };
+    text(mesh.unit);
+    channel.number(mesh.unused_vertices);
+    channel.list(mesh.warnings, kWarningsMax, text);
+    channel.list(mesh.dependencies, kFilesMax, text);
+    channel.list(mesh.dependency_hashes, kFilesMax, text);
+    channel.list(mesh.surface_names, kSurfaceNamesMax, [&](auto& name) {
+        channel.number(name.node_index);
+        text(name.node);
+        text(name.material);
+    });
+    channel.array(mesh.positions, 3 * triangle_max);
+    channel.array(mesh.triangles, triangle_max);
+    channel.array(mesh.marks, triangle_max);
+    channel.array(mesh.labels, triangle_max);
+}
+
+void write(Writer& writer, const Result<TriangleMesh>& raw) {
+    writer.number(raw ? std::uint32_t{0} : static_cast<std::uint32_t>(raw.error().code));
+    if (raw) {
+        exchange(writer, *raw, kTriangleMax);
+    } else {
+        writer.array(raw.error().message, kErrorBytesMax);
+    }
 }
 
 tl::unexpected<Error> noMessage() {
-    return fail(ErrorCode::kInvalidInput, "the importer answers with bytes that are no mesh");
-}
-
-std::string textOf(const flatbuffers::String* text) {
-    return text == nullptr ? std::string() : text->str();
-}
-
-/// The arrays behind the table.
-std::array<std::span<const std::byte>, 4> arraysOf(const TriangleMesh& mesh) {
-    return {std::as_bytes(std::span(mesh.positions)), std::as_bytes(std::span(mesh.triangles)),
-            std::as_bytes(std::span(mesh.marks)), std::as_bytes(std::span(mesh.labels))};
-}
-
-/// Takes an array of that many off the bytes, which hold it.
-template <class T>
-void takeArray(std::span<const std::byte>& bytes, std::uint64_t count, std::vector<T>& out) {
-    out.resize(count);
-    if (count > 0) {
-        std::memcpy(static_cast<void*>(out.data()), bytes.data(), count * sizeof(T));
-    }
-    bytes = bytes.subspan(count * sizeof(T));
-}
-
-using Surfaces = flatbuffers::Vector<flatbuffers::Offset<import_fb::Surface>>;
-
-flatbuffers::Offset<Surfaces> writeSurfaces(flatbuffers::FlatBufferBuilder& builder,
-                                            const TriangleMesh& raw) {
-    std::vector<flatbuffers::Offset<import_fb::Surface>> surfaces;
-    for (const SurfaceName& name : raw.surface_names) {
-        surfaces.push_back(import_fb::CreateSurfaceDirect(builder, name.node_index, name.node.c_str(),
-                                                          name.material.c_str()));
-    }
-    return builder.CreateVector(surfaces);
+    return invalidInput("the importer answers with bytes that are no mesh");
 }
 
 }  // namespace
 
-ImportMessage makeImportMessage(const Result<TriangleMesh>& raw) {
-    flatbuffers::FlatBufferBuilder builder;
-    std::uint64_t arrays = 0;
-    if (!raw) {
-        const auto text = builder.CreateString(raw.error().message);
-        import_fb::MessageBuilder message(builder);
-        message.add_error_code(static_cast<std::uint32_t>(raw.error().code));
-        message.add_error_message(text);
-        import_fb::FinishMessageBuffer(builder, message.Finish());
-    } else {
-        const auto unit = builder.CreateString(raw->unit);
-        const auto warnings = builder.CreateVectorOfStrings(raw->warnings);
-        std::vector<flatbuffers::Offset<import_fb::File>> list;
-        for (std::size_t i = 0; i < raw->dependencies.size(); ++i) {
-            list.push_back(import_fb::CreateFileDirect(builder, raw->dependencies[i].c_str(),
-                                                       raw->dependency_hashes[i].c_str()));
-        }
-        const auto files = builder.CreateVector(list);
-        const auto surfaces = writeSurfaces(builder, *raw);
-        import_fb::MessageBuilder message(builder);
-        message.add_unit(unit);
-        message.add_warnings(warnings);
-        message.add_files(files);
-        message.add_positions(raw->positions.size());
-        message.add_triangles(raw->triangles.size());
-        message.add_unused_vertices(raw->unused_vertices);
-        message.add_marks(raw->marks.size());
-        message.add_surfaces(surfaces);
-        message.add_labels(raw->labels.size());
-        import_fb::FinishMessageBuffer(builder, message.Finish());
-        for (const std::span<const std::byte> array : arraysOf(*raw)) {
-            arrays += array.size();
-        }
-    }
-    ImportMessage made;
-    const std::uint64_t table = builder.GetSize();
-    made.head.resize(padded(kPrefixBytes + table));
-    std::memcpy(made.head.data(), &table, sizeof(table));
-    std::memcpy(made.head.data() + kPrefixBytes, builder.GetBufferPointer(), table);
-    made.size = made.head.size() + arrays;
-    return made;
+std::uint64_t importMessageSize(const Result<TriangleMesh>& raw) {
+    Writer counter;
+    write(counter, raw);
+    return counter.size();
 }
 
-void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>& raw,
-                        std::span<std::byte> target) {
-    std::copy(message.head.begin(), message.head.end(), target.begin());
-    target = target.subspan(message.head.size());
-    for (const std::span<const std::byte> array :
-         raw ? arraysOf(*raw) : std::array<std::span<const std::byte>, 4>()) {
-        std::copy(array.begin(), array.end(), target.begin());
-        target = target.subspan(array.size());
-    }
+void writeImportMessage(const Result<TriangleMesh>& raw, std::span<std::byte> target) {
+    Writer writer(target.data());
+    write(writer, raw);
 }
 
 Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::uint64_t triangle_max) {
-    std::uint64_t table = 0;
-    if (bytes.size() < kPrefixBytes) {
-        return noMessage();
-    }
-    std::memcpy(&table, bytes.data(), sizeof(table));
-    if (table > bytes.size() - kPrefixBytes || table >= FLATBUFFERS_MAX_BUFFER_SIZE || table < 8) {
-        return noMessage();
-    }
-    const std::uint64_t head = padded(kPrefixBytes + table);
-    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data() + kPrefixBytes);
-    flatbuffers::Verifier verifier(data, table, kDepthMax);
-    if (head > bytes.size() || !import_fb::VerifyMessageBuffer(verifier)) {
-        return noMessage();
-    }
-    const import_fb::Message& message = *import_fb::GetMessage(data);
-    if (message.error_code() != 0) {
-        const std::uint32_t code = message.error_code();
-        if (code > static_cast<std::uint32_t>(ErrorCode::kDifference) || head != bytes.size()) {
+    Reader reader(bytes);
+    auto code = static_cast<std::uint32_t>(ErrorCode::kFailure);  // if even this is missing
+    reader.number(code);
+    if (code != 0) {
+        std::string message;
+        reader.array(message, kImportBytesMax);
+        if (!reader.done() || code > static_cast<std::uint32_t>(ErrorCode::kDifference)) {
             return noMessage();
         }
-        return fail(static_cast<ErrorCode>(code), cleanUtf8(textOf(message.error_message()), kErrorBytesMax));
-    }
-    // Each bounded before they are added up.
-    if (message.positions() > 3 * triangle_max || message.triangles() > triangle_max ||
-        message.unused_vertices() > kImportBytesMax ||  // a vertex takes more than a byte
-        !(message.marks() == 0 || message.marks() == message.triangles()) ||
-        !(message.labels() == 0 || message.labels() == message.triangles()) ||
-        head + 12 * (message.positions() + message.triangles()) + message.marks() + 4 * message.labels() !=
-            bytes.size()) {
-        return noMessage();
+        return fail(static_cast<ErrorCode>(code), cleanUtf8(message, kErrorBytesMax));
     }
     TriangleMesh raw;
-    raw.unit = textOf(message.unit());
-    raw.unused_vertices = message.unused_vertices();
-    if (const auto* warnings = message.warnings(); warnings != nullptr) {
-        if (warnings->size() > kWarningsMax) {
-            return noMessage();
-        }
-        for (const flatbuffers::String* warning : *warnings) {
-            raw.warnings.push_back(cleanUtf8(warning->str(), kErrorBytesMax));
-        }
-    }
-    if (const auto* files = message.files(); files != nullptr) {
-        if (files->size() > kFilesMax) {
-            return noMessage();
-        }
-        for (const import_fb::File* file : *files) {
-            raw.dependencies.push_back(file->path()->str());
-            raw.dependency_hashes.push_back(file->hash()->str());
-        }
-    }
-    if (const auto* surfaces = message.surfaces(); surfaces != nullptr) {
-        if (surfaces->size() > kSurfaceNamesMax) {
-            return noMessage();
-        }
-        for (const import_fb::Surface* surface : *surfaces) {
-            raw.surface_names.push_back({surface->node_index(),
-                                         cleanUtf8(textOf(surface->node()), kAskedNameBytesMax),
-                                         cleanUtf8(textOf(surface->material()), kAskedNameBytesMax)});
-        }
-    }
-    bytes = bytes.subspan(head);
-    takeArray(bytes, message.positions(), raw.positions);
-    takeArray(bytes, message.triangles(), raw.triangles);
-    takeArray(bytes, message.marks(), raw.marks);
-    takeArray(bytes, message.labels(), raw.labels);
+    exchange(reader, raw, triangle_max);
     const bool named = std::all_of(raw.labels.begin(), raw.labels.end(),
                                    [&raw](std::uint32_t label) { return label < raw.surface_names.size(); });
-    return named ? Result<TriangleMesh>(std::move(raw)) : noMessage();
+    if (!reader.done() || !named ||
+        raw.unused_vertices > kImportBytesMax ||  // a vertex takes more than a byte
+        (!raw.marks.empty() && raw.marks.size() != raw.triangles.size()) ||
+        (!raw.labels.empty() && raw.labels.size() != raw.triangles.size())) {
+        return noMessage();
+    }
+    for (std::string& warning : raw.warnings) {
+        warning = cleanUtf8(warning, kErrorBytesMax);
+    }
+    for (SurfaceName& name : raw.surface_names) {
+        name.node = cleanUtf8(name.node, kAskedNameBytesMax);
+        name.material = cleanUtf8(name.material, kAskedNameBytesMax);
+    }
+    return raw;
 }
 
 }  // namespace relief

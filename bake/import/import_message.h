@@ -1,40 +1,30 @@
-// What the import worker hands to its parent: a mesh or an error, as bytes that the parent checks like any
-// file.
-//
-//     u64 size of the table   u64 0   the table (import_message.fbs), padded to a multiple of 16
-//     positions and triangles, 12 bytes each        marks, a byte each        labels, 4 bytes each        and no byte more
+// A mesh or an error as bytes, from the import worker to its parent, which checks them like any file: a u32 that is 0 or an
+// ErrorCode; then the members of a TriangleMesh (import_message.cpp: exchange), or the error's text. A u64 precedes each text,
+// list and array: its length. The byte order is the machine's.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
-/// A message before its arrays are written behind it.
-struct ImportMessage {
-    std::vector<std::byte> head;  ///< everything before the positions
-    std::uint64_t size = 0;       ///< bytes of the whole message
-};
+/// \param raw  as importRaw gives it. \return bytes of its message.
+[[nodiscard]] std::uint64_t importMessageSize(const Result<TriangleMesh>& raw);
 
-/// \param raw  as importRaw gives it.
-[[nodiscard]] ImportMessage makeImportMessage(const Result<TriangleMesh>& raw);
+/// Writes the whole message. \param target  importMessageSize(raw) bytes.
+void writeImportMessage(const Result<TriangleMesh>& raw, std::span<std::byte> target);
 
-/// Writes the whole message. \param target  message.size bytes.
-void writeImportMessage(const ImportMessage& message, const Result<TriangleMesh>& raw,
-                        std::span<std::byte> target);
-
-/// Reads a message that may hold anything. Indices and coordinates are left to finishMesh, and what marks mean to
+/// Reads a message that may hold anything. Indices and coordinates are left to finishMesh, and the meaning of marks to
 /// ImportSource::finish; there are none of these and of labels, or one for each triangle.
-/// \param bytes  aligned to 16 bytes, and not changed meanwhile.
+/// \param bytes  not changed meanwhile.
 /// \param triangle_max  at most kTriangleMax. More, or more than thrice as many positions, are no message: nothing is
 /// allocated for them.
-/// \return what the worker's importRaw gave. Errors: the worker's own, as one line; kInvalidInput, saying no
-/// file's name, for a message that is none.
+/// \return what the worker's importRaw gave. Errors: the worker's own, as one line; kInvalidInput, without a file's name,
+/// for other bytes.
 [[nodiscard]] Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes,
                                                      std::uint64_t triangle_max = kTriangleMax);
 

@@ -23,32 +23,38 @@ class Imported:
     """What relief-import answers (bake/import/import_message.h): triangles as nine floats each, or an error."""
 
     def __init__(self, data):
-        (size,) = struct.unpack_from("<Q", data, 0)
-        root = 16 + struct.unpack_from("<I", data, 16)[0]
-        table = root - struct.unpack_from("<i", data, root)[0]
-
-        def field(number, kind):
-            length = struct.unpack_from("<H", data, table)[0]
-            at = struct.unpack_from("<H", data, table + 4 + 2 * number)[0] if 4 + 2 * number < length else 0
-            return root + at if at else None if kind is None else 0
-
-        def integer(number, kind):
-            at = field(number, kind)
-            return struct.unpack_from(kind, data, at)[0] if at else 0
-
         self.error = None
         self.triangles = []
-        if integer(0, "<I"):
-            at = field(1, None)
-            at += struct.unpack_from("<I", data, at)[0]
-            length = struct.unpack_from("<I", data, at)[0]
-            self.error = data[at + 4 : at + 4 + length].decode()
+        self.data, self.at = data[4:], 0
+        (code,) = struct.unpack_from("<I", data)
+        if code:
+            self.error = self.text()
             return
-        at = (16 + size + 15) // 16 * 16
-        positions = [struct.unpack_from("<3f", data, at + 12 * i) for i in range(integer(5, "<Q"))]
-        at += 12 * len(positions)
-        for i in range(integer(6, "<Q")):
-            self.triangles.append([positions[k] for k in struct.unpack_from("<3I", data, at + 12 * i)])
+        self.text()  # the unit
+        self.length()  # unused vertices
+        for _ in range(3):  # warnings, files, their hashes
+            for _ in range(self.length()):
+                self.text()
+        for _ in range(self.length()):  # names of surfaces
+            self.at += 4
+            self.text()
+            self.text()
+        positions = self.threes("<3f")
+        self.triangles = [[positions[k] for k in t] for t in self.threes("<3I")]
+
+    def length(self):
+        self.at += 8
+        return struct.unpack_from("<Q", self.data, self.at - 8)[0]
+
+    def text(self):
+        size = self.length()
+        self.at += size
+        return self.data[self.at - size : self.at].decode()
+
+    def threes(self, kind):
+        count = self.length()
+        self.at += 12 * count
+        return list(struct.iter_unpack(kind, self.data[self.at - 12 * count : self.at]))
 
 
 def imported(run, path):

@@ -38,9 +38,8 @@ ImportSource openSource() {
 }
 
 std::vector<std::byte> bytesOf(const Result<TriangleMesh>& raw) {
-    const relief::ImportMessage message = relief::makeImportMessage(raw);
-    std::vector<std::byte> bytes(message.size);
-    relief::writeImportMessage(message, raw, bytes);
+    std::vector<std::byte> bytes(relief::importMessageSize(raw));
+    relief::writeImportMessage(raw, bytes);
     return bytes;
 }
 
@@ -94,7 +93,7 @@ void mustBeMesh(const TriangleMesh& mesh) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const ImportSource kSource = openSource();
     const auto given = std::as_bytes(std::span(data, size));
-    const std::vector<std::byte> bytes(given.begin(), given.end());  // aligned to 16, as operator new has it
+    const std::vector<std::byte> bytes(given.begin(), given.end());
     Result<TriangleMesh> raw = relief::readImportMessage(bytes);
     if (!raw) {
         mustHold(isLine(raw.error().message), "an error is one line");

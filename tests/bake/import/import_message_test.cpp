@@ -32,9 +32,8 @@ TriangleMesh rawTriangle() {
 }
 
 std::vector<std::byte> bytesOf(const Result<TriangleMesh>& raw) {
-    const ImportMessage message = makeImportMessage(raw);
-    std::vector<std::byte> bytes(message.size);
-    writeImportMessage(message, raw, bytes);
+    std::vector<std::byte> bytes(importMessageSize(raw));
+    writeImportMessage(raw, bytes);
     return bytes;
 }
 
