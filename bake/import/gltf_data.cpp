@@ -1,14 +1,11 @@
 #include "bake/import/gltf_data.h"
 
-#include <draco/compression/decode.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
-#include <memory>
 #include <type_traits>
 
 #include "formats/base/text.h"
@@ -24,7 +21,7 @@ constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr const char* kCutOff = "and was probably cut off; copy or export it again";
 
-/// As little-endian as this machine.
+/// The byte order is the machine's: little-endian.
 template <class T>
 T load(const std::byte* at) {
     T value{};
@@ -96,11 +93,11 @@ constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
-/// An accessor of a use, with its component types.
+/// Valid accessors of a use.
 struct Rules {
     const char* type;
     std::array<std::uint64_t, 5> components;
-    bool normalized;  ///< whole numbers may be
+    bool normalized;  ///< integers may be normalised
 };
 constexpr std::array<Rules, 5> kRules = {
     {{"VEC3", {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat}, true},
@@ -113,7 +110,7 @@ std::uint64_t sizeOf(std::uint64_t type) {
     return type <= kUnsignedByte ? 1 : type <= kUnsignedShort ? 2 : 4;
 }
 
-/// 127 of a normalised byte is 1.
+/// A normalised byte of 127 is 1.
 template <class T>
 float loadQuantised(const std::byte* at, bool normalized) {
     const auto value = static_cast<float>(load<T>(at));
@@ -134,7 +131,7 @@ void loadComponent(const std::byte* at, std::uint64_t type, bool /*normalized*/,
                                    : load<std::uint32_t>(at);
 }
 
-/// Elements in a view, one every `stride` bytes.
+/// Elements in a view, `stride` bytes apart.
 struct Elements {
     const std::byte* first = nullptr;
     std::uint64_t stride = 0;
@@ -143,7 +140,7 @@ struct Elements {
 };
 
 /// The `count` elements of `size` bytes in the view that `owner` names.
-/// \param strided  whether the view may state a stride of its own.
+/// \param strided  whether the view may have a stride.
 Result<Elements> elementsOf(const GltfValue& owner, GltfBuffers& buffers, std::uint64_t count,
                             std::uint64_t size, bool strided) {
     const GltfView view = RELIEF_TRY(buffers.view(owner));
@@ -163,7 +160,7 @@ Result<Elements> elementsOf(const GltfValue& owner, GltfBuffers& buffers, std::u
     return Elements{view.bytes.data() + (count == 0 ? 0 : offset), stride};
 }
 
-/// Calls replace(index, bytes) for each element of a sparse accessor's own.
+/// Calls replace(index, bytes) for each element that a sparse accessor replaces.
 template <class Replace>
 Result<void> replaceSparse(const GltfValue& sparse, GltfBuffers& buffers, std::uint64_t all,
                            std::uint64_t size, const Replace& replace) {
@@ -342,7 +339,7 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
     const std::optional<GltfValue> sparse = RELIEF_TRY(accessor.object("sparse"));
     std::optional<Elements> elements;
     if (accessor.has("bufferView")) {
-        // Only attributes may lie apart.
+        // Only attributes may have a stride.
         elements = RELIEF_TRY(elementsOf(accessor, buffers, count, size, kComponents > 1));
     } else if (!sparse) {
         return accessor.wrong("has no data of its own; export it uncompressed", ErrorCode::kUnsupported);
@@ -374,43 +371,5 @@ template Result<std::vector<glm::vec4>> readAccessor(const GltfValue&, GltfUse, 
 template Result<std::vector<glm::mat4>> readAccessor(const GltfValue&, GltfUse, GltfBuffers&, std::uint64_t);
 template Result<std::vector<std::uint32_t>> readAccessor(const GltfValue&, GltfUse, GltfBuffers&,
                                                          std::uint64_t);
-
-std::optional<ScenePart> readDraco(std::span<const std::byte> bytes, std::uint64_t attribute,
-                                   std::uint64_t triangles_max) {
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::Decoder decoder;
-    draco::StatusOr<std::unique_ptr<draco::Mesh>> decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok() || decoded.value() == nullptr || attribute > UINT32_MAX) {
-        return std::nullopt;
-    }
-    const draco::Mesh& source = *decoded.value();
-    const draco::PointAttribute* const positions =
-        source.GetAttributeByUniqueId(static_cast<std::uint32_t>(attribute));
-    const bool mapped = positions != nullptr && (positions->is_mapping_identity() ||
-                                                 positions->indices_map_size() >= source.num_points());
-    if (!mapped || positions->num_components() != 3 || source.num_faces() > triangles_max ||
-        source.num_points() > 3 * triangles_max) {
-        return std::nullopt;
-    }
-    ScenePart mesh;
-    for (draco::PointIndex i(0); i < source.num_points(); ++i) {
-        const draco::AttributeValueIndex value = positions->mapped_index(i);
-        std::array<float, 3> xyz{};
-        if (value.value() >= positions->size() || !positions->ConvertValue<float, 3>(value, xyz.data())) {
-            return std::nullopt;
-        }
-        mesh.positions.emplace_back(xyz[0], xyz[1], xyz[2]);
-    }
-    for (draco::FaceIndex i(0); i < source.num_faces(); ++i) {
-        const draco::Mesh::Face& face = source.face(i);
-        const glm::uvec3 triangle(face[0].value(), face[1].value(), face[2].value());
-        if (std::max({triangle.x, triangle.y, triangle.z}) >= mesh.positions.size()) {
-            return std::nullopt;
-        }
-        mesh.triangles.push_back(triangle);
-    }
-    return mesh;
-}
 
 }  // namespace relief

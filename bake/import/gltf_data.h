@@ -1,9 +1,10 @@
 // The bytes of a glTF file, and the numbers in them: the chunks of a GLB, the buffers in it, in the JSON or beside it, and
-// accessors, sparse, quantised and compressed ones too. Errors name a place in the document, and no file.
+// accessors, sparse and quantised ones too. Errors name a place in the document, and no file.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <map>
 #include <optional>
 #include <span>
@@ -13,7 +14,6 @@
 
 #include "bake/import/gltf_json.h"
 #include "bake/import/import_files.h"
-#include "bake/import/import_scene.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -67,12 +67,5 @@ enum class GltfUse : std::uint8_t {
 template <class T>
 [[nodiscard]] Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use,
                                                   GltfBuffers& buffers, std::uint64_t count_max);
-
-/// Triangles that are compressed by Draco (KHR_draco_mesh_compression).
-/// \param attribute  Draco's number for the positions. \param triangles_max  more is an error, and so are thrice as many
-/// positions.
-/// \return nullopt if these bytes hold nothing like that.
-[[nodiscard]] std::optional<ScenePart> readDraco(std::span<const std::byte> bytes, std::uint64_t attribute,
-                                                 std::uint64_t triangles_max);
 
 }  // namespace relief

@@ -21,11 +21,10 @@ namespace {
 
 // --- the document ---
 
-// Required extensions that are read, or that change no position.
-constexpr std::array<std::string_view, 9> kKnown = {
-    "KHR_mesh_quantization", "KHR_draco_mesh_compression", "KHR_texture_transform",
-    "KHR_technique_webgl",   "KHR_techniques_webgl",       "KHR_texture_basisu",
-    "KHR_lights_punctual",   "EXT_texture_webp",           "MSFT_texture_dds"};
+// Required extensions that are read or do not change positions.
+constexpr std::array<std::string_view, 8> kKnown = {
+    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_technique_webgl", "KHR_techniques_webgl",
+    "KHR_texture_basisu",    "KHR_lights_punctual",   "EXT_texture_webp",    "MSFT_texture_dds"};
 
 Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
@@ -74,9 +73,9 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
 
 // --- nodes ---
 
-/// How far the length of a rotation may be from 1, as in the Khronos validator: rounding to bytes gives as much.
+/// Tolerance of a rotation's length, as in the Khronos validator: the rounding of bytes.
 constexpr double kUnitTolerance = 0.00674;
-/// Of the last row of a matrix, which is 0 0 0 1.
+/// Tolerance of the last row of a matrix, 0 0 0 1.
 constexpr float kRowTolerance = 1e-5F;
 
 /// \param m  16 numbers, by columns. \return nullopt if its last row is not 0 0 0 1.
@@ -142,7 +141,7 @@ std::uint64_t linesOf(std::uint64_t mode, std::uint64_t corners) {
     return mode == kLines ? corners / 2 : corners < 2 ? 0 : mode == kLineLoop ? corners : corners - 1;
 }
 
-/// The corners of a triangle, by number in its primitive. Of strips every other one is turned over.
+/// The corners of a triangle, by number in its primitive. Every other triangle of a strip is flipped.
 glm::uvec3 cornersOf(std::uint64_t mode, std::uint32_t i) {
     return mode == kFan         ? glm::uvec3(0, i + 1, i + 2)
            : mode == kTriangles ? glm::uvec3(3 * i, 3 * i + 1, 3 * i + 2)
@@ -159,10 +158,10 @@ struct Influence {
 /// The joints of a primitive's vertices.
 struct Influences {
     std::size_t per_vertex = 0;
-    std::vector<Influence> all;  ///< per_vertex for each vertex; the weights of each are more than 0 in sum
+    std::vector<Influence> all;  ///< per_vertex for each vertex, whose weights have a sum above 0
 };
 
-/// Whether the weights of every vertex are 0 or more, and more than 0 in sum.
+/// Whether the weights of every vertex are 0 or more, and have a sum above 0.
 bool weigh(const Influences& influences) {
     for (std::size_t at = 0; at < influences.all.size(); at += influences.per_vertex) {
         double sum = 0.0;
@@ -217,7 +216,7 @@ Result<std::optional<Influences>> readInfluences(const GltfValue& attributes, Gl
                      "have weights that are less than 0, no numbers, or 0 for all joints of a vertex");
 }
 
-/// The part in that pose: turned over where most of it is mirrored.
+/// The part in that pose, flipped if most of it is mirrored.
 ScenePart posed(ScenePart part, const Influences& influences, const std::vector<Transform>& joints) {
     double mirrored = 0.0;
     std::vector<bool> mirrors;
@@ -264,14 +263,14 @@ class GltfReader {
         }
         if (!skins_.empty()) {
             warn(all_jointed_ ? "it is skinned; baked in the pose that its nodes have"
-                              : "it is skinned; parts without joints, or compressed by Draco, are baked as "
-                                "they are modelled, without their skeleton");
+                              : "it is skinned; parts without joints are baked as they are modelled, without "
+                                "their skeleton");
         }
         return std::move(scene_);
     }
 
   private:
-    /// The members of a node that a SceneNode has no place for.
+    /// The members of a node that SceneNode lacks.
     struct Node {
         std::optional<std::uint32_t> parent;
         std::optional<GltfValue> mesh;
@@ -279,12 +278,11 @@ class GltfReader {
     };
     struct Primitive {
         ScenePart part;
-        std::optional<Influences>
-            influences;  ///< of the part's positions; read only where a skin asks for them
+        std::optional<Influences> influences;  ///< of the part's positions; read only for skins
         std::map<std::uint64_t, std::uint32_t>
             placed;  ///< index of a scene's part, by skin + 1, or 0 for none
     };
-    /// What tells the vertices of one accessor from those of another: exporters make many accessors of one view.
+    /// Identifies the vertices of an accessor: exporters make many accessors of one view.
     using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, bool, std::uint64_t>;
     struct Vertices {
         std::vector<glm::vec3> positions;
@@ -316,14 +314,14 @@ class GltfReader {
                 if (child >= places.size()) {
                     return place.wrong("names a child, " + name + ", that does not exist");
                 }
-                // It would be there twice for each node on the way, 2ⁿ times in n nodes.
+                // n nodes could show it 2ⁿ times.
                 if (std::exchange(nodes_[child].parent, index)) {
                     return invalidInput(name + " has two parents; nodes must form trees");
                 }
                 node.children.push_back(static_cast<std::uint32_t>(child));
             }
         }
-        // Each node has at most one parent, so a node that no root leads to is part of a ring.
+        // Each node has at most one parent, so a node that no root reaches is part of a ring.
         std::vector<std::uint32_t> open;
         for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
             if (!nodes_[i].parent) {
@@ -341,7 +339,7 @@ class GltfReader {
                    : invalidInput("its nodes are their own parents; nodes must form trees");
     }
 
-    /// Of the scene that the file shows: of its first one if it names none.
+    /// Of the scene that the file shows: the first by default.
     Result<void> readRoots() {
         const std::vector<GltfValue> scenes = RELIEF_TRY(document_.objects("scenes"));
         const std::uint64_t shown = RELIEF_TRY(document_.get<std::uint64_t>("scene", 0));
@@ -421,13 +419,13 @@ class GltfReader {
         return {};
     }
 
-    /// What each joint of a skin does to vertices as they are modelled.
+    /// The transform of each joint of a skin, of vertices as they are modelled.
     Result<std::vector<Transform>> readSkin(const GltfValue& skin) {
         const auto joints = RELIEF_TRY(skin.get<std::vector<std::uint64_t>>("joints", {}));
         if (joints.empty() || joints.size() > kJointsMax) {
             return skin.wrong("has no joints, or more than " + std::to_string(kJointsMax));
         }
-        // Without them, each joint leaves vertices where it stands.
+        // Identity by default.
         std::vector<glm::mat4> bounds(joints.size(), glm::mat4(1.0F));
         if (const auto inverse = RELIEF_TRY(skin.named("inverseBindMatrices", "accessors"))) {
             bounds = RELIEF_TRY(readAccessor<glm::mat4>(*inverse, GltfUse::kMatrices, buffers_, kJointsMax));
@@ -451,7 +449,7 @@ class GltfReader {
         return transforms;
     }
 
-    /// \param skinned  whether a skin asks for it.
+    /// \param skinned  whether a node places it with a skin.
     Result<void> readMesh(const GltfValue& mesh, bool skinned) {
         std::vector<Primitive>& primitives = meshes_[mesh.index()];
         const std::string name = RELIEF_TRY(mesh.get<std::string>("name", ""));
@@ -481,11 +479,6 @@ class GltfReader {
         const std::optional<GltfValue> accessor = RELIEF_TRY(attributes->named("POSITION", "accessors"));
         if (!accessor) {
             warn("a primitive without positions is left out");
-            return out;
-        }
-        const std::optional<GltfValue> extensions = RELIEF_TRY(place.object("extensions"));
-        if (extensions && extensions->has("KHR_draco_mesh_compression")) {
-            RELIEF_TRY(readDracoTriangles(place, mode, *extensions, *accessor, out.part));
             return out;
         }
         Vertices& used = *RELIEF_TRY(vertices(*accessor));
@@ -524,20 +517,10 @@ class GltfReader {
         return &found->second;
     }
 
-    Result<void> countTriangles(const GltfValue& place, std::uint64_t count) {
-        if (count > triangle_max_ - scene_.counts.polygons) {
-            return place.wrong("is beyond the limit of " + std::to_string(triangle_max_) +
-                                   " triangles for all meshes; simplify the mesh, or raise --max-triangles",
-                               ErrorCode::kLimit);
-        }
-        scene_.counts.polygons += count;
-        return {};
-    }
-
-    /// Of the vertices that are given.
+    /// \param vertices  of the primitive.
     Result<void> readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
                                ScenePart& part) {
-        // Without indices, the vertices as they come.
+        // Without indices, the vertices in their order.
         const std::optional<GltfValue> accessor = RELIEF_TRY(place.named("indices", "accessors"));
         std::vector<std::uint32_t> indices;
         if (accessor) {
@@ -560,7 +543,12 @@ class GltfReader {
             return place.wrong("has " + std::to_string(corners) + " corners, which is no multiple of 3");
         }
         const std::uint64_t count = mode == kTriangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
-        RELIEF_TRY(countTriangles(place, count));
+        if (count > triangle_max_ - scene_.counts.polygons) {
+            return place.wrong("is beyond the limit of " + std::to_string(triangle_max_) +
+                                   " triangles for all meshes; simplify the mesh, or raise --max-triangles",
+                               ErrorCode::kLimit);
+        }
+        scene_.counts.polygons += count;
         for (std::uint32_t i = 0; i < count; ++i) {
             const glm::uvec3 corner = cornersOf(mode, i);
             part.triangles.emplace_back(vertexOf(corner.x), vertexOf(corner.y), vertexOf(corner.z));
@@ -587,45 +575,13 @@ class GltfReader {
         return {};
     }
 
-    Result<void> readDracoTriangles(const GltfValue& place, std::uint64_t mode, const GltfValue& extensions,
-                                    const GltfValue& positions, ScenePart& part) {
-        if (mode != kTriangles && mode != kStrip) {
-            return place.wrong("is compressed by Draco, which holds triangles, but its mode is another");
-        }
-        const GltfValue draco = *RELIEF_TRY(extensions.object("KHR_draco_mesh_compression"));
-        const GltfView view = RELIEF_TRY(buffers_.view(draco));
-        const std::optional<GltfValue> attributes = RELIEF_TRY(draco.object("attributes"));
-        if (!attributes) {
-            return draco.wrong("has no attributes");
-        }
-        const std::uint64_t attribute = RELIEF_TRY(attributes->number("POSITION"));
-        const std::uint64_t count = RELIEF_TRY(positions.number("count"));
-        const std::optional<GltfValue> indices = RELIEF_TRY(place.named("indices", "accessors"));
-        const std::uint64_t corners = indices ? RELIEF_TRY(indices->number("count")) : 0;
-        std::optional<ScenePart> mesh =
-            readDraco(view.bytes, attribute, triangle_max_ - scene_.counts.polygons);
-        // Its accessors tell what it must hold.
-        if (!mesh || mesh->positions.size() != count ||
-            (indices && mode == kTriangles && corners != 3 * mesh->triangles.size())) {
-            return draco.wrong(
-                "holds no mesh of Draco as its primitive announces it; export it without Draco");
-        }
-        RELIEF_TRY(countTriangles(place, mesh->triangles.size()));
-        part.triangles = std::move(mesh->triangles);
-        compact(mesh->positions, part);
-        scene_.counts.vertices += count;
-        scene_.counts.unused += count - part.positions.size();
-        scene_.counts.loose += count - part.positions.size();
-        return {};
-    }
-
     std::uint64_t triangle_max_;
     const GltfValue& document_;
     GltfBuffers buffers_;
     ImportScene scene_;
     std::vector<Node> nodes_;  // beside those of the scene
     std::map<std::uint64_t, std::vector<Primitive>> meshes_;
-    std::map<std::uint64_t, std::vector<Transform>> skins_;  // what their joints do, by number + 1
+    std::map<std::uint64_t, std::vector<Transform>> skins_;  // transforms of their joints, by number + 1
     bool all_jointed_ = true;
     std::map<Key, Vertices> vertices_;
     std::uint64_t vertex_count_ = 0;
