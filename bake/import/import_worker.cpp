@@ -1,4 +1,4 @@
-// importMeshInWorker: starts relief-import, waits for it, and believes nothing that it says.
+// importMeshInWorker: starts relief-import, waits for it, and checks its answer.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,12 +34,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWorkerName = "relief-import";
 constexpr const char* kWorkerFolder = "../libexec/relief";
-/// Times that a worker is started which does not begin.
-constexpr int kAttempts = 3;
-/// Sizes of files are signed.
+/// File sizes are signed.
 constexpr std::uint64_t kMemoryMax = std::uint64_t{1} << 46;
 
-/// Empty where it cannot be had; errno then says why.
+/// Empty on failure, with errno.
 Descriptor memoryFile(std::uint64_t size) {
     Descriptor file;
     errno = retryTransient([&] {
@@ -50,7 +47,7 @@ Descriptor memoryFile(std::uint64_t size) {
     return errno == 0 ? std::move(file) : Descriptor();
 }
 
-/// Memory counts as a file, of which this process may have been allowed little.
+/// The file size limit counts for memory, too.
 std::uint64_t largestFile(std::uint64_t wanted) {
     rlimit limit{};
     return ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY
@@ -58,7 +55,7 @@ std::uint64_t largestFile(std::uint64_t wanted) {
                : wanted;
 }
 
-/// The mesh's bytes where the worker can read, and not change, them. Empty where they cannot be had, as above.
+/// A sealed copy of the mesh's bytes for the worker. Empty on failure, with errno.
 Descriptor sharedBytes(std::span<const std::byte> bytes) {
     Descriptor file = memoryFile(0);
     if (!file) {
@@ -71,15 +68,14 @@ Descriptor sharedBytes(std::span<const std::byte> bytes) {
     return errno == 0 ? std::move(file) : Descriptor();
 }
 
-/// The folder of the executable or shared library that this function is in.
+/// The folder of the executable or shared library with this function.
 fs::path ownFolder() {
     Dl_info info{};
     const bool found = ::dladdr(reinterpret_cast<const void*>(&ownFolder), &info) != 0;
     return found && info.dli_fname != nullptr ? fs::path(info.dli_fname).parent_path() : fs::path();
 }
 
-/// The program, beside this one or where an installation puts it, or beside a library that this is part of; "" if it is
-/// nowhere.
+/// The program, beside this one, where an installation puts it, or beside the library with this function; "" if missing.
 std::string workerProgram() {
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -92,58 +88,22 @@ std::string workerProgram() {
     return "";
 }
 
-/// \return false if the other end is still open after so long.
+/// \return false if the other end is still open then.
 bool closesWithin(int file, std::uint32_t seconds) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point end = Clock::now() + std::chrono::seconds(seconds);
-    for (;;) {
+    pollfd closing{file, 0, 0};
+    int ready = -1;
+    while (ready <= 0 && Clock::now() < end) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
-        if (left <= 0) {
-            return false;
-        }
-        pollfd closing{file, 0, 0};
-        const int ready = ::poll(&closing, 1, static_cast<int>(std::min<std::int64_t>(left, 1'000'000)));
-        if (ready > 0) {
-            return true;
-        }
-        if (ready < 0 && errno != EINTR) {
-            // Nothing is known of the worker but that its time is not up.
-            const timespec moment{0, 10'000'000};
-            ::nanosleep(&moment, nullptr);
-        }
+        ready = ::poll(&closing, 1, static_cast<int>(std::min<std::int64_t>(left, 1'000'000)));
     }
+    return ready > 0;
 }
 
 std::string signalName(int number) {
     const char* const name = ::sigabbrev_np(number);
     return name != nullptr ? "SIG" + std::string(name) : "signal " + std::to_string(number);
-}
-
-/// What helps against an errno of a call that the import cannot do without.
-const char* cureOf(int number) {
-    switch (number) {
-        case EMFILE:
-            return "close files, or raise the limit of open files (ulimit -n)";
-        case ENFILE:
-            return "the whole system has too many files open; close some, or try again";
-        case EAGAIN:
-            return "end some processes, or raise their limit (ulimit -u)";
-        case ENOMEM:
-        case ENOSPC:
-            return "free memory, or raise its limit (ulimit -v)";
-        case EFBIG:
-            return "raise the file size limit (ulimit -f), which counts for memory too";
-        case ENOENT:
-        case EACCES:
-        case ENOEXEC:
-        case ELIBBAD:
-            return "install Relief again";
-        case EPERM:
-        case ENOSYS:
-            return "allow it where the system or its container forbids it";
-        default:
-            return "try again";
-    }
 }
 
 class Import {
@@ -169,8 +129,10 @@ class Import {
     }
     /// \param what  "could not be …"
     [[nodiscard]] tl::unexpected<Error> shortOf(const char* what, int number) const {
-        return error(ErrorCode::kFailure, std::string("the importer ") + what + " (" + std::strerror(number) +
-                                              "); " + cureOf(number));
+        return error(
+            ErrorCode::kFailure,
+            std::string("the importer ") + what + " (" + std::strerror(number) +
+                "); close files, end processes or free memory, or raise the limits (ulimit -n -u -v -f)");
     }
     [[nodiscard]] tl::unexpected<Error> notStarted(int number) const {
         return shortOf("could not be started", number);
@@ -191,34 +153,31 @@ class Import {
         if (!result) {
             return notStarted(errno);
         }
-        // What keeps a program from being loaded may pass in a moment: no memory, no files.
-        ProcessEnd end;
-        for (int attempt = 0; attempt < kAttempts; ++attempt) {
-            Descriptor alive;
-            Descriptor alive_end;
-            if (const int failed = retryTransient([&] { return makePipe(alive, alive_end); })) {
-                return notStarted(failed);
-            }
-            Process worker;
-            if (const int failed =
-                    start(program, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
-                return notStarted(failed);
-            }
-            alive_end.reset();
-            if (!closesWithin(alive.get(), limits_.seconds)) {
-                return timeIsUp();
-            }
-            end = worker.wait();
-            std::byte begun{};
-            if (::read(alive.get(), &begun, 1) == 1) {
-                mesh.reset();
-                return answer(end, result.get());
-            }
-            if (end.signal == SIGKILL) {
-                break;
-            }
+        Descriptor alive;
+        Descriptor alive_end;
+        if (const int failed = retryTransient([&] { return makePipe(alive, alive_end); })) {
+            return notStarted(failed);
         }
-        return notBegun(end);
+        Process worker;
+        if (const int failed =
+                start(program, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
+            return notStarted(failed);
+        }
+        alive_end.reset();
+        if (!closesWithin(alive.get(), limits_.seconds)) {
+            return timeIsUp();
+        }
+        const ProcessEnd end = worker.wait();
+        std::byte begun{};
+        if (::read(alive.get(), &begun, 1) != 1 && end.signal != SIGKILL &&
+            end.exit_code <= kImportExitErrno) {
+            return error(
+                ErrorCode::kFailure,
+                "the importer could not be started, as its libraries cannot be loaded; close files or "
+                "raise their limit (ulimit -n), free memory, or install Relief again");
+        }
+        mesh.reset();
+        return answer(end, result.get());
     }
 
     /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null. \return 0 or an errno.
@@ -236,7 +195,7 @@ class Import {
         start.arguments.insert(start.arguments.end(), options_.names.begin(), options_.names.end());
         start.files.assign(kImportMeshFd, -1);
         start.files.insert(start.files.end(), files.begin(), files.end());
-        // Whatever this process ignores, the worker's limits must be able to end it.
+        // The signals of the worker's limits must end it, even if this process ignores them.
         start.reset_ignored_signals = true;
         return worker.start(start);
     }
@@ -244,18 +203,6 @@ class Import {
     [[nodiscard]] tl::unexpected<Error> timeIsUp() const {
         return error(ErrorCode::kLimit, "the importer did not end within " + std::to_string(limits_.seconds) +
                                             " s; simplify the mesh or raise --import-time");
-    }
-
-    /// It never ran: the dynamic loader gave up, or broke down.
-    [[nodiscard]] tl::unexpected<Error> notBegun(const ProcessEnd& end) const {
-        if (end.signal == SIGKILL || end.exit_code > kImportExitErrno) {
-            return end.signal != 0 ? ended(end.signal)
-                                   : shortOf("could not begin", end.exit_code - kImportExitErrno);
-        }
-        return error(
-            ErrorCode::kFailure,
-            "the importer could not be started, as its libraries cannot be loaded; close files or raise "
-            "their limit (ulimit -n), free memory, or install Relief again");
     }
 
     Result<TriangleMesh> answer(const ProcessEnd& end, int result) const {
@@ -279,7 +226,7 @@ class Import {
                              "--import-memory and this process's file size limit (ulimit -f)");
             default:
                 if (end.exit_code > kImportExitErrno) {
-                    return shortOf("could not hand its mesh over", end.exit_code - kImportExitErrno);
+                    return shortOf("could not go on", end.exit_code - kImportExitErrno);
                 }
                 return error(ErrorCode::kInvalidInput, "the importer ended with exit code " +
                                                            std::to_string(end.exit_code) +
@@ -304,7 +251,7 @@ class Import {
                     ErrorCode::kInvalidInput,
                     "the importer tried what it may not (SIGSYS), as a hostile file can make it; do not "
                     "trust the file, or report it if you do");
-            case SIGBUS:  // its memory is no file that could have been cut
+            case SIGBUS:  // its memory is no file that could have been truncated
                 return shortOf("could not go on", ENOMEM);
             default:
                 return error(ErrorCode::kInvalidInput, "the importer crashed on it (" + signalName(number) +
@@ -315,7 +262,7 @@ class Import {
     Result<TriangleMesh> message(int result) const {
         constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
         struct stat status {};
-        // Unsealed, it could change under our eyes.
+        // Unsealed, it could change during the reading.
         const int seals = ::fcntl(result, F_GET_SEALS);
         if (seals < 0 || (seals & kSeals) != kSeals || ::fstat(result, &status) != 0 || status.st_size == 0) {
             return error(ErrorCode::kFailure,
