@@ -19,7 +19,7 @@ packages=(
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
     libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev
-    libopenexr-dev libopenvdb-dev libopenvdb-tools libpugixml-dev libseccomp-dev libspdlog-dev libtbb-dev libzip-dev
+    libopenexr-dev libopenvdb-dev libopenvdb-tools libpugixml-dev libseccomp-dev libspdlog-dev libtbb-dev
     nlohmann-json3-dev
     fonts-dejavu-core
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU

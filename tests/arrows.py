@@ -13,7 +13,6 @@ import sys
 THIRD_PARTIES = {
     'assimp': ['bake/import'],
     'seccomp.h': ['bake/import'],
-    'zip.h': ['bake/import'],
     'pugixml.hpp': ['bake/import'],
     'embree3': ['bake/mesh'],
     'embree4': ['bake/mesh'],

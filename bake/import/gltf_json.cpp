@@ -11,14 +11,14 @@ using Json = nlohmann::json;
 
 constexpr int kDepthMax = 256;
 constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
-constexpr std::size_t kShownMax = 200;  // bytes of the file, or of the parser's words, in a message
+constexpr std::size_t kShownMax = 200;  // bytes of the file or of the parser's message that are shown
 
-/// Thrown and caught in this file: nothing else stops the parser.
+/// Thrown and caught in this file; the parser can only be stopped by an exception.
 struct Refusal {
     Error error;
 };
 
-/// Goes along with the parser.
+/// Follows the parser's events.
 class Strictness {
   public:
     void hear(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -39,13 +39,13 @@ class Strictness {
     }
 
   private:
-    std::vector<std::set<std::string>> keys_;  // of what is open
+    std::vector<std::set<std::string>> keys_;  // of the open objects
 };
 
 }  // namespace
 
 Result<Json> parseGltfJson(std::string_view text) {
-    // Zeros fill up the last block of some files; the parser would stop at any.
+    // Some files are padded with zeros, at which the parser would stop.
     text = text.substr(0, text.find_last_not_of(std::string_view(" \t\r\n\0", 5)) + 1);
     if (text.find('\0') != std::string_view::npos) {
         return invalidInput("it is no valid JSON: it holds a byte of 0");
@@ -59,7 +59,7 @@ Result<Json> parseGltfJson(std::string_view text) {
                            });
     } catch (const Refusal& refusal) {
         return tl::unexpected<Error>(refusal.error);
-    } catch (const Json::exception& error) {  // also a number beyond all numbers
+    } catch (const Json::exception& error) {  // also a number out of range
         const std::string_view words(error.what());
         return invalidInput("it is no valid JSON: " +
                             cleanUtf8(words.substr(words.find("] ") + 2), kShownMax) + "; export it again");

@@ -42,7 +42,7 @@ class MemoryStream final : public Assimp::IOStream {
     }
     aiReturn Seek(std::size_t offset, aiOrigin origin) override {
         const std::size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
-        // Negative offsets arrive as huge ones; the sum wraps round as it should.
+        // Negative offsets arrive as huge ones; the sum wraps round correctly.
         const std::size_t target = base + offset;
         if (target > bytes_.size()) {
             return aiReturn_FAILURE;
@@ -60,7 +60,7 @@ class MemoryStream final : public Assimp::IOStream {
     std::size_t at_ = 0;
 };
 
-/// The mesh from memory, and whatever it refers to (material libraries) as ImportFiles allows. Nothing can be written.
+/// The mesh from memory, and the files that it refers to (material libraries) by ImportFiles. Nothing can be written.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:
     explicit ReadOnlyFiles(ImportFiles& files) : files_(files) {}
@@ -87,8 +87,8 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
     ImportFiles& files_;
 };
 
-/// The first errors of an import on this thread, and warnings that a part of the surface is left out. Where one of assimp's
-/// readers mends a file, such as an index out of range, that is all it says.
+/// The first errors of an import on this thread, and warnings about omitted parts of the surface. A reader of assimp that
+/// repairs a file, such as an index out of range, reports it nowhere else.
 thread_local std::vector<std::string> logged;
 
 bool hasAny(std::string_view text, std::span<const std::string_view> words) {
@@ -96,11 +96,11 @@ bool hasAny(std::string_view text, std::span<const std::string_view> words) {
                        [text](std::string_view word) { return text.find(word) != std::string_view::npos; });
 }
 
-/// Words of the warnings of its readers (BLEND, LWO, FBX) that a part of the surface is left out.
+/// Words of its warnings (BLEND, LWO, FBX) about omitted parts of the surface.
 constexpr std::array<std::string_view, 7> kLeftOut = {
     "type is unsupported",   "unsupported primitive chunk", "unknown polygon type",   "unsupported ID",
     "unrecognized geometry", "not enough vertices",         "unexpected vertex setup"};
-/// About what an import leaves out anyway.
+/// Subjects that an import ignores anyway.
 constexpr std::array<std::string_view, 5> kNoSurface = {"aterial", "exture", "nimation", "angent", "inormal"};
 
 class Listener final : public Assimp::Logger {
@@ -152,8 +152,8 @@ std::optional<T> metadata(const aiScene& scene, const char* key) {
     return value;
 }
 
-/// FBX has its unit in centimetres, and its axes by number and sign; assimp applies neither, and takes 10 of 10,5 and nothing
-/// but a number of the type double.
+/// FBX has its unit in centimetres, and its axes by number and sign. assimp applies neither, reads 10,5 as 10, and reads only
+/// numbers of type double.
 SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     SourceFrame frame{std::nullopt, std::nullopt};
     const FbxUnit unit = fbxUnit(job.bytes).value_or(FbxUnit{"1", 1.0});
@@ -172,10 +172,10 @@ SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     return frame;
 }
 
-/// assimp scales the root by the document's unit as it understands it. \param root  loses that scale.
+/// assimp scales the root by the document's unit. \param root  loses that scale.
 SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     SourceFrame frame = colladaFrame(job.bytes);
-    const double applied = double{root.a1};  // as it was rounded
+    const double applied = double{root.a1};  // as rounded by assimp
     if (frame.metres && std::abs(applied / *frame.metres - 1.0) < 1e-5) {
         frame.metres = applied;
     }
@@ -183,8 +183,8 @@ SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     return frame;
 }
 
-/// assimp turns the root, and divides it by the file's master scale, whatever that is. \param root  loses that turn, and that
-/// scale where it is none.
+/// assimp turns the root, and divides it by the file's master scale, even an invalid one. \param root  loses the turn, and an
+/// invalid scale.
 SourceFrame frameOf3ds(aiMatrix4x4& root) {
     SourceFrame frame{std::nullopt, UpAxis::kPlusZ};
     const float scale = root.a1;
@@ -196,7 +196,7 @@ SourceFrame frameOf3ds(aiMatrix4x4& root) {
     return frame;
 }
 
-/// \param scene  may lose what a reader has applied of it.
+/// \param scene  its root loses what assimp has applied of the frame.
 SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
     SourceFrame frame;
     switch (format) {
@@ -216,13 +216,13 @@ SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
 
 std::string nameOf(const aiString& text) {
     const std::string_view name(text.data, std::min<std::size_t>(text.length, sizeof(text.data)));
-    // What assimp calls what has no name, and what it adds to nodes of FBX that it splits.
+    // Placeholders of assimp for missing names, and its suffix for nodes of FBX that it splits.
     const bool made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
                          name.find("_$AssimpFbx$_") != std::string_view::npos;
     return made_up ? std::string() : std::string(name);
 }
 
-/// Some readers of assimp keep whatever index the file holds. \return nullopt: a face uses a vertex that does not exist.
+/// Some readers of assimp keep invalid indices. \return nullopt: a face uses a vertex that does not exist.
 std::optional<PolygonMesh> polygonsOf(const aiMesh& mesh) {
     PolygonMesh polygons;
     if (!mesh.HasPositions()) {
@@ -245,7 +245,7 @@ std::optional<PolygonMesh> polygonsOf(const aiMesh& mesh) {
     return polygons;
 }
 
-/// Gives each corner a vertex of its own, as meshes beside lines or points have always had it.
+/// Gives each corner its own vertex: keeps the bytes of bakes of meshes beside lines or points.
 void unshare(ScenePart& part) {
     std::vector<glm::vec3> positions;
     for (glm::uvec3& t : part.triangles) {
@@ -296,7 +296,7 @@ void addNodes(const aiScene& source, ImportScene& scene) {
             Transform{glm::dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), {m.a4, m.b4, m.c4}}};
         node.names = {nameOf(from->mName)};
         node.index = index;
-        if (index > 0) {  // the topmost is the file
+        if (index > 0) {  // the root is the file
             node.shown = node.names[0].empty() ? scene.nodes[parent].shown : node.names[0];
             scene.nodes[parent].children.push_back(index);
         }
@@ -315,7 +315,7 @@ void addNodes(const aiScene& source, ImportScene& scene) {
     scene.roots = {0};
 }
 
-/// Leaves only the readers that claim the extension: which one reads a file does not depend on its contents.
+/// Keeps only the readers that claim the extension, so that the choice does not depend on the contents.
 void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     std::vector<Assimp::BaseImporter*> others;
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
@@ -331,21 +331,21 @@ void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     }
 }
 
-/// assimp's words, with the files that it was not given. Throws std::bad_alloc where it has run out of memory.
+/// assimp's message, with the files that were refused. Throws std::bad_alloc where it has run out of memory.
 tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFiles& files) {
     if (const std::exception_ptr& thrown = importer.GetException(); thrown != nullptr) {
         try {
             std::rethrow_exception(thrown);
         } catch (const std::bad_array_new_length&) {
-            // A size that is no size: the file is wrong.
+            // An invalid size: the file is wrong.
         } catch (const std::bad_alloc&) {
             throw;
         } catch (...) {
-            // Its words follow.
+            // Its message follows.
         }
     }
     const std::string words = oneCleanLine(importer.GetErrorString());
-    std::string text = words.empty() ? "its contents are not what its extension says" : words;
+    std::string text = words.empty() ? "its contents are not of the format of its extension" : words;
     for (const std::string& refused : files.refused()) {
         text += "; it refers to " + refused;
     }
@@ -359,10 +359,10 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
     Assimp::Importer importer;
     keepReadersOf(job.extension, importer);
     importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
-    // Without it, files that hold bones alone get a made-up mesh.
+    // Otherwise files with only bones get a made-up mesh.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
-    // The importer's own, and no constant.
+    // Owned by the importer, and not constant.
     auto* const source = const_cast<aiScene*>(importer.ReadFile(job.file_name, 0));
     if (hasLogged("UnitScaleFactor must be non-zero")) {
         return invalidInput("its UnitScaleFactor is 0, which is no length; export it again with a unit");

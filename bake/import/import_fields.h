@@ -9,27 +9,19 @@
 
 namespace relief {
 
-/// "+x" … "-z", of any case.
-[[nodiscard]] bool readForm(std::string_view word, UpAxis& axis);
-[[nodiscard]] std::string formText(UpAxis axis);
-
-/// lengthUnits(), for as long as the program runs.
-[[nodiscard]] std::span<const std::string_view> unitWords();
-
-/// Those of a person: without names.
+/// Without names, which are options of their own.
 template <class Visitor, FieldsOf<ImportOptions> Options>
 void fields(Visitor& visit, Options& options) {
     visit("unit", options.unit,
           {.help = "Unit of the mesh's lengths: m, cm, mm, um, km, in, ft, yd; they become metres",
            .fallback = "the file's; without one, lengths stay as they are",
-           .words = unitWords(),
+           .words = kLengthUnits,
            .value = "UNIT",
            .recorded = true});
     visit("up", options.up,
           {.help = "The mesh's axis that points upwards: +x -x +y -y +z -z; it becomes +y",
            .fallback = "the file's; without one, axes stay as they are",
            .value = "AXIS",
-           .must = "one of +x, -x, +y, -y, +z, -z",
            .recorded = true});
 }
 

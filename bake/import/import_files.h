@@ -1,5 +1,5 @@
-// The files that a mesh may read: itself, from memory, and regular files below its folder. No other path can
-// be reached, whatever the mesh names: the kernel resolves each beneath the folder (openat2).
+// The files that an import may read: the mesh, from memory, and regular files below its folder. No other path can be
+// reached: the kernel resolves each beneath the folder (openat2).
 #pragma once
 
 #include <cstddef>
@@ -32,13 +32,13 @@ class ImportFiles {
     /// \return true for a regular file below the folder; nothing is read.
     [[nodiscard]] bool exists(std::string_view path);
 
-    /// The contents, recorded in read(); nullopt, recorded in refused(), for whatever is no regular file
-    /// below the folder or exceeds the limit of all files.
+    /// The contents, recorded in read(). nullopt, recorded in refused(): no regular file below the folder, or beyond the
+    /// limit of all files.
     [[nodiscard]] std::optional<std::vector<std::byte>> open(std::string_view path);
 
     /// The XXH3-128 of each file that was read, without the mesh itself, by its path below the folder.
     [[nodiscard]] const std::map<std::string, std::string>& read() const { return read_; }
-    /// Names that led nowhere, with why; in the order they were asked for, each once, the first few only.
+    /// Names that could not be opened, with the reason; the first few, each once.
     [[nodiscard]] const std::vector<std::string>& refused() const { return refused_; }
 
   private:

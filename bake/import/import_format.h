@@ -12,12 +12,12 @@
 namespace relief {
 
 /// The code that reads a format (mesh_import.cpp).
-enum class MeshReader : std::uint8_t { kAssimp, kGltf, kObj, kOff, kPly, kStl, k3mf };
+enum class MeshReader : std::uint8_t { kAssimp, kGltf, kObj, kOff, kPly, kStl };
 
-/// How assimp hands the units and axes of a file on (import_assimp.cpp).
+/// How assimp treats the units and axes of a file (import_assimp.cpp).
 enum class AssimpFrame : std::uint8_t {
     kAsIs,
-    kMirrored,  ///< it has turned z round
+    kMirrored,  ///< assimp has negated z
     k3ds,
     kDae,
     kFbx,
@@ -28,9 +28,7 @@ struct MeshFormat {
     std::string_view extension;  ///< lower case, without its dot
     MeshReader reader = MeshReader::kAssimp;
     AssimpFrame frame = AssimpFrame::kAsIs;
-    std::array<std::string_view, 2> signatures{};  ///< bytes that no other format begins with
-    std::string_view packed{};                     ///< the beginning of an archive that files may be in
-    bool wide = false;                             ///< text that may be in UTF-16
+    std::array<std::string_view, 2> signatures{};  ///< first bytes, unique to the format
     bool whole = false;                            ///< refers to no other files
 };
 
@@ -40,12 +38,6 @@ struct MeshFormat {
 /// The extension of the format whose signature the file begins with. nullopt: there is none, or it is that of `extension`.
 /// \param extension  lower case, without its dot.
 [[nodiscard]] std::optional<std::string> otherFormat(std::string_view extension,
-                                                     std::span<const std::byte> bytes);
-
-/// The kind of a file that is no mesh, with the cure: packed, text in UTF-16, a picture, a web page, a placeholder of Git.
-/// nullopt: nothing of that kind.
-/// \param extension  lower case, without its dot.
-[[nodiscard]] std::optional<std::string> noMeshAtAll(std::string_view extension,
                                                      std::span<const std::byte> bytes);
 
 }  // namespace relief

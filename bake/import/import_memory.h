@@ -1,4 +1,4 @@
-// Memory that importMeshInWorker and relief-import share: a memfd, sealed when it is whole.
+// Memory shared by importMeshInWorker and relief-import: a memfd, sealed once it is complete.
 #pragma once
 
 #include <fcntl.h>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-/// Takes the first bytes of a memfd from the system now: touching a page that cannot be had is SIGBUS.
+/// Allocates the first bytes of a memfd now: touching a page that cannot be allocated raises SIGBUS.
 /// \return 0 or an errno: ENOSPC and ENOMEM where the system has no more.
 [[nodiscard]] inline int reserveMemory(int file, std::uint64_t bytes) {
     return bytes == 0 ? 0 : retryTransient([&] {
@@ -17,8 +17,8 @@ namespace relief {
     });
 }
 
-/// Seals a memfd, of which no page may be mapped for writing any more. The kernel answers EBUSY while it has hold of a
-/// page itself, which passes. \return 0 or an errno.
+/// Seals a memfd; none of its pages may be mapped for writing. Retries while the kernel itself holds a page (EBUSY).
+/// \return 0 or an errno.
 [[nodiscard]] inline int addSeals(int file, int seals) {
     return retryTransient([&] { return ::fcntl(file, F_ADD_SEALS, seals) == 0 ? 0 : errno; });
 }

@@ -39,7 +39,7 @@ class OffReader {
         std::string_view word = text_.anyWord();
         const std::string name = lowerCase(word);
         if (name.ends_with("off")) {
-            // Colours, normals and the like stand behind a vertex's coordinates; nOFF has any number of these, 4OFF four.
+            // Colours, normals and the like follow a vertex's coordinates; nOFF has any number of coordinates, 4OFF four.
             if (name.find_first_not_of("stcnof") != std::string::npos || word.ends_with("nOFF")) {
                 return wrongLine(text_.line(),
                                  quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
@@ -51,7 +51,7 @@ class OffReader {
         }
         vertices_ = RELIEF_TRY(countOf(word));
         faces_ = RELIEF_TRY(countOf(text_.anyWord()));
-        // The count of edges is of no use to anyone, and some writers leave it out.
+        // The count of edges is not used, and some writers omit it.
         if (text_.atLineEnd()) {
             TextScanner ahead = text_;
             const bool alone = parseUnsigned(ahead.anyWord()) && ahead.atLineEnd();
@@ -75,7 +75,7 @@ class OffReader {
         return std::to_string(vertices_) + " vertices and " + std::to_string(faces_) + " faces";
     }
 
-    /// Of the file's end, where more should be.
+    /// The file ends too early.
     [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& where) const {
         return wrongLine(text_.line(), "it ends " + where + ", though its header announces " + counts() +
                                            ": it was probably cut off; copy or export it again");
@@ -99,7 +99,7 @@ class OffReader {
         return passLine("vertex", index);
     }
 
-    /// \return how many triangles it becomes.
+    /// \return the number of its triangles.
     Result<std::uint64_t> readFace(std::uint64_t index) {
         const std::string_view word = text_.anyWord();
         if (word.empty()) {
@@ -130,7 +130,7 @@ class OffReader {
         return *corners < 3 ? 0 : *corners - 2;
     }
 
-    /// Passes over the rest of an element's line: numbers such as colours.
+    /// Skips the rest of an element's line: numbers such as colours.
     Result<void> passLine(const char* element, std::uint64_t index) {
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
             (void)RELIEF_TRY(number(word, element, index));

@@ -2,7 +2,7 @@
 //
 //     relief-import PATH MEMORY SECONDS TRIANGLES [FIELD VALUE]… names [NAME…]
 //
-// PATH is the mesh's as the user gave it (for messages, its name and extension); MEMORY in bytes; TRIANGLES as
+// PATH is the mesh as the user named it (for messages, its name and extension); MEMORY in bytes; TRIANGLES as
 // ImportLimits; FIELD and VALUE as fields() of ImportOptions has them; each NAME one of ImportOptions::names.
 // Nothing is read from standard input or written to standard output.
 #pragma once
@@ -16,14 +16,14 @@ inline constexpr std::string_view kImportNamesFollow = "names";  ///< the end of
 inline constexpr int kImportMeshFd = 3;    ///< the mesh file's bytes, sealed, memfd
 inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none
 inline constexpr int kImportResultFd = 5;  ///< memfd, large enough for any message; cut to size and sealed
-/// A pipe's writing end: gets a byte when the worker runs, and has looked at nothing yet; closes as it ends.
+/// A pipe's writing end: gets a byte when the worker starts, before it reads anything; closes as it ends.
 inline constexpr int kImportAliveFd = 6;
 
-inline constexpr int kImportExitMessage = 0;     ///< the message is there, a mesh or an error
+inline constexpr int kImportExitMessage = 0;     ///< the message is complete: a mesh or an error
 inline constexpr int kImportExitMemory = 10;     ///< the memory limit is reached
-inline constexpr int kImportExitArguments = 11;  ///< called otherwise than above, or the parent is gone
+inline constexpr int kImportExitArguments = 11;  ///< invalid arguments, or the parent has ended
 inline constexpr int kImportExitTooLarge = 12;   ///< the message is larger than the memory for it
-/// Behind it: 128 + errno, of a call of the system without which there is no message.
+/// Plus the errno of a system call that failed.
 inline constexpr int kImportExitErrno = 128;
 
 }  // namespace relief

@@ -15,8 +15,8 @@ namespace relief {
 /// OFF, the Object File Format of Geomview, as text.
 ///
 /// Reads the header OFF, with the prefixes ST, C and N or without it, and the counts of vertices, faces and, if it is there,
-/// edges. Each vertex begins a line, and each face too, which may go on over several; what else stands on their last line,
-/// colours mostly, is passed over.
+/// edges. Each vertex and each face begins a line; a face may span several. The rest of their last line, mostly colours, is
+/// skipped.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 
 /// STL, as text and binary.
@@ -26,21 +26,16 @@ namespace relief {
 /// header needs is binary, whatever it begins with; a warning counts the bytes behind its last triangle.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);
 
-/// 3MF (core specification 1.3, and production 1.1): a ZIP archive of models, which are objects and what places them.
-///
-/// The scene is what the model's <build> has. Objects in other models of the archive are read where one names them.
-[[nodiscard]] Result<ImportScene> read3mf(std::span<const std::byte> bytes);
-
-/// Every other format, by assimp. Throws std::bad_alloc.
+/// All other formats, by assimp. Throws std::bad_alloc.
 [[nodiscard]] Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job,
                                                  ImportFiles& files);
 
-/// glTF 2.0, as text and binary, read here and not by assimp, which reads on where the specification says otherwise.
+/// glTF 2.0, as text and binary; not by assimp, which accepts invalid files.
 ///
-/// Whatever has a part in the triangles that the file's scene shows keeps to the specification, or is an error: version,
+/// Everything that the triangles of the shown scene depend on must conform to the specification: version,
 /// required extensions, JSON without equal keys, buffers (percent-encoded, base64, of their length), accessors (sparse ones,
-/// KHR_mesh_quantization, KHR_draco_mesh_compression), indices, modes, transforms, trees of nodes, skins. Skinned meshes
-/// come in the pose that the nodes have, and targets of morphs are left out, with a warning each.
+/// KHR_mesh_quantization), indices, modes, transforms, trees of nodes, skins. Skinned meshes
+/// have the pose of the nodes; morph targets are left out; both with a warning.
 [[nodiscard]] Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files);
 
 }  // namespace relief

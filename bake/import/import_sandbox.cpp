@@ -27,7 +27,7 @@
 namespace relief {
 namespace {
 
-// Rights that the kernel's header of Debian 12 does not name yet.
+// Missing from the kernel header of Debian 12.
 constexpr std::uint64_t kLandlockTruncate = std::uint64_t{1} << 14U;
 
 tl::unexpected<Error> cannot(const char* what) {
@@ -47,14 +47,14 @@ bool lowerLimit(__rlimit_resource resource, std::uint64_t soft, std::uint64_t ha
 }
 
 /// Address space of this process, in bytes; 0 if it cannot be read.
-[[maybe_unused]] std::uint64_t addressSpace() {  // not asked for under the sanitizers
+[[maybe_unused]] std::uint64_t addressSpace() {  // unused under the sanitizers
     std::ifstream file("/proc/self/statm");
     std::uint64_t pages = 0;
     file >> pages;
     return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// Kernels without Landlock are left as they are: what the importer opens goes through ImportFiles anyway.
+/// No effect on kernels without Landlock: the importer opens files by ImportFiles anyway.
 Result<void> enterLandlock(int folder) {
     const long abi = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (abi < 1) {
@@ -86,14 +86,14 @@ Result<void> enterLandlock(int folder) {
 
 // --- system calls ---
 
-/// Of no harm, whatever they are called with.
+/// Harmless with any arguments.
 constexpr int kAllowed[] = {
     // memory
     SCMP_SYS(brk),
     SCMP_SYS(munmap),
     SCMP_SYS(mremap),
     SCMP_SYS(madvise),
-    // descriptors that it has
+    // open descriptors
     SCMP_SYS(read),
     SCMP_SYS(readv),
     SCMP_SYS(pread64),
@@ -116,7 +116,7 @@ constexpr int kAllowed[] = {
     SCMP_SYS(gettid),
     SCMP_SYS(exit),
     SCMP_SYS(exit_group),
-    // what time it is and how large the machine; sorting in libc asks
+    // clocks and the size of the machine, which sorting in libc needs
     SCMP_SYS(clock_gettime),
     SCMP_SYS(gettimeofday),
     SCMP_SYS(clock_nanosleep),
@@ -125,7 +125,7 @@ constexpr int kAllowed[] = {
     SCMP_SYS(uname),
     SCMP_SYS(getrandom),
 #ifdef __SANITIZE_ADDRESS__
-    // The sanitizers look at memory through pipes, give each thread a stack for signals, and write what they find.
+    // The sanitizers probe memory through pipes, give each thread a signal stack, and write reports.
     SCMP_SYS(pipe),
     SCMP_SYS(pipe2),
     SCMP_SYS(write),
@@ -139,7 +139,7 @@ struct Refused {
     int error;
 };
 
-/// Libraries try these and can do without. glibc takes clone, whose flags are seen, where there is no clone3.
+/// Libraries try these and can do without. Without clone3, glibc uses clone, whose flags a filter can check.
 constexpr Refused kRefused[] = {
     {SCMP_SYS(clone3), ENOSYS},   {SCMP_SYS(open), EACCES},       {SCMP_SYS(openat), EACCES},
     {SCMP_SYS(stat), EACCES},     {SCMP_SYS(lstat), EACCES},      {SCMP_SYS(statx), EACCES},
@@ -152,7 +152,7 @@ constexpr Refused kRefused[] = {
 };
 
 constexpr auto kThread = static_cast<scmp_datum_t>(CLONE_VM | CLONE_SIGHAND | CLONE_THREAD);
-/// What glibc and musl give a thread besides.
+/// Further flags of threads in glibc and musl.
 constexpr auto kThreadMay =
     static_cast<scmp_datum_t>(CLONE_FS | CLONE_FILES | CLONE_SYSVSEM | CLONE_SETTLS | CLONE_PARENT_SETTID |
                               CLONE_CHILD_SETTID | CLONE_CHILD_CLEARTID | CLONE_DETACHED);
@@ -196,12 +196,12 @@ void addRules(Rules& rules, int folder, int result) {
     for (const Refused& refused : kRefused) {
         rules.refuse(refused);
     }
-    // Memory that is read and written, never run; shared with others only as the result.
+    // Memory for reading and writing, never executable; shared only as the result.
     const auto shared = static_cast<scmp_datum_t>(MAP_SHARED);
     rules.allow(SCMP_SYS(mmap), {Rules::masked(2, PROT_EXEC, 0), Rules::masked(3, shared, 0)});
     rules.allow(SCMP_SYS(mprotect), {Rules::masked(2, PROT_EXEC, 0)});
     if (folder >= 0) {
-        // The path is not seen from here: Landlock judges it.
+        // A filter cannot check the path: Landlock does.
         rules.allow(SCMP_SYS(openat2), {Rules::is(0, static_cast<scmp_datum_t>(folder))});
     }
     if (result >= 0) {
@@ -214,7 +214,7 @@ void addRules(Rules& rules, int folder, int result) {
     }
     // fstat of glibc.
     rules.allow(SCMP_SYS(newfstatat), {Rules::is(3, AT_EMPTY_PATH)});
-    // Rights that were given up may be queried, not regained.
+    // Queries only.
     for (const int question : {PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, PR_GET_PDEATHSIG}) {
         rules.allow(SCMP_SYS(prctl), {Rules::is(0, static_cast<scmp_datum_t>(question))});
     }
@@ -225,12 +225,12 @@ void addRules(Rules& rules, int folder, int result) {
     rules.allow(SCMP_SYS(tgkill), {Rules::is(0, static_cast<scmp_datum_t>(::getpid()))});
 }
 
-/// Takes from this process all system calls but those that reading a mesh needs: memory that is not executable, threads of
-/// its own, reading of descriptors, files opened by openat2 (where Landlock keeps them below a folder and for reading),
-/// clocks, and its end. Calls that libraries try and can do without fail (EACCES, EPERM, ENOSYS, ENOTTY); all others end
-/// the process by SIGSYS. Comes after PR_SET_NO_NEW_PRIVS. A kernel without seccomp leaves the process as it is.
+/// Forbids all system calls that reading a mesh does not need. Allowed are memory that is not executable, threads, reading of
+/// descriptors, openat2 (which Landlock confines to a folder and to reading), clocks, and exit. Calls that libraries try and
+/// can do without fail (EACCES, EPERM, ENOSYS, ENOTTY); all others end the process by SIGSYS. Requires PR_SET_NO_NEW_PRIVS.
+/// No effect on kernels without seccomp.
 Result<void> enterSeccomp(int folder, int result) {
-    // The kernel has filters if it misses the one that is given.
+    // EFAULT: the kernel supports filters, and this one is null.
     if (::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) == 0 || errno != EFAULT) {
         return {};
     }
@@ -239,7 +239,7 @@ Result<void> enterSeccomp(int folder, int result) {
         errno = ENOMEM;
         return cannot("limit its system calls");
     }
-    // The kernel's own errno, and not one for all; another architecture's calls are as forbidden.
+    // The kernel's own errno; calls of other architectures are forbidden, too.
     for (const auto& [attribute, value] : {std::pair{SCMP_FLTATR_API_SYSRAWRC, 1U},
                                            std::pair{SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS}}) {
         errno = -::seccomp_attr_set(filter.get(), attribute, value);
@@ -259,13 +259,13 @@ Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) {
         return cannot("ask to end with its parent");
     }
-#ifndef __SANITIZE_ADDRESS__  // the address sanitizer's shadow takes terabytes of address space
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer's shadow memory takes terabytes of address space
     const std::uint64_t taken = addressSpace();
     if (taken == 0 || !lowerLimit(RLIMIT_AS, taken + limits.memory, taken + limits.memory)) {
         return cannot("limit its memory");
     }
 #endif
-    // SIGXCPU first; SIGKILL a second later, should that be caught.
+    // SIGXCPU first; SIGKILL a second later, if that is caught.
     if (!lowerLimit(RLIMIT_CPU, limits.seconds, std::uint64_t{limits.seconds} + 1U) ||
         !lowerLimit(RLIMIT_STACK, kSandboxStack, kSandboxStack) || !lowerLimit(RLIMIT_CORE, 0, 0) ||
         !lowerLimit(RLIMIT_FSIZE, 0, 0)) {

@@ -1,4 +1,4 @@
-// What the import worker gives up before it looks at a file.
+// The rights that the import worker gives up before it reads a file.
 #pragma once
 
 #include <cstdint>

@@ -17,7 +17,7 @@ namespace {
 
 /// A transform whose determinant is this small, relative to the product of its columns' lengths, leaves no volume.
 constexpr double kFlat = 1e-9;
-/// One vertex in this many may lie loose before that is worth a warning.
+/// A larger share of loose vertices, one in so many, is worth a warning.
 constexpr std::uint64_t kLooseShare = 10;
 
 double determinant(const glm::dmat3& m) {
@@ -26,7 +26,7 @@ double determinant(const glm::dmat3& m) {
            m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
 }
 
-/// "1 line, 3 points and 2 free-form curves or surfaces"; "" where there are none of these.
+/// "1 line, 3 points and 2 free-form curves or surfaces"; "" without any.
 std::string othersText(const MeshParts& parts) {
     std::vector<std::string> words;
     const auto add = [&words](std::uint64_t count, const char* one, const char* many) {
@@ -44,7 +44,7 @@ std::string othersText(const MeshParts& parts) {
     return text;
 }
 
-/// Cuts polygons into triangles, one run of them after the other.
+/// Cuts polygons into triangles, run by run.
 class PolygonRuns {
   public:
     PolygonRuns(const PolygonMesh& polygons, bool apart)
@@ -53,7 +53,7 @@ class PolygonRuns {
           has_polygons_(std::any_of(polygons.sizes.begin(), polygons.sizes.end(),
                                     [](std::uint32_t size) { return size > 3; })) {}
 
-    /// The next polygons. \param end  index. \param other  whether they are of another surface than those before.
+    /// The next polygons. \param end  index. \param other  whether they belong to another surface than the previous ones.
     ScenePart upTo(std::size_t end, bool other) {
         ScenePart part;
         std::vector<glm::vec3> places;
@@ -92,7 +92,7 @@ class PolygonRuns {
     }
 
   private:
-    /// Triangles are turned (TriangleStarts) by indices that begin again behind so many, as bakes have always had it.
+    /// The indices that turn triangles (TriangleStarts) restart after so many: keeps the bytes of bakes.
     static constexpr std::uint32_t kHeldMax = 100'000;
 
     const PolygonMesh& polygons_;
@@ -105,7 +105,7 @@ class PolygonRuns {
     std::uint32_t held_ = 0;
 };
 
-/// The names of a file's triangles, and the marks of those that --as asks for.
+/// The names of a file's triangles, and marks for those that --as selects.
 class NameMarks {
   public:
     /// \param job  borrowed.
@@ -118,12 +118,12 @@ class NameMarks {
     [[nodiscard]] bool any() const { return !marks_.empty(); }
 
     /// \param names  of some triangles, as the file has them.
-    /// \return what TriangleMesh::marks has of them: of several names, the largest counts.
+    /// \return their TriangleMesh::marks: the largest of several.
     std::uint8_t meet(const std::vector<std::string>& names) {
         std::uint8_t mark = 0;
         for (std::size_t i = 0; any() && i < names.size(); ++i) {
             const std::string name = cleanUtf8(names[i], kAskedNameBytesMax);
-            // The file's own name, which some readers give to the topmost node, is listed by no message.
+            // The file's own name, which some readers give to the root, is not listed.
             if (!name.empty() && name != job_.file_name && names_.size() < kNamesMax &&
                 known_.insert(name).second) {
                 names_.push_back(name);
@@ -136,7 +136,7 @@ class NameMarks {
         return mark;
     }
 
-    /// Whether every name was met. Errors: kUsage, with the names that were.
+    /// Whether every name was met. Errors: kUsage, with the existing names.
     [[nodiscard]] Result<void> allMet() const {
         const std::vector<std::string>& asked = job_.options.names;
         const auto unmet = std::find_if(asked.begin(), asked.end(), [&](const std::string& name) {
@@ -159,16 +159,16 @@ class NameMarks {
     }
 
   private:
-    /// Names that are remembered, to find the nearest to a wrong one, and those that a message lists.
+    /// Limits of the names that are kept for suggestions, and of those that a message lists.
     static constexpr std::size_t kNamesMax = 1000;
     static constexpr std::size_t kListedMax = 20;
     static constexpr std::size_t kListedBytesMax = 80;
 
     const ImportJob& job_;
-    std::map<std::string, std::uint8_t, std::less<>> marks_;  // of the names that are asked for
-    std::set<std::uint8_t> met_;                              // of these
-    std::vector<std::string> names_;            // that were met, in that order, the first of them
-    std::set<std::string, std::less<>> known_;  // the same
+    std::map<std::string, std::uint8_t, std::less<>> marks_;  // of the selected names
+    std::set<std::uint8_t> met_;                              // of those
+    std::vector<std::string> names_;                          // the first that were met, in order
+    std::set<std::string, std::less<>> known_;                // the same
 };
 
 class Flattener {
@@ -218,7 +218,7 @@ class Flattener {
   private:
     enum class State : std::uint8_t { kUnseen, kOpen, kEmpty, kShown };
 
-    /// Whether there are triangles at a node or below. It recurses: importers run on a deep stack.
+    /// Whether a node or one below it has triangles. Recursive: importers run on a deep stack.
     Result<bool> look(std::uint32_t index) {
         if (states_[index] == State::kOpen) {
             return invalidInput("an object is placed within itself; export it again");
@@ -265,8 +265,8 @@ class Flattener {
         return {};
     }
 
-    /// Visits the nodes that show something, parents before children: visit(node, transform of its parts, mark) -> whether
-    /// to go on. \return whether it got to the end.
+    /// Visits the nodes with triangles, parents first: visit(node, transform of its parts, mark) -> whether to continue.
+    /// \return whether all were visited.
     template <class Visit>
     bool forEachUse(const Visit& visit) {
         struct Pending {
@@ -307,7 +307,7 @@ class Flattener {
         return triangles_ <= job_.triangle_max && vertices_ <= 3 * job_.triangle_max;
     }
 
-    /// Triangles are turned over where the transform mirrors.
+    /// Mirroring transforms flip triangles.
     void add(const SceneNode& node, const ScenePart& part, const Transform& transform, std::uint8_t mark) {
         if (part.triangles.empty()) {
             return;
@@ -427,7 +427,7 @@ Result<void> addPolygons(const PolygonMesh& polygons, bool apart, const ImportJo
     scene.roots = {0};
     scene.nodes.push_back({.names = {job.file_name}});
     PolygonRuns runs(polygons, apart);
-    std::map<std::string_view, std::uint32_t> indices;  // one of a name is one node
+    std::map<std::string_view, std::uint32_t> indices;  // equal names are one node
     const PolygonGroup unnamed;
     const PolygonGroup* last = nullptr;
     for (std::size_t i = 0; i <= polygons.groups.size(); ++i) {

@@ -1,4 +1,4 @@
-// A mesh file as its reader leaves it, surfaces and the nodes that place them, and the TriangleMesh of what it shows.
+// The result of a reader, surfaces and the nodes that place them, and its conversion to one TriangleMesh.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct Transform {
 
 /// Triangles of one material.
 struct ScenePart {
-    std::vector<glm::vec3> positions;   ///< may be no numbers
+    std::vector<glm::vec3> positions;   ///< may be NaN
     std::vector<glm::uvec3> triangles;  ///< of positions that exist
     std::string material{};             ///< of SurfaceName
     std::vector<std::string> names{};   ///< that --as can select it by: of its mesh, group, material
@@ -45,7 +45,7 @@ std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, Scen
 /// A place of parts and of other nodes, which may have several places themselves.
 struct SceneNode {
     std::optional<Transform> transform{};  ///< to its parent
-    bool posed = false;                    ///< its parts stand in the scene, whatever places the node
+    bool posed = false;                    ///< its parts are in scene space, whatever the transforms
     std::vector<std::string> names{};      ///< that --as can select all below it by
     std::string shown{};                   ///< of SurfaceName, as is the next
     std::optional<std::uint32_t> index{};  ///< nullopt: each place of the node counts for itself
@@ -75,16 +75,16 @@ struct ImportScene {
 /// The polygons in triangles, as one part without names.
 [[nodiscard]] ScenePart cutPolygons(const PolygonMesh& polygons);
 
-/// The refusal of a file that has vertices or lines, but no polygon. \return nullopt for all others.
+/// The error of a file with vertices or lines, but no polygon; nullopt for all others.
 [[nodiscard]] std::optional<std::string> partsRefusal(const MeshParts& parts);
 /// Lines, points, free forms and meshes that are left out, and many loose vertices: each a line without the file's name.
 void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 
-/// Everything that the scene shows, in metres and +y up where the frame or the job tells how, with warnings of what it
-/// leaves out, and with marks if the job asks for names. Nothing is allocated before the sum of all triangles is known: a
-/// small file can place one mesh very often.
-/// Errors: kInvalidInput (nothing to see, a node within itself, a frame that cannot be meant), kUsage (a name that no
-/// triangle has), kLimit (more triangles than the job allows, or thrice as many vertices). They name no file.
+/// Everything that the scene shows, in metres and +y up where frame or job state unit and axis, with warnings of omitted
+/// parts, and with marks for the job's names. All triangles are counted before anything is allocated: a small file can place
+/// one mesh very often.
+/// Errors, naming no file: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a name that no
+/// triangle has), kLimit (more triangles than the job allows, or thrice as many vertices).
 [[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
 
 /// "it has more than N triangles…", kLimit.

@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// A mesh file, read but not understood.
+/// A mesh file, read but not parsed.
 class ImportSource {
   public:
     /// Errors: kUnsupported (extension), kInvalidInput (empty), and those of readFile.
@@ -23,17 +23,15 @@ class ImportSource {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] const std::string& extension() const { return extension_; }  ///< lower case, without dot
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
-    [[nodiscard]] int folder() const {
-        return folder_.get();
-    }  ///< descriptor, O_PATH; -1 if it cannot be opened
+    /// Descriptor, O_PATH; -1 if it cannot be opened.
+    [[nodiscard]] int folder() const { return folder_.get(); }
     /// Frees bytes().
     void dropBytes() { bytes_ = {}; }
 
-    /// Completes what an importer made of it: the name, the hash, whole paths, and the invariants of
-    /// TriangleMesh.
+    /// Completes an importer's result: name, hash, whole paths, and the invariants of TriangleMesh.
     /// \param raw    positions, triangles, marks, unit and warnings; dependencies, relative to the folder, and their
     ///               hashes, without the mesh file itself. May be hostile.
-    /// \param names  how many names were asked for: with none there must be no marks.
+    /// \param names  number of ImportOptions::names: with none there must be no marks.
     /// Errors: as finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
 

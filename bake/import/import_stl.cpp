@@ -15,8 +15,8 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kHeader = 84;    // bytes, the count included
-constexpr std::size_t kTriangle = 50;  // bytes: a normal, three corners, two that programs use as they like
+constexpr std::size_t kStlHeader = 84;  // bytes, the count included
+constexpr std::size_t kTriangle = 50;   // bytes: a normal, three corners, two for any use
 
 void addTriangle(const std::array<glm::vec3, 3>& corners, PolygonMesh& mesh) {
     for (const glm::vec3& corner : corners) {
@@ -28,24 +28,24 @@ void addTriangle(const std::array<glm::vec3, 3>& corners, PolygonMesh& mesh) {
 
 std::uint64_t announced(std::span<const std::byte> bytes) {
     std::uint32_t count = 0;
-    std::memcpy(&count, bytes.data() + kHeader - sizeof(count), sizeof(count));
+    std::memcpy(&count, bytes.data() + kStlHeader - sizeof(count), sizeof(count));
     return count;
 }
 
 Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
-    if (bytes.size() < kHeader) {
+    if (bytes.size() < kStlHeader) {
         return invalidInput(
             "it does not begin with 'solid', and is shorter than a binary STL's header; copy or "
             "export it again");
     }
     const std::uint64_t count = announced(bytes);
-    if (const std::uint64_t held = (bytes.size() - kHeader) / kTriangle; held < count) {
+    if (const std::uint64_t held = (bytes.size() - kStlHeader) / kTriangle; held < count) {
         return invalidInput("its header announces " + std::to_string(count) + " triangles, but it holds " +
                             std::to_string(held) + " and was probably cut off; copy or export it again");
     }
     RELIEF_TRY(checkTriangleCount(count));
     PolygonMesh mesh;
-    const std::byte* at = bytes.data() + kHeader;
+    const std::byte* at = bytes.data() + kStlHeader;
     for (std::uint64_t i = 0; i < count; ++i, at += kTriangle) {
         std::array<float, 9> numbers{};
         std::memcpy(numbers.data(), at + 12, sizeof(numbers));
@@ -77,7 +77,7 @@ class StlText {
     }
 
   private:
-    /// The next word in lower case. Its first form stays in word_.
+    /// The next word in lower case; word_ keeps its case.
     std::string next() {
         word_ = text_.anyWord();
         return lowerCase(word_);
@@ -96,7 +96,7 @@ class StlText {
         return next() == wanted ? Result<void>() : unexpected(("'" + std::string(wanted) + "'").c_str());
     }
 
-    /// Names are the first word behind "solid" on its line.
+    /// The name is the first word after "solid" on its line.
     Result<void> readSolid() {
         PolygonGroup group;
         group.begin = mesh_.sizes.size();
@@ -118,7 +118,7 @@ class StlText {
     Result<void> readFacet() {
         std::string word = next();
         if (word == "normal") {
-            // Writers put nan and worse there.
+            // Writers put NaN and worse there.
             do {
                 word = next();
             } while (!word.empty() && word != "outer" && word != "vertex" && word != "endfacet");
@@ -153,14 +153,14 @@ class StlText {
 };
 
 bool isText(std::span<const std::byte> bytes) {
-    if (bytes.size() >= kHeader && bytes.size() >= kHeader + announced(bytes) * kTriangle) {
+    if (bytes.size() >= kStlHeader && bytes.size() >= kStlHeader + announced(bytes) * kTriangle) {
         return false;
     }
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    // The header of a binary file that was cut off may begin so too, and is filled with zeros.
+    // A truncated binary file may begin with the same word; its header is padded with zeros.
     TextScanner scanner(text);
     return lowerCase(scanner.anyWord()) == "solid" &&
-           scanner.rest().substr(0, kHeader).find('\0') == std::string_view::npos;
+           scanner.rest().substr(0, kStlHeader).find('\0') == std::string_view::npos;
 }
 
 }  // namespace

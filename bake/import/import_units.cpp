@@ -12,26 +12,17 @@
 namespace relief {
 namespace {
 
-struct Unit {
-    std::string_view name;
-    double metres;
-};
-
-constexpr std::array<Unit, 8> kUnits = {{{"m", 1.0},
-                                         {"cm", 0.01},
-                                         {"mm", 0.001},
-                                         {"um", 1e-6},
-                                         {"km", 1000.0},
-                                         {"in", 0.0254},
-                                         {"ft", 0.3048},
-                                         {"yd", 0.9144}}};
-
-constexpr std::array<std::string_view, 6> kAxes = {"+x", "-x", "+y", "-y", "+z", "-z"};
-
 constexpr std::size_t kQuotedMax = 40;  // bytes of the file shown in a message
 
 std::string number(double value) {
     return shortest(static_cast<float>(value));
+}
+
+/// The whole of the text, without white space at its ends, as a finite number.
+std::optional<double> finiteNumber(std::string_view text) {
+    const std::string_view word = takeWord(text);
+    const std::optional<double> value = takeWord(text).empty() ? parseDouble(word) : std::nullopt;
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// \param text  behind the name of a property: its type, label and flags, each as 'S', length and bytes; then a letter for
@@ -72,38 +63,17 @@ FbxUnit binaryFbxUnit(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string_view> lengthUnits() {
-    std::vector<std::string_view> names;
-    for (const Unit& unit : kUnits) {
-        names.push_back(unit.name);
-    }
-    return names;
-}
-
 std::optional<double> metresPer(std::string_view unit) {
-    for (const Unit& known : kUnits) {
-        if (known.name == unit) {
-            return known.metres;
-        }
-    }
-    return std::nullopt;
-}
-
-Result<UpAxis> parseUpAxis(std::string_view text) {
-    const auto found = std::find(kAxes.begin(), kAxes.end(), lowerCase(text));
-    if (found == kAxes.end()) {
-        return fail(ErrorCode::kUsage,
-                    "--up is '" + cleanUtf8(text) + "' but must be one of " + listed(kAxes));
-    }
-    return static_cast<UpAxis>(found - kAxes.begin());
-}
-
-std::string_view upAxisName(UpAxis axis) {
-    return kAxes.at(static_cast<std::size_t>(axis));
+    constexpr std::array<double, kLengthUnits.size()> kMetres{1.0,    0.01,   0.001,  1e-6,
+                                                              1000.0, 0.0254, 0.3048, 0.9144};
+    const auto found = std::find(kLengthUnits.begin(), kLengthUnits.end(), unit);
+    return found == kLengthUnits.end()
+               ? std::nullopt
+               : std::optional(kMetres.at(static_cast<std::size_t>(found - kLengthUnits.begin())));
 }
 
 glm::dmat3 turnUpwards(UpAxis up) {
-    // Columns: where x, y and z go.
+    // Columns: the images of x, y and z.
     switch (up) {
         case UpAxis::kPlusX:
             return {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
@@ -133,7 +103,7 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
                                   " is taken, but the file says that its unit is " + number(*source.metres) +
                                   " m");
     }
-    // Of the source's axes the one that is there now.
+    // The current name of the source's axis.
     const auto now = [&source](UpAxis axis) {
         return !source.mirrored || axis < UpAxis::kPlusZ ? axis
                : axis == UpAxis::kPlusZ                  ? UpAxis::kMinusZ
@@ -143,30 +113,10 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
         change.turn = turnUpwards(now(up ? *up : *source.up));
     }
     if (up && source.up && *up != *source.up) {
-        change.warnings.push_back("--up " + std::string(upAxisName(*up)) +
-                                  " is taken, but the file says that " + std::string(upAxisName(*source.up)) +
-                                  " points upwards");
+        change.warnings.push_back("--up " + std::string(wordOf(*up)) + " is taken, but the file says that " +
+                                  std::string(wordOf(*source.up)) + " points upwards");
     }
     return change;
-}
-
-SourceFrame frameOfUnitName(std::string_view name) {
-    constexpr std::array<Unit, 6> kNames = {{{"micron", 1e-6},
-                                             {"millimeter", 0.001},
-                                             {"centimeter", 0.01},
-                                             {"meter", 1.0},
-                                             {"inch", 0.0254},
-                                             {"foot", 0.3048}}};
-    SourceFrame frame;
-    for (const Unit& known : kNames) {
-        if (known.name == name) {
-            frame.metres = known.metres;
-        }
-    }
-    if (!frame.metres) {
-        frame.unit_fault = "its unit '" + cleanUtf8(name.substr(0, kQuotedMax)) + "' is none of its format";
-    }
-    return frame;
 }
 
 Result<void> checkFrame(const SourceFrame& source, std::string_view unit, std::optional<UpAxis> up) {
@@ -209,7 +159,7 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
     xml.load_buffer(document.data(), document.size());
     const pugi::xml_node asset = xml.child("COLLADA").child("asset");
     const std::string meter = asset.child("unit").attribute("meter").as_string("1");
-    // Programs of some countries write a comma, and assimp reads it as a point.
+    // Some locales write a comma, which assimp reads as a point.
     std::string point = meter;
     if (const std::size_t comma = point.find(','); comma != std::string::npos) {
         point[comma] = '.';
@@ -229,19 +179,6 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
         frame.up_fault = "its up_axis '" + cleanUtf8(axis.substr(0, kQuotedMax)) + "' is none of COLLADA";
     }
     return frame;
-}
-
-std::optional<double> finiteNumber(std::string_view text) {
-    const std::string_view word = takeWord(text);
-    const std::optional<double> value = takeWord(text).empty() ? parseDouble(word) : std::nullopt;
-    return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
-std::string noFiniteNumber(std::string_view text) {
-    std::string point(text);
-    std::replace(point.begin(), point.end(), ',', '.');
-    return "'" + oneCleanLine(text.substr(0, kQuotedMax)) + "' is no " +
-           (finiteNumber(point) ? "number; write a point for the comma" : "finite number");
 }
 
 }  // namespace relief

@@ -22,19 +22,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// assimp recurses along chains of nodes, and so does flatten(): they run on a stack that holds a million of them. Only what
-/// is used of it takes memory.
+/// assimp and flatten() recurse along chains of nodes; this stack holds a million of them. Only used pages take memory.
 constexpr std::size_t kStackBytes = std::size_t{1} << 30;
 constexpr std::size_t kStackBytesMin = std::size_t{8} << 20;
 
-/// The error with the file in front, and a cure behind it if it has none.
+/// Prefixes the error with the file, and adds a cure if it has none.
 tl::unexpected<Error> unreadable(const ImportJob& job, const Error& error) {
     const bool cured = error.message.find(';') != std::string::npos;
     return fail(error.code, "cannot read the mesh " + job.shown + ": " + error.message +
                                 (cured ? "" : "; repair the file or export it again"));
 }
 
-/// \param apart  as addPolygons() has it.
+/// \param apart  as of addPolygons().
 Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, const ImportJob& job) {
     if (!polygons) {
         return tl::unexpected<Error>(polygons.error());
@@ -47,8 +46,8 @@ Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, con
     return scene;
 }
 
-/// Opens the libraries of an OBJ's materials: nothing in them matters to its shape, but it depends on them. Where one is not
-/// there, that of the mesh's own name stands in.
+/// Also opens the material libraries of an OBJ, which are dependencies although they do not change the shape. One with the
+/// mesh's own name replaces a missing one.
 Result<PolygonMesh> readObjOf(const ImportJob& job, ImportFiles& files) {
     ObjMesh obj = RELIEF_TRY(readObj(job.bytes));
     const std::string own = fs::path(job.file_name).replace_extension("mtl").string();
@@ -72,8 +71,6 @@ Result<ImportScene> readScene(const MeshFormat& format, const ImportJob& job, Im
             return sceneOf(readPly(job.bytes), false, job);
         case MeshReader::kStl:
             return sceneOf(readStl(job.bytes), true, job);
-        case MeshReader::k3mf:
-            return read3mf(job.bytes);
         default:
             return readWithAssimp(format.frame, job, files);
     }
@@ -149,9 +146,6 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
     ImportJob unmarked = job;
     const std::string_view text(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());
     unmarked.bytes = job.bytes.subspan(job.bytes.size() - withoutByteOrderMark(text).size());
-    if (const std::optional<std::string> stranger = noMeshAtAll(job.extension, job.bytes)) {
-        return unreadable(job, {ErrorCode::kInvalidInput, *stranger});
-    }
     const std::optional<std::string> format = otherFormat(job.extension, unmarked.bytes);
     if (format) {
         unmarked.file_name += "." + *format;

@@ -10,8 +10,7 @@
 namespace relief {
 namespace {
 
-/// Of length twice the polygon's area (M. Newell's formula), from its first corner, so that it keeps its digits far from
-/// the origin.
+/// Twice the polygon's area long (M. Newell's formula); relative to the first corner, for precision far from the origin.
 glm::dvec3 normalOf(std::span<const glm::vec3> corners) {
     const glm::dvec3 origin(corners[0]);
     glm::dvec3 normal(0.0);
@@ -22,7 +21,7 @@ glm::dvec3 normalOf(std::span<const glm::vec3> corners) {
 }
 
 /// Whether the angle at corner `at` of a quadrilateral exceeds half a turn, by the sum of its two parts beside the diagonal;
-/// in floats, as a corner on a straight edge is a dent or none by their roundings.
+/// in floats, whose rounding decides about corners on straight edges.
 bool isDent(std::span<const glm::vec3> corners, std::size_t at) {
     constexpr float kHalfTurn = 3.14159265F;
     const auto towards = [&](std::size_t other) {
@@ -38,7 +37,7 @@ bool isDent(std::span<const glm::vec3> corners, std::size_t at) {
     return angle(towards(3)) + angle(towards(1)) > kHalfTurn;
 }
 
-/// Larger polygons are not cut by rounded tests, which look at every corner for every ear.
+/// Larger polygons skip the rounded tests, which take quadratic time.
 constexpr std::size_t kRoundedMax = 2000;
 
 }  // namespace
@@ -109,7 +108,7 @@ void PolygonCutter::cutQuad(std::span<const glm::vec3> corners) {
             return !hasArea(planeOf(corners[t.x], corners[t.y], corners[t.z]));
         });
     };
-    // Across the other diagonal only where that is better.
+    // The other diagonal only if that is better.
     if (const auto before = flat(start); before > 0 && flat((start + 1) % 4) >= before) {
         flat(start);
     }
@@ -128,7 +127,7 @@ void PolygonCutter::cutEars(Test test) {
     reflexes_.clear();
     for (std::uint32_t i = 0; i < count && test != Test::kRounded; ++i) {
         markReflex(i);
-        // A point that is not a number lies in no ear and cannot be sorted.
+        // NaN lies in no ear and cannot be sorted.
         if (reflex_[i] != 0 && std::isfinite(points_[i].x) && std::isfinite(points_[i].y)) {
             reflexes_.push_back(i);
         }
@@ -143,7 +142,7 @@ void PolygonCutter::cutEars(Test test) {
         if (!cuts && ++tried == left) {
             if (test == Test::kRounded) {
                 triangles_.assign(count, glm::uvec3(0));
-                return;  // as good as none: more are wrong than any other try has
+                return;  // failed: worse than any other attempt
             }
             corner = largestCorner(corner);
             cuts = true;
@@ -222,7 +221,7 @@ bool PolygonCutter::holds(std::uint32_t ear, const glm::dvec2& point, Test test)
     for (int i = 0; i < 3 && inside; ++i) {
         const glm::dvec2 edge = corners[(i + 1) % 3] - corners[i];
         const glm::dvec2 to = point - corners[i];
-        // A polygon that is joined to its holes passes through some places twice.
+        // A polygon with joined holes passes through some points twice.
         inside = point != corners[i];
         const double side = edge.x * to.y - edge.y * to.x;
         inside = inside && (test == Test::kInside ? side > 0.0 : side >= 0.0);
@@ -240,7 +239,7 @@ void PolygonCutter::cutOff(std::uint32_t ear) {
     for (const std::uint32_t neighbour : {before, next}) {
         const bool was = reflex_[neighbour] != 0;
         markReflex(neighbour);
-        // In a polygon that crosses itself, a convex corner may cease to be one.
+        // In a polygon that crosses itself, a convex corner may become reflex.
         if (!was && reflex_[neighbour] != 0) {
             reflexes_.push_back(neighbour);
         }
@@ -271,7 +270,7 @@ void TriangleStarts::turn(std::span<glm::uvec3> polygon) {
     for (glm::uvec3& t : polygon) {
         if (t.x == last_) {
             t = {t.z, t.x, t.y};
-            // The two of a quadrilateral begin at the same end of their diagonal.
+            // Both triangles of a quadrilateral begin at the same end of the diagonal.
             if (quad) {
                 polygon[1] = {t.x, polygon[1].z, polygon[1].x};
             }

@@ -3,9 +3,7 @@
 A box is a pair of corners, the lower one first. Numbers are written by `number`, such as comma().
 """
 
-import io
 import struct
-import zipfile
 
 QUADS = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
 TRIANGLES = [corner for a, b, c, d in QUADS for corner in ((a, b, c), (a, c, d))]
@@ -22,42 +20,6 @@ def comma(value):
 
 def lines(points, number):
     return "".join(" ".join(map(number, point)) + "\n" for point in points)
-
-
-CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
-RELATION = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
-
-
-def mesh_3mf(box, number=repr):
-    vertices = "".join('<vertex x="%s" y="%s" z="%s"/>' % tuple(map(number, p)) for p in corners(box))
-    triangles = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % t for t in TRIANGLES)
-    return f"<mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>"
-
-
-def model_3mf(objects, items="", unit=None, attributes=""):
-    """One model of an archive, of <object>s and the <item>s of its <build>."""
-    stated = "" if unit is None else f' unit="{unit}"'
-    return (f'<?xml version="1.0" encoding="UTF-8"?><model{stated} xmlns="{CORE}" '
-            f'xmlns:p="{PRODUCTION}" {attributes}><resources>{objects}</resources><build>{items}</build></model>')
-
-
-def archive_3mf(model, others=()):
-    """`others`: pairs of a path and a model."""
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("[Content_Types].xml", "<Types/>")
-        archive.writestr("_rels/.rels", '<?xml version="1.0"?><Relationships><Relationship Id="r" '
-                         f'Target="/3D/a.model" Type="{RELATION}"/></Relationships>')
-        for path, text in (("3D/a.model", model), *others):
-            archive.writestr(path, text)
-    return file.getvalue()
-
-
-def threemf(box, unit=None, transform="", number=repr):
-    placed = f' transform="{transform}"' if transform else ""
-    return archive_3mf(model_3mf(f'<object id="1">{mesh_3mf(box, number)}</object>', f'<item objectid="1"{placed}/>',
-                                 unit))
 
 
 def dae(box, asset="", number=repr):

@@ -1,7 +1,6 @@
 """Boxes of random units, axes and placements in every format that states any: the collider's size in metres is known in
 closed form. Files that state what cannot be are refused with the option that helps, and read with it."""
 
-import itertools
 import json
 import math
 
@@ -9,23 +8,12 @@ import cases
 import unit_files as files
 
 UNITS = {"m": 1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "km": 1000, "in": 0.0254, "ft": 0.3048, "yd": 0.9144}
-NAMED = {"micron": 1e-6, "millimeter": 0.001, "inch": 0.0254, "meter": 1}
 UP = {"+x": lambda p: (-p[1], p[0], p[2]), "-x": lambda p: (p[1], -p[0], p[2]), "+y": files.AS_IS,
       "-y": lambda p: (p[0], -p[1], -p[2]), "+z": files.Z_UP, "-z": lambda p: (p[0], -p[2], p[1])}
 
 
 def bounds(points):
     return [f(p[axis] for p in points) for f in (min, max) for axis in range(3)]
-
-
-def matrix_3mf(random):
-    """A turn by quarters, a scale and a shift: as 3MF writes it, and as a function."""
-    axes = random.choice(list(itertools.permutations(range(3))))
-    scale = [random.choice((-1, 1)) * random.choice((0.5, 1, 2, 3)) for _ in range(3)]
-    shift = [random.uniform(-50, 50) for _ in range(3)]
-    rows = [[scale[i] if axes[i] == column else 0 for column in range(3)] for i in range(3)]
-    text = " ".join(repr(v) for row in (*rows, shift) for v in row)
-    return text, lambda p: tuple(sum(p[i] * rows[i][c] for i in range(3)) + shift[c] for c in range(3))
 
 
 class Units(cases.Cases):
@@ -80,7 +68,7 @@ class Units(cases.Cases):
 
 def main():
     run = Units("units", 100)
-    kinds = [threemf, threemf_parts, dae, fbx, three_ds, left_handed, nothing, wrong, commas]
+    kinds = [dae, fbx, three_ds, left_handed, nothing, wrong, commas]
     for number, folder in run.each():
         kinds[number % len(kinds)](run, folder)
     run.finish()
@@ -90,30 +78,6 @@ def write(folder, name, data):
     path = folder / name
     path.write_bytes(data)
     return path
-
-
-def threemf(run, folder):
-    unit, metres = run.random.choice([(None, 0.001), *NAMED.items(), ("centimeter", 0.01), ("foot", 0.3048)])
-    box = run.box()
-    text, place = matrix_3mf(run.random)
-    run.told(write(folder, "a.3mf", files.threemf(box, unit, text)), [place(p) for p in files.corners(box)], metres)
-
-
-def threemf_parts(run, folder):
-    """Components, and an object in another model of the archive."""
-    boxes = [run.box(), run.box()]
-    (outer_text, outer), (a_text, a), (b_text, b) = (matrix_3mf(run.random) for _ in range(3))
-    elsewhere = run.random.random() < 0.5
-    objects = f'<object id="1">{files.mesh_3mf(boxes[0])}</object>'
-    second = f'<object id="2">{files.mesh_3mf(boxes[1])}</object>'
-    path = ' p:path="/3D/Objects/b.model"' if elsewhere else ""
-    objects += ("" if elsewhere else second) + (f'<object id="3"><components><component objectid="1" transform="{a_text}"/>'
-                                                f'<component objectid="2" transform="{b_text}"{path}/></components></object>')
-    root = files.model_3mf(objects, f'<item objectid="3" transform="{outer_text}"/>', "meter",
-                           'requiredextensions="p"' if elsewhere else "")
-    others = [("3D/Objects/b.model", files.model_3mf(second, unit="meter"))] if elsewhere else []
-    points = [outer(place(p)) for box, place in zip(boxes, (a, b)) for p in files.corners(box)]
-    run.expect_box(write(folder, "a.3mf", files.archive_3mf(root, others)), points, "m")
 
 
 def dae(run, folder):
@@ -164,7 +128,6 @@ def wrong(run, folder):
     name, data = run.random.choice([
         ("a.dae", files.dae(box, f'<unit meter="{number}"/>')),
         ("a.fbx", files.fbx(box, run.random.choice(("-100", "nan", "-1e-9")))),
-        ("a.3mf", files.threemf(box, run.random.choice(("parsec", "", "mm")))),
         ("a.3ds", files.three_ds(box, run.random.choice((-1.0, float("nan"), float("inf"), -0.5))))])
     path = write(folder, name, data)
     run.expect_refused(path, "--unit")
@@ -176,13 +139,11 @@ def wrong(run, folder):
 def commas(run, folder):
     """Decimal commas: read as points, or refused; never cut off."""
     box = run.box()
-    name = run.random.choice(("threemf", "dae", "smd"))
-    extension = {"threemf": "3mf"}.get(name, name)
-    path = write(folder, "a." + extension, getattr(files, name)(box, number=files.comma))
+    name = run.random.choice(("dae", "smd"))
+    path = write(folder, "a." + name, getattr(files, name)(box, number=files.comma))
     baked = run.bake(path)
     if isinstance(baked, tuple):
-        metres = 0.001 if name == "threemf" else 1
-        wanted = bounds([tuple(metres * v for v in p) for p in files.corners(box)])
+        wanted = bounds(files.corners(box))
         room = 1e-5 * max(map(abs, wanted))
         run.expect(all(abs(a - b) <= room for a, b in zip(baked[0], wanted)), f"{path.name}: {baked} instead of {wanted}")
     else:

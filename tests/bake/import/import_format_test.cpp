@@ -71,7 +71,6 @@ TEST(ImportFormat, SignaturesCountUnderEveryName) {
             SCOPED_TRACE(format + " under the name of " + name);
             const auto other = otherFormat(name, std::as_bytes(std::span(bytes)));
             EXPECT_EQ(other, name == format ? std::nullopt : std::optional(format));
-            EXPECT_FALSE(noMeshAtAll(name, std::as_bytes(std::span(bytes))));
         }
         const Result<TriangleMesh> wrong = load("wrong.obj", bytes);
         ASSERT_TRUE(wrong) << format << ": " << wrong.error().message;
@@ -112,38 +111,12 @@ TEST(ImportFormat, AHeaderOfABinaryStlMaySayAnything) {
     }
 }
 
-TEST(ImportFormat, WhatIsNoMeshIsNamed) {
-    const auto wide = [](const std::string& text, bool big) {
-        std::string out = big ? "\xfe\xff" : "\xff\xfe";
-        for (const char c : text) {
-            out += big ? std::string{'\0', c} : std::string{c, '\0'};
-        }
-        return out;
-    };
-    for (const auto& [name, text] :
-         {std::pair{"a.obj", tetrahedronObj()}, std::pair{"a.stl", tetrahedronStl()},
-          std::pair{"a.ply", tetrahedronPly()}, std::pair{"a.off", tetrahedronOff()},
-          std::pair{"a.gltf", tetrahedronGltf()}}) {
-        for (const bool big : {false, true}) {
-            const std::string error = errorOf(load(name, wide(text, big)));
-            EXPECT_NE(error.find("it is text in UTF-16; save it in UTF-8"), std::string::npos) << error;
-        }
-    }
+TEST(ImportFormat, WhatIsNoMeshIsRefused) {
     const std::string rest(300, '\x01');
-    for (const auto& [begin, says] :
-         {std::pair{"\x1f\x8b\b", "packed by gzip; "}, std::pair{"PK\x03\x04", "a ZIP archive; "},
-          std::pair{"\xfd"
-                    "7zXZ",
-                    "packed by xz; "},
-          std::pair{"\x28\xb5\x2f\xfd", "packed by zstd; "}, std::pair{"BZh9", "packed by bzip2; "},
-          std::pair{"\x89PNG\r\n", "a picture (PNG); "}, std::pair{"\xff\xd8\xff", "a picture (JPEG); "},
-          std::pair{"%PDF-1.4", "a PDF document; "}, std::pair{"\n <!DOCTYPE HTML>", "a web page; "},
-          std::pair{"<html><body>", "a web page; "},
-          std::pair{"version https://git-lfs.github.com/spec/v1\n", "git lfs pull"}}) {
+    for (const char* begin : {"\x1f\x8b\b", "PK\x03\x04", "\xff\xfe", "\x89PNG\r\n", "\xff\xd8\xff",
+                              "%PDF-1.4", "<html><body>", "version https://git-lfs.github.com/spec/v1\n"}) {
         for (const char* name : {"a.obj", "a.stl", "a.gltf", "a.dae", "a.fbx"}) {
-            const std::string error = errorOf(load(name, begin + rest));
-            EXPECT_NE(error.find(says), std::string::npos) << error;
-            EXPECT_NE(error.find(name), std::string::npos) << error;
+            EXPECT_NE(errorOf(load(name, begin + rest)).find(name), std::string::npos) << begin;
         }
     }
     EXPECT_NE(errorOf(load("a.obj", "hello\n")).find("no vertices, and is probably no .obj file"),

@@ -43,9 +43,9 @@ ImportOptions options(const std::string& unit, std::optional<UpAxis> up = std::n
 }
 
 TEST(ImportUnits, EveryTurnIsARotationThatLiftsItsAxis) {
-    for (const char* name : {"+x", "-x", "+y", "-y", "+z", "-z", "+Z"}) {
+    for (const char* name : {"+x", "-x", "+y", "-y", "+z", "-z"}) {
         SCOPED_TRACE(name);
-        const Result<UpAxis> up = parseUpAxis(name);
+        const std::optional<UpAxis> up = fromWord<UpAxis>(name);
         ASSERT_TRUE(up);
         const glm::dmat3 turn = turnUpwards(*up);
         const int axis = (name[1] | 0x20) - 'x';
@@ -54,9 +54,7 @@ TEST(ImportUnits, EveryTurnIsARotationThatLiftsItsAxis) {
         EXPECT_EQ(glm::dot(glm::cross(turn[0], turn[1]), turn[2]), 1.0);
     }
     for (const char* wrong : {"", "z", "up", "+w", "+zz"}) {
-        const Result<UpAxis> up = parseUpAxis(wrong);
-        ASSERT_FALSE(up) << wrong;
-        EXPECT_EQ(up.error().code, ErrorCode::kUsage);
+        EXPECT_FALSE(fromWord<UpAxis>(wrong)) << wrong;
     }
 }
 
@@ -67,7 +65,7 @@ TEST(ImportUnits, WordsAreMetres) {
     EXPECT_EQ(metresPer("cm"), 0.01);
     EXPECT_FALSE(metresPer(""));
     EXPECT_FALSE(metresPer("inch"));
-    for (const std::string_view unit : lengthUnits()) {
+    for (const std::string_view unit : kLengthUnits) {
         EXPECT_TRUE(metresPer(unit)) << unit;
     }
 }
