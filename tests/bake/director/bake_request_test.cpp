@@ -196,8 +196,7 @@ TEST(RecordedBake, MakesTheSolidThatWasBaked) {
     const Result<ShapedMesh> shell = solid("--as shell --thickness 0.1");
     ASSERT_TRUE(shell);
     EXPECT_NEAR(shell->report.thickness, 0.1, 1e-6);
-    const Result<ShapedMesh> wrapped =
-        repairedSolid(recorded("--holes keep --repair wrap=0.1").request, box);
+    const Result<ShapedMesh> wrapped = repairedSolid(recorded("--holes keep --repair wrap=0.1").request, box);
     ASSERT_TRUE(wrapped);
     EXPECT_TRUE(wrapped->mesh.closed());
     // A record like this must not make a check run for hours.
