@@ -70,7 +70,7 @@ expect_error 1 'max-memory' "$relief" info small.relief --max-memory much
 
 # A thousand maps against a thousand others: fewer points are asked about.
 expect 7 within 500 "$relief" diff tiny.relief tinier.relief --json
-python3 -c 'import json; d = json.load(open("stdout")); assert 50 < d["fields"]["box"]["points"] < 1000, d["fields"]'
+python3 -c 'import json; d = json.load(open("stdout")); assert 50 < d["points"]["points"] < 1000, d["points"]'
 
 # Parts far apart: bounded maps, and an error that names what was given and what helps.
 expect 0 within 2000 "$relief" bake apart.obj -o apart.relief --no-check

@@ -76,21 +76,24 @@ WAYS = [
 
 
 def by_themselves():
-    """Fields whose values the table of fields names, and that no other way has: one way for each."""
+    """Fields that are flags or whose values the help of the tool names, and that no other way has: one way for each."""
     tried = set().union(*(arguments for arguments, _ in WAYS))
-    for name, kind, _, _, values in relief._relief.bake_fields():
+    said = tool("bake", "--help").stdout
+    for name, kind, *_ in relief._relief.bake_fields():
+        option = "--" + name.replace("_", "-")
+        values = re.search(rf"{option} ([^ \[]+\|[^ \[]+)", said)
         if name not in tried and kind == "flag":
-            yield {**PLANNED, name: True}, ["--budget", "60kB", "--" + name.replace("_", "-")]
-        elif name not in tried and "|" in values and "[" not in values:
-            yield {**PLANNED, name: values.split("|")[-1]}, ["--budget", "60kB", "--" + name.replace("_", "-"),
-                                                              values.split("|")[-1]]
-
-
-WAYS += by_themselves()
+            yield {**PLANNED, name: True}, ["--budget", "60kB", option]
+        elif name not in tried and values:
+            last = values[1].split("|")[-1]
+            yield {**PLANNED, name: last}, ["--budget", "60kB", option, last]
 
 
 def tool(*words):
     return subprocess.run([BIN / "relief", *words], capture_output=True, text=True)
+
+
+WAYS += by_themselves()
 
 
 @pytest.mark.parametrize("arguments,words", WAYS, ids=[" ".join(words) for _, words in WAYS])
