@@ -34,7 +34,7 @@ TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
     ASSERT_TRUE(setField(request, "budget", "1.5MB"));
     ASSERT_TRUE(setField(request, "max_error", "2.5%"));
     ASSERT_TRUE(setField(request, "thickness", "auto=0.25"));
-    ASSERT_TRUE(setField(request, "up", "-Z"));
+    ASSERT_TRUE(setField(request, "up", "-z"));
     EXPECT_EQ(request.budget, 1'500'000U);
     EXPECT_EQ(request.max_error, 2.5F);
     EXPECT_TRUE(request.thickness && request.thickness->by_part);
