@@ -18,7 +18,7 @@ packages=(
     # formats
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
-    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libcpp-httplib-dev libeigen3-dev libembree-dev
+    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev
     libopenexr-dev libopenvdb-dev libopenvdb-tools libpugixml-dev libseccomp-dev libspdlog-dev libtbb-dev
     nlohmann-json3-dev
     fonts-dejavu-core

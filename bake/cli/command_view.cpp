@@ -1,18 +1,14 @@
 // relief view: a page to turn a collider round in, drop particles on it, and see where it is wrong.
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/cli/live_view.h"
 #include "bake/cli/mesh_options.h"
 #include "bake/cli/view_source.h"
-#include "bake/view/page_server.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/memory_option.h"
-#include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {
@@ -21,19 +17,7 @@ struct ViewCommand {
     CommonOptions common;
     ViewSource source;
     std::string output;
-    std::optional<std::uint16_t> serve;  // port
 };
-
-constexpr std::uint16_t kPortDefault = 8321;
-
-/// \param word  empty: --serve stands alone.
-std::optional<std::uint16_t> parsePort(const std::string& word) {
-    if (word.empty()) {
-        return kPortDefault;
-    }
-    const std::optional<std::uint64_t> port = parseUnsigned(word);
-    return port && *port <= 65535 ? std::optional(static_cast<std::uint16_t>(*port)) : std::nullopt;
-}
 
 /// Beside FILE unless -o says where.
 Result<std::string> outputOf(const ViewCommand& command) {
@@ -55,23 +39,9 @@ Result<void> checkSource(const ViewSource& source) {
     return {};
 }
 
-Result<void> serve(const ViewCommand& command) {
-    if (command.source.file == "-") {
-        return fail(ErrorCode::kUsage, "--serve follows a file, and standard input is none; name the file");
-    }
-    PageServer server = RELIEF_TRY(PageServer::listen(*command.serve));
-    LiveView view(command.source);
-    RELIEF_TRY(view.start());
-    RELIEF_TRY(printOut(server.address() + "\n"));
-    return server.serve([&view] { return view.current(); });
-}
-
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
     startLogging(command.common);
     RELIEF_TRY(checkSource(command.source));
-    if (command.serve) {
-        return serve(command);
-    }
     const std::string output = RELIEF_TRY(outputOf(command));
     RELIEF_TRY(files.reads(command.source.file));
     RELIEF_TRY(files.reads(command.source.check.mesh));
@@ -97,7 +67,6 @@ void addView(CLI::App& app, Action& action) {
         "Of a scene: its particles, as relief-sim plays them.",
         "relief view bunny.relief\n"
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
-        "relief view bunny.relief --mesh bunny.obj --serve\n"
         "relief view scene.toml");
     verb.add_option("FILE", command->source.file,
                     "The collider, or a scene (.toml); - for a collider on standard input")
@@ -107,16 +76,9 @@ void addView(CLI::App& app, Action& action) {
     addFields(verb, command->source.check.import);
     addFields(verb, command->source.check.import_limits);
     addMemoryOption(verb, command->source.limits);
-    CLI::Option* output =
-        verb.add_option("-o,--output", command->output,
-                        "The page; - for standard output; default FILE with .html in place of its extension")
-            ->option_text("OUT");
-    addParsed(verb, "--serve", command->serve, parsePort, "a port, from 0 to 65535",
-              "Serve the page on this machine alone instead, and load it anew when FILE is baked anew; "
-              "default port 8321, 0 for any that is free")
-        ->option_text("[PORT]")
-        ->expected(0, 1)
-        ->excludes(output);
+    verb.add_option("-o,--output", command->output,
+                    "The page; - for standard output; default FILE with .html in place of its extension")
+        ->option_text("OUT");
     verb.callback(
         [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
 }
