@@ -41,9 +41,7 @@ float Bounds::longestSide() const {
 }
 
 std::string RecordedOption::text() const {
-    std::string option = "--" + name;
-    std::replace(option.begin(), option.end(), '_', '-');
-    return option + " " + shellQuoted(value);
+    return optionName(name) + " " + shellQuoted(value);
 }
 
 std::vector<RecordedOption> readRecordedOptions(std::string_view text) {

@@ -82,7 +82,7 @@ struct Counts {
     std::size_t outside = 0;
 };
 
-/// What is suspicious about a map whose texels are valid: the warnings 22xx.
+/// The warnings 22xx: doubts about a map whose texels are valid.
 struct TexelInspection {
     double coverage = 0.0;            ///< share of texels with a surface, 0…1
     std::vector<Issue> issues;        ///< their map left at −1

@@ -71,7 +71,7 @@ void addDiff(CLI::App& app, Action& action) {
                 "Exit code 7 for any difference; with --max-sides or\n--max-distance, only for points "
                 "beyond them, whatever the maps.",
                 "relief diff before.relief after.relief\n"
-                "relief diff raycast.relief raster.relief --max-sides 0.1%\n"
+                "relief diff before.relief after.relief --max-sides 0.1%\n"
                 "relief diff small.relief large.relief --max-sides 1% --max-distance 0.002\n"
                 "relief bake bunny.obj -o - -q | relief diff golden.relief - --json");
     verb.add_option("A", command->a, "A collider; - for standard input")->type_name("")->required();

@@ -52,7 +52,7 @@ struct FrameChange {
     double scale = 1.0;
     glm::dmat3 turn{1.0};
     std::string unit;  ///< "m", or "" if it is unknown
-    /// Where the caller overrides the file; each without the file's name.
+    /// Of overrides by the caller; each without the file's name.
     std::vector<std::string> warnings;
 };
 

@@ -114,16 +114,6 @@ std::optional<std::string> forgottenUnit(const Bounds& bounds) {
            " m; say which, or --unit m if these are metres";
 }
 
-std::vector<std::string> optionList(const std::string& options) {
-    std::vector<std::string> list;
-    for (std::size_t at = 0; at < options.size();) {
-        const std::size_t end = std::min(options.find(" --", at), options.size());
-        list.push_back(options.substr(at, end - at));
-        at = end + 1;
-    }
-    return list;
-}
-
 std::string table(const std::vector<std::vector<std::string>>& rows) {
     const std::size_t count = rows.front().size();
     std::vector<bool> right(count);

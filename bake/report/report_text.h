@@ -48,9 +48,6 @@ inline constexpr std::string_view kNoUnit = "no unit is named";
 /// \param bounds  of a mesh without a unit
 [[nodiscard]] std::optional<std::string> forgottenUnit(const Bounds& bounds);
 
-/// The options of a bake one by one: "--map cube:size=16", "--quality normal".
-[[nodiscard]] std::vector<std::string> optionList(const std::string& options);
-
 /// Lines of a table, columns aligned, the first row a heading. Columns whose heading ends in '>' are aligned right (the
 /// mark is not printed).
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);

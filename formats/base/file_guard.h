@@ -41,7 +41,7 @@ class FileGuard {
     [[nodiscard]] const File* claim(const std::filesystem::path& path, std::string_view option);
 
   private:
-    /// What a path leads to: the number of a regular file, and the destination, "-" for standard output. None for devices.
+    /// Identities of a path: the number of a regular file, and its destination, "-" for standard output. None of devices.
     using Keys = std::vector<std::string>;
     struct Series {
         NumberedFiles files;  ///< in the folder's destination

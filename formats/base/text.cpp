@@ -157,6 +157,12 @@ std::string_view takeLine(std::string_view& text) {
     return line;
 }
 
+std::string optionName(std::string_view field) {
+    std::string name = "--" + std::string(field);
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
 std::string shellQuoted(const std::string& word) {
     constexpr std::string_view kPlain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._=+/:,%-";

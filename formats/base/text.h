@@ -38,6 +38,8 @@ void appendShortest(std::string& out, float value);
 [[nodiscard]] std::string_view takeLine(std::string_view& text);
 /// Cuts the first word, and the white space before it, off `text`. \return it; empty if there is none.
 [[nodiscard]] std::string_view takeWord(std::string_view& text);
+/// "max_error" -> "--max-error"
+[[nodiscard]] std::string optionName(std::string_view field);
 /// A word as a POSIX shell reads it back; control characters are replaced (cleanUtf8).
 [[nodiscard]] std::string shellQuoted(const std::string& word);
 /// With a…z for A…Z; all other bytes stay.

@@ -43,12 +43,6 @@ std::string butMustBeOneOf(std::string_view word, std::span<const std::string_vi
     return butMustBe(word, must + (word.size() > 1 ? didYouMean(word, words) : ""));
 }
 
-std::string optionName(std::string_view field) {
-    std::string name = "--" + std::string(field);
-    std::ranges::replace(name, '_', '-');
-    return name;
-}
-
 std::string bytesWord(std::uint64_t bytes) {
     const auto scaled = [&](double unit, const char* name) {
         char text[32];

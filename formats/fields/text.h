@@ -13,6 +13,7 @@
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "formats/base/text.h"
 
 namespace relief {
 
@@ -21,8 +22,6 @@ namespace relief {
 /// "is 'x' but must be one of a, b, c; did you mean 'a'?", or "but must be a or b".
 [[nodiscard]] std::string butMustBeOneOf(std::string_view word, std::span<const std::string_view> words);
 
-/// "max_error" -> "--max-error"
-[[nodiscard]] std::string optionName(std::string_view field);
 /// "1MB" for 1000000, and the plain number where no unit of 1000 divides it.
 [[nodiscard]] std::string bytesWord(std::uint64_t bytes);
 

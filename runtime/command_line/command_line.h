@@ -1,4 +1,4 @@
-// What the command lines of both executables share: help and version are answered here, and so is what cannot be read.
+// Shared by the command lines of both executables: help, version, and errors of usage.
 #pragma once
 
 #include <functional>

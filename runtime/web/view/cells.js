@@ -1,4 +1,4 @@
-// Where a ray through a collider may be in a hurry: a grid of cells, 255 where a map sees all of the cell outside, else 0.
+// Free space that a ray through a collider may skip: a grid of cells, 255 where a map sees all of the cell outside, else 0.
 import { dot, scale } from "./math.js";
 
 const kCells = 24; // along the longest side

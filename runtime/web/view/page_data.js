@@ -1,4 +1,4 @@
-// What `relief view` put into the page.
+// The data that `relief view` put into the page.
 
 function fromBase64(text, what) {
     try {

@@ -108,7 +108,7 @@ std::string where(const Disagreement& at) {
            std::to_string(at.y) + "), end " + std::to_string(at.end);
 }
 
-class DrawnMapsGlTest : public testing::TestWithParam<const char*> {
+class DrawnOddMapsGlTest : public testing::Test {
   protected:
     void SetUp() override {
         auto context = GlContext::create();
@@ -117,6 +117,9 @@ class DrawnMapsGlTest : public testing::TestWithParam<const char*> {
     }
     std::unique_ptr<GlContext> context_;
 };
+
+/// Of a mesh by its name.
+class DrawnMapsGlTest : public DrawnOddMapsGlTest, public testing::WithParamInterface<const char*> {};
 
 TEST_P(DrawnMapsGlTest, TheirTexelsAreThoseOfRaysToAUnit) {
     const TriangleMesh mesh = load(GetParam());
@@ -214,17 +217,6 @@ INSTANTIATE_TEST_SUITE_P(Meshes, DrawnPlanesGlTest,
                                          "refined_elephant.off", "lion-head.off",
                                          "/usr/share/assimp/models/OBJ/spider.obj"),
                          meshName);
-
-/// The same without a mesh's name.
-class DrawnOddMapsGlTest : public testing::Test {
-  protected:
-    void SetUp() override {
-        auto context = GlContext::create();
-        ASSERT_TRUE(context) << context.error().message;
-        context_ = std::move(*context);
-    }
-    std::unique_ptr<GlContext> context_;
-};
 
 // What closed meshes in tight boxes do not show: boxes that cut through the mesh, rays that start inside,
 // meshes that are inside out, far from the origin, or of other sizes.
