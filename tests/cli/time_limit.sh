@@ -21,7 +21,7 @@ is() { cmp -s "out/a.relief" "$1.relief" && cmp -s out/a.toml "$1.toml" && [ "$(
 # A search that would take long.
 old
 start=$(date +%s%N)
-limited 1 "$bunny" --max-error 0.001%
+limited 1 "$bunny" --max-error 0.001% -q
 took=$((($(date +%s%N) - start) / 1000000))
 [ "$code" -eq 6 ] && [ "$(wc -l <stderr)" -eq 1 ] || die "exit code $code: $(cat stderr)"
 grep -qE "^relief: error: '.*bunny\.obj': the bake did not end within 1 s; it was [a-z ]+, for [0-9.]+ s; .*--time-limit" stderr ||
