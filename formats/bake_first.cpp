@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// What `relief bake` reads and people have; formats that nobody mixes up with a collider are left out.
+/// Common formats of `relief bake`; those that cannot be mistaken for a collider are left out.
 constexpr std::array<std::string_view, 14> kMeshExtensions = {".3ds",  ".b3d",  ".blend", ".dae", ".fbx",
                                                               ".glb",  ".gltf", ".lwo",   ".obj", ".off",
                                                               ".ms3d", ".ply",  ".stl",   ".x"};

@@ -1,4 +1,4 @@
-// A collider: a set of depth maps that together represent the outer shape of an object, and what they say of
+// A collider: a set of depth maps that together represent the outer shape of an object, and its value at
 // a point. CPU truth of shaders/collider/collider.glsl.
 #pragma once
 

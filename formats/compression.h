@@ -1,4 +1,4 @@
-// Texels as a zstd frame (RFC 8878). compression.cpp asks libzstd; web/compression.cpp the page's own decoder.
+// Texels as a zstd frame (RFC 8878). compression.cpp uses libzstd, web/compression.cpp the page's own decoder.
 #pragma once
 
 #include <cstddef>

@@ -126,7 +126,7 @@ struct DepthMap {
     friend bool operator==(const DepthMap&, const DepthMap&) = default;
 };
 
-/// What a map, or a whole collider, says of a point.
+/// The vote of a map, or of a whole collider, at a point.
 struct Vote {
     float distance = kFarInside;  ///< object units, positive outside
     glm::vec3 normal{0.0F};       ///< unit length, outwards; zero where the vote is only "far outside"

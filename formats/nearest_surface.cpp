@@ -124,7 +124,7 @@ class Search {
     [[nodiscard]] const SurfaceSample& best() const { return best_; }  ///< its distance is not signed
 
   private:
-    // ---- what is asked
+    // ---- the query
 
     /// Nothing outside of the bounds is inside.
     [[nodiscard]] glm::vec3 clamped(const glm::vec3& q) const {

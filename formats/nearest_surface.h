@@ -1,4 +1,4 @@
-// The nearest surface of a collider, found by asking its maps again and again; README.md, "The nearest surface", in
+// The nearest surface of a collider, found by evaluating its maps repeatedly; README.md, "The nearest surface", in
 // words.
 //
 // A vote knows one plane: that of the texel that P falls on. Its distance is the surface's where the surface is that
@@ -35,7 +35,7 @@ struct SurfaceSample {
 
 /// The numbers of the search, of which nearest_surface.cpp uses each.
 struct NearestSearch {
-    /// No search asks a collider about more points. Near the surface it asks about 20 in the mean; outside, most of them
+    /// No search evaluates more points. Near the surface it evaluates about 20 on average; outside, most of them
     /// cost one vote.
     static constexpr int kEvaluationsMax = 192;
     static constexpr int kSteps = 8;           // from the plane of the vote at P

@@ -5,7 +5,7 @@
 //     . . . . . . . .        first = end = 0
 //     # # # # # # # #        first = 0, end = 8
 //
-// In memory a DepthMap is whole: nothing here changes what it says of a point.
+// In memory a DepthMap is whole: nothing here changes its vote.
 #pragma once
 
 #include <cstddef>

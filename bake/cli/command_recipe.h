@@ -37,7 +37,7 @@ struct RecipeCall {
 
 void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options);
 
-/// Bakes what the recipe asks for. Ends the program by the signal that interrupted it.
+/// Bakes the recipe's assets. Ends the program by the signal that interrupted it.
 /// Errors: those of the first asset in the recipe's order that failed; kUsage, kIo.
 [[nodiscard]] Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call);
 

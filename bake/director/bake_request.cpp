@@ -52,7 +52,7 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
         return "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
                "out, set --budget, or choose --map or --paper";
     }
-    // Names need the triangles of the file, and parts that are told apart.
+    // Names need the file's own triangles and separate parts.
     const char* const against = !request.repair.method.empty() ? "--repair, which makes another surface"
                                 : request.holes == Holes::kKeep
                                     ? "--holes keep, which takes nothing for a solid"

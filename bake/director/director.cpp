@@ -269,7 +269,7 @@ class Director {
         return {};
     }
 
-    /// A planned bake measures itself: whoever names the maps may want what looks wrong.
+    /// A planned bake measures itself; explicitly chosen maps may be wrong on purpose.
     Result<void> measure() {
         if (!result_.plan || request().no_check) {
             return {};

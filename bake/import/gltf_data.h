@@ -37,7 +37,7 @@ struct GltfView {
     std::optional<std::uint64_t> stride;  ///< bytes, more than 0
 };
 
-/// Buffers are read when a view of theirs is asked for.
+/// Buffers are read when a view of them is first used.
 class GltfBuffers {
   public:
     /// All is borrowed.

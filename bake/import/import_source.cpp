@@ -56,7 +56,7 @@ Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) c
     }
     if (raw.marks.size() != (names > 0 ? raw.triangles.size() : 0) ||
         std::any_of(raw.marks.begin(), raw.marks.end(), [&](std::uint8_t mark) { return mark > names; })) {
-        return lies("names that nobody asked for");
+        return lies("names that were not requested");
     }
     const std::string name = cleanUtf8(path_.filename().string(), kMeshNameMax);
     std::vector<std::pair<std::string, std::string>> files;  // path, hash

@@ -141,7 +141,7 @@ int startOnDeepStack(Import& import) {
 Result<TriangleMesh> importRaw(const ImportJob& job) {
     if (job.options.names.size() > kAskedNamesMax) {
         return fail(ErrorCode::kLimit, job.shown + ": more than " + std::to_string(kAskedNamesMax) +
-                                           " names are asked for at once; ask for fewer");
+                                           " names are requested at once; use fewer");
     }
     ImportJob unmarked = job;
     const std::string_view text(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size());

@@ -37,7 +37,7 @@ inline void raiseSignals() {
 /// Between two looks at signals.
 inline constexpr std::chrono::milliseconds kSignalInterval{50};
 
-/// What checkpoints throw in work that nobody waits for any more.
+/// Thrown by checkpoints in abandoned work.
 struct Abandoned {};
 
 /// Held by work that may be abandoned. A process that exits meanwhile ends at once: the work still uses what the

@@ -87,7 +87,7 @@ struct Samples {
     py::array_t<std::int32_t> map;
 };
 
-/// Points that are asked before the first look at signals.
+/// Points evaluated before the first check for signals.
 constexpr std::size_t kFirstPoints = std::size_t{1} << 14;
 
 /// ask(p) at all points, on all cores. Of a point that is not finite, which no collider knows anything of, distance and

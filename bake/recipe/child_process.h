@@ -30,7 +30,7 @@ struct ChildEnd {
 inline constexpr std::size_t kChildOutputMax = std::size_t{64} << 20;
 inline constexpr std::size_t kChildErrorMax = std::size_t{64} << 10;
 
-/// Signals that ask this process to end (INT, TERM, HUP) are held back while one of these lives, and told by
+/// Signals that end this process (INT, TERM, HUP) are blocked while one of these lives, and reported by
 /// wait(); those that are ignored stay ignored. Use one at a time, and from one thread.
 class ChildProcesses {
   public:
@@ -50,7 +50,7 @@ class ChildProcesses {
 
     [[nodiscard]] std::size_t running() const;
 
-    /// Waits until a child has ended, a signal asks to end, or for a while.
+    /// Waits until a child has ended, a signal arrives, or a while has passed.
     /// \return the children that have ended.
     [[nodiscard]] std::vector<ChildEnd> wait(std::chrono::milliseconds at_most);
 

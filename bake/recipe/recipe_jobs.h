@@ -1,4 +1,4 @@
-// What a recipe asks for, file by file: patterns matched, names made, and nothing that would overwrite a file
+// The jobs of a recipe, file by file: patterns matched, names made, and nothing that would overwrite a file
 // of another kind.
 #pragma once
 

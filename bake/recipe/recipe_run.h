@@ -1,4 +1,4 @@
-// Bakes what a recipe asks for and is not up to date: each asset by a process of its own, so that one that
+// Bakes the assets of a recipe that are not up to date: each asset by a process of its own, so that one that
 // crashes, hangs or takes all memory takes nothing else with it.
 #pragma once
 

@@ -143,7 +143,7 @@ Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes
 Result<void> replaceFile(const fs::path& target, const std::string& name, std::span<const std::byte> bytes,
                          std::optional<mode_t> older_mode) {
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    // Private until it has the older file's permissions: nobody reads what they could not read before.
+    // Private until it has the older file's permissions, so that no other user can read it early.
     const mode_t first_mode = older_mode ? 0600 : 0666;
     TemporaryFile temporary;
     int code = temporary.create(folder, first_mode);

@@ -28,7 +28,7 @@ std::uintptr_t heapEnd() {
 void prepareHeap(std::size_t bytes) {
     ::mallopt(M_TRIM_THRESHOLD, INT_MAX);
     ::mallopt(M_MMAP_THRESHOLD, kLargestBlock);
-    // One large step now: what is asked of its pages does not hold for those of a later one.
+    // One large step now: madvise() does not cover the pages of a later one.
     const std::uintptr_t before = heapEnd();
     ::mallopt(M_TOP_PAD, static_cast<int>(std::min<std::size_t>(bytes, INT_MAX)));
     void* volatile first = std::malloc(kFirstBlock);  // volatile: an unused block need not be allocated

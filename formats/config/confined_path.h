@@ -1,5 +1,5 @@
 // Paths that a scene file names lead inside the scene's folder and nowhere else, so that a scene from elsewhere
-// reads no files but its own. Whoever runs a scene may allow one folder more (--root).
+// reads no files but its own. The command line may allow one folder more (--root).
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace relief {
 /// \param folder  of the scene file; empty for the current one.
 /// \param text    as the file has it; may be hostile.
 /// \param owner   whose folder it is, for the message.
-/// \param root    another folder that the path may lead to, chosen by whoever runs the program; empty: none.
+/// \param root    another folder that the path may lead to, chosen on the command line; empty: none.
 /// Errors: kInvalidInput for a path that is empty, holds a zero byte, is absolute, or leaves the folder by
 /// `..` or by a symbolic link, dangling ones included, unless for `root`. The message continues the key's name: "'/x' is …; the
 /// cure".

@@ -112,7 +112,7 @@ inline constexpr FieldKind kFieldKind = std::same_as<T, bool>     ? FieldKind::k
                                         : kIsForm<std::vector, T> ? FieldKind::kList
                                                                   : FieldKind::kValue;
 
-/// A field of a struct, told apart from its type.
+/// A field of a struct, distinct from its type.
 struct FieldWords {
     std::string name;
     FieldInfo info;

@@ -58,7 +58,7 @@ class BarePoints {
     GlVertexArray array_;
 };
 
-/// \param point_pixels  diameter of the points; 0: as relief-sim draws them unless told otherwise
+/// \param point_pixels  diameter of the points; 0: as relief-sim draws them by default
 Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem& system, GLsizei width,
                        GLsizei height, float point_pixels) {
     const ParticleSystem& particles = *system.particles;

@@ -16,7 +16,7 @@ namespace relief {
 
 inline constexpr float kBenchDt = 1.0F / 60.0F;
 inline constexpr int kBenchStepsMost = 16;  ///< of a block
-/// Seconds: longer than a block and the step before it, so that nobody dies within.
+/// Seconds: longer than a block and the step before it, so that no particle dies within.
 inline constexpr float kBenchLifetime = 0.5F;
 static_assert(kBenchLifetime > kBenchDt * (kBenchStepsMost + 2));
 inline constexpr float kBenchForever = 1e6F;  ///< seconds

@@ -156,7 +156,7 @@ Result<Json> benchStep(const Bench& bench) {
                              if (touch.is_null()) {
                                  touch = touching(system, steps + 1);
                              }
-                             system.particles->step(2.0F * kBenchLifetime);  // nobody survives it
+                             system.particles->step(2.0F * kBenchLifetime);  // no particle survives it
                          }});
     }
     const int rounds = bench.software ? 5 : count > (1U << 20) ? 3 : 11;

@@ -33,7 +33,7 @@ enum class HandleFault : std::uint8_t {
 /// running number, and the kind, by which it is no address of an aligned object. It is looked up, never followed, so that
 /// whatever a caller passes on is answered and cannot crash. No number is given out twice.
 ///
-/// All calls may be made by several threads at once. Whoever removes an object while another thread uses it has a race, as
+/// All calls may be made by several threads at once. Removing an object while another thread uses it is a race, as
 /// with any object.
 class HandleTable {
   public:

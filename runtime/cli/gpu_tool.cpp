@@ -91,7 +91,7 @@ Watchdog::Starved endProcess(const std::string& program) {
                                  " seconds; if it is only slow, raise --gpu-timeout (0: wait for ever)\n";
         // Past the streams, whose locks the stuck thread may hold.
         if (::write(STDERR_FILENO, line.data(), line.size()) < 0) {
-            // There is nobody left to tell.
+            // No reader is left for a message.
         }
         ::_exit(static_cast<int>(ErrorCode::kFailure));
     };

@@ -201,7 +201,7 @@ Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments)
     } catch (const Answer& instead) {
         return answer(RELIEF_TRY(instead.text));
     } catch (const CLI::ParseError& error) {
-        // Whoever asks for help gets it, whatever is wrong beside it.
+        // Help is printed even if other arguments are wrong.
         const CLI::Option* help = calledOf(app).get_help_ptr();
         if (help != nullptr && help->count() > 0) {
             return answer(helpText(app));

@@ -14,7 +14,7 @@ class App;
 namespace relief {
 
 /// Gives a program its --help and --version, before it gets its options and verbs. Help begins with the examples: the
-/// lines of the footer. \param help  what the help says of --help.
+/// lines of the footer. \param help  the help text of --help.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
 
 /// Thrown by the callback of an option that is answered instead of doing anything, as --help is: the text to print.

@@ -87,7 +87,7 @@ struct Progress::Impl {
         }
     }
 
-    /// The lock is kept: whoever wants it waits for the end.
+    /// The lock stays held: other threads wait for the end.
     [[noreturn]] void timeIsUp() {
         wipe();
         TemporaryFile::removeAll();

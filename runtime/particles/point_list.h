@@ -22,7 +22,7 @@ inline constexpr std::size_t kPointsMax = std::size_t{1} << 22;
 inline constexpr std::uint64_t kPointBytesMax = std::uint64_t{256} << 20;
 inline constexpr double kPointCoordinateMax = 1e9;
 
-/// Two kinds of files, told apart by their first line:
+/// Two kinds of files, distinguished by their first line:
 ///   - PLY (ascii, binary of either byte order) with an element "vertex" that has x, y and z, and perhaps
 ///     nx, ny and nz, of any type; other properties of it are skipped, and so is what follows it.
 ///   - Comma-separated text: x,y,z or x,y,z,nx,ny,nz a line. Empty lines, lines that start with '#', spaces

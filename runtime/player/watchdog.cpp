@@ -31,7 +31,7 @@ struct Watchdog::Impl {
             const Clock::time_point until = *deadline;
             changed.wait_until(lock, until);
             if (!ends && deadline && Clock::now() >= *deadline) {
-                // The lock is kept: whoever wakes up now waits for the end.
+                // The lock stays held: other threads wait for the end.
                 if (clean_up) {
                     clean_up();
                 }

@@ -1,4 +1,4 @@
-// What relief.js calls beside the functions of runtime/c_api: scenes, and what a page asks of a collider. Objects of this file
+// Functions for relief.js beside those of runtime/c_api: scenes, and properties of a collider. Objects of this file
 // are pointers; every function but those that end one fails by returning null or a negative number, as relief_error() has it.
 // All that touch the GL need a current context, whose state they leave as it was.
 #include <emscripten.h>

@@ -53,7 +53,7 @@ PassState::~PassState() {
     relief_js_restore_state();
 }
 
-// WebGL2 maps no buffers and lets nobody wait: getBufferSubData() does both.
+// WebGL2 maps no buffers and cannot wait: getBufferSubData() does both.
 bool waitToRead(const GlFence&, GLuint64) {
     return true;
 }

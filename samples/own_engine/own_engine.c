@@ -42,7 +42,7 @@ static void makeContext(void) {
     need(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context), "no OpenGL ES 3.0");
 }
 
-/* Nearest, clamped, one level: what collider.glsl asks of its textures. */
+/* Nearest, clamped, one level: as collider.glsl needs its textures. */
 static GLuint makeTexture(GLenum internal, GLenum format, GLenum type, int width, int height, const void* texels) {
     GLuint name;
     glGenTextures(1, &name);

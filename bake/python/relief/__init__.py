@@ -58,7 +58,7 @@ class ReliefWarning(UserWarning):
 
 
 class Samples(NamedTuple):
-    """What a collider says of n points."""
+    """A collider evaluated at n points."""
 
     distance: np.ndarray
     """(n,) float32: negative inside; 1e30 where a point is outside and no more is known; NaN where a point is not finite."""
@@ -135,7 +135,7 @@ class Collider:
         return [DepthMap(self, i) for i in range(self._handle.map_count)]
 
     def query(self, points: Any, distance: str = "plane") -> Samples:
-        """What it says of points, (n, 3).
+        """Evaluates it at points, (n, 3).
 
         distance: "plane": to the plane that decides the side, which is what particles collide with; "nearest": to the
         nearest surface, which is searched for, some thirteen times the work.

@@ -1,8 +1,8 @@
 // A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel what a map says
 // changes only where the ray meets the texel's planes or its border, and those are found in closed form. While one map sees
-// outside, the ray is outside; so it goes on to where that map's stretch ends, and asks again.
+// outside, the ray is outside; so it goes on to where that map's stretch ends, and evaluates again.
 //
-//     map 0   ····o───────────────┐                 o: asks; each stretch of a map that sees outside is one step
+//     map 0   ····o───────────────┐                 o: a vote; each stretch of a map that sees outside is one step
 //     map 1                       o─────┐
 //     map 0                             o──┐        here no map sees outside, and one at least sees inside: a hit
 //                                          x━━━━
