@@ -12,7 +12,6 @@
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/spawner.h"
-#include "runtime/particles/statistics.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/particle_renderer.h"

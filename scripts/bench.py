@@ -193,10 +193,6 @@ def print_tables(report):
             if "over" in row:
                 over = row["over"]
                 line += f"  {over['median']:6.2f} of {over['of']} ({over['least']:.2f} to {over['most']:.2f})"
-            if row.get("touching"):
-                touching = row["touching"]
-                line += (f"; {100 * touching['in_contact'] / touching['alive']:.0f} % touch, "
-                         f"{touching['contacts_a_step']:.2f} contacts a step")
             note = PROMISES.get((report["case"], row["name"]))
             print(line + (f": {note}" if note else ""))
 

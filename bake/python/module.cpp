@@ -363,7 +363,7 @@ class HeadlessSimulation {
             need(released([&]() -> Result<void> {
                 const Stopwatch watch;
                 do {
-                    RELIEF_TRY(simulation_->step(nullptr));
+                    RELIEF_TRY(simulation_->step());
                 } while (++i < count && watch.ms() < static_cast<double>(kSignalInterval.count()));
                 return {};
             }));

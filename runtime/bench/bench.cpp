@@ -6,7 +6,6 @@
 
 #include "formats/base/stopwatch.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/gpu_timer.h"
 
 namespace relief {
 namespace {
@@ -24,45 +23,42 @@ double cpuMs() {
 struct Times {
     std::vector<double> wall;
     std::vector<double> cpu;
-    std::vector<double> gpu;  ///< empty: this GL does not measure it
+    std::vector<double> gpu;
 };
 
-/// Null of no values.
-Json median(std::vector<double> values) {
-    if (values.empty()) {
-        return nullptr;
-    }
+double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-Result<double> timeBlock(const Work& work, int calls, GpuTimer& timer, Times& times) {
-    const auto gpuTime = [&] { return timer.times()[static_cast<std::size_t>(Stage::kDraw)]; };
+Result<double> timeBlock(const Work& work, int calls, Times& times) {
+    GLuint query = 0;
+    glGenQueries(1, &query);
     glFinish();
-    const StageTime gpu_before = gpuTime();
     const double cpu_before = cpuMs();
     const Stopwatch watch;
-    timer.begin(Stage::kDraw);
+    glBeginQuery(GL_TIME_ELAPSED, query);
     for (int i = 0; i < calls; ++i) {
         RELIEF_TRY(work.run());
         glFlush();
     }
-    timer.end();
+    glEndQuery(GL_TIME_ELAPSED);
     glFinish();
     const double all = watch.ms();
     times.wall.push_back(all / calls);
     times.cpu.push_back((cpuMs() - cpu_before) / calls);
-    if (const StageTime gpu = gpuTime(); gpu.gpu_runs > gpu_before.gpu_runs) {
-        times.gpu.push_back((gpu.gpu_ms - gpu_before.gpu_ms) / calls);
-    }
+    GLuint64 nanoseconds = 0;
+    glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
+    glDeleteQueries(1, &query);
+    times.gpu.push_back(1e-6 * static_cast<double>(nanoseconds) / calls);
     return all;
 }
 
-Result<int> callsOfBlock(const Work& work, GpuTimer& timer) {
+Result<int> callsOfBlock(const Work& work) {
     Times ignored;
     int calls = 1;
-    while (RELIEF_TRY(timeBlock(work, calls, timer, ignored)) < kBlockMs) {
+    while (RELIEF_TRY(timeBlock(work, calls, ignored)) < kBlockMs) {
         calls *= 2;
     }
     return calls;
@@ -91,20 +87,19 @@ void warmUp(const Bench& bench, double ms, const std::function<void()>& run) {
 }
 
 Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, const Blocks& blocks) {
-    GpuTimer timer;
     std::vector<Times> times(works.size());
     std::vector<int> calls;
     for (const Work& work : works) {
         RELIEF_TRY(work.run());
         glFinish();
-        calls.push_back(blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsOfBlock(work, timer)));
+        calls.push_back(blocks.calls != 0 ? blocks.calls : RELIEF_TRY(callsOfBlock(work)));
     }
     for (int round = 0; round < (bench.rounds != 0 ? bench.rounds : blocks.rounds); ++round) {
         for (std::size_t i = 0; i < works.size(); ++i) {
             if (works[i].before) {
                 works[i].before();
             }
-            RELIEF_TRY(timeBlock(works[i], calls[i], timer, times[i]));
+            RELIEF_TRY(timeBlock(works[i], calls[i], times[i]));
             if (works[i].after) {
                 works[i].after();
             }
@@ -118,7 +113,7 @@ Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, con
         rows.push_back({{"name", works[i].name},
                         {"ms", median(times[i].wall)},
                         {"cpu_ms", median(times[i].cpu)},
-                        {"gpu_ms", bench.software ? Json() : median(times[i].gpu)}});
+                        {"gpu_ms", bench.software ? Json() : Json(median(times[i].gpu))}});
         for (std::size_t k = 0; k < works.size(); ++k) {
             if (works[k].name == works[i].over) {
                 rows.back()["over"] = ratioOf(works[k].name, compared(times[i]), compared(times[k]));

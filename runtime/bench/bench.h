@@ -47,7 +47,7 @@ struct Blocks {
 
 /// Times works in turns after a call of each, for which the driver compiles. An array of {name, ms, cpu_ms, gpu_ms,
 /// over: {of, median, least, most}}, milliseconds of a call as medians over the blocks: by the clock on the wall, of all
-/// threads, and by the GPU's clock, null where it has none. A ratio is the median of those within each round, which other
+/// threads, and by the GPU's clock, null on a software renderer. A ratio is the median of those within each round, which other
 /// work on the machine meets alike; with a software renderer it is of CPU time, which that work hardly changes.
 /// Errors: those of the works.
 [[nodiscard]] Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works,

@@ -1,5 +1,5 @@
 // A picture of particles, born all through the collider's box. `bare` draws the same points, as large and opaque as they
-// are, in one colour (a GPU need not read pixels under a wholly opaque one); then the parts of a picture one by one, and
+// are, in one colour; then the parts of a picture one by one, and
 // all of them. A software renderer draws points on either path.
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
@@ -82,7 +82,6 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
     const float diameter = point_pixels > 0.0F ? point_pixels / unit : 0.0065F * scene.side;
 
     const auto bare = RELIEF_TRY(BarePoints::create("#define RELIEF_ALPHA 0.95\n"));  // as the style's
-    const auto opaque = RELIEF_TRY(BarePoints::create(""));
     const StepPath path = picturePath(bench.path);
     auto open = RELIEF_TRY(ParticleRenderer::create(std::nullopt, path));
     auto lit = RELIEF_TRY(ParticleRenderer::create(view, path));
@@ -98,8 +97,8 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
         system.particles->step(kDt);
         return {};
     };
-    const auto drawBare = [&](const BarePoints& points) -> Result<void> {
-        points.draw(particles, camera, diameter, target);
+    const auto drawBare = [&]() -> Result<void> {
+        bare.draw(particles, camera, diameter, target);
         return {};
     };
     const auto draw = [&](ParticleRenderer& renderer, bool soft, bool ordered,
@@ -112,8 +111,7 @@ Result<Json> benchSize(const Bench& bench, const BenchScene& scene, BenchSystem&
         return renderer.draw(particles, camera, style, target, order, &behind);
     };
     std::vector<Work> works{
-        {"bare", [&] { return drawBare(bare); }},
-        {"bare, opaque", [&] { return drawBare(opaque); }},
+        {"bare", drawBare},
         {"open", [&] { return draw(open, false, false); }},
         {"soft", [&] { return draw(open, true, false); }},
         {"order", [&] { return draw(open, false, true); }},

@@ -56,7 +56,7 @@ using namespace relief;  // NOLINT: what C sees has C's names
 
 namespace {
 
-// As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (particles/statistics.h).
+// As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (isLost()).
 constexpr FieldRange kAny{-1e15, 1e15};
 constexpr FieldRange kNotNegative{0.0, 1e15};
 constexpr FieldRange kShare{0.0, 1.0};

@@ -10,6 +10,7 @@
 #include "formats/config/confined_path.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
+#include "runtime/command_line/field_options.h"
 #include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/command_line/progress.h"
@@ -43,7 +44,8 @@ void addOutputs(CLI::App& app, SimCommand& command) {
         ->option_text("DIR");
     addParsed(app, "--size", command.size, parseFrameSize, "a size such as 960x720, each side at least 1",
               "Size of the frames in pixels, instead of the scene's")
-        ->option_text("WxH");
+        ->option_text("WxH")
+        ->needs("--frames");
     app.add_option("--seed", player.overrides.seed, "Seed of the births, instead of the scene's")
         ->option_text("S")
         ->transform(wholeNumber(0, kSeedMax));
@@ -69,58 +71,31 @@ void addOutputs(CLI::App& app, SimCommand& command) {
                    "Steps from frame to frame, instead of the scene's render.every")
         ->option_text("N")
         ->transform(wholeNumber(1, kStepsMax));
-    app.add_option("--stats", player.stats,
-                   "Write statistics while playing, a line of JSON each; - for standard output")
-        ->option_text("OUT.jsonl");
-    app.add_option("--stats-every", player.stats_every,
-                   "Steps from line to line of --stats, instead of the scene's render.every")
-        ->option_text("N")
-        ->transform(wholeNumber(1, kStepsMax));
     app.add_option("--events", player.events,
                    "Write the hits while playing, a line of JSON each; - for standard output")
         ->option_text("OUT.jsonl");
     app.add_option("--events-min-speed", player.events_min_speed,
                    "Leave hits out of --events that are slower, world units a second")
         ->option_text("V")
+        ->needs("--events")
         ->transform(number(0.0F, 1e9F, "a speed, 0 or more"));
 }
 
-/// Options that do nothing together.
+/// Options that have no effect together.
 Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
     const SceneOverrides& scene = player.overrides;
-    const bool pictures = !player.frames.empty();
-    const bool dumps = !(player.dump.empty() && player.dump_frames.empty());
-    const bool frames = pictures || !player.dump_frames.empty();
-    const bool outputs = pictures || dumps || !player.stats.empty() || !player.events.empty();
-    const char* const gpu = command.gpu.given()              ? command.gpu.given()
-                            : player.path != StepPath::kAuto ? "--path"
-                                                             : nullptr;
-    const char* const frame = scene.first_frame   ? "--first-frame"
-                              : scene.last_frame  ? "--last-frame"
-                              : scene.frame_every ? "--frame-every"
-                                                  : nullptr;
-    const auto text = [](const char* option) { return std::string(option == nullptr ? "" : option); };
-    const std::pair<bool, std::string> faults[] = {
-        {player.input.empty(), "name a scene (.toml) or a collider (.relief); see relief-sim --help"},
-        {command.check && outputs, "--check plays nothing and writes nothing; remove it, or the outputs"},
-        {command.check && gpu != nullptr,
-         text(gpu) + " does nothing with --check, which needs no GPU; leave it out"},
-        {command.size && !pictures, "--size does nothing without --frames; add --frames DIR"},
-        {frame != nullptr && !frames,
-         text(frame) + " does nothing without --frames or --dump-frames; add --frames DIR"},
-        {scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame,
-         "--first-frame comes after --last-frame; swap them"},
-        {player.stats_every && player.stats.empty(),
-         "--stats-every does nothing without --stats; add --stats OUT.jsonl"},
-        {command.dump_format && !dumps,
-         "--dump-format does nothing without --dump or --dump-frames; add --dump-frames DIR"},
-        {player.events_min_speed && player.events.empty(),
-         "--events-min-speed does nothing without --events; add --events OUT.jsonl"}};
-    for (const auto& [found, message] : faults) {
-        if (found) {
-            return fail(ErrorCode::kUsage, message);
-        }
+    if (player.input.empty()) {
+        return fail(ErrorCode::kUsage, "name a scene (.toml) or a collider (.relief); see relief-sim --help");
+    }
+    if ((scene.first_frame || scene.last_frame || scene.frame_every) && player.frames.empty() &&
+        player.dump_frames.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "--first-frame, --last-frame and --frame-every need --frames or "
+                    "--dump-frames; add --frames DIR");
+    }
+    if (scene.first_frame && scene.last_frame && *scene.first_frame > *scene.last_frame) {
+        return fail(ErrorCode::kUsage, "--first-frame comes after --last-frame; swap them");
     }
     return {};
 }
@@ -135,7 +110,7 @@ void showWarnings(const std::vector<std::string>& warnings, bool quiet) {
 }
 
 /// --check. With --json the object comes in either case.
-Result<void> check(const SimCommand& command) {
+Result<void> checkOnly(const SimCommand& command) {
     const Result<CheckReport> checked = checkScene(command.player);
     if (checked) {
         showWarnings(checked->warnings, command.quiet);
@@ -154,21 +129,16 @@ Result<void> playScene(SimCommand& command) {
     player.dump_format = command.dump_format.value_or(named_vdb ? DumpFormat::kVdb : DumpFormat::kPly);
     if (command.json) {
         RELIEF_TRY(player.guard.writes("-", "--json"));
-    } else if (!command.quiet && player.dump != "-" && player.stats != "-" && player.events != "-") {
+    } else if (!command.quiet && player.dump != "-" && player.events != "-") {
         RELIEF_TRY(player.guard.writes("-", "the report"));
     }
-    player.api = command.gpu.api;
-    player.device = command.gpu.device;
-    player.count_collisions = command.json;
-    player.time_stages = command.json;
     Progress progress({.name = quotedPath(player.input), .drawn = !command.quiet});
     progress.begin("playing");
     player.progress = [&progress](std::uint32_t step, std::uint32_t steps) {
         progress.set(steps == 0 ? 1.0 : static_cast<double>(step) / steps);
     };
-    Watchdog watchdog(command.gpu.limit(false), endProcess("relief-sim"));
+    Watchdog watchdog("relief-sim", player.gpu.limit(false));
     player.watchdog = &watchdog;
-    player.default_timeout = !command.gpu.timeout;
     const PlayerReport played = RELIEF_TRY(play(player));
     progress.finish();
     showWarnings(played.warnings, command.quiet);
@@ -179,7 +149,7 @@ Result<void> playScene(SimCommand& command) {
     if (command.json) {
         return printOut(jsonText(jsonOf(played)));
     }
-    if (!command.quiet && (player.dump == "-" || player.stats == "-" || player.events == "-")) {
+    if (!command.quiet && (player.dump == "-" || player.events == "-")) {
         std::fputs(reportText(played).c_str(), stderr);  // they have standard output to themselves
         return {};
     }
@@ -204,9 +174,10 @@ void defineSim(CLI::App& app, SimCommand& command) {
                    "Folder whose files the scene may name too, by ..; default: those of its own folder alone")
         ->option_text("DIR");
     addMemoryOption(app, command.player.overrides.limits);
-    app.add_flag("--check", command.check,
-                 "Only check the scene and what it names, without a GPU: one line, or the first mistake");
-    addWords(app, "--api", command.gpu.api,
+    CLI::Option* const check =
+        app.add_flag("--check", command.check,
+                     "Only check the scene and what it names, without a GPU: one line, or the first mistake");
+    addWords(app, "--api", command.player.gpu.api,
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
              "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0");
     addWords(
@@ -217,7 +188,11 @@ void defineSim(CLI::App& app, SimCommand& command) {
         "3.1), or auto "
         "(default): "
         "compute on a GPU that has it");
-    addGpuOptions(app, command.gpu);
+    addFields(app, command.player.gpu);
+    for (const char* played :
+         {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
+        check->excludes(played);
+    }
     app.add_flag("--json", command.json, "Print the report, or what --check finds, as JSON");
     app.add_flag("-q,--quiet", command.quiet,
                  "No progress and no summary; errors still, and what --json asks for");
@@ -238,7 +213,7 @@ Result<void> runSim(int argc, char** argv) {
         command.player.overrides.width = command.size->width;
         command.player.overrides.height = command.size->height;
     }
-    return command.check ? check(command) : playScene(command);
+    return command.check ? checkOnly(command) : playScene(command);
 }
 
 }  // namespace relief

@@ -2,8 +2,12 @@
 #pragma once
 
 #include "formats/base/result.h"
-#include "runtime/cli/gpu_tool.h"
 #include "runtime/player/player.h"
+#include "runtime/player/player_options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace relief {
 
@@ -17,7 +21,6 @@ struct SimCommand {
     PlayerOptions player;
     std::optional<FrameSize> size;
     std::optional<DumpFormat> dump_format;
-    GpuOptions gpu;
     bool check = false;
     bool json = false;
     bool quiet = false;

@@ -198,8 +198,6 @@ Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments)
         return answer(helpText(app));
     } catch (const CLI::CallForVersion& version) {
         return answer(std::string(version.what()) + "\n");
-    } catch (const Answer& instead) {
-        return answer(RELIEF_TRY(instead.text));
     } catch (const CLI::ParseError& error) {
         // Help is printed even if other arguments are wrong.
         const CLI::Option* help = calledOf(app).get_help_ptr();

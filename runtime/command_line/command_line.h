@@ -17,15 +17,10 @@ namespace relief {
 /// lines of the footer. \param help  the help text of --help.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
 
-/// Thrown by the callback of an option that is answered instead of doing anything, as --help is: the text to print.
-struct Answer {
-    Result<std::string> text;
-};
-
-/// Parses the command line. Prints the answers of --help, --version and of options that throw one.
+/// Parses the command line. Prints the answers to --help and --version.
 /// \param arguments  without the program's name.
 /// \return whether there is anything left to do.
-/// Fails with kUsage and one line that names the option and the cure; with kIo if the answer cannot be printed; as the answer.
+/// Fails with kUsage and one line that names the option and the cure; with kIo if the answer cannot be printed.
 [[nodiscard]] Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments);
 
 /// All arguments but the program's name.

@@ -43,20 +43,8 @@ bool hasGlExtension(const char* name) {
     return epoxy_has_gl_extension(name);
 }
 
-GpuReset gpuReset() {
-    if (!hasResetStatus()) {
-        return GpuReset::kNone;
-    }
-    switch (glGetGraphicsResetStatus()) {
-        case GL_NO_ERROR:
-            return GpuReset::kNone;
-        case GL_GUILTY_CONTEXT_RESET:
-            return GpuReset::kGuilty;
-        case GL_INNOCENT_CONTEXT_RESET:
-            return GpuReset::kInnocent;
-        default:
-            return GpuReset::kUnknown;
-    }
+bool gpuWasReset() {
+    return hasResetStatus() && glGetGraphicsResetStatus() != GL_NO_ERROR;
 }
 
 }  // namespace relief

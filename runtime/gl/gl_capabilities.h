@@ -15,8 +15,7 @@ namespace relief {
 /// \param name  "GL_EXT_color_buffer_float"
 [[nodiscard]] bool hasGlExtension(const char* name);
 
-/// The cause of a reset of the GPU; checkGpu() makes an error of it.
-enum class GpuReset { kNone, kGuilty, kInnocent, kUnknown };
-[[nodiscard]] GpuReset gpuReset();
+/// True if the GPU was reset; checkGpu() makes an error of it.
+[[nodiscard]] bool gpuWasReset();
 
 }  // namespace relief

@@ -1,5 +1,6 @@
 #include "runtime/gl/gl_context.h"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -8,11 +9,71 @@
 #include <vector>
 
 #include "runtime/gl/gl_capabilities.h"
-#include "runtime/gl/gl_display.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {
 namespace {
+
+bool loads(const char* library) {
+    // Left open: libepoxy opens it again, and a driver would be initialised twice.
+    return ::dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr;
+}
+
+bool hasClientExtension(const char* name) {
+    // Client extensions come first: without them the entry points may not exist.
+    return epoxy_has_egl_extension(EGL_NO_DISPLAY, name);
+}
+
+/// The name of a library that EGL, or this API, needs and that cannot be loaded; "" if all are there.
+/// libepoxy ends the process where it misses one, so call this before EGL or the GL.
+std::string missingGlLibrary(GlApi api) {
+    if (!loads("libEGL.so.1")) {
+        return "libEGL.so.1";
+    }
+    if (api == GlApi::kGles30) {
+        return loads("libGLESv2.so.2") ? "" : "libGLESv2.so.2";
+    }
+    return loads("libOpenGL.so.0") || loads("libGL.so.1") ? "" : "libOpenGL.so.0";
+}
+
+/// EGL's devices in its order; none where it does not enumerate them.
+std::vector<EGLDeviceEXT> eglDevices() {
+    if (!hasClientExtension("EGL_EXT_device_enumeration") && !hasClientExtension("EGL_EXT_device_base")) {
+        return {};
+    }
+    EGLint count = 0;
+    if (eglQueryDevicesEXT(0, nullptr, &count) != EGL_TRUE || count < 1) {
+        return {};
+    }
+    std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+    if (eglQueryDevicesEXT(count, devices.data(), &count) != EGL_TRUE || count < 1) {
+        return {};
+    }
+    devices.resize(static_cast<std::size_t>(count));
+    return devices;
+}
+
+// EGL_NO_DISPLAY where there is no such platform. The display is not yet initialised.
+EGLDisplay surfacelessDisplay() {
+    if (!hasClientExtension("EGL_MESA_platform_surfaceless") ||
+        !hasClientExtension("EGL_EXT_platform_base")) {
+        return EGL_NO_DISPLAY;
+    }
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+}
+
+EGLDisplay deviceDisplay(EGLDeviceEXT device) {
+    if (!hasClientExtension("EGL_EXT_platform_device") || !hasClientExtension("EGL_EXT_platform_base")) {
+        return EGL_NO_DISPLAY;
+    }
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+}
+
+/// "" for null.
+std::string glText(unsigned what) {
+    const GLubyte* text = glGetString(what);
+    return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
+}
 
 std::string eglErrorText() {
     char text[32];
@@ -148,7 +209,7 @@ struct GlContext::Impl {
                 return {};
             }
         }
-        return opens(defaultDisplay(), "default") ? "" : tried;
+        return opens(eglGetDisplay(EGL_DEFAULT_DISPLAY), "default") ? "" : tried;
     }
 
     Result<void> openDevice(std::size_t index) {
@@ -160,7 +221,7 @@ struct GlContext::Impl {
                             (devices.empty()       ? "; leave the device out"
                              : devices.size() == 1 ? ", device 0"
                                                    : ", 0 to " + std::to_string(devices.size() - 1)) +
-                            (devices.empty() ? "" : "; --list-devices names them"));
+                            (devices.empty() ? "" : "; 'eglinfo -B' lists them"));
         }
         const std::string problem = open(deviceDisplay(devices[index]));
         if (!problem.empty()) {

@@ -14,7 +14,7 @@ namespace relief {
 
 struct GlContextOptions {
     GlApi api = GlApi::kGl33Core;
-    /// Index into listGlDevices (gl_device.h): this device alone is tried. nullopt: Mesa's platform without a display server,
+    /// Index into EGL's devices: this device alone is tried. nullopt: Mesa's platform without a display server,
     /// EGL's devices and its default display in turn, until one gives a context.
     std::optional<std::size_t> device;
 };

@@ -31,15 +31,11 @@ Result<void> checkContext() {
 }
 
 Result<void> checkGpu(const std::string& during) {
-    const GpuReset reset = gpuReset();
-    if (reset == GpuReset::kNone) {
+    if (!gpuWasReset()) {
         return {};
     }
-    const char* cause = reset == GpuReset::kGuilty     ? ", by what Relief had asked of it"
-                        : reset == GpuReset::kInnocent ? ", by another program"
-                                                       : "";
     return fail(ErrorCode::kFailure,
-                "the GPU was reset" + std::string(cause) + " while " + during +
+                "the GPU was reset while " + during +
                     ", and what was on it is lost; run it again, with less at once if it happens again");
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -21,72 +22,50 @@ std::uint64_t wholeCount(double count) {
     return count > 0.0 ? static_cast<std::uint64_t>(std::min(count, kCountMax)) : 0;  // 0 for NaN
 }
 
-bool hasNormal(EmitterShape shape) {
-    return shape != EmitterShape::kBox && shape != EmitterShape::kPoint;
-}
-
-const char* problemOfAim(const EmitterSettings& s) {
-    const EmitterAim& aim = *s.aim;
-    if (aim.direction ? unitVector(*aim.direction) == glm::vec3(0.0F) : !hasNormal(s.shape)) {
-        return "aim.direction is needed, and must not be 0";
-    }
-    if (!aim.direction && s.shape == EmitterShape::kPoints && s.points.normals.empty()) {
-        return "aim.direction is needed where points have no normals";
-    }
-    if (!(aim.cone_degrees >= 0.0F && aim.cone_degrees <= 180.0F)) {
-        return "aim.cone_degrees must be 0 to 180";
-    }
-    if (!(aim.speed_min >= 0.0F && aim.speed_min <= aim.speed_max && std::isfinite(aim.speed_max)) ||
-        !(aim.speed_deviation >= 0.0F && std::isfinite(aim.speed_deviation))) {
-        return "aim's speeds must be finite, at least 0 and in order";
+/// The first of them that is there; nullptr: none is.
+const char* firstOf(std::initializer_list<std::pair<bool, const char*>> problems) {
+    for (const auto& [there, problem] : problems) {
+        if (there) {
+            return problem;
+        }
     }
     return nullptr;
 }
 
-const char* problemOfPlace(const EmitterSettings& s) {
-    switch (s.shape) {
-        case EmitterShape::kBox:
-        case EmitterShape::kPoint:
-            return isFinite(s.box_min) && isFinite(s.box_max) && s.box_min.x <= s.box_max.x &&
-                           s.box_min.y <= s.box_max.y && s.box_min.z <= s.box_max.z
-                       ? nullptr
-                       : "box_min must be finite and not above box_max";
-        case EmitterShape::kPoints:
-            if (s.points.positions.empty() || s.points.positions.size() > kPointsMax) {
-                return "points must hold at least one point, and no more than a file may";
-            }
-            return s.points.normals.empty() || s.points.normals.size() == s.points.positions.size()
-                       ? nullptr
-                       : "points must have as many normals as positions, or none";
-        case EmitterShape::kDisc:
-            if (unitVector(s.normal) == glm::vec3(0.0F)) {
-                return "normal must not be 0";
-            }
-            [[fallthrough]];
-        case EmitterShape::kSphere:
-        case EmitterShape::kShell:
-            return isFinite(s.center) && s.radius >= 0.0F && std::isfinite(s.radius)
-                       ? nullptr
-                       : "center and radius must be finite, the radius at least 0";
-    }
-    return "shape is unknown";
-}
-
 const char* problemOf(const EmitterSettings& s) {
-    if (const char* problem = problemOfPlace(s); problem != nullptr) {
-        return problem;
-    }
-    if (!(s.start >= 0.0 && s.rate >= 0.0 && s.duration > 0.0 && s.burst_every >= 0.0)) {
-        return "start, rate and burst_every must be at least 0, duration above 0";
-    }
-    if (!isFinite(s.velocity) || !isFinite(s.velocity_spread) || s.velocity_spread.x < 0.0F ||
-        s.velocity_spread.y < 0.0F || s.velocity_spread.z < 0.0F) {
-        return "velocity must be finite, velocity_spread at least 0";
-    }
-    if (!(s.lifetime_min > 0.0F && s.lifetime_min <= s.lifetime_max && std::isfinite(s.lifetime_max))) {
-        return "lifetime_min must be above 0 and not above lifetime_max, which is finite";
-    }
-    return s.aim ? problemOfAim(s) : nullptr;
+    const bool box = s.shape == EmitterShape::kBox || s.shape == EmitterShape::kPoint;
+    const bool points = s.shape == EmitterShape::kPoints;
+    const std::size_t count = s.points.positions.size();
+    const auto ordered = [](const glm::vec3& low, const glm::vec3& high) {
+        return isFinite(low) && isFinite(high) && low.x <= high.x && low.y <= high.y && low.z <= high.z;
+    };
+    const auto rising = [](float low, float high) {
+        return low >= 0.0F && low <= high && std::isfinite(high);
+    };
+    const EmitterAim aim = s.aim.value_or(EmitterAim{.direction = glm::vec3(1.0F)});
+    return firstOf({
+        {box && !ordered(s.box_min, s.box_max), "box_min must be finite and not above box_max"},
+        {points && (count == 0 || count > kPointsMax),
+         "points must hold at least one point, and no more than a file may"},
+        {points && !s.points.normals.empty() && s.points.normals.size() != count,
+         "points must have as many normals as positions, or none"},
+        {s.shape == EmitterShape::kDisc && unitVector(s.normal) == glm::vec3(0.0F), "normal must not be 0"},
+        {!box && !points && !(isFinite(s.center) && rising(s.radius, s.radius)),
+         "center and radius must be finite, the radius at least 0"},
+        {!(s.start >= 0.0 && s.rate >= 0.0 && s.duration > 0.0 && s.burst_every >= 0.0),
+         "start, rate and burst_every must be at least 0, duration above 0"},
+        {!isFinite(s.velocity) || !ordered(glm::vec3(0.0F), s.velocity_spread),
+         "velocity must be finite, velocity_spread at least 0"},
+        {!(s.lifetime_min > 0.0F && rising(s.lifetime_min, s.lifetime_max)),
+         "lifetime_min must be above 0 and not above lifetime_max, which is finite"},
+        {aim.direction ? unitVector(*aim.direction) == glm::vec3(0.0F) : box,
+         "aim.direction is needed, and must not be 0"},
+        {!aim.direction && points && s.points.normals.empty(),
+         "aim.direction is needed where points have no normals"},
+        {!(aim.cone_degrees >= 0.0F && aim.cone_degrees <= 180.0F), "aim.cone_degrees must be 0 to 180"},
+        {!rising(aim.speed_min, aim.speed_max) || !rising(aim.speed_deviation, aim.speed_deviation),
+         "aim's speeds must be finite, at least 0 and in order"},
+    });
 }
 
 /// From the space that moves along a trajectory to the space of its poses.

@@ -461,6 +461,10 @@ ParticleCounts ParticleSystem::counts() const {
     return {born_, died_, refused_, allocator_.liveCount(), allocator_.extent()};
 }
 
+bool isLost(const ParticleState& particle) {
+    return !isFinite(particle.position) || !(glm::length(particle.velocity) <= 1e15F);
+}
+
 Result<RawState> ParticleSystem::readRaw() const {
     RawState raw;
     const std::uint32_t rows = (drawn_extent_ + width_ - 1) / width_;

@@ -83,6 +83,10 @@ struct ParticleState {
     Contact contact = Contact::kNone;  ///< of the last step
 };
 
+/// True for a particle that floats no longer hold: a position or velocity that is no number or infinite, or a speed above
+/// 10¹⁵ world units a second. Extreme forces send particles there.
+[[nodiscard]] bool isLost(const ParticleState& particle);
+
 /// The state textures as they are, four floats a texel, index after index
 /// up to the extent. (Texels beyond it hold leftovers, which no renderer may draw.)
 struct RawState {

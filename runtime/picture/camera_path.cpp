@@ -22,12 +22,9 @@ T slopeAt(std::span<const CameraKey> keys, std::size_t i, Get get) {
 
 /// The value between keys i and i + 1, at `share` of the time between them.
 template <class T, class Get>
-T between(std::span<const CameraKey> keys, CameraCurve curve, std::size_t i, float share, Get get) {
+T between(std::span<const CameraKey> keys, std::size_t i, float share, Get get) {
     const T from = get(keys[i]);
     const T to = get(keys[i + 1]);
-    if (curve == CameraCurve::kLinear) {
-        return (1.0F - share) * from + share * to;
-    }
     const auto seconds = static_cast<float>(keys[i + 1].time - keys[i].time);
     const T leaving = seconds * slopeAt<T>(keys, i, get);
     const T arriving = seconds * slopeAt<T>(keys, i + 1, get);
@@ -40,7 +37,7 @@ T between(std::span<const CameraKey> keys, CameraCurve curve, std::size_t i, flo
 
 }  // namespace
 
-Camera cameraAt(std::span<const CameraKey> keys, CameraCurve curve, double time) {
+Camera cameraAt(std::span<const CameraKey> keys, double time) {
     std::size_t i = 0;
     while (i + 1 < keys.size() && keys[i + 1].time <= time) {
         ++i;
@@ -53,10 +50,9 @@ Camera cameraAt(std::span<const CameraKey> keys, CameraCurve curve, double time)
         camera.fov = still.fov;
     } else {
         const auto share = static_cast<float>((time - keys[i].time) / (keys[i + 1].time - keys[i].time));
-        camera.eye = between<glm::vec3>(keys, curve, i, share, [](const CameraKey& k) { return k.eye; });
-        camera.target =
-            between<glm::vec3>(keys, curve, i, share, [](const CameraKey& k) { return k.target; });
-        camera.fov = between<float>(keys, curve, i, share, [](const CameraKey& k) { return k.fov; });
+        camera.eye = between<glm::vec3>(keys, i, share, [](const CameraKey& k) { return k.eye; });
+        camera.target = between<glm::vec3>(keys, i, share, [](const CameraKey& k) { return k.target; });
+        camera.fov = between<float>(keys, i, share, [](const CameraKey& k) { return k.fov; });
     }
     camera.fov = std::clamp(camera.fov, kFovMin, kFovMax);
     const glm::vec3 d = camera.eye - camera.target;

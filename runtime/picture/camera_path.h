@@ -4,7 +4,6 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "formats/base/field.h"
 #include "runtime/picture/camera.h"
 
 namespace relief {
@@ -17,18 +16,11 @@ struct CameraKey {
     friend bool operator==(const CameraKey&, const CameraKey&) = default;
 };
 
-enum class CameraCurve {
-    kSmooth,  ///< Catmull-Rom: cubic, its speed at a key is that of the straight line between the keys around
-              ///< it (at the ends, between the last two), so that uneven times are no jolts
-    kLinear,
-};
-template <>
-inline constexpr std::array<std::string_view, 2> kWordsOf<CameraCurve>{"smooth", "linear"};
-
-/// Eye, target and fov at a time; before the first key and after the last the camera stands still. fov is
-/// kept within 1…170; an eye that comes to lie straight above or below its target, or in it, is moved a
-/// little towards +z, where the picture still has an upper side. Clip planes are left at their defaults.
+/// Eye, target and fov at a time, by Catmull-Rom: cubic, the speed at a key that of the straight line between the keys
+/// around it (at the ends, between the last two), so that uneven times are no jolts. Before the first key and after the
+/// last the camera stands still. fov is kept within 1…170; an eye that comes to lie straight above or below its target, or
+/// in it, is moved a little towards +z, where the picture still has an upper side. Clip planes are left at their defaults.
 /// \param keys  one at least, their times rising.
-[[nodiscard]] Camera cameraAt(std::span<const CameraKey> keys, CameraCurve curve, double time);
+[[nodiscard]] Camera cameraAt(std::span<const CameraKey> keys, double time);
 
 }  // namespace relief

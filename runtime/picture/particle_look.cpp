@@ -11,54 +11,50 @@ namespace {
 // Counted in floats on the GPU: far above what any atlas holds.
 constexpr std::uint32_t kCellMax = 1U << 20;
 
+bool within(float value, float low, float high) {
+    return value >= low && value <= high;  // false for NaN
+}
+
+bool within(const glm::vec3& value, float low, float high) {
+    return within(value.x, low, high) && within(value.y, low, high) && within(value.z, low, high);
+}
+
+constexpr float kHuge = 1e30F;
+constexpr const char* kOutOfRange = "a value is out of its range or not finite";
+
 template <class T>
-std::string trackProblem(const AgeTrack<T>& track, const char* name) {
+std::string trackProblem(const AgeTrack<T>& track, const char* name, float low, float high) {
     if (track.size() > kLookKeysMax) {
         return std::string(name) + " has " + std::to_string(track.size()) + " keys; give " +
                std::to_string(kLookKeysMax) + " at most";
     }
     float before = -1.0F;
     for (const AgeKey<T>& key : track) {
-        if (!(key.age >= 0.0F && key.age <= 1.0F && key.age > before)) {
+        if (!(within(key.age, 0.0F, 1.0F) && key.age > before)) {
             return std::string("the ages of ") + name + " do not rise within 0 to 1";
+        }
+        if (!within(key.value, low, high)) {
+            return kOutOfRange;
         }
         before = key.age;
     }
     return {};
 }
 
-bool within(float value, float low, float high) {
-    return value >= low && value <= high;  // false for NaN
-}
-
 std::string lookProblem(const ParticleLook& look) {
     for (const std::string& problem :
-         {trackProblem(look.size, "size"), trackProblem(look.color, "color"),
-          trackProblem(look.opacity, "opacity"), trackProblem(look.rotation, "rotation")}) {
+         {trackProblem(look.size, "size", 0.0F, kHuge), trackProblem(look.color, "color", 0.0F, 1.0F),
+          trackProblem(look.opacity, "opacity", 0.0F, 1.0F),
+          trackProblem(look.rotation, "rotation", -kHuge, kHuge)}) {
         if (!problem.empty()) {
             return problem;
         }
     }
-    constexpr float kHuge = 1e30F;
-    bool good = within(look.turn, 0.0F, kHuge) && within(look.spin, 0.0F, kHuge) &&
-                within(look.stretch, 0.0F, kHuge) && within(look.fade_in.value_or(0.0F), 0.0F, kHuge) &&
-                within(look.fade_out.value_or(0.0F), 0.0F, kHuge);
-    for (const auto& key : look.size) {
-        good = good && within(key.value, 0.0F, kHuge);
-    }
-    for (const auto& key : look.opacity) {
-        good = good && within(key.value, 0.0F, 1.0F);
-    }
-    for (const auto& key : look.rotation) {
-        good = good && within(key.value, -kHuge, kHuge);
-    }
-    for (const auto& key : look.color) {
-        for (int i = 0; i < 3; ++i) {
-            good = good && within(key.value[i], 0.0F, 1.0F);
+    for (const float value :
+         {look.turn, look.spin, look.stretch, look.fade_in.value_or(0.0F), look.fade_out.value_or(0.0F)}) {
+        if (!within(value, 0.0F, kHuge)) {
+            return kOutOfRange;
         }
-    }
-    if (!good) {
-        return "a value is out of its range or not finite";
     }
     if (look.cell_first && (*look.cell_first > look.cell_last || look.cell_last > kCellMax)) {
         return "the cells do not go from a first to a last";
@@ -66,20 +62,18 @@ std::string lookProblem(const ParticleLook& look) {
     return {};
 }
 
-template <class T>
-void addAges(const AgeTrack<T>& track, std::vector<float>& ages) {
-    for (const AgeKey<T>& key : track) {
-        ages.push_back(key.age);
-    }
-}
-
 /// The ages that any track has a key at, rising; at least one.
 std::vector<float> agesOf(const ParticleLook& look) {
     std::vector<float> ages;
-    addAges(look.size, ages);
-    addAges(look.color, ages);
-    addAges(look.opacity, ages);
-    addAges(look.rotation, ages);
+    const auto add = [&](const auto& track) {
+        for (const auto& key : track) {
+            ages.push_back(key.age);
+        }
+    };
+    add(look.size);
+    add(look.color);
+    add(look.opacity);
+    add(look.rotation);
     std::sort(ages.begin(), ages.end());
     ages.erase(std::unique(ages.begin(), ages.end()), ages.end());
     if (ages.empty()) {

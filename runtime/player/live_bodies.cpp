@@ -40,16 +40,4 @@ const GpuMesh* LiveBodies::mesh(std::size_t index) const {
     return found == bodies_.end() ? nullptr : &found->collider.mesh();
 }
 
-Result<LivePicture> LivePicture::create(const LiveMesh& live) {
-    auto mesh = RELIEF_TRY(ColliderMesh::create(live.mesh));
-    auto pass = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
-                                              WobblePass::Output::kPositionsAndNormals));
-    return LivePicture(std::make_unique<ColliderMesh>(std::move(mesh)), std::move(pass));
-}
-
-void LivePicture::show(double time) {
-    pass_.run(time);
-    mesh_->setVertices(pass_.buffer());
-}
-
 }  // namespace relief

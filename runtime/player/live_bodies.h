@@ -1,14 +1,12 @@
 // The colliders of a scene that deform, on the GPU: what a player does with them each step.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/collider/collider_textures.h"
 #include "runtime/collider/live_collider.h"
 #include "runtime/collider/wobble_pass.h"
-#include "runtime/picture/collider_mesh.h"
 #include "runtime/scene/loaded_scene.h"
 
 namespace relief {
@@ -33,22 +31,6 @@ class LiveBodies {
         WobblePass pass;
     };
     std::vector<Body> bodies_;
-};
-
-/// The picture of a collider that deforms: of its mesh at a time.
-class LivePicture {
-  public:
-    /// Fails as ColliderMesh and WobblePass do.
-    [[nodiscard]] static Result<LivePicture> create(const LiveMesh& live);
-    void show(double time);
-    [[nodiscard]] const ColliderMesh& mesh() const { return *mesh_; }
-
-  private:
-    LivePicture(std::unique_ptr<ColliderMesh> mesh, WobblePass pass)
-        : mesh_(std::move(mesh)), pass_(std::move(pass)) {}
-
-    std::unique_ptr<ColliderMesh> mesh_;  // at one place: renderers point to it
-    WobblePass pass_;
 };
 
 }  // namespace relief

@@ -1,11 +1,13 @@
 #include "runtime/player/outputs.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "formats/base/file_io.h"
 #include "formats/base/numbered_files.h"
 #include "formats/base/preflight.h"
+#include "formats/base/text.h"
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watched.h"
@@ -33,7 +35,6 @@ Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard) {
     }
     RELIEF_TRY(guard.reads(options.input));
     RELIEF_TRY(guard.writes(options.dump, "--dump"));
-    RELIEF_TRY(guard.writes(options.stats, "--stats"));
     return guard.writes(options.events, "--events");
 }
 
@@ -56,17 +57,10 @@ Outputs::~Outputs() {
 }
 
 Result<void> Outputs::open() {
-    const Scene& scene = loaded_.scene;
     if (!options_.frames.empty()) {
         picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures", [&] {
             return ScenePicture::create(loaded_, textures_, options_.path);
         }));
-    }
-    if (options_.time_stages || !options_.stats.empty()) {
-        timer_.emplace();
-    }
-    if (!options_.stats.empty()) {
-        log_ = RELIEF_TRY(StatisticsLog::create(options_.stats, scene.particles.capacity, *timer_));
     }
     if (!options_.events.empty()) {
         events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));
@@ -78,20 +72,31 @@ Result<void> Outputs::open() {
                                         : preflightFolder(options_.dump_frames, "--dump-frames");
 }
 
-Result<std::vector<std::byte>> encodeDump(std::span<const ParticleState> particles, DumpFormat format) {
-    return format == DumpFormat::kVdb ? encodeVdbPoints(particles) : encodePly(particles);
-}
-
 Result<void> Outputs::writeFrame(const ParticleSystem& particles, PlayerReport& report) {
     if (picture_) {
         RELIEF_TRY(writePicture(particles, report));
     }
-    return options_.dump_frames.empty() ? Result<void>{} : writeParticles(particles, report);
+    if (!options_.dump_frames.empty()) {
+        const auto path = dumpFiles(options_, report.dumps_written + 1).path(report.dumps_written);
+        const auto state = RELIEF_TRY(readParticles(particles));
+        RELIEF_TRY(writeDump(state, path));
+        ++report.dumps_written;
+    }
+    return {};
+}
+
+Result<void> Outputs::writeEnd(const ParticleSystem& particles, PlayerReport& report) {
+    const auto state = RELIEF_TRY(readParticles(particles));
+    for (const ParticleState& particle : state) {
+        report.collisions += particle.collisions;
+        report.in_contact += particle.contact == Contact::kNone ? 0 : 1;
+    }
+    return options_.dump.empty() ? Result<void>{} : writeDump(state, options_.dump);
 }
 
 Result<void> Outputs::writePicture(const ParticleSystem& particles, PlayerReport& report) {
     const auto rgb = RELIEF_TRY(watched(options_.watchdog, "picture " + std::to_string(report.frames_written),
-                                        [&] { return picture_->draw(particles, timer()); }));
+                                        [&] { return picture_->draw(particles); }));
     const auto& render = loaded_.scene.render;
     const auto png = RELIEF_TRY(encodePng(rgb, render.width, render.height));
     RELIEF_TRY(writeFile(pictureFiles(options_, report.frames_written + 1).path(report.frames_written), png));
@@ -99,24 +104,30 @@ Result<void> Outputs::writePicture(const ParticleSystem& particles, PlayerReport
     return {};
 }
 
-Result<void> Outputs::writeParticles(const ParticleSystem& particles, PlayerReport& report) {
-    const auto state = RELIEF_TRY(
+Result<std::vector<ParticleState>> Outputs::readParticles(const ParticleSystem& particles) const {
+    auto state = RELIEF_TRY(
         watched(options_.watchdog, "reading particles back", [&] { return particles.readState(); }));
-    const fs::path path = dumpFiles(options_, report.dumps_written + 1).path(report.dumps_written);
-    const auto bytes = RELIEF_TRY(encodeDump(state, options_.dump_format));
-    RELIEF_TRY(writeFile(path, bytes));
-    ++report.dumps_written;
-    return {};
+    const auto lost = std::find_if(state.begin(), state.end(), isLost);
+    if (lost == state.end()) {
+        return state;
+    }
+    const std::vector<SceneType>& types = loaded_.scene.types;
+    std::string who = quotedPath(options_.input) + ": particles";
+    if (!types.empty()) {
+        const std::size_t index = std::min<std::size_t>(lost->type, types.size() - 1);
+        const std::string& name = types[index].name;
+        who = types[index].place + ": particles of " +
+              (name.empty() ? "type " + std::to_string(index) : "the type '" + cleanUtf8(name) + "'");
+    }
+    return fail(ErrorCode::kFailure,
+                who +
+                    " are lost: their place or speed is no number that a float holds; lower "
+                    "speeds, strengths, or radius and viscosity over mass, or time.dt");
 }
 
-Result<void> Outputs::finish() {
-    if (log_) {
-        RELIEF_TRY(watched(options_.watchdog, "the statistics", [&] { return log_->finish(); }));
-    }
-    if (events_) {
-        RELIEF_TRY(events_->finish());
-    }
-    return {};
+Result<void> Outputs::writeDump(std::span<const ParticleState> particles, const fs::path& path) const {
+    const bool vdb = options_.dump_format == DumpFormat::kVdb;
+    return writeFile(path, RELIEF_TRY(vdb ? encodeVdbPoints(particles) : encodePly(particles)));
 }
 
 }  // namespace relief

@@ -11,7 +11,6 @@
 #include "runtime/player/outputs.h"
 #include "runtime/player/scene_warnings.h"
 #include "runtime/player/simulation.h"
-#include "runtime/player/state_check.h"
 #include "runtime/player/watched.h"
 
 namespace relief {
@@ -36,15 +35,12 @@ double median(std::vector<double> values) {
 /// The run itself: stretches of steps and, between them, frames.
 class Run {
   public:
-    Run(const PlayerOptions& options, Simulation& simulation, StateCheck& check, Outputs& outputs,
-        PlayerReport& report)
+    Run(const PlayerOptions& options, Simulation& simulation, Outputs& outputs, PlayerReport& report)
         : options_(options),
           scene_(report.scene),
           simulation_(simulation),
-          check_(check),
           outputs_(outputs),
-          report_(report),
-          stats_every_(options.stats_every.value_or(scene_.render.every)) {}
+          report_(report) {}
 
     Result<void> play() {
         if (outputs_.hasFrames() && frameDue(scene_, 0)) {
@@ -60,14 +56,10 @@ class Run {
         report_.ms_per_step_median = median(std::move(stretches_));
         report_.counts = simulation_.particles().counts();
         report_.counts.refused += simulation_.refused();
-        RELIEF_TRY(watched(options_.watchdog, "looking for lost particles", [&] { return check_.finish(); }));
         if (outputs_.events() != nullptr) {
             RELIEF_TRY(watched(options_.watchdog, "the events", [&] { return simulation_.finishEvents(); }));
             report_.events_dropped = outputs_.events()->dropped();
-        }
-        RELIEF_TRY(outputs_.finish());
-        if (outputs_.timer() != nullptr) {
-            report_.stage_times = outputs_.timer()->times();
+            return outputs_.events()->finish();
         }
         return {};
     }
@@ -100,11 +92,8 @@ class Run {
 
     Result<void> playSteps(std::uint32_t end, const std::string& steps) {
         while (step_ < end) {
-            RELIEF_TRY(simulation_.step(outputs_.timer()));
+            RELIEF_TRY(simulation_.step());
             ++step_;
-            if (outputs_.log() != nullptr && (step_ % stats_every_ == 0 || step_ == scene_.time.steps)) {
-                RELIEF_TRY(outputs_.log()->request(simulation_.particles(), step_, simulation_.refused()));
-            }
         }
         RELIEF_TRY(waitForGpu(steps));
         // A step returns no error, so births that found no room would go unnoticed.
@@ -113,11 +102,6 @@ class Run {
 
     /// Tells how far the run is, and writes a frame where one is due.
     Result<void> afterStretch() {
-        RELIEF_TRY(watched(options_.watchdog, "looking for lost particles",
-                           [&] { return check_.look(simulation_.particles(), step_); }));
-        if (outputs_.log() != nullptr) {
-            RELIEF_TRY(outputs_.log()->poll());
-        }
         if (options_.progress) {
             options_.progress(step_, scene_.time.steps);
         }
@@ -129,10 +113,8 @@ class Run {
     const PlayerOptions& options_;
     const Scene& scene_;
     Simulation& simulation_;
-    StateCheck& check_;
     Outputs& outputs_;
     PlayerReport& report_;
-    std::uint32_t stats_every_;
     std::uint32_t step_ = 0;  // steps taken
     std::uint32_t at_once_ = kStepsAtOnce;
     double spent_ms_ = 0.0;
@@ -141,27 +123,12 @@ class Run {
 
 Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
     auto context = watched(options.watchdog, "making a context", [&] {
-        return GlContext::create({options.api, options.device});
+        return GlContext::create({options.gpu.api, options.gpu.device});
     });
-    if (context && options.watchdog != nullptr && options.default_timeout) {
-        options.watchdog->setLimit(defaultGpuTimeout((*context)->software()));
+    if (context && options.watchdog != nullptr) {
+        options.watchdog->setLimit(options.gpu.limit((*context)->software()));
     }
     return context;
-}
-
-Result<void> readBack(const PlayerOptions& options, const ParticleSystem& particles, PlayerReport& report) {
-    const auto state = RELIEF_TRY(
-        watched(options.watchdog, "reading particles back", [&] { return particles.readState(); }));
-    std::uint64_t collisions = 0;
-    std::uint32_t in_contact = 0;
-    for (const ParticleState& particle : state) {
-        collisions += particle.collisions;
-        in_contact += particle.contact == Contact::kNone ? 0 : 1;
-    }
-    report.collisions = collisions;
-    report.in_contact = in_contact;
-    return options.dump.empty() ? Result<void>{}
-                                : writeFile(options.dump, RELIEF_TRY(encodeDump(state, options.dump_format)));
 }
 
 }  // namespace
@@ -188,11 +155,8 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.path = simulation.particles().path();
     report.collider_maps = static_cast<std::size_t>(simulation.textures().mapCount());
     report.collider_bytes = simulation.textures().bytes();
-    auto check = RELIEF_TRY(StateCheck::create(options.input, report.scene));
-    RELIEF_TRY(Run(options, simulation, check, outputs, report).play());
-    if (options.count_collisions || !options.dump.empty()) {
-        RELIEF_TRY(readBack(options, simulation.particles(), report));
-    }
+    RELIEF_TRY(Run(options, simulation, outputs, report).play());
+    RELIEF_TRY(outputs.writeEnd(simulation.particles(), report));
     report.warnings = std::move(warnings);
     if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
         report.warnings.push_back(std::move(*refused));

@@ -1,7 +1,6 @@
-// Plays a scene without a window: what relief-sim does between its command line and its report.
+// Plays a scene without a window: the work of relief-sim between its command line and its report.
 #pragma once
 
-#include "formats/base/result.h"
 #include "runtime/player/player_options.h"
 
 namespace relief {

@@ -1,6 +1,8 @@
 // Options of a run of the player, and its report.
 #pragma once
 
+#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,14 +10,43 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/field.h"
 #include "formats/base/file_guard.h"
 #include "runtime/gl/gl_context.h"
-#include "runtime/gl/gpu_timer.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
 
 namespace relief {
+
+struct GpuOptions {
+    GlApi api = GlApi::kGl33Core;
+    std::optional<std::size_t> device;  ///< whether there is such a device shows when a context is made
+    std::optional<double> timeout;      ///< seconds; 0: never
+
+    /// In whole milliseconds, rounded up, for 0 means never. A software renderer does not hang, it takes its time.
+    [[nodiscard]] std::chrono::milliseconds limit(bool software) const {
+        return std::chrono::milliseconds(
+            static_cast<std::int64_t>(std::ceil(timeout.value_or(software ? 600.0 : 60.0) * 1000.0)));
+    }
+};
+
+template <class Visitor, FieldsOf<GpuOptions> Options>
+void fields(Visitor& visit, Options& options) {
+    visit("device", options.device,
+          {.help = "Use this GPU, by its number among EGL's devices",
+           .range = {0.0, 4294967295.0},
+           .fallback = "EGL's choice",
+           .value = "N",
+           .must = "the number of a device; 'eglinfo -B' lists them"});
+    visit("gpu_timeout", options.timeout,
+          {.help = "Give up, with exit code 4, when the GPU does not answer for so long; 0: never",
+           .unit = "s",
+           .range = {0.0, 1e6},
+           .fallback = "60, on a software renderer 600",
+           .value = "SECONDS",
+           .must = "a number of seconds from 0 (never) to 1000000"});
+}
 
 /// Format of dumped particles.
 enum class DumpFormat : std::uint8_t { kPly, kVdb };
@@ -32,18 +63,12 @@ struct PlayerOptions {
     /// Folder for particles_0000.ply and so on, as often as frames; empty: none.
     std::filesystem::path dump_frames;
     DumpFormat dump_format = DumpFormat::kPly;  ///< of both
-    std::filesystem::path stats;  ///< lines of JSON (logs.h), "-" for standard output; empty: none
-    std::optional<std::uint32_t> stats_every;  ///< steps from line to line, ≥ 1; nullopt: render.every
-    std::filesystem::path events;  ///< hits as lines of JSON (logs.h), "-" for standard output; empty: none
+    std::filesystem::path
+        events;  ///< hits as lines of JSON (events_log.h), "-" for standard output; empty: none
     std::optional<float> events_min_speed;  ///< slower hits are left out; nullopt: none
-    bool time_stages = false;               ///< for the report; with stats they are timed anyway
-    /// Reads the state back at the end for the report's collisions and contacts.
-    bool count_collisions = false;
-    GlApi api = GlApi::kGl33Core;
+    GpuOptions gpu;
     StepPath path = StepPath::kAuto;
-    std::optional<std::size_t> device;  ///< as of GlContextOptions
-    Watchdog* watchdog = nullptr;       ///< fed while the GPU works; or null
-    bool default_timeout = false;       ///< its limit becomes that of the context, defaultGpuTimeout
+    Watchdog* watchdog = nullptr;  ///< fed while the GPU works; or null
     std::function<void(std::uint32_t step, std::uint32_t steps)> progress;  ///< now and then; may be empty
 };
 
@@ -55,13 +80,12 @@ struct PlayerReport {
     std::size_t collider_bytes = 0;  ///< of textures on the GPU
     ParticleCounts counts;
     /// Steps in contact, summed over the particles alive at the end.
-    std::optional<std::uint64_t> collisions;
-    std::optional<std::uint32_t> in_contact;  ///< alive particles that touched something in the last step
-    double ms_per_step = 0.0;  ///< wall clock, births and waiting for the GPU included; 0 without steps
+    std::uint64_t collisions = 0;
+    std::uint32_t in_contact = 0;  ///< alive particles that touched something in the last step
+    double ms_per_step = 0.0;      ///< wall clock, births and waiting for the GPU included; 0 without steps
     /// The same, as the median over stretches of up to 16 steps: without the first, in which a driver still
     /// compiles, wherever there are three or more. 0 without steps.
     double ms_per_step_median = 0.0;
-    std::optional<StageTimes> stage_times;
     std::uint32_t frames_written = 0;   ///< pictures
     std::uint32_t dumps_written = 0;    ///< of dump_frames
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each

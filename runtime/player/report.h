@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/player/logs.h"
+#include "formats/fields/generated.h"
 #include "runtime/player/player.h"
 #include "runtime/scene/scene_json.h"
 
@@ -11,6 +11,9 @@ namespace relief {
 
 /// A few lines for people.
 [[nodiscard]] std::string reportText(const PlayerReport& report);
+
+/// The JSON Schemas of all that `relief-sim` prints and logs.
+[[nodiscard]] GeneratedTexts playerSchemas();
 
 /// "fragment" or "compute"; not of kAuto
 [[nodiscard]] constexpr std::string_view stepPathName(StepPath path) {
@@ -42,9 +45,6 @@ void fields(Visitor& visit, R& report) {
     visit("steps", report.scene.time.steps, {"Steps played"});
     visit("ms_per_step", report.ms_per_step, {"Mean time of a step", "ms", kFromZero});
     visit("ms_per_step_median", report.ms_per_step_median, {"Median time of a step", "ms", kFromZero});
-    visit("ms_per_stage",
-          report.stage_times ? std::optional(StagesReport{*report.stage_times}) : std::nullopt,
-          {"Times of the stages that ran"});
     visit("frames", report.frames_written, {"Pictures written"});
     visit("dumps", report.dumps_written, {"States written"});
     visit("warnings", report.warnings, {"Probable mistakes, one line each"});

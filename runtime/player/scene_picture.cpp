@@ -21,14 +21,17 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     const ColliderView view = colliderView(loaded, textures);
     auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
     auto atlas = RELIEF_TRY(loadAtlas(scene));
-    std::optional<LivePicture> live;
+    std::optional<WobblePass> wobble;
     std::unique_ptr<ColliderMesh> mesh;
     if (!scene.render.mesh.empty() && loaded.live.front()) {
-        live = RELIEF_TRY(LivePicture::create(*loaded.live.front()));
+        const LiveMesh& live = *loaded.live.front();
+        mesh = std::make_unique<ColliderMesh>(RELIEF_TRY(ColliderMesh::create(live.mesh)));
+        wobble = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
+                                               WobblePass::Output::kPositionsAndNormals));
     } else {
         mesh = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
     }
-    auto collider = RELIEF_TRY(ColliderRenderer::create(view, live ? &live->mesh() : mesh.get()));
+    auto collider = RELIEF_TRY(ColliderRenderer::create(view, mesh.get()));
     auto particles = RELIEF_TRY(ParticleRenderer::create(view, picturePath(path)));
     ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
     if (scene.render.sort_frames > 0) {
@@ -38,20 +41,23 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     picture.particle_style_ = particleStyle(scene, atlas.get());
     picture.atlas_ = std::move(atlas);
     picture.mesh_ = std::move(mesh);
-    picture.live_ = std::move(live);
+    picture.wobble_ = std::move(wobble);
     return picture;
 }
 
-Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& particles, StageTimer* stages) {
+Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& particles) {
     const Camera camera = sceneCamera(loaded_->scene, loaded_->bounds, particles.time());
     ParticleOrder order;
     if (sorter_) {
-        const StageScope scope(stages, Stage::kSort);
-        order = sort(particles, camera.eye);
+        const std::uint32_t passes =
+            DepthSorter::passesPerFrame(particles.extent(), loaded_->scene.render.sort_frames);
+        sorter_->update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,
+                        passes);
+        order = {&sorter_->order(), sorter_->count()};
     }
-    const StageScope scope(stages, Stage::kDraw);
-    if (live_) {
-        live_->show(particles.time());
+    if (wobble_) {
+        wobble_->run(particles.time());
+        mesh_->setVertices(wobble_->buffer());
     }
     RELIEF_TRY(collider_.draw(camera, collider_style_, frame_.target()));
     RELIEF_TRY(
@@ -59,13 +65,6 @@ Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& parti
     std::vector<std::uint8_t> rgb = frame_.read();
     RELIEF_TRY(checkGpu("drawing a picture"));
     return rgb;
-}
-
-ParticleOrder ScenePicture::sort(const ParticleSystem& particles, const glm::vec3& eye) {
-    const std::uint32_t passes =
-        DepthSorter::passesPerFrame(particles.extent(), loaded_->scene.render.sort_frames);
-    sorter_->update(particles.positions(), particles.textureWidth(), particles.extent(), eye, passes);
-    return {&sorter_->order(), sorter_->count()};
 }
 
 }  // namespace relief

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/gl/stage_timer.h"
+#include "runtime/collider/wobble_pass.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
 #include "runtime/picture/particle_renderer.h"
-#include "runtime/player/live_bodies.h"
 #include "runtime/scene/loaded_scene.h"
 
 namespace relief {
@@ -26,8 +25,7 @@ class ScenePicture {
                                                      const ColliderTextures& textures, StepPath path);
 
     /// The particles as they are now: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
-    /// \param stages  times sort and draw; may be null.
-    [[nodiscard]] Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles, StageTimer* stages);
+    [[nodiscard]] Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles);
 
   private:
     ScenePicture(const LoadedScene& loaded, Frame frame, ColliderRenderer collider,
@@ -36,12 +34,11 @@ class ScenePicture {
           frame_(std::move(frame)),
           collider_(std::move(collider)),
           particles_(std::move(particles)) {}
-    [[nodiscard]] ParticleOrder sort(const ParticleSystem& particles, const glm::vec3& eye);
 
     const LoadedScene* loaded_;
     std::unique_ptr<SpriteAtlas> atlas_;
     std::unique_ptr<ColliderMesh> mesh_;
-    std::optional<LivePicture> live_;  // instead of mesh_
+    std::optional<WobblePass> wobble_;  // of mesh_
     Frame frame_;
     ColliderRenderer collider_;
     ParticleRenderer particles_;

@@ -17,19 +17,11 @@ constexpr float kThinnest = 0x1p-14F;   // of the longest side, as are the next
 constexpr float kThickest = 2.0F;
 constexpr float kWider = 1.2F;           // from one depth that is tried to the next
 constexpr std::uint64_t kBirths = 1000;  // of each emitter
-constexpr double kInsideShare = 0.05;    // of them, from which on births inside are no accident
-constexpr float kInsideDepth = 0.01F;    // of the longest side: births on a surface are none inside
-constexpr float kEarth = 9.81F;          // m/s²
-constexpr float kFar = 10.0F;            // times
 
 std::string number(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.3g", value);
     return text;
-}
-
-std::string nameOf(const SceneCollider& body) {
-    return quotedPath(body.path.filename());
 }
 
 /// How far it is inwards from a place of the surface to the other side; nullopt beside an edge.
@@ -44,33 +36,19 @@ std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& 
 }
 
 /// The first births of an emitter, in the world.
-struct Births {
-    std::vector<Birth> births;
-    std::vector<double> moments;  ///< of as many, scene time
-};
-
-Births birthsOf(Emitter emitter, const EmitterMotion& motion, const Scene& scene) {
+std::vector<Birth> birthsOf(Emitter emitter, const EmitterMotion& motion, const Scene& scene) {
     const double dt{scene.time.dt};
     const double begin = -dt * prewarmSteps(scene);
     const double end = dt * scene.time.steps;
-    Births made;
-    emitter.emit(end - begin, kBirths, made.births);
-    for (Birth& birth : made.births) {
+    std::vector<Birth> births;
+    emitter.emit(end - begin, kBirths, births);
+    for (Birth& birth : births) {
         // Births without an age are those of a burst, the first of which comes at the start.
         const double moment = birth.age > 0.0F ? end - double{birth.age} : begin + emitter.settings().start;
         birth.age = 0.0F;
         carry(motion, moment, std::span(&birth, 1));
-        made.moments.push_back(moment);
     }
-    return made;
-}
-
-ParticleType typeOf(const Birth& birth, const Scene& scene) {
-    return birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
-}
-
-bool meets(const ParticleType& type, std::size_t body) {
-    return (type.collides >> body & 1U) != 0;
+    return births;
 }
 
 /// The speed that a birth has fallen to by the middle of all bodies, if nothing but gravity and drag acts on it.
@@ -93,89 +71,22 @@ struct Fastest {
 };
 
 /// Of what meets a body.
-Fastest fastestAt(std::size_t body, const LoadedScene& loaded, std::span<const Births> births) {
+Fastest fastestAt(std::size_t body, const LoadedScene& loaded, std::span<const Birth> births) {
     Fastest fastest;
-    for (const Births& of : births) {
-        for (const Birth& birth : of.births) {
-            const ParticleType type = typeOf(birth, loaded.scene);
-            const float speed = meets(type, body) ? speedAtBodies(birth, type, loaded) : 0.0F;
-            if (speed > fastest.speed) {
-                fastest = {speed, type.radius};
-            }
+    for (const Birth& birth : births) {
+        const ParticleType type = birth.type < loaded.scene.types.size()
+                                      ? ParticleType(loaded.scene.types[birth.type])
+                                      : ParticleType{};
+        const bool meets = (type.collides >> body & 1U) != 0;
+        const float speed = meets ? speedAtBodies(birth, type, loaded) : 0.0F;
+        if (speed > fastest.speed) {
+            fastest = {speed, type.radius};
         }
     }
     return fastest;
 }
 
-/// Steps that particles pass through a body with.
-void warnOfSteps(const LoadedScene& loaded, std::span<const Births> births,
-                 std::vector<std::string>& warnings) {
-    const Scene& scene = loaded.scene;
-    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
-        const SceneCollider& body = scene.colliders[i];
-        const Fastest fastest = fastestAt(i, loaded, births);
-        const float speed = fastest.speed;
-        const float step = scene.collision.sweep > 0.0F
-                               ? std::min(speed * scene.time.dt, scene.collision.sweep)
-                               : speed * scene.time.dt;
-        const auto thickness = body.live ? std::nullopt : typicalThickness(loaded.colliders[i]);
-        const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
-        if (thickness && step > thick) {
-            warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +
-                               number(double{step}) + " long, and " + nameOf(body) + " mostly " +
-                               number(double{thick}) +
-                               " thick: particles may pass through it; set collision.sweep = " +
-                               number(0.5 * double{thick}) + ", or a smaller time.dt");
-        }
-    }
-}
-
-bool isInside(const Collider& collider, const SceneCollider& body, const Birth& birth, double time) {
-    const glm::vec3 p = body.posed ? toObject(poseAt(body, time), birth.position) : birth.position;
-    const FieldSample sample = evaluate(collider, p);
-    return sample.inside() && -sample.distance > kInsideDepth * collider.bounds.longestSide();
-}
-
-void warnOfBirthsInside(const LoadedScene& loaded, std::span<const Births> births,
-                        std::vector<std::string>& warnings) {
-    for (std::size_t i = 0; i < births.size(); ++i) {
-        for (std::size_t k = 0; k < loaded.colliders.size(); ++k) {
-            const SceneCollider& body = loaded.scene.colliders[k];
-            const std::vector<Birth>& all = births[i].births;
-            if (body.live || all.empty()) {
-                continue;
-            }
-            std::size_t inside = 0;
-            for (std::size_t b = 0; b < all.size(); ++b) {
-                inside += meets(typeOf(all[b], loaded.scene), k) &&
-                                  isInside(loaded.colliders[k], body, all[b], births[i].moments[b])
-                              ? 1
-                              : 0;
-            }
-            const double share = static_cast<double>(inside) / static_cast<double>(all.size());
-            if (share >= kInsideShare) {
-                warnings.push_back(number(100.0 * share) + " % of the births of emitter " +
-                                   std::to_string(i + 1) + " are inside of " + nameOf(body) +
-                                   ", which throws them out; move the emitter");
-            }
-        }
-    }
-}
-
-void warnOfGravity(const LoadedScene& loaded, std::vector<std::string>& warnings) {
-    const float pull = glm::length(*loaded.scene.forces.gravity);
-    const SceneCollider& first = loaded.scene.colliders.front();
-    // A collider that is played alone, without a scene, has the defaults; one that is scaled no unit any more.
-    const bool metres =
-        loaded.colliders.front().unit == "m" && first.pose.scale == 1.0F && !first.origin.empty();
-    if (metres && pull > 0.0F && !(pull >= kEarth / kFar && pull <= kEarth * kFar)) {
-        warnings.push_back("gravity is " + number(double{pull}) + " m/s², for " + nameOf(first) +
-                           " is in metres; the Earth's is forces.gravity = [0, -9.81, 0]");
-    }
-}
-
-}  // namespace
-
+/// Mostly from one side of a body to the other, in units of its object space; nullopt: too little of it is seen.
 std::optional<float> typicalThickness(const Collider& collider) {
     const float longest = collider.bounds.longestSide();
     if (!(longest > 0.0F)) {
@@ -202,16 +113,34 @@ std::optional<float> typicalThickness(const Collider& collider) {
     return *middle;
 }
 
+}  // namespace
+
 std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
-    std::vector<Births> births;
-    const auto motions = emitterMotions(loaded.scene.emitters, loaded.scene.colliders);
+    const Scene& scene = loaded.scene;
+    std::vector<Birth> births;
+    const auto motions = emitterMotions(scene.emitters, scene.colliders);
     for (std::size_t i = 0; i < loaded.emitters.size(); ++i) {
-        births.push_back(birthsOf(loaded.emitters[i], motions[i], loaded.scene));
+        const std::vector<Birth> more = birthsOf(loaded.emitters[i], motions[i], scene);
+        births.insert(births.end(), more.begin(), more.end());
     }
     std::vector<std::string> warnings;
-    warnOfSteps(loaded, births, warnings);
-    warnOfBirthsInside(loaded, births, warnings);
-    warnOfGravity(loaded, warnings);
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        const SceneCollider& body = scene.colliders[i];
+        const Fastest fastest = fastestAt(i, loaded, births);
+        const float speed = fastest.speed;
+        const float step = scene.collision.sweep > 0.0F
+                               ? std::min(speed * scene.time.dt, scene.collision.sweep)
+                               : speed * scene.time.dt;
+        const auto thickness = body.live ? std::nullopt : typicalThickness(loaded.colliders[i]);
+        const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
+        if (thickness && step > thick) {
+            warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +
+                               number(double{step}) + " long, and " + quotedPath(body.path.filename()) +
+                               " mostly " + number(double{thick}) +
+                               " thick: particles may pass through it; set collision.sweep = " +
+                               number(0.5 * double{thick}) + ", or a smaller time.dt");
+        }
+    }
     return warnings;
 }
 

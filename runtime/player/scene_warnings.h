@@ -10,11 +10,8 @@
 
 namespace relief {
 
-/// How thick a body is at most places of its surface, straight inwards; object units. nullopt where its maps do not tell.
-[[nodiscard]] std::optional<float> typicalThickness(const Collider& collider);
-
-/// One line each, with the cure, in this order: steps longer than a body is thick, which particles pass through; births
-/// inside of a body; gravity far from the Earth's where lengths are metres. Bodies that deform are left out.
+/// One line for each body, with the cure, whose thickness is below the length of a step, so that particles pass through it.
+/// Bodies that deform are left out.
 [[nodiscard]] std::vector<std::string> sceneWarnings(const LoadedScene& loaded);
 
 /// The same, of a run: most births found no free place.

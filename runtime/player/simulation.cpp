@@ -99,7 +99,7 @@ Result<void> Simulation::prewarm(Watchdog* watchdog, const std::function<void()>
     static constexpr const char* kWhat = "warming up";
     const std::uint32_t steps = prewarmSteps(*scene_);
     for (std::uint32_t step = 0; step < steps; ++step) {
-        RELIEF_TRY(stepAs(0, scene_->time.dt, nullptr));
+        RELIEF_TRY(stepAs(0, scene_->time.dt));
         if ((step + 1) % kAtOnce == 0 || step + 1 == steps) {
             RELIEF_TRY(watched(watchdog, kWhat, [] { return waitForGpu(kWhat); }));
             if (checkpoint) {
@@ -110,17 +110,13 @@ Result<void> Simulation::prewarm(Watchdog* watchdog, const std::function<void()>
     return steps > 0 ? checkAllocated(kWhat, "choose a smaller capacity") : Result<void>{};
 }
 
-Result<void> Simulation::step(float dt, StageTimer* stages) {
-    return stepAs(++steps_, dt, stages);
+Result<void> Simulation::step(float dt) {
+    return stepAs(++steps_, dt);
 }
 
-Result<void> Simulation::stepAs(std::uint64_t tag, float dt, StageTimer* stages) {
-    {
-        const StageScope scope(stages, Stage::kBirths);
-        RELIEF_TRY(takeEvents(kStepsUnderWay));
-        RELIEF_TRY(giveBirth(dt));
-    }
-    const StageScope scope(stages, Stage::kStep);
+Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
+    RELIEF_TRY(takeEvents(kStepsUnderWay));
+    RELIEF_TRY(giveBirth(dt));
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
     RELIEF_TRY(particles_->step(dt));
     if (particles_->eventList() != nullptr) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/gl/stage_timer.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/player/live_bodies.h"
@@ -33,11 +32,10 @@ class Simulation {
 
     /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
     /// at the step's end, then the particles' step.
-    /// \param stages  times births and step; may be null.
     /// Fails as LiveBodies::show and ParticleSystem::step do.
-    [[nodiscard]] Result<void> step(StageTimer* stages) { return step(scene_->time.dt, stages); }
+    [[nodiscard]] Result<void> step() { return step(scene_->time.dt); }
     /// \param dt  seconds, > 0, instead of the scene's.
-    [[nodiscard]] Result<void> step(float dt, StageTimer* stages);
+    [[nodiscard]] Result<void> step(float dt);
 
     /// Takes over the forces, collision, types, air, ground and poses of a scene that was changed since; particles stay.
     /// The scene is that of create(), whose capacity and integrator are as they were, and its colliders but for the poses of
@@ -74,7 +72,7 @@ class Simulation {
     [[nodiscard]] Result<void> giveBirth(float dt);
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
     /// \param tag  of its events; 0: not passed on.
-    [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt, StageTimer* stages);
+    [[nodiscard]] Result<void> stepAs(std::uint64_t tag, float dt);
     [[nodiscard]] Result<void> moveColliders(double time);
     /// Has the events listed that the scene's [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();

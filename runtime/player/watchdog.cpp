@@ -1,97 +1,66 @@
 #include "runtime/player/watchdog.h"
 
-#include <condition_variable>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
 #include <mutex>
-#include <optional>
-#include <thread>
-#include <utility>
+
+#include "formats/base/result.h"
 
 namespace relief {
+namespace {
 
-using Clock = std::chrono::steady_clock;
+std::mutex mutex;
+std::string last_line;  // of the process, if the timer runs out; empty at rest
 
-struct Watchdog::Impl {
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::chrono::milliseconds limit{0};
-    Starved starved;
-    std::function<void()> clean_up;
-    std::string what;
-    std::optional<Clock::time_point> deadline;  // none at rest
-    bool ends = false;
-    std::thread thread;
-
-    void watch() {
-        std::unique_lock lock(mutex);
-        while (!ends) {
-            if (!deadline) {
-                changed.wait(lock);
-                continue;
-            }
-            const Clock::time_point until = *deadline;
-            changed.wait_until(lock, until);
-            if (!ends && deadline && Clock::now() >= *deadline) {
-                // The lock stays held: other threads wait for the end.
-                if (clean_up) {
-                    clean_up();
-                }
-                starved(what, limit);
-                deadline.reset();
-                return;
-            }
-        }
+/// On a thread of the timer's own.
+void starved(sigval /*value*/) {
+    const std::lock_guard lock(mutex);
+    // Past the streams, whose locks the stuck thread may hold.
+    if (!last_line.empty() && ::write(STDERR_FILENO, last_line.data(), last_line.size()) != 0) {
+        ::_exit(static_cast<int>(ErrorCode::kFailure));
     }
-};
-
-std::chrono::milliseconds defaultGpuTimeout(bool software) {
-    return std::chrono::seconds(software ? 600 : 60);
 }
 
-Watchdog::Watchdog(std::chrono::milliseconds limit, Starved starved) : impl_(std::make_unique<Impl>()) {
-    impl_->starved = std::move(starved);
-    setLimit(limit);
+}  // namespace
+
+Watchdog::Watchdog(const std::string& program, std::chrono::milliseconds limit)
+    : program_(program), limit_(limit) {
+    sigevent event{};
+    event.sigev_notify = SIGEV_THREAD;
+    event.sigev_notify_function = starved;
+    ::timer_create(CLOCK_MONOTONIC, &event, &timer_);
 }
 
 Watchdog::~Watchdog() {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->ends = true;
-    }
-    impl_->changed.notify_all();
-    if (impl_->thread.joinable()) {
-        impl_->thread.join();
-    }
+    rest();
+    ::timer_delete(timer_);
 }
 
 void Watchdog::feed(const std::string& what) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        if (impl_->limit.count() <= 0) {
-            impl_->deadline.reset();
-            return;
-        }
-        impl_->what = what;
-        impl_->deadline = Clock::now() + impl_->limit;
+    rest();
+    if (limit_.count() > 0) {
+        char seconds[32];
+        std::snprintf(seconds, sizeof(seconds), "%g", static_cast<double>(limit_.count()) / 1000.0);
+        const std::lock_guard lock(mutex);
+        last_line = program_ + ": error: the GPU has not finished " + what + " within " + seconds +
+                    " seconds; if it is only slow, raise --gpu-timeout (0: wait for ever)\n";
+        set(limit_);
     }
-    impl_->changed.notify_all();
 }
 
 void Watchdog::rest() {
-    const std::lock_guard lock(impl_->mutex);
-    impl_->deadline.reset();
+    const std::lock_guard lock(mutex);
+    set(std::chrono::milliseconds(0));
+    last_line.clear();
 }
 
-void Watchdog::setLimit(std::chrono::milliseconds limit) {
-    const std::lock_guard lock(impl_->mutex);
-    impl_->limit = limit;
-    if (limit.count() > 0 && !impl_->thread.joinable()) {
-        impl_->thread = std::thread([impl = impl_.get()] { impl->watch(); });
-    }
-}
-
-void Watchdog::setCleanUp(std::function<void()> clean_up) {
-    const std::lock_guard lock(impl_->mutex);
-    impl_->clean_up = std::move(clean_up);
+void Watchdog::set(std::chrono::milliseconds limit) {
+    itimerspec wait{};
+    wait.it_value.tv_sec = limit.count() / 1000;
+    wait.it_value.tv_nsec = limit.count() % 1000 * 1'000'000;
+    ::timer_settime(timer_, 0, &wait, nullptr);
 }
 
 }  // namespace relief

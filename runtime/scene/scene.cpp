@@ -144,21 +144,6 @@ std::optional<FieldFault> check(SceneForces& forces, const GivenFields& /*given*
     return std::nullopt;
 }
 
-std::optional<FieldFault> check(SceneCollision& collision, const GivenFields& /*given*/) {
-    if (collision.friction_threshold > 0.0F && collision.friction == 0.0F) {
-        return FieldFault{"friction_threshold",
-                          "does nothing while collision.friction is 0; raise the friction or remove it"};
-    }
-    return std::nullopt;
-}
-
-std::optional<FieldFault> check(SceneGround& ground, const GivenFields& /*given*/) {
-    if (ground.height && !ground.enabled) {
-        return FieldFault{"height", "does nothing while ground.enabled is false; remove one of them"};
-    }
-    return std::nullopt;
-}
-
 std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& /*given*/) {
     double before = -1.0;
     for (std::size_t i = 0; i < camera.keys.size(); ++i) {
@@ -192,12 +177,6 @@ std::optional<FieldFault> check(SceneType& type, const GivenFields& given) {
     ParticleLook& look = type.look;
     if (given("name") && type.name.empty()) {
         return FieldFault{"name", "is empty; give a name, or remove it"};
-    }
-    for (const char* key : {"rotation", "turn", "spin"}) {
-        if (look.stretch > 0.0F && given(key)) {
-            return FieldFault{
-                key, "does nothing for sprites that type.stretch turns along their path; remove one of them"};
-        }
     }
     if (look.opacity.size() > 1 && !given("fade")) {  // it is the particle's beginning and end
         look.fade_in = 0.0F;

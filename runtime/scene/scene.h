@@ -15,7 +15,6 @@
 #include "runtime/air/air.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/particles/particle_system.h"
-#include "runtime/picture/camera_path.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/scene/scene_collider.h"
 #include "runtime/scene/scene_emitter.h"
@@ -88,7 +87,6 @@ void fields(Visitor& visit, C& c) {
     visit("sweep", c.sweep,
           {"Longest distance between two tests of a step; 0: only its ends are tested", {}, kLengthRange});
 }
-[[nodiscard]] std::optional<FieldFault> check(SceneCollision& collision, const GivenFields& given);
 
 struct SceneGround {
     bool enabled = true;
@@ -101,7 +99,6 @@ void fields(Visitor& visit, G& ground) {
     visit("height", ground.height,
           leftOut({"Its height; needs enabled", {}, kPointRange, "lower end of the bounds"}));
 }
-[[nodiscard]] std::optional<FieldFault> check(SceneGround& ground, const GivenFields& given);
 
 /// A [[camera.key]]; what it leaves open is [camera]'s.
 struct SceneCameraKey {
@@ -125,7 +122,6 @@ struct SceneCamera {
     std::optional<glm::vec3> target;
     float fov = 30.0F;                 ///< degrees
     std::vector<SceneCameraKey> keys;  ///< times rising; empty: the camera stands still
-    CameraCurve curve = CameraCurve::kSmooth;
 };
 
 template <class Visitor, FieldsOf<SceneCamera> C>
@@ -140,12 +136,6 @@ void fields(Visitor& visit, C& camera) {
           {"Point that it looks at, not straight above or below the eye", "[x, y, z]", kPointRange,
            "middle of the bounds"});
     visit("fov", camera.fov, {"Vertical field of view", "degrees", kFovRange});
-    visit("path", camera.curve,
-          leftOut({"Interpolation between keys: Catmull-Rom by time, or straight lines",
-                   {},
-                   {},
-                   {},
-                   {.needs = "key"}}));
     visit("key", camera.keys, leftOut({"Places of the camera at times", {}, {}, {}, {.most = 10'000}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& given);

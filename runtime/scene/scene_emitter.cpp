@@ -64,26 +64,6 @@ std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& g
     return std::nullopt;
 }
 
-/// Of the times of birth.
-std::optional<FieldFault> checkTimes(const SceneEmitter& emitter, const GivenFields& given) {
-    const bool no_rate = emitter.has_rate && emitter.rate == 0.0;
-    if (given("burst_every") && emitter.burst == 0) {
-        return FieldFault{"burst_every", "does nothing while emitter.burst is 0; raise it, or remove this"};
-    }
-    if (no_rate && given("duration") && !given("burst_every")) {
-        return FieldFault{"duration", "does nothing while emitter.rate is 0; raise the rate or remove it"};
-    }
-    if (no_rate && emitter.burst == 0) {
-        return FieldFault{given("burst") ? "burst" : "rate",
-                          "gives birth to nothing: raise emitter.rate or emitter.burst above 0"};
-    }
-    if (no_rate && given("spread")) {
-        return FieldFault{"spread",
-                          "does nothing while emitter.rate is 0: a burst is born at once; remove it"};
-    }
-    return std::nullopt;
-}
-
 }  // namespace
 
 SceneEmitter::SceneEmitter() {
@@ -95,8 +75,9 @@ std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given)
     if (auto fault = checkPlace(emitter, given)) {
         return fault;
     }
-    if (auto fault = checkTimes(emitter, given)) {
-        return fault;
+    if (emitter.has_rate && emitter.rate == 0.0 && emitter.burst == 0) {
+        return FieldFault{given("burst") ? "burst" : "rate",
+                          "gives birth to nothing: raise emitter.rate or emitter.burst above 0"};
     }
     const char* const by = given("direction") ? "direction" : given("cone") ? "cone" : "speed";
     emitter.has_aim = emitter.has_aim || emitter.has_speed;

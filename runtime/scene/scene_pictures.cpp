@@ -120,7 +120,7 @@ Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds) {
         for (const SceneCameraKey& key : given.keys) {
             keys.push_back({key.time, key.eye, *key.target, *key.fov});
         }
-        camera = cameraAt(keys, given.curve, seconds);
+        camera = cameraAt(keys, seconds);
     }
     setClipPlanes(camera, bounds);
     return camera;

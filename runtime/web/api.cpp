@@ -314,7 +314,7 @@ EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
 /// 0, or -1, as those below.
 EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
     return inPass(__func__, -1, [&]() -> Result<int> {
-        RELIEF_TRY(player->simulation->step(dt, nullptr));
+        RELIEF_TRY(player->simulation->step(dt));
         RELIEF_TRY(checkGpu("stepping particles"));
         return 0;
     });

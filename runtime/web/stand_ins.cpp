@@ -38,8 +38,8 @@ bool hasGlExtension(const char* name) {
     return relief_js_has_extension(name) != 0;
 }
 
-GpuReset gpuReset() {
-    return relief_js_is_lost() != 0 ? GpuReset::kUnknown : GpuReset::kNone;
+bool gpuWasReset() {
+    return relief_js_is_lost() != 0;
 }
 
 // The state belongs to a page whose textures and buffers have no names here: pass_state.js keeps the objects themselves.

@@ -7,7 +7,7 @@
 #include "bake/cli/schemas.h"
 #include "formats/base/file_io.h"
 #include "formats/fields/generated.h"
-#include "runtime/player/schemas.h"
+#include "runtime/player/report.h"
 #include "runtime/scene/scene_reference.h"
 
 namespace relief {

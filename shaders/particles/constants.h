@@ -51,13 +51,4 @@ inline constexpr int kStepGroupHeight = 8;
 /// Invocations of a work group of births.
 inline constexpr int kBirthGroup = 64;
 
-/// A pass of the statistics sums squares of so many texels a side.
-inline constexpr int kReducedSide = 4;
-/// Sums of collisions are kept as low + kCollisionsHigh · high.
-inline constexpr int kCollisionsHigh = 4096;
-/// A type is found by the greatest of kTypeCodes - type.
-inline constexpr float kTypeCodes = 256.0F;
-/// Beyond this speed, world units a second, a particle counts as lost: the squares of 2^24 of them are still floats.
-inline constexpr float kSpeedMaxOfState = 1e15F;
-
 }  // namespace relief

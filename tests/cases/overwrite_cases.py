@@ -145,7 +145,7 @@ def sim_case(arena, random):
     """-> command, whether it must be refused"""
     scene = random.choice(sorted(SCENES))
     target = random.choice(SCENES[scene])
-    options = {"--dump": ".ply", "--stats": ".jsonl", "--events": ".jsonl"}
+    options = {"--dump": ".ply", "--events": ".jsonl"}
     kind = random.choice(["input", "input", "frames", "dumps", "two", "out", "fine", "folder"])
     command = ["relief-sim", scene]
     if kind == "input":
@@ -156,9 +156,9 @@ def sim_case(arena, random):
     if kind == "dumps":
         return command + ["--dump-frames", arena.lead_frame(target, "particles_", ".ply")], True
     if kind == "folder":
-        option = random.choice(["--dump", "--stats", "--events"])
+        option = random.choice(["--dump", "--events"])
         return command + ["--frames", "frames", option, random.choice(["frames", "./frames", "sub/../frames"])], True
-    first, second = random.sample(["--dump", "--stats", "--events"], 2)
+    first, second = random.sample(["--dump", "--events"], 2)
     if kind == "out":
         standard = ["-", "/dev/stdout", "/dev/fd/1"]
         return command + [first, random.choice(standard), second, random.choice(standard)], True

@@ -102,7 +102,7 @@ grep -q '80 steps' text || die "the summary is not on stderr beside --events -"
 expect_error 1 '--events-min-speed' "$relief_sim" snow.toml --events-min-speed 1
 expect_error 1 '--events-min-speed' "$relief_sim" snow.toml --events e --events-min-speed -1
 expect_error 1 '--events' "$relief_sim" snow.toml --events - --json
-expect_error 1 '--events' "$relief_sim" snow.toml --events - --stats -
+expect_error 1 '--events' "$relief_sim" snow.toml --events - --dump -
 expect_error 1 '--check' "$relief_sim" snow.toml --check --events e
 expect_error 2 'nowhere.*--events' "$relief_sim" snow.toml --events nowhere/e.jsonl
 expect_error 2 '/dev/full.*--events' "$relief_sim" snow.toml --events /dev/full

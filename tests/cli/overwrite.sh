@@ -55,11 +55,11 @@ for input in "${inputs[@]}"; do
     kept "particles_0000\.ply' is the input '$input'" "$relief_sim" scene.toml --dump-frames frames
     rm frames/*
     ln -s "$input" symbolic && ln "$input" hard
-    for option in dump stats events; do
+    for option in dump events; do
         kept "'$input' is the input.*--$option" "$relief_sim" scene.toml --$option "$input"
         kept "'symbolic' is the input '$input'.*--$option" "$relief_sim" scene.toml --$option symbolic
     done
-    kept "'hard' is the input '$input'" "$relief_sim" scene.toml --stats hard
+    kept "'hard' is the input '$input'" "$relief_sim" scene.toml --events hard
     rm symbolic hard
 done
 kept "'box.obj' is the input.*--dump" "$relief_sim" drawn.toml --dump box.obj
@@ -71,15 +71,15 @@ expect 0 "$relief_sim" framed.toml --frames frames -q # two frames: that number 
 
 # Two outputs of one name, one of them a frame, a folder, or standard output.
 ln -s fresh dangling
-kept '--dump and --stats would both write' "$relief_sim" scene.toml --dump x --stats ./x
-kept '--stats and --events would both write' "$relief_sim" scene.toml --stats fresh --events dangling
+kept '--dump and --events would both write' "$relief_sim" scene.toml --dump x --events ./x
+kept '--dump and --events would both write' "$relief_sim" scene.toml --dump fresh --events dangling
 kept '--dump and --frames would both write' "$relief_sim" scene.toml --dump frames/frame_0001.png --frames frames
 kept '--dump and --frames would both write' "$relief_sim" scene.toml --dump new --frames new
 kept '--json and --dump would both write standard output' "$relief_sim" scene.toml --dump - --json
 code=0
-"$relief_sim" scene.toml --stats shared >shared 2>stderr </dev/null || code=$?
-[ "$code" -eq 1 ] && grep -q 'the report' stderr || die "the report and --stats share a file: $code, $(cat stderr)"
-kept "--stats and --events would both write '/dev/stdout'" "$relief_sim" scene.toml --stats - --events /dev/stdout
+"$relief_sim" scene.toml --events shared >shared 2>stderr </dev/null || code=$?
+[ "$code" -eq 1 ] && grep -q 'the report' stderr || die "the report and --events share a file: $code, $(cat stderr)"
+kept "--dump and --events would both write '/dev/stdout'" "$relief_sim" scene.toml --dump - --events /dev/stdout
 [ ! -e fresh ] && [ ! -e x ] && [ ! -e new ] || die "something was written"
 
 # Every verb of relief, a mesh's material, and a file behind standard input.

@@ -195,7 +195,7 @@ size = [32, 24]
 every = 2
 sprite = "quad"
 T
-"$relief_sim" scene.toml --steps 40 --frames frames --stats stats.jsonl --events hits.jsonl --json >sim.json
+"$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json >sim.json
 [ -s hits.jsonl ] || die "nothing was hit"
 "$relief_sim" b.relief --steps 2 --json >alone.json
 cat >live.toml <<'T'
@@ -224,7 +224,7 @@ cp "$models/OBJ/box.obj" .
 echo nonsense >bad.toml
 expect 3 "$relief_sim" bad.toml --check --json
 cp stdout invalid.json
-outputs+=(sim-report:sim.json sim-report:alone.json sim-report:live.json sim-stats:stats.jsonl sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
+outputs+=(sim-report:sim.json sim-report:alone.json sim-report:live.json sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
 
 python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"
 

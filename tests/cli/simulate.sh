@@ -34,7 +34,7 @@ json stdout 'd["path"] == "compute" and d["particles"]["born"] > 0'
 json stdout 'd["path"] == "fragment"'
 MESA_GL_VERSION_OVERRIDE=3.3 expect_error 5 'OpenGL 4\.3 or OpenGL ES 3\.1.*take the fragment path' \
     "$relief_sim" bunny.relief --steps 5 --path compute
-expect_error 1 '--path does nothing with --check' "$relief_sim" bunny.relief --check --path compute
+expect_error 1 '--check excludes --path|--path excludes --check' "$relief_sim" bunny.relief --check --path compute
 
 # The ends of what a scene may ask for: the lightest of the largest in the thickest air and the strongest wind.
 for integrator in euler verlet; do
@@ -112,12 +112,9 @@ S
 }
 lost_scene 1e9 >lost.toml
 for api in gl gles; do
-    for more in '' '--stats stats.jsonl'; do
-        # shellcheck disable=SC2086
-        expect_error 4 "lost\.toml:31:1: particles of the type 'dust' are lost: by step [0-9]+ .*; lower" \
-            "$relief_sim" lost.toml --api "$api" --dump lost.ply -q $more
-        [ ! -e lost.ply ] || die "a dump beside an error"
-    done
+    expect_error 4 "lost\.toml:31:1: particles of the type 'dust' are lost: .*; lower" \
+        "$relief_sim" lost.toml --api "$api" --dump lost.ply -q
+    [ ! -e lost.ply ] || die "a dump beside an error"
 done
 lost_scene 1e-9 >found.toml
 expect 0 "$relief_sim" found.toml --dump extreme_attractor.ply -q

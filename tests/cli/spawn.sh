@@ -76,7 +76,7 @@ for path in fragment compute; do
         cmp other.ply wanted.ply || die "the $path path of $api has other particles"
     done
 done
-"$relief_sim" splash.toml --dump other.ply --events e.jsonl --events-min-speed 3 --frames frames --stats s.jsonl -q
+"$relief_sim" splash.toml --dump other.ply --events e.jsonl --events-min-speed 3 --frames frames -q
 cmp other.ply wanted.ply || die "what is written beside changes the particles"
 
 # Where they are born, and how fast: above the ground at the place of the hit, two steps later.

@@ -1,4 +1,4 @@
-// The camera's path: through its keys, straight or smooth, and never without an upper side.
+// The camera's path: through its keys, and never without an upper side.
 #include "runtime/picture/camera_path.h"
 
 #include <gtest/gtest.h>
@@ -14,23 +14,14 @@ const std::array<CameraKey, 3> kKeys{CameraKey{1.0, {0.0F, 0.0F, 5.0F}, {0.0F, 0
                                      CameraKey{5.0, {8.0F, 4.0F, 5.0F}, {4.0F, 0.0F, 0.0F}, 20.0F}};
 
 TEST(CameraPath, PassesThroughItsKeysAndStandsStillBesideThem) {
-    for (const CameraCurve curve : {CameraCurve::kSmooth, CameraCurve::kLinear}) {
-        for (const CameraKey& key : kKeys) {
-            const Camera camera = cameraAt(kKeys, curve, key.time);
-            EXPECT_EQ(camera.eye, key.eye);
-            EXPECT_EQ(camera.target, key.target);
-            EXPECT_EQ(camera.fov, key.fov);
-        }
-        EXPECT_EQ(cameraAt(kKeys, curve, -7.0), cameraAt(kKeys, curve, 1.0));
-        EXPECT_EQ(cameraAt(kKeys, curve, 1e9), cameraAt(kKeys, curve, 5.0));
+    for (const CameraKey& key : kKeys) {
+        const Camera camera = cameraAt(kKeys, key.time);
+        EXPECT_EQ(camera.eye, key.eye);
+        EXPECT_EQ(camera.target, key.target);
+        EXPECT_EQ(camera.fov, key.fov);
     }
-}
-
-TEST(CameraPath, LinearGoesStraight) {
-    const Camera camera = cameraAt(kKeys, CameraCurve::kLinear, 3.5);
-    EXPECT_EQ(camera.eye, glm::vec3(5.0F, 2.5F, 5.0F));
-    EXPECT_EQ(camera.target, glm::vec3(2.5F, 0.0F, 0.0F));
-    EXPECT_EQ(camera.fov, 35.0F);
+    EXPECT_EQ(cameraAt(kKeys, -7.0), cameraAt(kKeys, 1.0));
+    EXPECT_EQ(cameraAt(kKeys, 1e9), cameraAt(kKeys, 5.0));
 }
 
 // These keys lie on straight lines in time (2 and 1 a second along x and y): Catmull-Rom with speeds by time
@@ -38,7 +29,7 @@ TEST(CameraPath, LinearGoesStraight) {
 TEST(CameraPath, SmoothKeepsAnEvenSpeed) {
     for (const double time : {1.25, 1.75, 2.5, 3.5, 4.9}) {
         const auto t = static_cast<float>(time);
-        const Camera camera = cameraAt(kKeys, CameraCurve::kSmooth, time);
+        const Camera camera = cameraAt(kKeys, time);
         EXPECT_NEAR(camera.eye.x, 2.0F * (t - 1.0F), 1e-5F);
         EXPECT_NEAR(camera.eye.y, t - 1.0F, 1e-5F);
         EXPECT_NEAR(camera.eye.z, 5.0F, 1e-5F);
@@ -52,22 +43,22 @@ TEST(CameraPath, SmoothIsCatmullRom) {
     for (std::size_t i = 0; i < keys.size(); ++i) {
         keys[i] = {static_cast<double>(i), {x[i], 0.0F, 9.0F}, glm::vec3(0.0F), 30.0F};
     }
-    EXPECT_NEAR(cameraAt(keys, CameraCurve::kSmooth, 1.5).eye.x, (-3.0F + 0.0F + 9.0F - 7.0F) / 16.0F, 1e-6F);
+    EXPECT_NEAR(cameraAt(keys, 1.5).eye.x, (-3.0F + 0.0F + 9.0F - 7.0F) / 16.0F, 1e-6F);
     // No jump of speed at a key.
-    const auto at = [&](double time) { return cameraAt(keys, CameraCurve::kSmooth, time).eye.x; };
+    const auto at = [&](double time) { return cameraAt(keys, time).eye.x; };
     EXPECT_NEAR((at(2.001) - at(2.0)) / 0.001F, (at(2.0) - at(1.999)) / 0.001F, 0.05F);
     EXPECT_NEAR((at(2.001) - at(1.999)) / 0.002F, 0.5F * (x[3] - x[1]), 0.05F);
 }
 
 TEST(CameraPath, OneKeyAndHardTurns) {
     const std::array<CameraKey, 1> one{kKeys[1]};
-    EXPECT_EQ(cameraAt(one, CameraCurve::kSmooth, 0.0).eye, kKeys[1].eye);
-    EXPECT_EQ(cameraAt(one, CameraCurve::kSmooth, 9.0).eye, kKeys[1].eye);
+    EXPECT_EQ(cameraAt(one, 0.0).eye, kKeys[1].eye);
+    EXPECT_EQ(cameraAt(one, 9.0).eye, kKeys[1].eye);
     // Straight over the target, and through it.
     for (const float height : {4.0F, 0.0F}) {
         const std::array<CameraKey, 2> over{CameraKey{0.0, {-1.0F, height, 0.0F}, glm::vec3(0.0F), 30.0F},
                                             CameraKey{1.0, {1.0F, height, 0.0F}, glm::vec3(0.0F), 30.0F}};
-        const Camera camera = cameraAt(over, CameraCurve::kLinear, 0.5);
+        const Camera camera = cameraAt(over, 0.5);
         EXPECT_TRUE(std::isfinite(camera.up().x + camera.right().x)) << height;
         EXPECT_NEAR(glm::length(camera.up()), 1.0F, 1e-3F);
     }
@@ -76,7 +67,7 @@ TEST(CameraPath, OneKeyAndHardTurns) {
         CameraKey{0.0, glm::vec3(1.0F), {}, 1.0F}, CameraKey{1.0, glm::vec3(1.0F), {}, 169.0F},
         CameraKey{2.0, glm::vec3(1.0F), {}, 170.0F}, CameraKey{3.0, glm::vec3(1.0F), {}, 1.0F}};
     for (int i = 0; i <= 300; ++i) {
-        const float fov = cameraAt(wide, CameraCurve::kSmooth, 0.01 * i).fov;
+        const float fov = cameraAt(wide, 0.01 * i).fov;
         EXPECT_GE(fov, 1.0F);
         EXPECT_LE(fov, 170.0F);
     }

@@ -1,16 +1,15 @@
-// The watchdog barks once it starves, and not before. Nothing here depends on how fast the machine is: times
-// are either none or for ever, next to each other.
+// The watchdog ends the process once it starves, and not before.
 #include "runtime/player/watchdog.h"
 
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <future>
+#include <chrono>
 #include <thread>
 
-#include "runtime/cli/gpu_tool.h"
 #include "runtime/command_line/command_line.h"
+#include "runtime/command_line/field_options.h"
+#include "runtime/player/player_options.h"
 
 namespace relief {
 namespace {
@@ -19,59 +18,41 @@ using namespace std::chrono_literals;
 
 constexpr auto kForEver = 1h;
 
-TEST(Watchdog, StarvedItSaysWhatWasWaitedForAfterCleaningUp) {
-    std::promise<std::string> said;
-    std::atomic<bool> clean = false;
-    Watchdog dog(1ms, [&](const std::string& what, std::chrono::milliseconds limit) {
-        EXPECT_EQ(limit, 1ms);
-        EXPECT_TRUE(clean) << "what is half-made goes first";
-        said.set_value(what);
-    });
-    dog.setCleanUp([&] { clean = true; });
+void feedAndWait(std::chrono::milliseconds first, std::chrono::milliseconds then) {
+    Watchdog dog("tool", first);
+    dog.setLimit(then);
     dog.feed("steps 1 to 16");
-    EXPECT_EQ(said.get_future().get(), "steps 1 to 16");
-    dog.feed("more");  // it has barked, once: a second set_value would throw
-    dog.rest();
+    std::this_thread::sleep_for(kForEver);
+}
+
+TEST(Watchdog, StarvedItEndsTheProcessAndNamesWhatWasWaitedFor) {
+    constexpr const char* kLine =
+        "^tool: error: the GPU has not finished steps 1 to 16 within 0.001 seconds; .*--gpu-timeout";
+    EXPECT_EXIT(feedAndWait(1ms, 1ms), testing::ExitedWithCode(4), kLine);
+    EXPECT_EXIT(feedAndWait(0ms, 1ms), testing::ExitedWithCode(4), kLine);
 }
 
 TEST(Watchdog, AtRestFedOrWithoutLimitItIsQuiet) {
-    std::atomic<int> barks = 0;
-    const auto bark = [&](const std::string&, std::chrono::milliseconds) { ++barks; };
-    {
-        Watchdog resting(5ms, bark);
+    for (const auto& [first, then] : {std::pair{5ms, 5ms},
+                                      {0ms, 0ms},
+                                      {1ms, std::chrono::milliseconds(kForEver)},
+                                      {std::chrono::milliseconds(kForEver), 0ms}}) {
+        Watchdog dog("tool", first);
         std::this_thread::sleep_for(30ms);
-        Watchdog fed(kForEver, bark);
-        for (int i = 0; i < 100; ++i) {
-            fed.feed("step");
+        dog.setLimit(then);
+        if (then != 5ms) {
+            dog.feed("anything");
         }
-        Watchdog endless(0ms, bark);
-        endless.feed("anything");
-        Watchdog changed(1ms, bark);
-        changed.setLimit(kForEver);
-        changed.feed("anything");
-        Watchdog lifted(kForEver, bark);
-        lifted.feed("anything");
-        lifted.setLimit(0ms);
-        lifted.feed("anything");
         std::this_thread::sleep_for(30ms);
+        dog.rest();
     }
-    EXPECT_EQ(barks, 0);
-}
-
-TEST(Watchdog, ALimitGivenLaterCounts) {
-    std::promise<void> said;
-    Watchdog dog(0ms, [&](const std::string&, std::chrono::milliseconds) { said.set_value(); });
-    dog.feed("nothing");
-    dog.setLimit(1ms);
-    dog.feed("something");
-    said.get_future().get();
 }
 
 /// What a command line makes of one option.
 Result<GpuOptions> gpuOptions(const std::string& option, const std::string& word) {
     CLI::App app("", "tool");
     GpuOptions options;
-    addGpuOptions(app, options);
+    addFields(app, options);
     const Result<bool> parsed = parseCommandLine(app, {option + "=" + word});
     return parsed ? Result<GpuOptions>(options) : forward(parsed);
 }
@@ -91,23 +72,7 @@ TEST(GpuTool, OptionsAndTheirErrors) {
         ASSERT_FALSE(gpuOptions("--gpu-timeout", word)) << word;
         EXPECT_EQ(gpuOptions("--gpu-timeout", word).error().code, ErrorCode::kUsage);
     }
-    EXPECT_GT(defaultGpuTimeout(true), defaultGpuTimeout(false));
-}
-
-TEST(GpuTool, DevicesInWords) {
-    GlDevice one;
-    one.renderer = "R";
-    one.vendor = "V";
-    one.version = "4.6";
-    one.drm_device = "/dev/dri/card0";
-    GlDevice two;
-    two.index = 1;
-    two.name = "broken";
-    two.problem = "no context";
-    two.software = true;
-    EXPECT_EQ(devicesText({one, two}), "0  R, V, 4.6, /dev/dri/card0\n1  broken: no context, software\n");
-    EXPECT_EQ(devicesText({}), "EGL names no devices; leave --device out\n");
-    EXPECT_EQ(devicesJson({}), "{\n  \"devices\": []\n}\n");
+    EXPECT_GT(GpuOptions{}.limit(true), GpuOptions{}.limit(false));
 }
 
 }  // namespace

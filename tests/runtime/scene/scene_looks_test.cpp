@@ -116,10 +116,6 @@ TEST(SceneLooks, Mistakes) {
     expectError("[[type]]\nsize = [" + keys + "]\n", "4:8", "give 255 at most");
     expectError("[[type]]\nstretch = -1\n", "4:11", "out of range");
     expectError("[[type]]\nstretch = 0.1\n", "4:11", "choose render.sprite = \"quad\"");
-    for (const char* key : {"rotation", "turn", "spin"}) {
-        expectError("[render]\nsprite = \"quad\"\n[[type]]\nstretch = 0.1\n" + std::string(key) + " = 1\n",
-                    "7:" + std::to_string(std::string(key).size() + 4), "turns along their path");
-    }
     std::string types;
     for (int i = 0; i < 17; ++i) {
         types += "[[type]]\n";
@@ -136,7 +132,7 @@ Bounds unitBounds() {
 
 TEST(SceneCamera, KeysAreFollowedAndFilledFromTheCamera) {
     const auto scene =
-        withDefaults(good("[camera]\ntarget = [0, 1, 0]\nfov = 40\npath = \"linear\"\n"
+        withDefaults(good("[camera]\ntarget = [0, 1, 0]\nfov = 40\n"
                           "[[camera.key]]\ntime = 0\neye = [4, 1, 0]\n"
                           "[[camera.key]]\ntime = 2\neye = [8, 1, 0]\ntarget = [0, 3, 0]\nfov = 20\n"),
                      unitBounds());
@@ -151,7 +147,6 @@ TEST(SceneCamera, KeysAreFollowedAndFilledFromTheCamera) {
 
 TEST(SceneCamera, Mistakes) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
-    EXPECT_EQ(good(key).camera.curve, CameraCurve::kSmooth);
     expectError("[[camera.key]]\ntime = 1\n", "3:1", "camera.key.eye is missing");
     expectError("[[camera.key]]\neye = [1, 2, 3]\n", "3:1", "camera.key.time is missing");
     expectError(key + key, "7:8", "does not rise");
@@ -160,8 +155,6 @@ TEST(SceneCamera, Mistakes) {
     expectError(key + "target = [1, 2, 3]\n", "5:7", "straight above or below");
     expectError(key + "fov = 171\n", "6:7", "out of range");
     expectError(key + "up = 1\n", "6:1", "unknown key 'camera.key.up'");
-    expectError("[camera]\npath = \"linear\"\n", "4:8", "does nothing without camera.key");
-    expectError("[camera]\npath = \"round\"\n" + key, "4:8", "choose one of");
     expectError("[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other");
     expectError("[camera]\nkey = 3\n", "4:7", "[[camera.key]]");
 }

@@ -337,14 +337,8 @@ TEST(Scene, SettingsThatDoNothingAreErrors) {
                 "dir/scene.toml:4:8: forces.wind does nothing");
     EXPECT_TRUE(parse(kHead + "[forces]\nwind = [0, 0, 0]\ndrag = 0\n"));
     EXPECT_TRUE(parse(kHead + "[forces]\nwind = [1, 0, 0]\n"));
-    expectError(kHead + "[collision]\nfriction = 0\nfriction_threshold = 0.1\n",
-                "dir/scene.toml:5:22: collision.friction_threshold does nothing");
-    expectError(kHead + "[ground]\nenabled = false\nheight = 1\n",
-                "dir/scene.toml:5:10: ground.height does nothing");
     expectError(kHead + "[emitter]\nrate = 0\n", "dir/scene.toml:4:8: ", "gives birth to nothing");
     EXPECT_TRUE(parse(kHead + "[emitter]\nrate = 0\nburst = 10\n"));
-    expectError(kHead + "[emitter]\nrate = 0\nburst = 10\nduration = 2\n",
-                "dir/scene.toml:6:12: emitter.duration does nothing");
     expectError(kHead + "[particles]\ncapacity = 9\n[emitter]\nburst = 10\n",
                 "dir/scene.toml:6:9: ", "particles.capacity");
 }
