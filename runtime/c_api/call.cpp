@@ -55,18 +55,6 @@ std::shared_ptr<void> HandleTable::remove(HandleKind kind, std::uintptr_t handle
     return removed ? removed.mapped() : nullptr;
 }
 
-HandleFault HandleTable::faultOf(std::uintptr_t handle) const {
-    if (handle == 0) {
-        return HandleFault::kNull;
-    }
-    const std::shared_lock lock(mutex_);
-    const std::uintptr_t number = (handle & ~kHighest) >> kKindBits;
-    if (kindOf(handle) == 0 || number == 0 || number > given_) {
-        return HandleFault::kNever;
-    }
-    return objects_.contains(handle) ? HandleFault::kOtherKind : HandleFault::kFreed;
-}
-
 HandleTable& handleTable() {
     static auto* const table = new HandleTable;
     return *table;
@@ -134,20 +122,14 @@ Result<void> Call::context() const {
 
 tl::unexpected<Error> Call::faulty(HandleKind kind, std::uintptr_t handle, const char* argument,
                                    const char* type) const {
-    switch (handleTable().faultOf(handle)) {
-        case HandleFault::kNull:
-            if (const std::string& cause = callErrors().unreadOf(kind); !cause.empty()) {
-                return fail(ErrorCode::kUsage, cause);
-            }
-            return refuse(std::string(argument) + " is NULL, as a " + type + " is that could not be made");
-        case HandleFault::kFreed:
-            return refuse(std::string(argument) + " has been freed");
-        case HandleFault::kOtherKind:
-            return refuse(std::string(argument) + " is another kind of handle; it must be a " + type);
-        case HandleFault::kNever:
-            break;
+    if (handle != 0) {
+        return refuse(std::string(argument) + " is not a live " + type +
+                      ": it has been freed, is of another kind, or was never given out");
     }
-    return refuse(std::string(argument) + " is no handle of this library; it must be a " + type);
+    if (const std::string& cause = callErrors().unreadOf(kind); !cause.empty()) {
+        return fail(ErrorCode::kUsage, cause);
+    }
+    return refuse(std::string(argument) + " is NULL, as a " + type + " is that could not be made");
 }
 
 tl::unexpected<Error> Call::wrongNumber(double value, const FieldRange& range, const NumberName& name) const {

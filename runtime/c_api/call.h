@@ -15,19 +15,14 @@
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "formats/collider.h"
+
+struct relief_collider;  // of relief.h
 
 namespace relief {
 
 enum class HandleKind : std::uint8_t { kCollider = 1, kTextures, kParticles, kPicture };
 inline constexpr std::size_t kHandleKinds = 4;
-
-/// Why a handle means nothing.
-enum class HandleFault : std::uint8_t {
-    kNull,
-    kFreed,
-    kOtherKind,  ///< alive, but of another kind
-    kNever,      ///< no such handle has been given out
-};
 
 /// Handles of C. A handle is a number in the shape of a pointer: the highest bit, which no address of a program has, a
 /// running number, and the kind, by which it is no address of an aligned object. It is looked up, never followed, so that
@@ -39,12 +34,10 @@ class HandleTable {
   public:
     /// Never 0. Throws std::bad_alloc, also where all numbers are used up; nothing has changed then.
     [[nodiscard]] std::uintptr_t add(HandleKind kind, std::shared_ptr<void> object);
-    /// Null: faultOf() has the reason.
+    /// Null: the handle has been freed, is of another kind, or has never been given out.
     [[nodiscard]] const std::shared_ptr<void>* find(HandleKind kind, std::uintptr_t handle) const;
     /// The object, which the caller may be the last to hold; null as find().
     [[nodiscard]] std::shared_ptr<void> remove(HandleKind kind, std::uintptr_t handle);
-    /// Of one that find() does not find.
-    [[nodiscard]] HandleFault faultOf(std::uintptr_t handle) const;
 
   private:
     mutable std::shared_mutex mutex_;
@@ -58,6 +51,12 @@ class HandleTable {
 /// The object behind a handle of C's type H: specialised with Object, kKind and kName.
 template <class H>
 struct HandleType;
+template <>
+struct HandleType<relief_collider> {
+    using Object = Collider;
+    static constexpr HandleKind kKind = HandleKind::kCollider;
+    static constexpr const char* kName = "relief_collider";
+};
 
 /// The errors of this thread's calls.
 class CallErrors {
@@ -152,18 +151,18 @@ class Call {
         return *given;
     }
 
-    [[nodiscard]] Result<void> number(double value, const FieldRange& range, const NumberName& name) const {
-        return range.holds(value) ? Result<void>() : wrongNumber(value, range, name);
-    }
-    template <class T, std::size_t N>
-    [[nodiscard]] Result<void> numbers(const T (&values)[N], const FieldRange& range, NumberName name) const {
-        for (std::size_t i = 0; i < N; ++i) {
-            if (!range.holds(static_cast<double>(values[i]))) {
-                name.component = i;
-                return wrongNumber(static_cast<double>(values[i]), range, name);
+    /// A number, or each of an array.
+    template <class T>
+    [[nodiscard]] Result<void> number(const T& value, const FieldRange& range, NumberName name) const {
+        if constexpr (std::is_array_v<T>) {
+            for (name.component = 0; name.component < std::extent_v<T>; ++name.component) {
+                RELIEF_TRY(number(value[name.component], range, name));
             }
+            return {};
+        } else {
+            const auto given = static_cast<double>(value);
+            return range.holds(given) ? Result<void>() : wrongNumber(given, range, name);
         }
-        return {};
     }
     /// That a context is current, which every function of the GL needs.
     [[nodiscard]] Result<void> context() const;

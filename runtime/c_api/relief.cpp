@@ -13,7 +13,8 @@
 #include "formats/base/finite.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
-#include "runtime/c_api/objects.h"
+#include "runtime/c_api/call.h"
+#include "runtime/collider/collider_textures.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
@@ -22,6 +23,13 @@
 
 namespace relief {
 namespace {
+
+struct TexturesObject {
+    ColliderTextures textures;
+    std::string glsl;
+    GLint units = 0;   // texture units of the context
+    GLint blocks = 0;  // uniform block bindings
+};
 
 struct ParticlesObject {
     std::shared_ptr<const TexturesObject> textures;  // outlives the system, which points to it; may be null
@@ -37,6 +45,12 @@ struct PictureObject {
 
 }  // namespace
 
+template <>
+struct HandleType<relief_textures> {
+    using Object = TexturesObject;
+    static constexpr HandleKind kKind = HandleKind::kTextures;
+    static constexpr const char* kName = "relief_textures";
+};
 template <>
 struct HandleType<relief_particles> {
     using Object = ParticlesObject;
@@ -131,8 +145,8 @@ Result<relief_particles_options> optionsOf(const Call& call, const relief_partic
     const auto all = RELIEF_TRY(call.structure(given, "options", "relief_particles_options"));
     const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
     RELIEF_TRY(call.number(all.capacity, {0.0, ParticleSystem::kCapacityMax}, name("capacity")));
-    RELIEF_TRY(call.numbers(all.gravity, kAny, name("gravity")));
-    RELIEF_TRY(call.numbers(all.wind, kAny, name("wind")));
+    RELIEF_TRY(call.number(all.gravity, kAny, name("gravity")));
+    RELIEF_TRY(call.number(all.wind, kAny, name("wind")));
     RELIEF_TRY(call.number(all.drag, kNotNegative, name("drag")));
     RELIEF_TRY(call.number(all.restitution, kShare, name("restitution")));
     RELIEF_TRY(call.number(all.friction, kShare, name("friction")));
@@ -154,8 +168,8 @@ Result<void> apply(const relief_particles_options& options, ParticleSystem& syst
 
 Result<Birth> birthOf(const Call& call, const relief_birth& birth, std::size_t i) {
     const auto name = [i](const char* field) { return NumberName{"births", i, field}; };
-    RELIEF_TRY(call.numbers(birth.position, kAny, name("position")));
-    RELIEF_TRY(call.numbers(birth.velocity, kAny, name("velocity")));
+    RELIEF_TRY(call.number(birth.position, kAny, name("position")));
+    RELIEF_TRY(call.number(birth.velocity, kAny, name("velocity")));
     RELIEF_TRY(call.number(birth.lifetime, kLifetime, name("lifetime")));
     RELIEF_TRY(call.number(birth.type, {0.0, kBirthTypeMax}, name("type")));
     return Birth{vec(birth.position), vec(birth.velocity), birth.lifetime, birth.type};
@@ -178,7 +192,7 @@ Result<ParticleStyle> styleOf(const Call& call, const relief_picture_options* gi
     }
     const auto name = [](const char* field) { return NumberName{.argument = "options", .field = field}; };
     RELIEF_TRY(call.number(all.diameter, kNotNegative, name("diameter")));
-    RELIEF_TRY(call.numbers(all.color, kShare, name("color")));
+    RELIEF_TRY(call.number(all.color, kShare, name("color")));
     RELIEF_TRY(call.number(all.opacity, kShare, name("opacity")));
     const glm::vec3 color = vec(all.color);
     ParticleStyle style;
@@ -192,8 +206,8 @@ Result<relief_view> viewOf(const Call& call, const relief_view* given) {
     RELIEF_TRY(call.notNull(given, "view"));
     const auto all = RELIEF_TRY(call.structure(given, "view", "relief_view"));
     const auto name = [](const char* field) { return NumberName{.argument = "view", .field = field}; };
-    RELIEF_TRY(call.numbers(all.view, kAny, name("view")));
-    RELIEF_TRY(call.numbers(all.projection, kAny, name("projection")));
+    RELIEF_TRY(call.number(all.view, kAny, name("view")));
+    RELIEF_TRY(call.number(all.projection, kAny, name("projection")));
     RELIEF_TRY(call.number(all.width, kPixels, name("width")));
     RELIEF_TRY(call.number(all.height, kPixels, name("height")));
     RELIEF_TRY(call.number(all.srgb, kShare, name("srgb")));

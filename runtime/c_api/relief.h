@@ -4,7 +4,7 @@
  *
  * Errors. Whatever is passed on is answered and does not crash, but for memory that is shorter than its count, and text
  * without an end. A call that fails changes nothing; relief_error() names the argument and the cure in one line, and
- * relief_error_count() tells that there was a failure. What is returned then: NULL by functions that make something, a
+ * relief_error_count() counts failures. What is returned then: NULL by functions that make something, a
  * negative number by those of type int and int64_t, 0 as a count, "" as a text; what is written: NaN.
  *
  * Handles are numbers that are looked up at each call, in some nanoseconds. NULL, a handle that has been freed, one of
@@ -66,7 +66,7 @@ typedef struct relief_sample {
     float
         distance; /* to the plane that decides the side: negative inside; 1e30: outside, and no more is known; NaN: an error */
     float normal[3]; /* outwards; zero where no more than "outside" is known */
-    int32_t map;     /* that decides; -1: no map says anything */
+    int32_t map;     /* that decides; -1: no map votes */
 } relief_sample;
 
 /* What the particles collide with, at `count` points. A point that is not finite is an error; the others are answered. */

@@ -14,7 +14,7 @@
 
 #include "formats/config/toml_reader.h"
 #include "formats/texel.h"
-#include "runtime/c_api/objects.h"
+#include "runtime/c_api/call.h"
 #include "runtime/c_api/relief.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"

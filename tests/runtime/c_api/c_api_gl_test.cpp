@@ -21,6 +21,7 @@ namespace {
 
 #include "c_api_table.inc"
 
+const std::string kDead = " is not a live relief_";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -129,13 +130,12 @@ TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
         const std::uintptr_t number = stage_.handle(argument.type);
         const std::string other =
             argument.type.find("collider") == std::string::npos ? "collider" : "textures";
-        expectRefused({stage_, function, i, stage_.handle(other)},
-                      argument.name + " is another kind of handle");
+        expectRefused({stage_, function, i, stage_.handle(other)}, argument.name + kDead);
         for (const std::uintptr_t never :
              {reinterpret_cast<std::uintptr_t>(&number), ~std::uintptr_t{0}, std::uintptr_t{1},
               std::uintptr_t{8}, number ^ (std::uintptr_t{1} << (8 * sizeof(number) - 2)),
               number + (std::uintptr_t{1} << 30)}) {
-            expectRefused({stage_, function, i, never}, argument.name + " is no handle of this library");
+            expectRefused({stage_, function, i, never}, argument.name + kDead);
         }
         for (const Function& one : kFunctions) {
             if (one.frees() && one.arguments[0].type == argument.type.substr(argument.type.find("relief_"))) {
@@ -146,7 +146,7 @@ TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
         }
         stage_.revive();  // in the place of the one that was freed
         EXPECT_NE(stage_.handle(argument.type), number);
-        expectRefused({stage_, function, i, number}, argument.name + " has been freed");
+        expectRefused({stage_, function, i, number}, argument.name + kDead);
         expectGood(function);
         ++at_all;
     });
@@ -361,7 +361,7 @@ TEST_F(CApi, FreeingTwiceIsAnError) {
     const std::uint64_t before = relief_error_count();
     relief_particles_free(stage_.particles);
     EXPECT_EQ(relief_error_count(), before + 1);
-    EXPECT_STREQ(relief_error(), "relief_particles_free(): particles has been freed");
+    EXPECT_EQ(std::string(relief_error()).find("relief_particles_free(): particles" + kDead), 0U);
     stage_.particles = nullptr;
     stage_.revive();
 }
