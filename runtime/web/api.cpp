@@ -1,4 +1,4 @@
-// Functions for relief.js beside those of runtime/c_api: scenes, and properties of a collider. Objects of this file
+// Functions for relief.js beside those of runtime/c_api: scenes, and facts about a collider. Objects of this file
 // are pointers; every function but those that end one fails by returning null or a negative number, as relief_error() has it.
 // All that touch the GL need a current context, whose state they leave as it was.
 #include <emscripten.h>
@@ -415,7 +415,7 @@ EMSCRIPTEN_KEEPALIVE int relief_player_read(Player* player) {
     });
 }
 
-/// What relief_player_read() read: 12 floats each, position, age, velocity, lifetime, type, steps in contact, contact in
+/// The particles of relief_player_read(): 12 floats each, position, age, velocity, lifetime, type, steps in contact, contact in
 /// the last step, and the low 24 bits of the id.
 EMSCRIPTEN_KEEPALIVE void relief_player_states(const Player* player, float* out) {
     for (const ParticleState& one : player->read) {

@@ -34,7 +34,7 @@ mergeInto(LibraryManager.library, {
         GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, bound);
     },
 
-    // How many bytes it decompressed to; -1: it is no frame.
+    // Returns the bytes of the result; -1: not a frame.
     relief_js_decompress: function (stored, storedSize, raw, rawSize) {
         try {
             const bytes = Module.decompress(HEAPU8.slice(stored, stored + storedSize), rawSize);

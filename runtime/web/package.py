@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Writes what of the npm package is text: a package is read far from the sources, so no link may leave it.
 
-    package.py SOURCE PACKAGE VERSION [HOMEPAGE [REPOSITORY]]
+    package.py SOURCE PACKAGE VERSION
 
 README.md keeps its words; a link to the scene's keys goes to SCENE.md, which comes along, and any other link out of the
-package becomes its text. package.json gets the version, and `homepage` and `repository` where there are addresses.
+package becomes its text. package.json gets the version.
 relief.d.ts gets the types of a scene, made of its JSON Schema.
 """
 import json
@@ -59,15 +59,9 @@ def within(text, files, renamed):
 
 
 def main():
-    source, package, version, *addresses = sys.argv[1:]
-    source, package = pathlib.Path(source), pathlib.Path(package)
-    homepage, repository = (*addresses, "", "")[:2]
+    source, package, version = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
     about = json.loads((source / "package.json").read_text(encoding="utf-8"))
     about["version"] = version
-    if homepage:
-        about["homepage"] = homepage
-    if repository:
-        about["repository"] = {"type": "git", "url": repository, "directory": "runtime/web"}
     files = {*about["files"], "package.json"}
     schema = json.loads((source / "../scene/scene.schema.json").read_text(encoding="utf-8"))
     types = (source / "relief.d.ts").read_text(encoding="utf-8")

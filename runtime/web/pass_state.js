@@ -1,10 +1,10 @@
 // PassState in a browser: a WebGL2 context as the WebAssembly sees it, which leaves the page's state as it was.
 //
 // A browser answers some questions about the state at once (bindings, switches) and others only after a round trip to its
-// GPU process, which costs as much as a whole step. The latter are the pieces below. They are asked for when a pass first
+// GPU process, which costs as much as a whole step. The latter are the pieces below, queried when a pass first
 // sets them, not before; from then on their values are known, since passes set them by this object only.
 const kPack = ["PACK_ALIGNMENT", "PACK_ROW_LENGTH", "PACK_SKIP_ROWS", "PACK_SKIP_PIXELS"];
-const kPieces = { // function that sets it: parameters that it is asked for by
+const kPieces = { // function that sets it: parameters that query it
     scissor: ["SCISSOR_BOX"],
     blendFuncSeparate: ["BLEND_SRC_RGB", "BLEND_DST_RGB", "BLEND_SRC_ALPHA", "BLEND_DST_ALPHA"],
     blendEquationSeparate: ["BLEND_EQUATION_RGB", "BLEND_EQUATION_ALPHA"],
@@ -44,7 +44,7 @@ export function withPassState(gl) {
         }
         write(piece, values);
     };
-    // What a pass counts on; asked for only where it matters.
+    // Values that a pass counts on; queried only where they matter.
     const need = (piece, values) => known[piece] ?? set(piece, values);
     const needPack = () => need("pack", [1, 0, 0, 0]);
     const needDepth = (matters) => matters && need("depthMask", [true]);
@@ -88,7 +88,7 @@ export function withPassState(gl) {
         };
     };
 
-    /** Bindings and switches, which cost nothing to ask for, are kept; what a pass counts on is set. */
+    /** Keeps bindings and switches, whose queries cost nothing, and sets the values that a pass counts on. */
     own.savePassState = (units) => {
         const undo = [];
         const keep = (value, put) => undo.push(() => put(value));

@@ -1,4 +1,4 @@
-// relief-particles: Relief's runtime in a browser. relief.d.ts says what each function takes and returns.
+// relief-particles: Relief's runtime in a browser. relief.d.ts documents it.
 //
 // One WebAssembly instance serves all contexts of a page. Whatever draws or steps leaves the context's state as it was.
 import { decompress } from "fzstd";
@@ -15,7 +15,7 @@ export class ReliefError extends Error {
 
 let loading = null; // promise of the instance
 let wasm = null;
-const contexts = new WeakMap(); // WebGL2 context to what is known of it, see know()
+const contexts = new WeakMap(); // WebGL2 context to recordOf() it
 let nowhere = 0; // emscripten's handle of a context that does nothing
 let folders = 0;
 
@@ -118,8 +118,8 @@ function done(name, ...args) {
     return code;
 }
 
-/** What is kept of a context: emscripten's handle, how often it was lost, and whether its extension is on. */
-function know(gl) {
+/** The record of a context: emscripten's handle, its losses so far, and whether its extension is on. */
+function recordOf(gl) {
     let known = contexts.get(gl);
     if (known === undefined) {
         if (typeof WebGL2RenderingContext === "undefined" || !(gl instanceof WebGL2RenderingContext)) {
@@ -141,7 +141,7 @@ function know(gl) {
 /** Makes a context the current one; refuses those that cannot hold particles. Returns how often it was lost before. */
 function use(gl) {
     instance();
-    const known = know(gl);
+    const known = recordOf(gl);
     if (gl.isContextLost()) {
         throw new ReliefError("the WebGL context is lost, and what was on the GPU with it; wait for " +
                               "'webglcontextrestored', then restart() systems and make new GpuColliders");
@@ -164,9 +164,9 @@ function useAsOf(gl, losses, cure) {
     }
 }
 
-/** Frees what belongs to a context. A context does not know what it lost; that is only crossed off emscripten's lists. */
+/** Frees an object of a context. Objects that were lost with the context are only crossed off emscripten's lists. */
 function free(gl, losses, name, handle) {
-    const known = know(gl);
+    const known = recordOf(gl);
     if (known.losses !== losses || gl.isContextLost()) {
         const nothing = new Proxy({}, { get: (kept, key) => kept[key] ?? (key === "canvas" ? undefined : () => null) });
         nowhere ||= wasm.GL.registerContext(nothing, { majorVersion: 2, enableExtensionsByDefault: false });
@@ -177,7 +177,7 @@ function free(gl, losses, name, handle) {
     call(name, handle);
 }
 
-// --- what a page hands over
+// --- arguments
 
 async function bytesOf(source) {
     if (source instanceof Uint8Array) {
@@ -456,15 +456,15 @@ export class ParticleSystem {
         wasm.FS.writeFile(`${this.#folder}/${name}`, content instanceof Collider ? content.bytes : content);
     }
 
-    /** The scene's text, and what it is called. */
-    #told() {
+    /** The scene's text, and its name in messages. */
+    #text() {
         return typeof this.#scene === "string" ? [this.#scene, `${this.#folder}/scene.toml`]
             : [jsonOf(this.#scene), `${this.#folder}/scene`];
     }
 
     #create() {
         this.#losses = use(this.#gl);
-        this.#handle = made("relief_player_create", ...this.#told(), this.#shaded ? 1 : 0);
+        this.#handle = made("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0);
     }
 
     get handle() {
@@ -504,7 +504,7 @@ export class ParticleSystem {
         }
         const emitters = JSON.stringify(this.#scene.emitter) !== JSON.stringify(before.emitter);
         try {
-            done("relief_player_change", this.handle, ...this.#told(), emitters ? 1 : 0);
+            done("relief_player_change", this.handle, ...this.#text(), emitters ? 1 : 0);
         } catch (error) {
             this.#scene = before;
             throw error;

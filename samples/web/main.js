@@ -86,7 +86,7 @@ async function run() {
         renderer.render(scene, camera);
         system.draw({ view: camera.matrixWorldInverse, projection: camera.projectionMatrix });
     };
-    // A lost context: three.js requests it again, and then no particle is alive.
+    // A lost context: three.js restores it, and nothing is alive then.
     renderer.domElement.addEventListener("webglcontextrestored", () => system.restart());
     let before = performance.now();
     const frame = (now) => {

@@ -1,11 +1,11 @@
-// A collider in space: its textures, the box that it is drawn in, and the programs that ask it.
+// A collider in space: its textures, the box that it is drawn in, and the programs that evaluate it.
 import { GpuCollider } from "relief-particles";
-import { add, identity, inverseSimilarity, boxOf, sub, transform } from "./math.js";
+import { add, boxOf, identity, sub } from "./math.js";
 import { cellsOf } from "./cells.js";
 import { Geometry, bindTexture, program } from "./gl.js";
 import { kBodyVertex, kHeatFragment, kSliceFragment, kSurfaceFragment } from "./body_shaders.js";
 
-const kSlack = 0.0035; // round the bounds, in longest sides: what a map calls inside farther out is not the body
+const kSlack = 0.0035; // round the bounds, in longest sides: a map's inside farther out is not the body
 const kDeep = 0.014;
 const kClearUnit = 3; // behind those of the collider
 const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
@@ -29,8 +29,6 @@ export class Body {
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
         gl.texSubImage3D(gl.TEXTURE_3D, 0, 0, 0, 0, ...this.cells.n, gl.RED, gl.UNSIGNED_BYTE, this.cells.clear);
         gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
-        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
         gl.bindTexture(gl.TEXTURE_3D, null);
         this.sides = new Geometry(gl, Float32Array.from(corners), Uint32Array.from(kBoxSides));
     }
@@ -46,37 +44,28 @@ export class Body {
         return this.#programs[kind];
     }
 
-    /** What the maps call inside, up to the texel. values: what all bodies have in common. */
-    draw(eye, values) {
+    /** The inside of the maps, up to the texel. values: uniforms that all bodies have in common. */
+    draw(values) {
         const { gl, box, drawn } = this;
         const { maps, finest_texel: texel } = this.collider.info;
         this.use("surface").set({
-            ...values, u_model: this.model, u_eye_object: transform(this.toObject, eye).slice(0, 3), u_box_min: drawn.min, u_box_max: drawn.max,
+            ...values, u_model: this.model, u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
             u_clear: { int: kClearUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
             // A ray crosses each row and each column of a map once.
             u_steps: { int: Math.min(maps.reduce((sum, map) => sum + 2 * (map.width + map.height), 256), 60000) },
         });
-        gl.activeTexture(gl.TEXTURE0 + kClearUnit);
-        gl.bindTexture(gl.TEXTURE_3D, this.clear);
+        bindTexture(gl, kClearUnit, this.clear, gl.TEXTURE_3D);
         gl.enable(gl.CULL_FACE);
         gl.cullFace(gl.FRONT);
         this.sides.draw();
-        gl.bindTexture(gl.TEXTURE_3D, null);
+        bindTexture(gl, kClearUnit, null, gl.TEXTURE_3D);
         gl.cullFace(gl.BACK);
         gl.disable(gl.CULL_FACE);
     }
 
     place(model) {
         this.model = Float32Array.from(model);
-        this.toObject = inverseSimilarity(this.model);
-    }
-
-    dispose() {
-        this.sides.dispose();
-        this.gl.deleteTexture(this.clear);
-        Object.values(this.#programs).forEach((one) => this.gl.deleteProgram(one.name));
-        this.gpu.dispose();
     }
 }
 
@@ -90,7 +79,7 @@ export class LiveBody {
         this.model = Float32Array.from(model);
     }
 
-    draw(eye, { u_map, ...values }) {
+    draw({ u_map, ...values }) {
         const { gl } = this;
         const { positions, corners, vertexShift, triangleShift, triangles } = this.mesh();
         bindTexture(gl, 0, positions);
@@ -102,6 +91,4 @@ export class LiveBody {
         bindTexture(gl, 0, null);
         bindTexture(gl, 1, null);
     }
-
-    dispose() {}
 }

@@ -64,15 +64,15 @@ vec3 shade(vec3 base, vec3 n) {
 // Drawn on the far sides of the collider's box: each pixel's ray is followed through the maps to the first point inside.
 export const kSurfaceFragment = `${kColorsGlsl}${kShade}${kRayGlsl}
 uniform mat4 u_camera;
-uniform vec3 u_eye_object;
 uniform vec3 u_box_min;
 uniform vec3 u_box_max;
 uniform float u_deep;   // a vote deeper than this is of no surface nearby: a map's box ends, and its side is flat
 uniform int u_map;      // whose texels are coloured; -1: none, -2: all, each its own colour
 void main() {
-    vec3 d = normalize(v_object - u_eye_object);
+    vec3 eye = (inverse(u_model) * vec4(u_eye, 1.0)).xyz;
+    vec3 d = normalize(v_object - eye);
     vec3 enters, leaves;
-    slabs(u_eye_object, d, u_box_min, u_box_max, enters, leaves);
+    slabs(eye, d, u_box_min, u_box_max, enters, leaves);
     float to_box = max(max(enters.x, enters.y), enters.z);
     float from = max(to_box, 0.0);
     float until = min(min(leaves.x, leaves.y), leaves.z);
@@ -95,7 +95,7 @@ void main() {
     if (from >= until) {
         discard;
     }
-    vec3 origin = u_eye_object + from * d;
+    vec3 origin = eye + from * d;
     float far = until - from;
     Hit hit;
     bool within = false;  // the eye is in the body: its far side is looked for
@@ -130,7 +130,7 @@ void main() {
         base = field.map == u_map ? mapColor(u_map) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
     }
     o_color = vec4(shade(base, n), 1.0);
-    // What the slice cuts lies behind the picture of the slice.
+    // The cut surface lies behind the picture of the slice.
     float at = hit.t + (begins && !within ? behind * 100.0 * u_tiny : 0.0);
     vec4 clip = u_camera * (u_model * vec4(origin + at * d, 1.0));
     gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
@@ -149,7 +149,7 @@ void main() {
     o_color = vec4(shade(u_base, meshNormal()), 1.0);
 }`;
 
-// What the maps say of the mesh's own points, where the truth is 0, or the depth of a sheet in its shell.
+// The maps' distances at the mesh's own points, where the truth is 0, or the depth of a sheet in its shell.
 export const kHeatFragment = `${kColorsGlsl}${kShade}${kMeshNormal}
 uniform float u_range;
 uniform float u_depth;

@@ -21,7 +21,7 @@ export class Camera {
         this.changed();
     }
 
-    /** From an eye to a target, as a scene says. */
+    /** From an eye to a target, as in a scene. */
     look(eye, target, fov) {
         const away = sub(eye, target);
         this.distance = length(away) || 1;

@@ -32,7 +32,7 @@ vec3 distanceColor(float u) {
 vec3 mapColor(int i) {
     return oklch(0.74, 0.13, 25.0 + mod(137.508 * float(i), 360.0));
 }
-// What a slice shows of a point.
+// The colour of a point in a slice.
 vec3 fieldColor(float f, int map, float range) {
     return map < 0 ? vec3(0.8, 0.7, 0.82) : f >= 1e29 ? vec3(0.865, 0.87, 0.86) : distanceColor(f / range);
 }

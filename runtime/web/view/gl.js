@@ -1,4 +1,4 @@
-// What every pass needs of WebGL2: programs, targets, buffers.
+// Objects of WebGL2 for every pass: programs, targets, buffers.
 
 /** Whether no GPU draws. */
 export function drawnBySoftware(gl) {
@@ -80,11 +80,6 @@ export class Geometry {
         this.gl.drawElements(mode, this.count, this.gl.UNSIGNED_INT, 0);
         this.gl.bindVertexArray(null);
     }
-
-    dispose() {
-        this.buffers.forEach((buffer) => this.gl.deleteBuffer(buffer));
-        this.gl.deleteVertexArray(this.array);
-    }
 }
 
 function texture(gl, internal, width, height, format, type) {
@@ -93,9 +88,6 @@ function texture(gl, internal, width, height, format, type) {
     gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, type, null);
     for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
         gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
-    }
-    for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) {
-        gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
     }
     gl.bindTexture(gl.TEXTURE_2D, null);
     return made;
@@ -126,9 +118,9 @@ export class Target {
     }
 }
 
-export function bindTexture(gl, unit, name) {
+export function bindTexture(gl, unit, name, target = gl.TEXTURE_2D) {
     gl.activeTexture(gl.TEXTURE0 + unit);
-    gl.bindTexture(gl.TEXTURE_2D, name);
+    gl.bindTexture(target, name);
 }
 
 /** A triangle that covers everything; its program makes the corners of gl_VertexID. */

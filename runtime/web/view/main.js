@@ -11,7 +11,7 @@ import { Quality } from "./quality.js";
 import { View } from "./view.js";
 
 const canvas = $("canvas");
-const kLost = "The GPU was reset, and what was on it is lost; the page begins anew when the browser gives it back.";
+const kLost = "The GPU was reset; the page begins anew when the browser gives it back.";
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
@@ -26,6 +26,7 @@ class App {
         this.look = { show: "surface", split: 0.5, map: -1, heat: 0, depth: 0, slice: null, floor: null, box: null };
         this.data = null; // page_data.js's
         this.pin = null; // a place that is marked
+        this.placed = false; // are a scene's bodies
         this.camera = new Camera(() => this.changed());
         this.quality = new Quality();
         this.lastChange = 0;
@@ -41,11 +42,11 @@ class App {
         try {
             await f();
         } catch (error) {
-            this.#tell(error);
+            this.#sayError(error);
         }
     }
 
-    #tell(error) {
+    #sayError(error) {
         const text = (error.message ?? String(error)).trim();
         say(this.gl?.isContextLost() ? kLost : text[0].toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : "."));
     }
@@ -54,10 +55,9 @@ class App {
         followInput(canvas, this.camera);
         canvas.addEventListener("webglcontextlost", (event) => {
             event.preventDefault();
-            this.#close(); // what is lost must not be given back to the context that comes after it
             say(kLost);
         });
-        canvas.addEventListener("webglcontextrestored", () => this.attempt(() => this.begin()));
+        canvas.addEventListener("webglcontextrestored", () => location.reload());
         new ResizeObserver(() => this.changed()).observe(canvas);
         await this.attempt(async () => {
             this.data = readPageData();
@@ -69,25 +69,12 @@ class App {
             }
             this.gl = gl;
             await init({ wasmBinary: await readWasm() });
-            await this.begin();
+            await this.#begin();
         });
         this.ready = true;
     }
 
-    #close() {
-        this.gl.useProgram(null); // none that is deleted stays the current one
-        this.view?.bodies.forEach((body) => body.dispose());
-        this.particles?.stop();
-        this.view?.dispose();
-        this.view = null;
-        this.body = null;
-        this.placed = false; // are a scene's bodies
-    }
-
-    /** Everything on the GPU anew. */
-    async begin() {
-        this.#close();
-        say(null);
+    async #begin() {
         $("title").hidden = $("panel").hidden = this.data === null;
         $("empty").hidden = this.data !== null;
         if (!this.data) {
@@ -139,7 +126,7 @@ class App {
         this.panel.show("particles");
     }
 
-    /** Where moving bodies are by now. */
+    /** Places moving bodies where they are now. */
     #moveBodies() {
         this.particles.system.info.bodies.forEach(({ moves, deforms, matrix }, i) => {
             if (moves || deforms) {
@@ -184,14 +171,14 @@ class App {
 
     #frame(now) {
         this.waiting = false;
-        if (!this.view || !this.body || this.gl.isContextLost()) {
+        if (!this.body || this.gl.isContextLost()) {
             return;
         }
         try {
             this.#drawFrame(now);
         } catch (error) {
             this.particles.paused = true;
-            this.#tell(error);
+            this.#sayError(error);
         }
     }
 

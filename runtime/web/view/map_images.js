@@ -2,8 +2,8 @@
 
 const kSide = 144; // pixels of a picture's longer side
 
-/** Depths or normals of a map, drawn to a canvas; top up. */
-export function drawMap(canvas, collider, index, what) {
+/** The depths of a map, drawn to a canvas; top up. */
+export function drawMap(canvas, collider, index) {
     const { width, height, faces } = collider.info.maps[index];
     const texels = collider.texels(index);
     const [columns, rows] = faces === 6 ? [3, 2] : [1, 1];
@@ -22,10 +22,10 @@ export function drawMap(canvas, collider, index, what) {
             const face = Math.floor(ty / height) * columns + Math.floor(tx / width);
             // The rows of a view go up; those of a cube's faces go down.
             const row = faces === 6 ? ty % height : height - 1 - ty;
-            const texel = texels.subarray(8 * ((face * height + row) * width + tx % width));
-            const [depth, ...normal] = texel.subarray(Number.isNaN(texel[0]) ? 4 : 0).subarray(0, 4);
-            const color = what === "normals" ? normal.map((v) => 127.5 + 127.5 * v) : Array(3).fill(245 - 200 * (depth - low) / span);
-            image.data.set(Number.isNaN(depth) ? [0, 0, 0, 0] : [...color, 255], 4 * (y * canvas.width + x));
+            const at = 8 * ((face * height + row) * width + tx % width);
+            const depth = texels[Number.isNaN(texels[at]) ? at + 4 : at];
+            const value = 245 - 200 * (depth - low) / span;
+            image.data.set(Number.isNaN(depth) ? [0, 0, 0, 0] : [value, value, value, 255], 4 * (y * canvas.width + x));
         }
     }
     context.putImageData(image, 0, 0);

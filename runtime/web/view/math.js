@@ -42,20 +42,6 @@ export function perspective(fov, aspect, near, far) {
                              0, 0, 2 * far * near / (near - far), 0]);
 }
 
-/** Of an affine matrix that turns, scales evenly and moves. */
-export function inverseSimilarity(m) {
-    const s2 = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
-    const r = new Float32Array(16);
-    for (let i = 0; i < 3; ++i) {
-        for (let j = 0; j < 3; ++j) {
-            r[4 * j + i] = m[4 * i + j] / s2;
-        }
-        r[12 + i] = -(m[4 * i] * m[12] + m[4 * i + 1] * m[13] + m[4 * i + 2] * m[14]) / s2;
-    }
-    r[15] = 1;
-    return r;
-}
-
 /** A box with what every view needs of it. */
 export function boxOf(bounds) {
     const size = sub(bounds.max, bounds.min);

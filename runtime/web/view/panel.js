@@ -18,17 +18,18 @@ function element(tag, attributes = {}, ...children) {
     return made;
 }
 
-/** The radio buttons of a name. */
-function choice(name, changed) {
-    const buttons = [...document.getElementsByName(name)];
-    buttons.forEach((one) => (one.onchange = () => changed(one.value)));
-    return { show: (value) => buttons.forEach((one) => (one.checked = one.value === value)) };
+/** Radio buttons beside each other. choices: their values and words. Returns what chooses one. */
+function choice(id, choices, changed) {
+    const show = (value) => $(id).querySelectorAll("input").forEach((one) => (one.checked = one.value === value));
+    $(id).append(...Object.entries(choices).map(([value, words]) => element("label", { id: `${id}-${value}` },
+        element("input", { type: "radio", name: id, value }), element("span", {}, words))));
+    $(id).onchange = (event) => changed(event.target.value);
+    show(Object.keys(choices)[0]);
+    return show;
 }
 
 export class Panel {
     #map = -1;
-    #picture = "depth";
-    #queue = 0;
     #lastTick = 0;
     #axis = 2;
     #heatSeen = false;
@@ -36,17 +37,14 @@ export class Panel {
     constructor(app) {
         this.app = app;
         document.querySelectorAll(".legend > i").forEach((one) => (one.style.background = kLegend));
-        this.tabs = choice("tab", (tab) => this.show(tab));
-        this.showChoice = choice("show", (value) => this.setShow(value));
-        choice("picture", (value) => {
-            this.#picture = value;
-            this.#pictures();
-        });
-        choice("axis", (value) => {
+        this.showTab = choice("tab", { view: "View", maps: "Maps", errors: "Errors", particles: "Particles" }, (tab) => this.show(tab));
+        this.showWhat = choice("show", { surface: "Maps", mesh: "Mesh", split: "Split" }, (value) => this.setShow(value));
+        choice("axis", ["x", "y", "z"], (value) => {
             this.#axis = Number(value);
             this.#slice();
-        });
-        this.presetChoice = choice("preset", (value) => app.attempt(() => app.startPreset(value)));
+        })(String(this.#axis));
+        this.showPreset = choice("preset", { none: "None", rain: "Rain", snow: "Snow" },
+                                 (value) => app.attempt(() => app.startPreset(value)));
         const when = (id, event, does) => ($(id)[event] = does);
         when("frame", "onclick", () => this.frame());
         when("tint", "onchange", () => this.selectMap($("tint").checked ? -2 : -1));
@@ -63,7 +61,7 @@ export class Panel {
     }
 
     show(tab) {
-        this.tabs.show(tab);
+        this.showTab(tab);
         for (const section of $("sheets").children) {
             section.hidden = section.id !== `sheet-${tab}`;
         }
@@ -74,13 +72,13 @@ export class Panel {
         this.app.changed();
     }
 
-    /** How far the picture's middle moves out from under the panel. */
+    /** The shift of the picture's middle out from under the panel. */
     shift() {
         const box = $("panel").getBoundingClientRect();
         return narrow.matches ? [0, -box.height / innerHeight * 0.9] : [box.width / innerWidth * 0.9, 0];
     }
 
-    /** What the panel leaves free: the shorter side, in heights of the picture. */
+    /** The shorter side of the space beside the panel, in heights of the picture. */
     room() {
         const panel = $("panel").getBoundingClientRect();
         const free = narrow.matches ? [innerWidth, innerHeight - panel.height - $("title").offsetHeight]
@@ -100,7 +98,7 @@ export class Panel {
 
     setShow(value) {
         this.app.look.show = value;
-        this.showChoice.show(value);
+        this.showWhat(value);
         $("split-at").hidden = value !== "split";
         this.app.changed();
     }
@@ -135,16 +133,14 @@ export class Panel {
 
     /** One after the other, so that the page stays alive however many there are. */
     async #pictures() {
-        const turn = ++this.#queue;
         const { body } = this.app;
         for (const [i, canvas] of [...$("maps").querySelectorAll("canvas")].entries()) {
-            if (turn !== this.#queue || body !== this.app.body) {
-                return;
+            if (body === this.app.body) {
+                await this.app.attempt(() => drawMap(canvas, body.collider, i));
+                await new Promise((done) => setTimeout(done));
             }
-            await this.app.attempt(() => drawMap(canvas, body.collider, i, this.#picture));
-            await new Promise((done) => setTimeout(done));
         }
-        this.picturesDone = turn;
+        this.picturesDone = true;
     }
 
     /** -1: none, -2: all, each in its colour. */
@@ -208,7 +204,7 @@ export class Panel {
     refreshParticles() {
         const { particles, data, preset } = this.app;
         $("preset").hidden = Boolean(data.scene);
-        this.presetChoice.show(preset);
+        this.showPreset(preset);
         $("playing").hidden = !particles.system;
         $("pause").textContent = particles.paused ? "Play" : "Pause";
         this.app.changed(false);
@@ -246,7 +242,7 @@ export class Panel {
     }
 }
 
-/** What `relief check` measured against the mesh that was baked. */
+/** The figures of `relief check`, against the mesh that was baked. */
 function checkRows({ accuracy: original, repaired, sampling }, length) {
     const accuracy = repaired?.accuracy ?? original;
     const percent = (v) => `${shortNumber(v)} %`;

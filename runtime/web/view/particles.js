@@ -57,7 +57,7 @@ export class Particles {
         this.steps += 1;
     }
 
-    /** As many steps as `seconds` ask for. */
+    /** As many steps as fit into `seconds`. */
     advance(seconds) {
         if (!this.system || this.paused) {
             return;

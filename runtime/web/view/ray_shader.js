@@ -1,8 +1,8 @@
-// A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel what a map says
+// A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel the side that a map sees
 // changes only where the ray meets the texel's planes or its border, and those are found in closed form. While one map sees
-// outside, the ray is outside; so it goes on to where that map's stretch ends, and evaluates again.
+// outside, the ray is outside; so it goes on to where that map's stretch ends, and evaluates the maps again.
 //
-//     map 0   ····o───────────────┐                 o: a vote; each stretch of a map that sees outside is one step
+//     map 0   ····o───────────────┐                 o: evaluates; each stretch of a map that sees outside is one step
 //     map 1                       o─────┐
 //     map 0                             o──┐        here no map sees outside, and one at least sees inside: a hit
 //                                          x━━━━
@@ -17,10 +17,10 @@ uniform float u_cell;           // their side
 
 const float NEVER = 1e30;
 
-// What a map says of a ray from t on, up to end: 1 outside, -1 inside, 0 nothing. border: what ends it is no surface but a
+// The side that a map sees of a ray from t on, up to end: 1 outside, -1 inside, 0 nothing. border: what ends it is no surface but a
 // border of the texel, across axis 0, 1 or 2 of the map; else -1.
 struct Stretch {
-    int says;
+    int side;
     float end;
     int border;
 };
@@ -226,7 +226,7 @@ Stretch ahead(int i, vec3 origin, vec3 d, float t, float far) {
     return aheadOrthographic(i, o, way, t, far);
 }
 
-// Where a ray is inside first, or where it is no longer.
+// The first point of a ray inside, or the first one outside.
 struct Hit {
     float t;     // NEVER: nowhere
     float ends;  // where this part of it ends
@@ -265,8 +265,8 @@ Hit follow(vec3 origin, vec3 d, float t, float far, bool inside) {
         int i = first;
         for (int k = 0; k < u_relief_count.x && !sees_outside; ++k) {
             Stretch stretch = ahead(i, origin, d, t, far);
-            sees_outside = stretch.says > 0;
-            sees_inside = sees_inside || stretch.says < 0;
+            sees_outside = stretch.side > 0;
+            sees_inside = sees_inside || stretch.side < 0;
             change = sees_outside ? stretch.end : min(change, stretch.end);
             if (sees_outside) {
                 hit.map = i;

@@ -76,7 +76,7 @@ export class View {
             if (what === "mesh") {
                 this.#drawMesh(common, theme, look);
             } else {
-                this.bodies.forEach((body) => body.draw(matrices.eye, {
+                this.bodies.forEach((body) => body.draw({
                     ...common, u_base: theme.base, u_map: { int: body === this.body ? look.map : -1 } }));
             }
         }
@@ -161,10 +161,5 @@ export class View {
         bindTexture(gl, 0, null);
         bindTexture(gl, 1, null);
         gl.depthFunc(gl.LEQUAL);
-    }
-
-    dispose() {
-        [this.mesh, this.floor, this.plane, this.#kept].forEach((one) => one?.dispose());
-        Object.values(this.programs).forEach((one) => this.gl.deleteProgram(one.name));
     }
 }
