@@ -7,8 +7,8 @@
 #   scripts/accuracy.sh                  the table
 #   scripts/accuracy.sh --json           all that was measured
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
-#   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each; with
-#                                        --all 536 of them; --help has --only, --csv, --steps, --markdown and others
+#   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each;
+#                                        --help has --only, --steps, --markdown and others
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,20 +1,7 @@
 #!/usr/bin/env bash
 # Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
 # picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME. Needs no GPU, but is faster with one.
-#
-# scripts/samples.sh --web [FOLDER]: bakes all of them, and leaves a static site in FOLDER (out/gallery): a page for each
-# scene, which plays it in a browser, and index.html.
 set -euo pipefail
-
-web=
-if [ "${1-}" = --web ]; then
-    [ $# -le 2 ] || {
-        echo "samples.sh: --web takes one folder, and all samples" >&2
-        exit 1
-    }
-    web=$(realpath -m "${2:-$(dirname "$0")/../out/gallery}")
-    shift $#
-fi
 cd "$(dirname "$0")/.."
 
 all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain wobbling_torus)
@@ -98,21 +85,8 @@ play() {
     echo "Look at $out/contact_sheet.png"
 }
 
-if [ -n "$web" ]; then
-    [ -n "${RELIEF_VIEW_PAGE-}" ] || scripts/build.sh web >/dev/null
-    mkdir -p "$web"
-fi
 for name in "${names[@]}"; do
     out=out/samples/$name
     prepare
-    if [ -n "$web" ]; then
-        "$bin/relief" view "$out/$name.toml" -o "$web/$name.html"
-    else
-        play
-    fi
+    play
 done
-if [ -n "$web" ]; then
-    scenes=("${names[@]/#/samples/}")
-    python3 samples/gallery.py "$web" "${scenes[@]/%/.toml}"
-    echo "Look at $web/index.html"
-fi

@@ -39,34 +39,11 @@ open(path, 'w').write(text)
 P
 done
 
-# The gallery: every scene makes a page, and the index leads to all of them and to nothing else.
+# Every scene makes a page.
 printf '<script type="application/json" id="relief-page-data">null</script>\n' >stub.html
-mkdir gallery
 for scene in "$samples"/*.toml; do
-    name=$(basename "$scene" .toml)
-    RELIEF_VIEW_PAGE=stub.html expect 0 "$relief" view "$name.toml" -o "gallery/$name.html"
+    RELIEF_VIEW_PAGE=stub.html expect 0 "$relief" view "$(basename "$scene")" -o page.html
 done
-python3 "$samples/gallery.py" gallery "$samples"/*.toml
-python3 - "$samples" <<'P'
-import html.parser, pathlib, re, sys
-class Index(html.parser.HTMLParser):
-    links, pictures, words = [], [], ''
-    def handle_starttag(self, tag, attributes):
-        attributes = dict(attributes)
-        self.links += [attributes['href']] if tag == 'a' else []
-        self.pictures += [attributes['src']] if tag == 'img' else []
-        assert tag not in ('script', 'iframe') and not re.match('https?:|//', attributes.get('href', '')), attributes
-    def handle_data(self, text):
-        self.words += text
-index = Index()
-index.feed(open('gallery/index.html').read())
-scenes = sorted(p.stem for p in pathlib.Path(sys.argv[1]).glob('*.toml'))
-assert index.links == [s + '.html' for s in scenes] and index.pictures == [s + '.jpg' for s in scenes], index.links
-assert all(pathlib.Path('gallery', f).stat().st_size > 1000 for f in index.links + index.pictures)
-assert 'Bunny in the snow' in index.words and 'Eight jets meet on a rearing horse' in index.words
-P
-printf '# no title\n' >untitled.toml
-! python3 "$samples/gallery.py" gallery untitled.toml 2>said || die "a scene without a title is taken"
 
 # play NAME STEPS: NAME.json, NAME.ply and a frame.
 play() {

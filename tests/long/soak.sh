@@ -252,7 +252,7 @@ blender() {
     [ -s "$work/blender/errors.png" ] && grep '^blender: ' "$work/blender.log"
 }
 
-corpus() { scripts/accuracy.sh --corpus --all --csv "$work/corpus.csv" | sed 's/^/corpus: /'; }
+corpus() { scripts/accuracy.sh --corpus | sed 's/^/corpus: /'; }
 
 fuzz() { tests/long/fuzz.sh 600; }
 
