@@ -7,7 +7,7 @@
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 #   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (tests/long/mutants.sh)
-#   package a build without the baker, from nothing, installs a runtime that samples/embed builds with.
+#   package a build without the baker, from nothing, installs a runtime that samples/glfw builds with.
 #   headers a build of each file alone, without precompiled headers: every file includes what it uses, and no warning of
 #           GCC is off.
 #   bytes   204 bakes of ten meshes in surroundings that must not matter give one hash each (tests/long/determinism.sh)
@@ -84,8 +84,8 @@ package() {
     local modules
     modules=$(find "$work/prefix" -name pkgconfig)
     # shellcheck disable=SC2046
-    g++ -std=c++20 samples/embed/embed.cpp -o "$work/embed" \
-        $(PKG_CONFIG_PATH=$modules pkg-config --cflags --libs relief-runtime) &&
+    g++ -std=c++20 samples/glfw/glfw.cpp -o "$work/glfw" \
+        $(PKG_CONFIG_PATH=$modules pkg-config --cflags --libs relief-runtime glfw3) &&
         "$work/prefix/bin/relief-sim" --version >/dev/null && echo "package: a build without the baker installs"
 }
 

@@ -4,7 +4,7 @@
 #
 #   tools        the commands of README.md, "Use"; the manual
 #   python       the program of bake/python/README.md
-#   development  the projects of scripts/install/README.md, samples/embed, a program in C
+#   development  the projects of scripts/install/README.md, a program in C
 #
 # Pages are read where librelief-dev puts them; RELIEF_DOC says another place.
 set -euo pipefail
@@ -59,15 +59,13 @@ development() {
     between() { sed -n "/<!-- $1 -->/,/^\`\`\`\$/p" "$doc/scripts/install/README.md" | sed '1,2d;$d'; }
     between install:cmake >consumer/CMakeLists.txt
     between install:cpp >consumer/main.cpp
+    between install:recipe >consumer/colliders.toml
     cp "$mesh" consumer/bunny.obj
     cp "$mesh" consumer/box.obj
     { cmake -G Ninja -S consumer -B out && cmake --build out; } >said 2>&1 || die "the project of the page: $(tail -20 said)"
     out/snowfall out/bunny.relief | grep -qE '^[0-9]+ maps, ' || die "the project's program says something else"
-    { cmake -G Ninja -S /usr/share/relief/samples/embed -B embed && cmake --build embed; } >said 2>&1 ||
-        die "samples/embed: $(tail -20 said)"
-    embed/relief-embed-sample out/bunny.relief | grep -q 'GL state as it was' || die "samples/embed says something else"
     read -ra flags < <(pkg-config --cflags --libs relief-runtime)
-    g++ -std=c++20 /usr/share/relief/samples/embed/embed.cpp -o by_pkg_config "${flags[@]}" || die "pkg-config"
+    g++ -std=c++20 consumer/main.cpp -o by_pkg_config "${flags[@]}" || die "pkg-config"
     cat >load.c <<'C'
 #include <relief.h>
 #include <stdio.h>

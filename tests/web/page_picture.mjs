@@ -1,11 +1,11 @@
-// Makes the README's picture of the page: node samples/web/page_picture.mjs FILE.jpg, after scripts/build.sh release and web.
+// Makes the README's picture of the page: node tests/web/page_picture.mjs FILE.jpg, after scripts/build.sh release and web.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 
-import { launch, openPage } from "../../tests/web/lib/browser.mjs";
-import { bunny, run } from "../../tests/web/lib/native.mjs";
+import { launch, openPage } from "./lib/browser.mjs";
+import { bunny, run } from "./lib/native.mjs";
 
 const folder = mkdtempSync(path.join(tmpdir(), "relief-page-"));
 const browser = await launch();
