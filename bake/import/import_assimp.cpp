@@ -1,4 +1,5 @@
 #include <assimp/BaseImporter.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <assimp/DefaultLogger.hpp>
-#include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
@@ -23,43 +23,6 @@ namespace {
 
 // --- files and log ---
 
-/// A file in memory.
-class MemoryStream final : public Assimp::IOStream {
-  public:
-    explicit MemoryStream(std::span<const std::byte> bytes) : bytes_(bytes) {}
-    explicit MemoryStream(std::vector<std::byte> owned) : owned_(std::move(owned)), bytes_(owned_) {}
-
-    std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
-        const std::size_t whole = size == 0 ? 0 : std::min(count, (bytes_.size() - at_) / size);
-        if (whole > 0) {
-            std::memcpy(buffer, bytes_.data() + at_, whole * size);
-        }
-        at_ += whole * size;
-        return whole;
-    }
-    std::size_t Write(const void* /*buffer*/, std::size_t /*size*/, std::size_t /*count*/) override {
-        return 0;
-    }
-    aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-        const std::size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
-        // Negative offsets arrive as huge ones; the sum wraps round correctly.
-        const std::size_t target = base + offset;
-        if (target > bytes_.size()) {
-            return aiReturn_FAILURE;
-        }
-        at_ = target;
-        return aiReturn_SUCCESS;
-    }
-    [[nodiscard]] std::size_t Tell() const override { return at_; }
-    [[nodiscard]] std::size_t FileSize() const override { return bytes_.size(); }
-    void Flush() override {}
-
-  private:
-    std::vector<std::byte> owned_;
-    std::span<const std::byte> bytes_;
-    std::size_t at_ = 0;
-};
-
 /// The mesh from memory, and the files that it refers to (material libraries) by ImportFiles. Nothing can be written.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:
@@ -72,10 +35,18 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
             return nullptr;
         }
         if (files_.isMesh(path)) {
-            return new MemoryStream(files_.meshBytes());
+            const std::span<const std::byte> mesh = files_.meshBytes();
+            return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(mesh.data()),
+                                              mesh.size());
         }
-        std::optional<std::vector<std::byte>> bytes = files_.open(path);
-        return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
+        const std::optional<std::vector<std::byte>> bytes = files_.open(path);
+        if (!bytes) {
+            return nullptr;
+        }
+        auto* const copy = new std::uint8_t[bytes->size()];
+        std::transform(bytes->begin(), bytes->end(), copy,
+                       [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
+        return new Assimp::MemoryIOStream(copy, bytes->size(), true);
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
     // assimp's own would touch the disk.

@@ -15,7 +15,6 @@
 #include <span>
 
 #include "bake/import/import_fields.h"
-#include "bake/import/import_memory.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_sandbox.h"

@@ -18,7 +18,6 @@
 #include <utility>
 
 #include "bake/import/import_fields.h"
-#include "bake/import/import_memory.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
