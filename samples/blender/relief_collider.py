@@ -1,7 +1,7 @@
 """Blender add-on: bakes the selected object into a collider of Relief, shows where it is wrong, and plays particles.
 
-Needs the package relief of Python (python3-relief, or the build's python/ folder, which the preferences name). README.md
-beside this file says how to install it.
+Needs the package relief of Python: python3-relief, or the build's python/ folder in PYTHONPATH. README.md beside this file
+describes the installation.
 """
 import os
 import pathlib
@@ -41,16 +41,11 @@ class ReliefError(Exception):
 
 
 def relief_module():
-    """The package relief, also from the folder that the preferences name."""
-    addon = bpy.context.preferences.addons.get(__name__)
-    folder = bpy.path.abspath(addon.preferences.package) if addon and addon.preferences.package else ""
-    if folder and folder not in sys.path:
-        sys.path.insert(0, folder)
     try:
         import relief
     except ImportError as error:
-        raise ReliefError("the package relief of Python is missing: install python3-relief, or name its folder in this "
-                          f"add-on's preferences ({error})") from error
+        raise ReliefError("the package relief of Python is missing: install python3-relief, or start Blender with its folder "
+                          f"in PYTHONPATH ({error})") from error
     return relief
 
 
@@ -391,15 +386,6 @@ class ReliefCache(bpy.types.PropertyGroup):
     message: StringProperty(options={"HIDDEN"})
 
 
-class ReliefPreferences(bpy.types.AddonPreferences):
-    bl_idname = __name__
-    package: StringProperty(name="Folder of the package relief", subtype="DIR_PATH",
-                            description="Empty where python3-relief is installed")
-
-    def draw(self, _context):
-        self.layout.prop(self, "package")
-
-
 class RELIEF_PT_panel(bpy.types.Panel):
     bl_label = "Relief"
     bl_idname = "RELIEF_PT_panel"
@@ -434,8 +420,7 @@ class RELIEF_PT_panel(bpy.types.Panel):
         layout.operator(RELIEF_OT_cache.bl_idname, icon="PARTICLES")
 
 
-CLASSES = (ReliefSettings, ReliefCache, ReliefPreferences, RELIEF_OT_bake, RELIEF_OT_show, RELIEF_OT_hide, RELIEF_OT_cache,
-           RELIEF_PT_panel)
+CLASSES = (ReliefSettings, ReliefCache, RELIEF_OT_bake, RELIEF_OT_show, RELIEF_OT_hide, RELIEF_OT_cache, RELIEF_PT_panel)
 
 
 def register():
