@@ -235,12 +235,10 @@ bool addMeshes(const aiScene& source, ImportScene& scene) {
             return false;
         }
         const MeshParts counts = partsOf(*polygons);
-        scene.counts.polygons += counts.polygons;
-        scene.counts.lines += counts.lines;
-        scene.counts.points += counts.points;
-        scene.counts.vertices += counts.vertices;
-        scene.counts.unused += counts.unused;
-        scene.counts.loose += counts.loose;
+        for (const auto count : {&MeshParts::polygons, &MeshParts::lines, &MeshParts::points,
+                                 &MeshParts::vertices, &MeshParts::unused, &MeshParts::loose}) {
+            scene.counts.*count += counts.*count;
+        }
         ScenePart part = cutPolygons(*polygons);
         if (counts.lines + counts.points > 0) {
             unshare(part);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <pugixml.hpp>
 
 #include "formats/base/text.h"
@@ -38,26 +37,13 @@ FbxUnit binaryFbxUnit(std::string_view text) {
     for (int i = 0; i < 3 && take('\0') == 'S'; ++i) {
         text.remove_prefix(std::min<std::size_t>(take(std::uint32_t{0}), text.size()));
     }
-    double value = std::numeric_limits<double>::quiet_NaN();
-    switch (take('\0')) {
-        case 'D':
-            value = take(value);
-            break;
-        case 'F':
-            value = double{take(0.0F)};
-            break;
-        case 'I':
-            value = take(std::int32_t{0});
-            break;
-        case 'Y':
-            value = take(std::int16_t{0});
-            break;
-        case 'L':
-            value = static_cast<double>(take(std::int64_t{0}));
-            break;
-        default:
-            break;
-    }
+    const char type = take('\0');
+    const double value = type == 'D'   ? take(std::nan(""))
+                         : type == 'F' ? static_cast<double>(take(0.0F))
+                         : type == 'I' ? static_cast<double>(take(std::int32_t{0}))
+                         : type == 'Y' ? static_cast<double>(take(std::int16_t{0}))
+                         : type == 'L' ? static_cast<double>(take(std::int64_t{0}))
+                                       : std::nan("");
     return {number(value), std::isfinite(value) ? std::optional(value) : std::nullopt};
 }
 
@@ -74,21 +60,11 @@ std::optional<double> metresPer(std::string_view unit) {
 
 glm::dmat3 turnUpwards(UpAxis up) {
     // Columns: the images of x, y and z.
-    switch (up) {
-        case UpAxis::kPlusX:
-            return {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
-        case UpAxis::kMinusX:
-            return {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
-        case UpAxis::kPlusY:
-            break;
-        case UpAxis::kMinusY:
-            return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-        case UpAxis::kPlusZ:
-            return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-        case UpAxis::kMinusZ:
-            return {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
-    }
-    return glm::dmat3(1.0);
+    static const glm::dmat3 kTurns[] = {
+        {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}, {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+        {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+    return kTurns[static_cast<std::size_t>(up)];
 }
 
 FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::optional<UpAxis> up) {
@@ -161,9 +137,7 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
     const std::string meter = asset.child("unit").attribute("meter").as_string("1");
     // Some locales write a comma, which assimp reads as a point.
     std::string point = meter;
-    if (const std::size_t comma = point.find(','); comma != std::string::npos) {
-        point[comma] = '.';
-    }
+    std::replace(point.begin(), point.end(), ',', '.');
     frame.metres = finiteNumber(point);
     if (!frame.metres || !(*frame.metres > 0.0)) {
         frame.metres.reset();

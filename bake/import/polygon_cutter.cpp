@@ -73,12 +73,7 @@ std::span<const glm::uvec3> PolygonCutter::cut(std::span<const glm::vec3> corner
 void PolygonCutter::project(std::span<const glm::vec3> corners) {
     const glm::dvec3 normal = normalOf(corners);
     const glm::dvec3 size(std::abs(normal.x), std::abs(normal.y), std::abs(normal.z));
-    int axis = 2;
-    if (size.x > size.y) {
-        axis = size.x > size.z ? 0 : 2;
-    } else {
-        axis = size.y > size.z ? 1 : 2;
-    }
+    const int axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : size.y > size.z ? 1 : 2;
     int right = (axis + 1) % 3;
     int up = (axis + 2) % 3;
     if (normal[axis] < 0.0) {
