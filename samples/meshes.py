@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
-"""Makes what the samples need, from formulas: meshes.py torus|basin|terrain OUT.obj, meshes.py streak OUT.png
+"""Makes the meshes of the samples from formulas: meshes.py torus|basin|terrain OUT.obj
 
 The same arguments give the same bytes. Needs nothing but Python itself.
 """
 import math
-import struct
 import sys
-import zlib
 
 
 def revolve(profile, sides):
@@ -86,31 +84,10 @@ def terrain(half=4.0, cells=256):
     return vertices, faces
 
 
-def streak(side=64):
-    """A PNG with a thin upright line that fades towards its ends: a drop as an eye sees it."""
-    rows = b""
-    for y in range(side):
-        along = math.sin(math.pi * (y + 0.5) / side) ** 2
-        rows += b"\0"
-        for x in range(side):
-            across = (x + 0.5 - side / 2) / 1.1
-            rows += bytes((255, 255, 255, round(255 * along * math.exp(-across * across))))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 6, 0, 0, 0)) +
-            chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
-
-
 def main():
     shapes = {"torus": torus, "basin": basin, "terrain": terrain}
-    if len(sys.argv) != 3 or sys.argv[1] not in [*shapes, "streak"]:
-        sys.exit("usage: meshes.py torus|basin|terrain OUT.obj, or meshes.py streak OUT.png")
-    if sys.argv[1] == "streak":
-        with open(sys.argv[2], "wb") as out:
-            out.write(streak())
-        return
+    if len(sys.argv) != 3 or sys.argv[1] not in shapes:
+        sys.exit("usage: meshes.py torus|basin|terrain OUT.obj")
     vertices, faces = shapes[sys.argv[1]]()
     with open(sys.argv[2], "w", encoding="ascii") as out:
         for vertex in vertices:

@@ -96,27 +96,20 @@ def save_rounds(tools, rounds, target):
         renderer, figures = one_round(tools)
         for name, value in figures.items():
             taken.setdefault(name, []).append(value)
-        with open(target + ".part", "w", encoding="utf-8") as file:
+        with open(target, "w", encoding="utf-8") as file:  # finished rounds remain where a later one is cut off
             json.dump({"machine": f"{platform.machine()}, {os.cpu_count()} processors, {renderer}", "figures": taken}, file,
                       indent=1)
-        os.replace(target + ".part", target)  # finished rounds remain where a later one is cut off
         print(f"round {done + 1} of {rounds}", file=sys.stderr, flush=True)
 
 
 def load(path):
-    cure = "write it with scripts/bench.py --save"
     try:
         with open(path, encoding="utf-8") as file:
             data = json.load(file)
-    except (OSError, ValueError) as error:
-        raise Unusable(f"{path}: {error}; {cure}") from error
-    figures = data.get("figures") if isinstance(data, dict) else None
-    if not isinstance(figures, dict) or not figures or not isinstance(data.get("machine"), str):
-        raise Unusable(f"{path}: not the figures of a benchmark; {cure}")
-    for name, rounds in figures.items():
-        if not isinstance(rounds, list) or not rounds or not all(
-                type(value) in (int, float) and math.isfinite(value) and value > 0 for value in rounds):
-            raise Unusable(f"{path}: figure '{name}' is no list of numbers above 0; {cure}")
+        if not data["machine"] or not all(rounds and min(rounds) > 0 for rounds in data["figures"].values()):
+            raise ValueError("its figures are not numbers above 0")
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+        raise Unusable(f"{path}: not the figures of a benchmark ({error}); write it with scripts/bench.py --save") from error
     return data
 
 
@@ -211,20 +204,13 @@ def print_report(tools):
         print_tables(tools.bench("mesh", tools.mesh))
 
 
-def above_zero(text):
-    value = int(text)
-    if value <= 0:
-        raise argparse.ArgumentTypeError("a number above 0 is needed")
-    return value
-
-
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="bench.py", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mesh", nargs="?", default=BUNNY)
     parser.add_argument("--save", metavar="FILE")
     parser.add_argument("--against", metavar="FILE")
-    parser.add_argument("--rounds", type=above_zero, default=9)
+    parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--compare", nargs=2, metavar="FILE")
     return parser.parse_args(arguments)
 
@@ -246,12 +232,12 @@ def main(arguments):
         binaries = built("build.sh", "release", "relief", "relief-bench", "relief-bench-raycast")
         with tempfile.TemporaryDirectory() as folder:
             tools = Tools(binaries, options.mesh, folder)
-            if options.save or options.against:
-                saved = options.save or f"{folder}/new.json"
-                save_rounds(tools, options.rounds, saved)
-                return compare(options.against, saved) if options.against else 0
-            else:
+            if not options.save and not options.against:
                 print_report(tools)
+                return 0
+            saved = options.save or f"{folder}/new.json"
+            save_rounds(tools, options.rounds, saved)
+            return compare(options.against, saved) if options.against else 0
     except Unusable as error:
         print(f"bench.py: {error}", file=sys.stderr)
         return 2

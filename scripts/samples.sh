@@ -49,7 +49,7 @@ prepare() {
         ;;
     rain)
         mesh terrain.obj
-        mesh streak.png
+        cp samples/streak.png "$out/"
         # Solid down to the end of the map's box: y = -1.5, well below the valleys.
         bake "$out/terrain.obj" -o "$out/terrain.relief" --map fixed8:dir=-y,size=512x512,box=-4/-1.5/-4/4/1.5/4
         ;;

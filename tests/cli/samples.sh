@@ -9,8 +9,7 @@ mesh() { python3 "$samples/meshes.py" "${1%.*}" "$1"; }
 mesh basin.obj
 mesh torus.obj
 mesh terrain.obj
-mesh streak.png
-cp "$samples/linked_tori.csv" .
+cp "$samples"/{linked_tori.csv,streak.png} .
 "$relief" bake "$bunny" -o bunny.relief --prefer inside --budget 300kB --quality fast -q
 "$relief" bake $models_glmark2/horse.3ds -o horse.relief --budget 200kB --quality fast -q
 "$relief" bake basin.obj -o basin.relief --map front-back:dir=-y,size=200x200 -q
