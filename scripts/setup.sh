@@ -27,8 +27,7 @@ packages=(
     # tests, benchmarks and the demo
     assimp-testmodels bsdextrautils doxygen glmark2-data groff-base imagemagick libcgal-demo libgtest-dev
     libglew-dev libglfw3-dev libjansson-dev libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev python3 python3-dev
-    python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-scipy
-    python3-venv
+    python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-venv
     qemu-user-static strace xauth xvfb
     "$@"
 )
