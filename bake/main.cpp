@@ -1,5 +1,5 @@
 // `relief`: the offline tool. Verbs are in bake/cli/command_VERB.cpp; exit codes are those of formats/base/result.h.
-#include "bake/cli/command_line.h"
+#include "bake/cli/command.h"
 #include "bake/recipe/child_process.h"
 #include "formats/base/heap.h"
 #include "runtime/command_line/command_line.h"

@@ -28,7 +28,7 @@ THIRD_PARTIES = {
     'toml++': ['formats/config'],
     'CLI': ['runtime/command_line', 'runtime/cli', 'runtime/bench', 'bake/cli', 'bake/bench'],
     'spdlog': ['runtime/command_line', 'runtime/cli', 'bake/cli'],
-    'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/view', 'bake/cli', 'bake/bench', 'runtime/command_line',
+    'nlohmann': ['formats/fields', 'bake/import', 'bake/recipe', 'bake/report', 'bake/cli', 'bake/bench', 'runtime/command_line',
                  'runtime/player', 'runtime/web', 'runtime/bench'],
     'epoxy': ['runtime/gl', 'runtime/collider', 'runtime/picture'],
 }

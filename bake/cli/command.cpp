@@ -5,8 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "formats/bake_first.h"
+#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/container_reader.h"
+#include "runtime/command_line/command_line.h"
 
 namespace relief {
 
@@ -43,6 +47,33 @@ std::string shownInput(const std::string& file) {
 
 std::string inputName(const std::string& file) {
     return file == "-" ? "standard input" : cleanUtf8(std::filesystem::path(file).filename().string());
+}
+
+void defineRelief(CLI::App& app, Action& action) {
+    setUpHelp(app, "Print this help and exit; `relief VERB --help` explains a verb");
+    app.description("Bakes meshes into depth map colliders, and looks into them");
+    app.footer(
+        "relief bake bunny.obj -o bunny.relief\nrelief info bunny.relief\n"
+        "relief slice bunny.relief --axis z --at center -o slice.png");
+    app.require_subcommand(1);
+    for (const auto& add : {addBake, addCheck, addDiff, addInfo, addQuery, addSlice, addView, addExport}) {
+        add(app, action);
+    }
+}
+
+Result<void> runRelief(int argc, char** argv) {
+    CLI::App app("", "relief");
+    Action action;
+    defineRelief(app, action);
+    FileGuard files;
+    return RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv))) ? action(files) : Result<void>();
+}
+
+Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits) {
+    std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
+    RELIEF_TRY(refuseMesh(file, bytes));
+    Collider collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes, limits)));
+    return ColliderFile{std::move(bytes), std::move(collider)};
 }
 
 }  // namespace relief

@@ -1,11 +1,14 @@
-// What the verbs of `relief` share: one file a verb defines its options and runs behind its library.
+// The command line of `relief`, and what its verbs share. One file a verb defines its options and runs it.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
+#include "formats/container.h"
 
 namespace CLI {
 class App;
@@ -34,5 +37,28 @@ void startLogging(const CommonOptions& common);
 [[nodiscard]] std::string shownInput(const std::string& file);
 /// "standard input", or the name without its folder: for reports.
 [[nodiscard]] std::string inputName(const std::string& file);
+
+// Each adds a verb. When it is called, `action` becomes what it does.
+void addBake(CLI::App& app, Action& action);
+void addCheck(CLI::App& app, Action& action);
+void addDiff(CLI::App& app, Action& action);
+void addInfo(CLI::App& app, Action& action);
+void addQuery(CLI::App& app, Action& action);
+void addSlice(CLI::App& app, Action& action);
+void addView(CLI::App& app, Action& action);
+void addExport(CLI::App& app, Action& action);
+
+/// Gives an app named "relief" its verbs. `action` must outlive it.
+void defineRelief(CLI::App& app, Action& action);
+
+/// Parses the command line and runs the verb.
+[[nodiscard]] Result<void> runRelief(int argc, char** argv);
+
+struct ColliderFile {
+    std::vector<std::byte> bytes;
+    Collider collider;
+};
+/// Errors: those of loadCollider, with the file in front.
+[[nodiscard]] Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits);
 
 }  // namespace relief

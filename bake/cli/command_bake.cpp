@@ -8,7 +8,6 @@
 
 #include "bake/cli/bake_outputs.h"
 #include "bake/cli/command.h"
-#include "bake/cli/command_line.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/director.h"

@@ -2,13 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <span>
 
-#include "bake/cli/check_file.h"
 #include "bake/cli/command.h"
-#include "bake/cli/mesh_options.h"
 #include "bake/cli/view_source.h"
 #include "bake/director/check_advice.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/report/bake_report.h"
+#include "bake/report/inspect_report.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
 #include "formats/bake_first.h"
@@ -34,6 +33,29 @@ struct CheckCommand {
     std::string html;
     bool json = false;
 };
+
+/// Without --mesh: prints the report of inspectContainer, also of a damaged file.
+/// Errors: kIo, kLimit; kInvalidInput or Inspection::errorCode() if the file is damaged.
+Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
+    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
+    const std::string quoted = shownInput(file);
+    const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes, limits)));
+    const std::string name = inputName(file);
+    const Result<void> printed = printOut(json ? jsonText(jsonOf(InspectionReport{inspection, name}))
+                                               : inspectionText(inspection, name));
+    if (!printed || !inspection.damaged()) {
+        return printed;
+    }
+    RELIEF_TRY(refuseMesh(file, bytes));
+    for (const Issue& issue : inspection.issues) {
+        if (issue.severity() != Severity::kWarning) {
+            const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";
+            return fail(inspection.errorCode(), quoted + " cannot be used: " + issue.id() + ", " + map +
+                                                    issue.message + "; copy it again, or bake it again");
+        }
+    }
+    return {};
+}
 
 /// Before the long work.
 Result<void> prepare(const CheckCommand& command, FileGuard& files) {
@@ -95,10 +117,7 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
         return checkFile(command.file, command.json, command.limits);
     }
     RELIEF_TRY(prepare(command, files));
-    std::vector<std::byte> container = RELIEF_TRY(readFile(command.file, containerSizeMax(command.limits)));
-    RELIEF_TRY(refuseMesh(command.file, container));
-    Collider collider =
-        RELIEF_TRY(inFront(shownInput(command.file), readContainer(container, command.limits)));
+    auto [container, collider] = RELIEF_TRY(readColliderFile(command.file, command.limits));
     MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
     showCheckWarnings(run);
     // The files that the mesh refers to are known only now.

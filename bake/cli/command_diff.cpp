@@ -3,11 +3,6 @@
 
 #include "bake/cli/command.h"
 #include "bake/report/diff_report.h"
-#include "formats/bake_first.h"
-#include "formats/base/error_context.h"
-#include "formats/base/file_io.h"
-#include "formats/container.h"
-#include "formats/container_reader.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/memory_option.h"
@@ -27,25 +22,13 @@ struct DiffCommand {
     bool json = false;
 };
 
-struct Loaded {
-    std::vector<std::byte> bytes;
-    Collider collider;
-};
-
-Result<Loaded> load(const std::string& file, const ContainerLimits& limits) {
-    std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
-    RELIEF_TRY(refuseMesh(file, bytes));
-    auto collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes, limits)));
-    return Loaded{std::move(bytes), std::move(collider)};
-}
-
 Result<void> runDiff(const DiffCommand& command) {
     startLogging(command.common);
     if (command.a == "-" && command.b == "-") {
         return fail(ErrorCode::kUsage, "A and B cannot both be standard input; give one of them a file");
     }
-    const Loaded a = RELIEF_TRY(load(command.a, command.limits));
-    const Loaded b = RELIEF_TRY(load(command.b, command.limits));
+    const ColliderFile a = RELIEF_TRY(readColliderFile(command.a, command.limits));
+    const ColliderFile b = RELIEF_TRY(readColliderFile(command.b, command.limits));
     DiffReport report = command.report;
     report.a = shownInput(command.a);
     report.b = shownInput(command.b);

@@ -2,17 +2,23 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
 
 #include "bake/cli/command.h"
-#include "bake/cli/gpu_export.h"
 #include "bake/picture/map_image.h"
 #include "bake/volume/level_set.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/preflight.h"
 #include "formats/container.h"
+#include "formats/fields/json.h"
+#include "runtime/collider/gpu_image.h"
 #include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
+#include "runtime/gl/gl_object.h"
 #include "runtime/vdb/vdb_writer.h"
 
 namespace relief {
@@ -28,6 +34,72 @@ struct ExportCommand {
     std::string mesh;
     std::optional<std::uint32_t> voxels;
 };
+
+constexpr int kFormat = 1;
+constexpr const char* kBlock = "block.bin";
+constexpr const char* kGlsl = "collider.glsl";
+constexpr const char* kSizes = "gpu.json";
+constexpr std::array<TexelKind, kTexelKinds> kKinds{kFloatTexels, kFixedTexels, kFrontBackTexels};
+constexpr std::array<const char*, kTexelKinds> kFiles{"float.bin", "fixed.bin", "front_back.bin"};
+
+std::span<const std::byte> bytesOf(std::string_view text) {
+    return std::as_bytes(std::span(text));
+}
+
+/// A texture of one texel stands for one that no map uses: it needs no file, a GL fills it with anything.
+bool isUsed(const Collider& collider, TexelKind kind) {
+    return std::any_of(collider.maps.begin(), collider.maps.end(),
+                       [&](const DepthMap& map) { return texelKindOf(map.format) == kind; });
+}
+
+Json describe(const Collider& collider, const GpuImage& image, TexelKind kind) {
+    const GpuTexture& texture = image.textures[kind];
+    const TexelFormat& format = texelFormat(kind);
+    return {{"sampler", format.sampler},
+            {"file", isUsed(collider, kind) ? Json(kFiles[kind]) : Json()},
+            {"width", texture.width},
+            {"height", texture.height},
+            {"bytes", texture.texels.size()},
+            {"internal_format_name", format.name},
+            {"internal_format", format.internal_format},
+            {"format", format.format},
+            {"type", format.type}};
+}
+
+/// gpu.json, block.bin, collider.glsl and a file for each texture that holds something: what exportForGpu() writes.
+std::vector<std::string> gpuFileNames(const Collider& collider) {
+    std::vector<std::string> names{kBlock, kGlsl, kSizes};
+    for (const TexelKind kind : kKinds) {
+        if (isUsed(collider, kind)) {
+            names.emplace_back(kFiles[kind]);
+        }
+    }
+    return names;
+}
+
+/// What a program of one's own uploads: runtime/collider/LAYOUT.md.
+Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
+    const GpuImage image = RELIEF_TRY(gpuImage(collider));
+    const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
+    Json textures = Json::array();
+    for (const TexelKind kind : kKinds) {
+        textures.push_back(describe(collider, image, kind));
+        if (isUsed(collider, kind)) {
+            RELIEF_TRY(writeFile(folder / kFiles[kind], image.textures[kind].texels));
+        }
+    }
+    RELIEF_TRY(writeFile(folder / kBlock, image.block));
+    RELIEF_TRY(writeFile(folder / kGlsl, bytesOf(image.defines + core)));
+    const Json all{{"format", kFormat},
+                   {"tool", collider.provenance.tool_version},
+                   {"bounds", {{"min", jsonOf(collider.bounds.min)}, {"max", jsonOf(collider.bounds.max)}}},
+                   {"unit", collider.unit},
+                   {"maps", collider.maps.size()},
+                   {"glsl", kGlsl},
+                   {"block", {{"name", "ReliefCollider"}, {"file", kBlock}, {"bytes", image.block.size()}}},
+                   {"textures", textures}};
+    return writeFile(folder / kSizes, bytesOf(jsonText(all)));
+}
 
 /// The names of what exportMaps() writes.
 std::vector<std::string> mapFileNames(const Collider& collider) {

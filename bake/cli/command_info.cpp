@@ -4,13 +4,9 @@
 #include <optional>
 
 #include "bake/cli/command.h"
-#include "bake/cli/command_line.h"
 #include "bake/report/collider_report.h"
-#include "formats/bake_first.h"
 #include "formats/base/error_context.h"
-#include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "formats/container_reader.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/memory_option.h"
@@ -88,9 +84,7 @@ struct Shown {
 };
 
 Result<Shown> open(const std::string& file, const ContainerLimits& limits) {
-    const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
-    RELIEF_TRY(refuseMesh(file, bytes));
-    Collider collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes, limits)));
+    auto [bytes, collider] = RELIEF_TRY(readColliderFile(file, limits));
     ContainerInfo info = RELIEF_TRY(inFront(shownInput(file), readContainerInfo(bytes, limits)));
     return Shown{file, std::move(collider), std::move(info)};
 }

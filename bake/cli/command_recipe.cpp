@@ -16,7 +16,6 @@
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/recipe_run.h"
-#include "bake/recipe/recipe_stamp.h"
 #include "bake/report/recipe_report.h"
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"

@@ -3,10 +3,8 @@
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/cli/mesh_options.h"
 #include "bake/cli/view_source.h"
 #include "formats/base/file_io.h"
-#include "formats/base/text.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/memory_option.h"
 

@@ -7,4 +7,7 @@ namespace relief {
 
 [[nodiscard]] GeneratedTexts bakeTexts();
 
+/// The JSON Schemas of what `relief` prints.
+[[nodiscard]] GeneratedTexts bakeSchemas();
+
 }  // namespace relief

@@ -1,17 +1,21 @@
 #include "bake/cli/view_source.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <glm/geometric.hpp>
+#include <map>
+#include <span>
 
 #include "bake/cli/command.h"
-#include "bake/cli/mesh_options.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
 #include "bake/repair/winding.h"
 #include "bake/report/parts_report.h"
-#include "bake/view/view_page.h"
+#include "bake/report/report_text.h"
 #include "formats/bake_first.h"
 #include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
@@ -30,31 +34,125 @@ std::string textOf(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The template, and what is put in.
+constexpr std::string_view kPlaceBegin = R"(<script type="application/json" id="relief-page-data">)";
+constexpr std::string_view kPlaceEmpty = "null";
+constexpr std::string_view kPlaceEnd = "</script>";
+
+// Vertices and corners go as they lie in memory.
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::uvec3) == 12);
+
+/// RFC 4648, with padding and without line ends.
+std::string base64(std::span<const std::byte> bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t group = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            group = group << 8 | (j < count ? std::to_integer<std::uint32_t>(bytes[i + j]) : 0U);
+        }
+        for (std::size_t j = 0; j < 4; ++j) {
+            text += j <= count ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
+        }
+    }
+    return text;
+}
+
+/// Ready to stand between <script> and </script>: whatever a name says, it ends nothing there.
+std::string scriptText(const Json& json) {
+    const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string safe;
+    safe.reserve(text.size());
+    for (const char c : text) {
+        if (c == '<') {
+            safe += "\\u003c";
+        } else {
+            safe += c;
+        }
+    }
+    return safe;
+}
+
+/// What a page shows.
 struct Page {
-    ViewPageInput input;
-    std::vector<std::byte> container;
-    std::vector<fs::path> files;
+    std::string name;                  ///< without its folder
+    std::vector<std::byte> container;  ///< what is shown; empty: `shows`
+    std::string shows = {};            ///< which of `files` is shown; empty: `container`
+    const TriangleMesh* mesh = nullptr;
+    Json check = nullptr;                           ///< the report of `relief check`
+    std::optional<std::string> scene = {};          ///< text of a scene.toml
+    std::map<std::string, std::string> files = {};  ///< that the scene names, by the names it has for them
+    std::vector<fs::path> sources = {};             ///< all files that it is made of
 
     /// Reads a file that the page depends on.
     Result<std::vector<std::byte>> read(const fs::path& path) {
-        files.push_back(path);
+        sources.push_back(path);
         return readFile(path, kViewBytesMax);
     }
 
     Result<MadePage> make() {
-        const fs::path page = RELIEF_TRY(findViewPage());
-        const std::string text = textOf(RELIEF_TRY(read(page)));
-        input.container = container;
-        std::string html = RELIEF_TRY(viewPage(text, quotedPath(page), input));
-        std::sort(files.begin(), files.end());
-        return MadePage{std::move(html), std::move(files)};
+        const fs::path file = RELIEF_TRY(findViewPage());
+        const std::string text = textOf(RELIEF_TRY(read(file)));
+        const std::string place = std::string(kPlaceBegin).append(kPlaceEmpty).append(kPlaceEnd);
+        const std::size_t at = text.find(place);
+        if (at == std::string::npos || text.find(place, at + 1) != std::string::npos) {
+            return invalidInput(quotedPath(file) + " is no page for `relief view`: its place for data, " +
+                                place + ", is not there once; make it anew with scripts/build.sh web");
+        }
+        RELIEF_TRY(checkSize());
+        const std::size_t data = at + kPlaceBegin.size();
+        return MadePage{text.substr(0, data) + scriptText(json()) + text.substr(data + kPlaceEmpty.size()),
+                        sources};
+    }
+
+  private:
+    [[nodiscard]] Result<void> checkSize() const {
+        std::uint64_t rest = container.size() + (scene ? scene->size() : 0);
+        for (const auto& [name_in_scene, bytes] : files) {
+            rest += bytes.size();
+        }
+        const std::uint64_t of_mesh =
+            mesh == nullptr ? 0 : std::uint64_t{12} * (mesh->positions.size() + mesh->triangles.size());
+        if (rest + of_mesh <= kViewBytesMax) {
+            return {};
+        }
+        const std::string limit = "; a page holds " + bytesText(kViewBytesMax);
+        if (rest <= kViewBytesMax) {
+            return fail(ErrorCode::kLimit,
+                        mesh->name + " has " + std::to_string(mesh->triangles.size()) + " triangles, " +
+                            bytesText(of_mesh) + limit +
+                            "; leave out the page or the mesh, or give it with fewer triangles");
+        }
+        return fail(ErrorCode::kLimit, name + " has " + bytesText(rest) + limit +
+                                           "; bake with a smaller --budget, or smaller maps");
+    }
+
+    [[nodiscard]] Json json() const {
+        Json all = {{"format", 2},
+                    {"name", name},
+                    {"collider", shows.empty() ? Json(base64(container)) : Json(nullptr)},
+                    {"shows", shows.empty() ? Json(nullptr) : Json(shows)},
+                    {"mesh", nullptr},
+                    {"check", check},
+                    {"scene", scene ? Json(*scene) : Json(nullptr)},
+                    {"files", scene ? Json::object() : Json(nullptr)}};
+        if (mesh != nullptr) {
+            all["mesh"] = {{"name", mesh->name},
+                           {"vertices", base64(std::as_bytes(std::span(mesh->positions)))},
+                           {"triangles", base64(std::as_bytes(std::span(mesh->triangles)))}};
+        }
+        for (const auto& [name_in_scene, bytes] : files) {
+            all["files"][name_in_scene] = base64(std::as_bytes(std::span(bytes)));
+        }
+        return all;
     }
 };
 
 /// The report, and what the page needs to show it.
 Result<MadePage> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
-    Json report = jsonOf(MeshCheckReport{check, page.input.name, max_error});
+    Json report = jsonOf(MeshCheckReport{check, page.name, max_error});
     report.erase("times_ms");  // no two runs have the same
     report["verdict"]["text"] = verdictText(check.wrongPercent(), check.part_accuracy);
     report["parts"]["text"] = partsText(check.part_accuracy, check.parts, check.collider);
@@ -63,8 +161,8 @@ Result<MadePage> checkPage(Page page, const MeshCheck& check, std::optional<floa
         const glm::dvec3 normal = planeOf(check.query->mesh(), closest.triangle).normal;
         report["worst_places"][i]["normal"] = jsonOf(glm::vec3(glm::normalize(normal)));
     }
-    page.input.mesh = &*check.imported;
-    page.input.check = &report;
+    page.mesh = &*check.imported;
+    page.check = std::move(report);
     return page.make();
 }
 
@@ -79,7 +177,7 @@ Result<MadePage> colliderPage(const ViewSource& source, Page page) {
     const MeshCheck check = RELIEF_TRY(relief::check(source.check, std::move(collider)));
     showCheckWarnings(check);
     for (const std::string& file : check.imported->dependencies) {
-        page.files.emplace_back(file);
+        page.sources.emplace_back(file);
     }
     return checkPage(std::move(page), check, {});
 }
@@ -105,17 +203,17 @@ std::string nameInScene(const fs::path& file, const fs::path& scene) {
 Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
     for (const SceneCollider& collider : scene.colliders) {
         if (!collider.live) {
-            page.input.shows = nameInScene(collider.path, file);
+            page.shows = nameInScene(collider.path, file);
             return {};
         }
     }
-    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front(), page.files));
+    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front(), page.sources));
     return {};
 }
 
 Result<MadePage> scenePage(const ViewSource& source, Page page) {
     const fs::path file = source.file;
-    page.input.scene = textOf(RELIEF_TRY(page.read(file)));
+    page.scene = textOf(RELIEF_TRY(page.read(file)));
     SceneOverrides overrides;
     overrides.limits = source.limits;
     const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
@@ -127,7 +225,7 @@ Result<MadePage> scenePage(const ViewSource& source, Page page) {
                         "leave it out");
     }
     for (const fs::path& named : filesOf(loaded.scene)) {
-        page.input.files[nameInScene(named, file)] = RELIEF_TRY(page.read(named));
+        page.files[nameInScene(named, file)] = textOf(RELIEF_TRY(page.read(named)));
     }
     RELIEF_TRY(chooseShown(loaded.scene, file, page));
     return page.make();
@@ -158,18 +256,36 @@ Result<fs::path> findViewPage() {
 
 Result<MadePage> makeViewPage(const ViewSource& source) {
     Page page;
-    page.input.name = inputName(source.file);
-    page.input.events = source.events;
+    page.name = inputName(source.file);
     return source.isScene() ? scenePage(source, std::move(page)) : colliderPage(source, std::move(page));
 }
 
 Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte> container,
                                   const MeshCheck& check, std::optional<float> max_error) {
     Page page;
-    page.input.name = name;
+    page.name = name;
     page.container = std::move(container);
     MadePage made = RELIEF_TRY(checkPage(std::move(page), check, max_error));
     return std::move(made.html);
+}
+
+CLI::Option* addMeshOptions(CLI::App& verb, CheckRequest& request) {
+    CLI::Option* mesh =
+        verb.add_option("--mesh", request.mesh, "The mesh that it was baked from")->option_text("MESH");
+    FieldOptions visitor(verb);
+    measurementFields(visitor, request);
+    for (CLI::Option* option : visitor.options()) {
+        option->needs(mesh);
+    }
+    return mesh;
+}
+
+void showCheckWarnings(const MeshCheck& check) {
+    for (const std::string& warning : check.warnings) {
+        spdlog::warn(warning);
+    }
+    spdlog::debug("truth {:.2f} s, field {:.2f} s", check.original.samples.seconds,
+                  check.original.accuracy.field.seconds);
 }
 
 }  // namespace relief

@@ -87,7 +87,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
             return entries;
         }
     } catch (const Json::exception&) {
-        // What exactly is wrong does not matter: the file is written anew.
+        // The kind of mistake does not matter: the file is written anew.
     }
     return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
 }

@@ -1,9 +1,8 @@
-// What each output of a recipe was made from, so that what is up to date is not baked again.
+// The inputs of each output of a recipe, so that only stale outputs are baked again.
 //
-// An entry says: these inputs, of these contents, with these options and this program, gave this output, of
-// this content. Baking is deterministic, so an entry that holds for the files as they are now proves that the
-// output is right, whoever wrote it, and one that does not only costs a bake. Contents are always hashed;
-// times are never looked at.
+// An entry records hashes of inputs and of their output, the options and the program. Baking is deterministic, so an
+// entry that matches the present files proves that the output is right, whoever wrote it, and one that does not match
+// only costs a bake. Contents are always hashed; times are never compared.
 #pragma once
 
 #include <filesystem>
@@ -42,13 +41,12 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 [[nodiscard]] std::string bakeCacheText(const BakeCacheEntries& entries);
 
 /// The cache file in an output folder; none is no error. A symbolic link in its place is not followed, and replaced by the
-/// next update. Errors: kInvalidInput, kIo, kLimit: name the file; everything is to be baked again.
+/// next update. Errors, all with the file in front: kInvalidInput, kIo, kLimit.
 [[nodiscard]] Result<BakeCacheEntries> loadBakeCache(const std::filesystem::path& output_folder);
 
-/// Puts entries into the cache file, beside those that others have put there meanwhile; entries of outputs
+/// Adds entries to the cache file, beside those that other runs have added meanwhile; entries of outputs
 /// that are gone are left out. Safe against any number of processes at once: the folder is locked (flock)
-/// meanwhile. Where it cannot be locked, entries may get lost, which costs a bake and is never wrong. Errors:
-/// kIo.
+/// meanwhile. Where it cannot be locked, entries may get lost, which costs a bake. Errors: kIo.
 [[nodiscard]] Result<void> updateBakeCache(const std::filesystem::path& output_folder,
                                            const BakeCacheEntries& entries);
 
@@ -62,7 +60,7 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 [[nodiscard]] std::string nameInRecipe(const std::filesystem::path& file,
                                        const std::filesystem::path& recipe_folder);
 
-/// Why a job has to be done, in a few words; nullopt if its output is up to date.
+/// The reason why a job is stale, in a few words; nullopt if its output is up to date.
 /// \param entry  null if there is none.
 /// \param recipe_folder  where the names of inputs start.
 [[nodiscard]] std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry* entry,

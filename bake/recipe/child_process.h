@@ -1,5 +1,5 @@
-// This program run again, several times at once: each in a process group of its own, with nothing of ours but what it
-// is given, so that whatever happens to it happens to it alone.
+// This program run again, several times at once: each in a process group of its own, which shares nothing with this
+// process but its arguments, so that a crash affects that child alone.
 #pragma once
 
 #include <sys/types.h>
@@ -17,11 +17,11 @@ namespace relief {
 
 /// How a child ended.
 struct ChildEnd {
-    std::size_t tag = 0;     ///< as given to start()
-    pid_t pid = 0;           ///< that it had
+    std::size_t tag = 0;  ///< as given to start()
+    pid_t pid = 0;
     int exit_code = 0;       ///< valid if signal is 0
     int signal = 0;          ///< that ended it
-    bool timed_out = false;  ///< it was ended for taking longer than its time
+    bool timed_out = false;  ///< it was ended because its time was up
     double ms = 0.0;         ///< from its start
     std::string out;         ///< its standard output: the end of it, at most kChildOutputMax
     std::string err;         ///< its standard error: the end of it, at most kChildErrorMax
@@ -30,8 +30,8 @@ struct ChildEnd {
 inline constexpr std::size_t kChildOutputMax = std::size_t{64} << 20;
 inline constexpr std::size_t kChildErrorMax = std::size_t{64} << 10;
 
-/// Signals that end this process (INT, TERM, HUP) are blocked while one of these lives, and reported by
-/// wait(); those that are ignored stay ignored. Use one at a time, and from one thread.
+/// Signals that ask this process to end (INT, TERM, HUP) are held back while one of these lives, and returned by
+/// askedToEnd(); ignored ones stay ignored. Use one at a time, and from one thread.
 class ChildProcesses {
   public:
     ChildProcesses();

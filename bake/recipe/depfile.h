@@ -20,7 +20,7 @@ struct InputFile {
 /// "OUT…: IN…", and for each input but the first an empty rule, so that Make goes on where one was deleted.
 /// Spaces, `#`, `$` and `:` are escaped.
 /// \param targets  at least one.
-/// \param inputs   the primary one first; what is there twice is written once.
+/// \param inputs   the primary one first; duplicates are written once.
 /// Errors: kUnsupported for a name that Make or Ninja would read as something else: with a control character,
 /// a `;` or `=`, a backslash before an escaped character or at the end; a target with `%`; an empty name.
 [[nodiscard]] Result<std::string> depfileText(const std::vector<std::string>& targets,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <iterator>
 #include <optional>
 
@@ -29,12 +28,6 @@ struct BeyondLimit {
     std::string message;
 };
 
-/// The shortest number that reads back as the same.
-std::string shortestNumber(double value) {
-    std::array<char, 64> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 void refuseUnknown(const TomlValue& table, std::span<const std::string_view> known) {
     for (const toml::key* key : keysInOrder(*table.node().as_table())) {
         if (std::ranges::find(known, key->str()) == known.end()) {
@@ -53,7 +46,7 @@ std::string textOf(const TomlValue& value, bool number) {
     if (number && value.node().is_integer()) {
         text = std::to_string(*value.node().value_exact<std::int64_t>());
     } else if (number && value.node().is_floating_point()) {
-        text = shortestNumber(*value.node().value_exact<double>());
+        text = numberWord(*value.node().value_exact<double>());
     } else if (value.node().is_string()) {
         text = value.text();
     } else {

@@ -66,7 +66,7 @@ class Expander {
         return {};
     }
 
-    /// Once all are known: no output may be an input, nor another output under another name.
+    /// Once all are known: no output may be an input, or another output under another name.
     Result<RecipeJobs> finish(const fs::path& recipe) {
         FileGuard& files = result_.files;
         RELIEF_TRY(files.reads(recipe));
@@ -93,7 +93,7 @@ class Expander {
     }
 
   private:
-    /// The "../" at the start of a pattern or a name, where they may climb out of the recipe's folder.
+    /// Length of the "../" at the start of a pattern or a name, where it may leave the recipe's folder.
     [[nodiscard]] std::size_t climb(std::string_view text) const {
         constexpr std::string_view kUp = "../";
         std::size_t end = 0;
@@ -103,7 +103,7 @@ class Expander {
         return end;
     }
 
-    /// Of a pattern that climbs: everything before its first wildcard or its last name.
+    /// Of a pattern that begins so: everything before its first wildcard or its last name.
     [[nodiscard]] std::string beginning(std::string_view text) const {
         std::size_t end = climb(text);
         for (std::size_t slash = text.find('/', end); end > 0 && slash != std::string_view::npos;
@@ -118,7 +118,7 @@ class Expander {
         return std::string(text.substr(0, end));
     }
 
-    /// The folder that this leads to; nothing else is looked through.
+    /// The folder that this leads to: only it is searched.
     Result<fs::path> folderAt(const std::string& up, const RecipeAsset& asset) const {
         if (up.empty()) {
             return folder_;

@@ -1,5 +1,5 @@
-// The jobs of a recipe, file by file: patterns matched, names made, and nothing that would overwrite a file
-// of another kind.
+// The bakes of a recipe, file by file: patterns matched, outputs named, and none that would overwrite an input or another
+// output.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,9 @@
 namespace relief {
 
 inline constexpr std::size_t kRecipeJobsMax = 100'000;
-/// What every output ends in.
+/// The extension of every output.
 inline constexpr std::string_view kColliderExtension = ".relief";
-/// Beside the outputs: what each was made from.
+/// Beside the outputs: the inputs of each.
 inline constexpr const char* kBakeCacheName = ".relief-cache.json";
 
 /// One mesh to be baked into one collider.
@@ -27,19 +27,19 @@ struct RecipeJob {
     std::filesystem::path output_path;   ///< ready to be written; its folder may be missing
     std::vector<std::string> arguments;  ///< of `relief bake`, files as they can be opened; sorted
     std::vector<std::string>
-        options;  ///< the same, files from the recipe's folder: what the output depends on
+        options;  ///< the same, files from the recipe's folder: the output depends on them
 };
 
 struct RecipeJobs {
     std::vector<RecipeJob> jobs;                 ///< in the order of the recipe
     std::vector<std::filesystem::path> folders;  ///< that patterns looked through; each once
-    FileGuard files;                             ///< knows every input and every output
+    FileGuard files;                             ///< holds every input and every output
 };
 
-/// \param recipe         its folder is what meshes are named from and may not lie outside of; "-": the
-/// current one. \param output_folder  need not exist; empty for the recipe's folder.
+/// \param recipe  meshes are named from its folder and may not lie outside of it; "-": the current one.
+/// \param output_folder  need not exist; empty for the recipe's folder.
 /// \param root  another folder whose files may be named, by `..` at the start; empty: none.
-/// \param files  knows what else is read. Errors, at a place of
+/// \param files  holds what else is read. Errors, at a place of
 /// the recipe: kInvalidInput (a pattern that matches nothing, a file outside of the recipe's folder, an
 /// output outside of the output folder, without .relief at its end, or the same as another output or as an
 /// input), kLimit (kRecipeJobsMax), those of globFiles.
@@ -57,8 +57,8 @@ struct Shard {
     std::uint64_t count = 1;
 };
 
-/// Whether an output is this shard's: of every output exactly one of `count` shards says so, and it depends
-/// on the output's name alone (XXH3-64 modulo count).
+/// Whether an output belongs to this shard: every output belongs to exactly one of `count` shards, by its name alone (XXH3-64
+/// modulo count).
 [[nodiscard]] bool inShard(const std::string& output, const Shard& shard);
 
 }  // namespace relief

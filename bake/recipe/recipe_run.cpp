@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <span>
 #include <system_error>
 
 #include "bake/recipe/child_process.h"
@@ -17,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// How often the cache file is written while assets are baked: what a killed run has to do again.
+/// Between two writes of the cache file while assets are baked; a killed run loses so much.
 constexpr auto kCacheInterval = std::chrono::seconds(2);
 constexpr std::string_view kErrorStart = "relief: error: ";
 constexpr std::string_view kWarningStart = "relief: warning: ";
 
-/// What a child that was killed left of the file that it wrote (formats/base/file_io.cpp names it).
+/// Removes the unfinished output of a child that was killed (formats/base/file_io.cpp names it).
 void removeTemporaries(const fs::path& folder, pid_t pid) {
     const std::string start = ".relief-" + std::to_string(pid) + "-";
     std::error_code error;
@@ -123,7 +125,7 @@ class Runner {
                 take(end);
             }
             if (!fresh_.empty() && Clock::now() - cached > kCacheInterval) {
-                // Should it fail, the last time says so.
+                // The last write reports errors.
                 if (updateBakeCache(run_.output_folder, fresh_)) {
                     fresh_.clear();
                 }
@@ -198,7 +200,7 @@ class Runner {
     }
 
     void succeed(AssetResult& asset, const std::string& report) {
-        // What was read is known to the child alone: the file may be another by now.
+        // Only the child knows what it read: the file may have changed since.
         const fs::path folder = recipeFolder(run_.recipe);
         const auto json = nlohmann::json::parse(report, nullptr, false);
         if (json.is_object() && json.contains("inputs") && json["inputs"].is_array()) {
@@ -236,11 +238,65 @@ class Runner {
     bool stop_ = false;
 };
 
+fs::path realFolder(const fs::path& path) {
+    std::error_code error;
+    // A slash at the end would make another path of the same folder.
+    return fs::weakly_canonical(fs::absolute(path / ".", error), error).lexically_normal() / "";
+}
+
 }  // namespace
 
 Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run) {
     std::string tool = RELIEF_TRY(toolIdentity());
     return Runner(run, std::move(tool)).go(std::move(jobs));
+}
+
+Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
+                                const std::vector<std::string>& beside, const RecipeRun& run,
+                                const std::vector<fs::path>& folders,
+                                const std::vector<AssetResult>& assets) {
+    const fs::path folder = recipeFolder(run.recipe);
+    // As they were given, in their shortest form: as a build file has them.
+    const auto name = [](const fs::path& file) { return file.lexically_normal().string(); };
+    std::vector<std::string> targets;
+    std::vector<std::string> inputs;
+    if (run.recipe != "-") {
+        inputs.push_back(name(run.recipe));
+    }
+    std::set<fs::path> written = {realFolder(run.output_folder)};
+    for (const std::string& file : beside) {
+        if (!file.empty()) {
+            const fs::path parent = fs::path(file).parent_path();
+            written.insert(realFolder(parent.empty() ? fs::path(".") : parent));
+        }
+    }
+    for (const AssetResult& asset : assets) {
+        targets.push_back(name(asset.job.output_path));
+        written.insert(realFolder(asset.job.output_path.parent_path()));
+        for (const InputFile& input : asset.inputs) {
+            inputs.push_back(name(folder / input.path));
+        }
+    }
+    for (const fs::path& searched : folders) {
+        if (!written.contains(realFolder(searched))) {
+            // "rocks/" and "rocks" are two files to Make.
+            const fs::path normal = (searched / "").lexically_normal();
+            inputs.push_back(normal == "./" || normal == "." ? "." : normal.parent_path().string());
+        }
+    }
+    if (!stamp.empty()) {
+        targets = {stamp};
+    }
+    // A shard may have nothing to do.
+    return targets.empty() ? Result<void>() : writeDepfile(path, targets, inputs);
+}
+
+Result<void> writeRecipeStamp(const fs::path& path, const std::vector<AssetResult>& assets) {
+    std::string text;
+    for (const AssetResult& asset : assets) {
+        text += asset.hash + "  " + cleanUtf8(asset.job.output) + "\n";
+    }
+    return writeFile(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace relief

@@ -1,5 +1,5 @@
-// Bakes the assets of a recipe that are not up to date: each asset by a process of its own, so that one that
-// crashes, hangs or takes all memory takes nothing else with it.
+// Bakes the stale assets of a recipe: each by a process of its own, so that one that crashes, hangs or takes all memory
+// fails alone.
 #pragma once
 
 #include <filesystem>
@@ -15,11 +15,11 @@
 namespace relief {
 
 enum class AssetState : std::uint8_t {
-    kStale,      ///< to be baked
-    kUpToDate,   ///< nothing was to be done
+    kStale,  ///< to be baked
+    kUpToDate,
     kBaked,      ///< its output is new
     kFailed,     ///< its output is as it was
-    kCancelled,  ///< not begun, or not finished, as the run ended before
+    kCancelled,  ///< not begun, or not finished, because the run ended before
 };
 template <>
 inline constexpr std::array<std::string_view, 5> kWordsOf<AssetState>{"stale", "up to date", "baked",
@@ -29,7 +29,7 @@ struct AssetResult {
     RecipeJob job;
     AssetState state = AssetState::kStale;
     std::string reason;                 ///< why it was to be baked; "" if up to date
-    double ms = 0.0;                    ///< baking it took
+    double ms = 0.0;                    ///< time of its bake
     std::string hash;                   ///< XXH3-128 of the output; baked or up to date
     std::uint64_t bytes = 0;            ///< of the output; baked or up to date
     Error error;                        ///< failed
@@ -57,8 +57,24 @@ struct RecipeResult {
     int signal = 0;                   ///< that ended the run early; its children are gone
 };
 
-/// Errors: kIo: the program itself cannot be read, or the cache file not written. What fails of single assets
-/// is in their results.
+/// Errors: kIo: the program itself cannot be read, or the cache file not written. Errors of single assets are in their
+/// results.
 [[nodiscard]] Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run);
+
+/// For build systems: the inputs of all outputs, which are the recipe, every file read, and every folder that a pattern
+/// looked through, so that a new file is noticed. A folder that the run itself writes into is left out: its
+/// time changes by that alone.
+/// \param stamp    the target; empty: all outputs are
+/// \param beside   further files that the run writes; empty names are none
+/// \param folders  that patterns looked through
+/// Errors: those of writeDepfile.
+[[nodiscard]] Result<void> writeRecipeDepfile(const std::filesystem::path& path, const std::string& stamp,
+                                              const std::vector<std::string>& beside, const RecipeRun& run,
+                                              const std::vector<std::filesystem::path>& folders,
+                                              const std::vector<AssetResult>& assets);
+
+/// A line "HASH  OUTPUT" for each asset: the same outputs give the same bytes. Errors: kIo.
+[[nodiscard]] Result<void> writeRecipeStamp(const std::filesystem::path& path,
+                                            const std::vector<AssetResult>& assets);
 
 }  // namespace relief

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/report/report_text.h"
@@ -95,7 +96,12 @@ struct InfoReport {
     ColliderReport<ColliderMapReport> collider = {};
 
     InfoReport() = default;
-    InfoReport(std::string name, const Collider& shown, const ContainerInfo& info);
+    InfoReport(std::string name, const Collider& shown, const ContainerInfo& info)
+        : file(std::move(name)), collider{shown, info} {
+        for (std::size_t i = 0; i < shown.maps.size(); ++i) {
+            collider.maps.push_back({i, shown.maps[i], info.payloads[i]});
+        }
+    }
 };
 
 template <class Visitor, FieldsOf<InfoReport> R>

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "bake/cli/generated.h"
-#include "bake/cli/schemas.h"
 #include "formats/base/file_io.h"
 #include "formats/fields/generated.h"
 #include "runtime/player/report.h"

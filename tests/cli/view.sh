@@ -37,7 +37,7 @@ expect 0 "$relief" view b.relief
 [ ! -s stdout ] && [ ! -s stderr ] || die "it says something: $(cat stdout stderr)"
 data b.html
 holds b.relief 'd["collider"]'
-json data.json 'list(d) == ["format", "name", "collider", "shows", "mesh", "check", "scene", "files", "serve"]'
+json data.json 'list(d) == ["format", "name", "collider", "shows", "mesh", "check", "scene", "files"]'
 json data.json '[d["format"], d["name"]] == [2, "b.relief"] and {d[k] for k in list(d)[3:]} == {None}'
 
 "$relief" view - -o - <b.relief >standard_input.html

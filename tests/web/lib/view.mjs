@@ -10,7 +10,7 @@ const kEmpty = '<script type="application/json" id="relief-page-data">null</scri
 /** Data of a page that shows a collider's bytes. */
 export const pageData = (name, bytes, more = {}) =>
     ({ format: 2, name, collider: bytes && Buffer.from(bytes).toString("base64"), shows: null, mesh: null, check: null, scene: null,
-       files: null, serve: null, ...more });
+       files: null, ...more });
 
 /** Data of a page that `relief view` made. */
 export const dataOf = (file) => JSON.parse(/id="relief-page-data">(.*)<\/script>/.exec(readFileSync(file, "utf8"))[1]);
