@@ -35,7 +35,7 @@ CHANCE = 0.001
 SIX_MAPS = [word for way in ("-x", "-y", "-z")
             for word in ("--map", f"front-back:dir={way},depth=half,decode=projected")]
 PAPER_MAPS = ["--map", "front-back:dir=-z,size=512,depth=half,decode=projected", "--map", "cube:size=512,decode=projected"]
-PROMISES = {("picture", "all"): "at most 1.2 on a GPU", ("mesh", "maps"): "at most 1.3 on a GPU"}
+PROMISES = {("picture", "all"): "at most 1.2 on a GPU"}
 
 
 class Unusable(Exception):

@@ -106,7 +106,7 @@ Result<Json> timeInTurns(const Bench& bench, const std::vector<Work>& works, con
         }
     }
     const auto compared = [&](const Times& of) -> const std::vector<double>& {
-        return bench.software ? of.cpu : blocks.gpu_clock ? of.gpu : of.wall;
+        return bench.software ? of.cpu : of.wall;
     };
     Json rows = Json::array();
     for (std::size_t i = 0; i < works.size(); ++i) {

@@ -40,9 +40,8 @@ struct Work {
 /// A block is some calls between two glFinish, each flushed as the end of a frame is: a driver may keep unflushed calls
 /// until glFinish, and the GPU would idle while they are made.
 struct Blocks {
-    int rounds = 7;          ///< blocks of each work; --blocks overrides
-    int calls = 0;           ///< of a block; 0: as many as take 10 ms
-    bool gpu_clock = false;  ///< a GPU's ratios are of its own clock; else of the wall's
+    int rounds = 7;  ///< blocks of each work; --blocks overrides
+    int calls = 0;   ///< of a block; 0: as many as take 10 ms
 };
 
 /// Times works in turns after a call of each, for which the driver compiles. An array of {name, ms, cpu_ms, gpu_ms,

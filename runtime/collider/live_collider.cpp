@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "formats/validate.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
@@ -31,7 +32,8 @@ bool holds(const DepthMap& map, const glm::vec3& p) {
 /// As liveFrames() makes them.
 bool isLiveMap(const DepthMap& map, const DepthMap& first) {
     return map.format == MapFormat::kFrontBackFixed && map.compare == Compare::kBoth &&
-           map.decode == Decode::kPlane && map.width == first.width && map.height == first.height;
+           map.decode == Decode::kPlane && map.width == first.width && map.height == first.height &&
+           validateFrame(map);
 }
 
 }  // namespace
@@ -90,13 +92,13 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
         })) {
         return fail(ErrorCode::kUsage, "a live collider needs maps as liveFrames() makes them");
     }
-    auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles, {.keep_previous = true}));
-    auto renderer = RELIEF_TRY(DepthMapRenderer::create());
-    auto target = RELIEF_TRY(DepthMapTarget::create(frameOf(frames.maps.front()), true));
+    auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles));
+    auto renderer =
+        RELIEF_TRY(DepthMapRenderer::create(frames.maps.front().width, frames.maps.front().height));
     for (DepthMap& map : frames.maps) {
         map.texels.clear();
     }
-    LiveCollider live(std::move(mesh), std::move(renderer), std::move(target), std::move(frames));
+    LiveCollider live(std::move(mesh), std::move(renderer), std::move(frames));
     const PassState state;
     live.motion_program_ = RELIEF_TRY(makeScreenProgram("collider/live_motion.frag"));
     live.motion_program_.use();
@@ -160,7 +162,7 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
     }
     const PassState state;
     for (std::size_t m = 0; m < slots.size(); ++m) {
-        RELIEF_TRY(renderer_.render(mesh_, frameOf(frames_.maps[m]), target_));
+        renderer_.render(mesh_, frames_.maps[m]);
         copyTexels(slots[m]);
         copyMotion(slots[m]);
     }
@@ -172,13 +174,13 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
 }
 
 void LiveCollider::copyTexels(const LiveSlot& slot) const {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, renderer_.framebuffer());
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, texel_target_.name());
     glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.texels->name(), 0);
     // Not glCopyTexSubImage2D: an H200's driver took integers by way of the CPU, 13 ms a map.
-    const auto width = static_cast<GLint>(target_.width());
-    const auto height = static_cast<GLint>(target_.height());
+    const auto width = static_cast<GLint>(renderer_.width());
+    const auto height = static_cast<GLint>(renderer_.height());
     glBlitFramebuffer(0, 0, width, height, slot.x, slot.y, slot.x + width, slot.y + height,
                       GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
@@ -186,11 +188,11 @@ void LiveCollider::copyTexels(const LiveSlot& slot) const {
 void LiveCollider::copyMotion(const LiveSlot& slot) const {
     glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
-    useTexture(kMotionXyUnit, target_.motion(0));
-    useTexture(kMotionZUnit, target_.motion(1));
+    useTexture(kMotionXyUnit, renderer_.motion(0));
+    useTexture(kMotionZUnit, renderer_.motion(1));
     motion_program_.use();
-    const auto width = static_cast<GLsizei>(target_.width());
-    const auto height = static_cast<GLsizei>(target_.height());
+    const auto width = static_cast<GLsizei>(renderer_.width());
+    const auto height = static_cast<GLsizei>(renderer_.height());
     glEnable(GL_SCISSOR_TEST);
     for (int end = 0; end < 2; ++end) {
         const GLint y = slot.motion_y + end * height;

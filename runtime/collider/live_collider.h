@@ -36,7 +36,7 @@ class LiveCollider {
     /// \param positions, triangles  as GpuMesh::create wants them: the mesh before its first change.
     /// \param frames  maps as liveFrames() makes them, all of one size. A map's box must hold the mesh at all times: what
     ///                leaves it is cut off, and a map that encloses everything then calls that free.
-    /// Fails as GpuMesh, DepthMapTarget and DepthMapRenderer do, and with kUsage (other maps).
+    /// Fails as GpuMesh and DepthMapRenderer do, and with kUsage (other maps).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
                                                      std::span<const glm::uvec3> triangles, Collider frames);
 
@@ -63,18 +63,14 @@ class LiveCollider {
     [[nodiscard]] const GpuMesh& mesh() const { return mesh_; }
 
   private:
-    LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, DepthMapTarget target, Collider frames)
-        : mesh_(std::move(mesh)),
-          renderer_(std::move(renderer)),
-          target_(std::move(target)),
-          frames_(std::move(frames)) {}
+    LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, Collider frames)
+        : mesh_(std::move(mesh)), renderer_(std::move(renderer)), frames_(std::move(frames)) {}
     [[nodiscard]] Result<void> refuseSecondChange() const;
     void copyTexels(const LiveSlot& slot) const;
     void copyMotion(const LiveSlot& slot) const;
 
     GpuMesh mesh_;
-    DepthMapRenderer renderer_;
-    DepthMapTarget target_;  // of one map after another
+    DepthMapRenderer renderer_;  // of one map after another
     Collider frames_;
     GlProgram motion_program_;
     GlFramebuffer texel_target_, motion_target_;

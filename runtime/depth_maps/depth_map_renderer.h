@@ -1,24 +1,18 @@
-// Depth maps of every format, rendered from a mesh on the GPU: the texels are those of formats/README.md, as `relief bake`
-// makes them from one ray through the centre of each texel, to a unit of the last place of the depth.
+// Front-back maps of planes in 16 bits, drawn on the GPU from a mesh that moves: the texels are those of
+// formats/README.md, as `relief bake` makes them from one ray through the centre of each texel, to a unit of the last place
+// of the depth.
 //
-// The rasteriser only finds the triangle that a texel's ray meets; the depth is that of the triangle's own plane at the
-// texel's centre, because rasterisers move vertices to a grid of 1/256 pixel. Texels whose centre lies so near to an edge
-// may take the triangle beside it, or what lies behind a silhouette. Of surfaces on one ray LESS keeps the nearest, GREATER
-// the farthest; front-back maps are drawn twice into one target.
-//
-// Maps whose decode is Plane hold, in each texel, the plane of the triangle that its centre's ray meets:
-// moved outwards to the next depth code, standing along the ray where it is steep, and facing the viewer
-// where no plane can be stored. What the ray caster does with the rays next to a texel (silhouettes found
-// between texels' centres) is not done here.
+// The rasteriser only finds the triangle that a texel's ray meets; the plane is that of the triangle, because rasterisers
+// move vertices to a grid of 1/256 pixel. Texels whose centre lies so near to an edge may take the triangle beside it, or
+// what lies behind a silhouette. The plane is moved outwards to the next depth code, stands along the ray where it is steep,
+// and faces the viewer where no plane can be stored. What the ray caster does with the rays next to a texel (silhouettes
+// found between texels' centres) is not done here.
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <string>
 
 #include "formats/base/result.h"
-#include "runtime/depth_maps/depth_map_frame.h"
-#include "runtime/depth_maps/depth_map_target.h"
+#include "formats/depth_map.h"
 #include "runtime/depth_maps/gpu_mesh.h"
 #include "runtime/gl/gl_object.h"
 
@@ -27,20 +21,36 @@ namespace relief {
 /// Needs a current context, as every call does. Every call restores the GL state that it touches; none waits.
 class DepthMapRenderer {
   public:
-    [[nodiscard]] static Result<DepthMapRenderer> create();
+    /// \param width, height  texels of the maps.
+    /// Errors: kLimit (beyond this GL's textures, no room), kUnsupported (does not render to them), kFailure.
+    [[nodiscard]] static Result<DepthMapRenderer> create(std::uint32_t width, std::uint32_t height);
 
-    /// Renders a whole map into a target of the same format, faces stacked from row 0 on; writes every texel
-    /// of it. The first map of a kind compiles its program. Errors: kUsage (a frame that is not right, a
-    /// target of another format or too small), kFailure.
-    [[nodiscard]] Result<void> render(GpuMesh& mesh, const DepthMapFrame& frame,
-                                      const DepthMapTarget& target);
+    /// Draws a whole map over the last one.
+    /// \param map  valid (formats/validate.h), MapFormat::kFrontBackFixed and Decode::kPlane, of this size; texels may be
+    ///             missing. Its rays start in free space if `encloses` is set; otherwise a surface met from its inner side
+    ///             leaves the texel empty.
+    void render(GpuMesh& mesh, const DepthMap& map) const;
+
+    [[nodiscard]] std::uint32_t width() const { return width_; }
+    [[nodiscard]] std::uint32_t height() const { return height_; }
+    /// The motion of the surface between the mesh's previous and its present positions, object units. Of
+    /// end e (0: the front, 1: the back) x is component e of texture 0, y component 2 + e of it, z component e of texture
+    /// 1. 0 where the texel is empty.
+    /// \param i  0 or 1.
+    [[nodiscard]] GLuint motion(int i) const { return motion_[i].name(); }
+    /// To read from: attachment 0 has the texels as the container has them, RGBA16UI; 1 and 2 the motion.
+    [[nodiscard]] GLuint framebuffer() const { return framebuffer_.name(); }
 
   private:
-    [[nodiscard]] Result<const GlProgram*> programFor(const DepthMapFrame& frame, bool motion);
-    static void setUniforms(const GlProgram& program, const GpuMesh& mesh, const DepthMapFrame& frame,
-                            std::uint32_t face);
+    void setUniforms(const GpuMesh& mesh, const DepthMap& map) const;
 
-    std::map<std::string, GlProgram> programs_;  // by their defines
+    std::uint32_t width_ = 0;
+    std::uint32_t height_ = 0;
+    GlProgram program_;
+    GlTexture texels_;
+    GlTexture motion_[2];
+    GlTexture depth_;
+    GlFramebuffer framebuffer_;
 };
 
 }  // namespace relief

@@ -119,8 +119,7 @@ Result<void> checkSize(std::size_t vertices, std::size_t triangles) {
 
 }  // namespace
 
-Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
-                                const GpuMeshOptions& options) {
+Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
     RELIEF_TRY(checkContext());
     if (triangles.empty() || positions.empty()) {
         return fail(ErrorCode::kInvalidInput, "a mesh without triangles cannot be drawn; give it some");
@@ -139,7 +138,6 @@ Result<GpuMesh> GpuMesh::create(std::span<const glm::vec3> positions, std::span<
     GpuMesh mesh;
     mesh.vertex_count_ = static_cast<std::uint32_t>(positions.size());
     mesh.triangle_count_ = static_cast<std::uint32_t>(triangles.size());
-    mesh.keep_previous_ = options.keep_previous;
     const PassState state;
     RELIEF_TRY(mesh.createTextures(triangles));
     mesh.upload(positions.data());
@@ -157,9 +155,9 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     }
     vertex_shift_ = shiftFor(vertex_count_);
     triangle_shift_ = shiftFor(triangle_count_);
-    for (int i = 0; i < (keep_previous_ ? 2 : 1); ++i) {
-        positions_[i] = makeTexture2D(GL_RGB32F, 1 << vertex_shift_, rowsFor(vertex_count_, vertex_shift_),
-                                      GL_RGB, GL_FLOAT);
+    for (GlTexture& positions : positions_) {
+        positions = makeTexture2D(GL_RGB32F, 1 << vertex_shift_, rowsFor(vertex_count_, vertex_shift_),
+                                  GL_RGB, GL_FLOAT);
     }
     const GLsizei rows = rowsFor(triangle_count_, triangle_shift_);
     std::vector<std::uint32_t> texels(std::size_t{4} * static_cast<std::size_t>(rows) << triangle_shift_, 0U);
@@ -220,8 +218,8 @@ Result<void> GpuMesh::setPositions(std::span<const glm::vec3> positions) {
     }
     RELIEF_TRY(checkFinite(positions));
     const PassState state;
-    current_ = keep_previous_ ? 1 - current_ : current_;
-    moved_ = keep_previous_;
+    current_ = 1 - current_;
+    moved_ = true;
     upload(positions.data());
     ++revision_;
     return {};
@@ -248,8 +246,8 @@ Result<void> GpuMesh::setPositions(GLuint buffer, std::size_t offset) {
                                            " on, but the buffer has " + std::to_string(size) +
                                            "; give a larger one");
     }
-    current_ = keep_previous_ ? 1 - current_ : current_;
-    moved_ = keep_previous_;
+    current_ = 1 - current_;
+    moved_ = true;
     upload(reinterpret_cast<const void*>(offset));
     ++revision_;
     return {};

@@ -10,7 +10,7 @@
 //                      /t\                             triangles, wherever possible)
 //                     a---c               slots < triangles + vertices, and mostly as many as triangles
 //
-//     bytes on the GPU = 12 or 16 · vertices (twice that with keep_previous) + 4 · slots + 44 · triangles
+//     bytes on the GPU = 24 or 32 · vertices + 4 · slots + 44 · triangles
 #pragma once
 
 #include <cstddef>
@@ -23,11 +23,6 @@
 
 namespace relief {
 
-struct GpuMeshOptions {
-    /// Keeps the positions of before the last setPositions() too, for the motion of the surface.
-    bool keep_previous = false;
-};
-
 class GpuMesh {
   public:
     /// Needs a current context, as every call does; restores what it touches.
@@ -36,8 +31,7 @@ class GpuMesh {
     /// Errors: kInvalidInput (an index beyond the positions, a position that is not finite, no triangle),
     /// kLimit (more than this GL's textures or indices hold), kUnsupported, kFailure (the driver's compiler).
     [[nodiscard]] static Result<GpuMesh> create(std::span<const glm::vec3> positions,
-                                                std::span<const glm::uvec3> triangles,
-                                                const GpuMeshOptions& options = {});
+                                                std::span<const glm::uvec3> triangles);
 
     /// Moves the vertices.
     /// \param positions  finite, as many as at first.
@@ -48,11 +42,9 @@ class GpuMesh {
     /// a triangle with a corner that is not is not drawn, or anywhere. Errors: kUsage (0, no buffer, an
     /// offset that is no multiple of 4, a buffer that is too short).
     [[nodiscard]] Result<void> setPositions(GLuint buffer, std::size_t offset = 0);
-    /// With keep_previous: forgets the motion, as if the vertices had always been where they are (after a
-    /// jump, or when they have come to rest).
+    /// Forgets the motion, as if the vertices had always been where they are (after a jump, or when they have come to rest).
     void settle();
 
-    [[nodiscard]] std::uint32_t vertexCount() const { return vertex_count_; }
     [[nodiscard]] std::uint32_t triangleCount() const { return triangle_count_; }
     [[nodiscard]] std::uint32_t slotCount() const { return slot_count_; }
     /// Changes with every change of the positions.
@@ -62,7 +54,7 @@ class GpuMesh {
 
     /// RGB32F, or RGBA32F where the GL does not copy triples: xyz of vertex i.
     [[nodiscard]] GLuint positions() const { return positions_[current_].name(); }
-    /// Those of before; with keep_previous alone, otherwise the same as positions().
+    /// Those of before the last setPositions(), for the motion of the surface.
     [[nodiscard]] GLuint previousPositions() const;
     [[nodiscard]] int vertexShift() const { return vertex_shift_; }
     /// RGBA32UI: the vertices of triangle i, its own corner last; w is 0.
@@ -89,7 +81,6 @@ class GpuMesh {
     std::uint64_t revision_ = 0;
     std::uint64_t planes_revision_ = 0;
     GlTexture positions_[2];
-    bool keep_previous_ = false;
     int current_ = 0;
     bool moved_ = false;
     GlTexture corners_;

@@ -13,6 +13,7 @@
 
 #include "runtime/collider/field_query.h"
 #include "runtime/gl/gl_functions.h"
+#include "tests/runtime/depth_maps/read_texels.h"
 #include "tests/runtime/particles/collision_test.h"
 
 namespace relief {
@@ -174,18 +175,15 @@ std::vector<glm::vec3> randomPoints(std::size_t count, float half) {
 TEST_P(LiveColliderGlTest, MapsAreThoseOfAStaticBakeOfTheMesh) {
     const Mesh mesh = sphere(0.5F, 64, 32);
     auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
-    auto renderer = DepthMapRenderer::create();
+    const auto renderer = DepthMapRenderer::create(96, 96);
     ASSERT_TRUE(gpu_mesh && renderer);
     const std::vector<glm::vec3> points = randomPoints(20'000, 0.7F);
     makeLive(mesh, cube(0.6F), 96);
     update();
     Collider baked = live_->frames();
     for (DepthMap& map : baked.maps) {
-        const DepthMapFrame frame = frameOf(map);
-        const auto target = DepthMapTarget::create(frame);
-        ASSERT_TRUE(target && renderer->render(*gpu_mesh, frame, *target));
-        map.texels.resize(map.texelBytes());
-        ASSERT_TRUE(target->read(0, 0, map.width, map.height * map.faceCount(), map.texels));
+        renderer->render(*gpu_mesh, map);
+        map.texels = readTexels(*renderer);
     }
     const std::vector<FieldSample> live = field(points);
     std::size_t inside = 0;

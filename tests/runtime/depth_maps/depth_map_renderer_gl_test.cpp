@@ -18,6 +18,7 @@
 #include "formats/normal_index.h"
 #include "formats/plane.h"
 #include "runtime/gl/gl_functions.h"
+#include "tests/runtime/depth_maps/read_texels.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -61,40 +62,24 @@ Mesh box(const glm::vec3& half) {
 }
 
 /// Looks along +z through [−1, 1]³, so that map depth is (z + 1)/2.
-DepthMapFrame alongZ(MapFormat format, Compare compare, std::uint32_t size,
-                     Decode decode = Decode::kProjected) {
-    DepthMapFrame frame;
-    frame.format = format;
-    frame.compare = isFrontBack(format) ? Compare::kBoth : compare;
-    frame.decode = decode;
-    frame.width = frame.height = size;
-    const bool cube = format == MapFormat::kCube8;
-    frame.origin = cube ? glm::dvec3(0.0) : glm::dvec3(-1.0);
+DepthMap alongZ(std::uint32_t size) {
+    DepthMap map;
+    map.format = MapFormat::kFrontBackFixed;
+    map.compare = Compare::kBoth;
+    map.decode = Decode::kPlane;
+    map.width = map.height = size;
     for (int k = 0; k < 3; ++k) {
-        frame.axis[k] = glm::dvec3(0.0);
-        frame.axis[k][k] = cube ? 1.0 : 2.0;
+        map.object_to_map.row[k] = {0.0F, 0.0F, 0.0F, 0.5F};
+        map.object_to_map.row[k][k] = 0.5F;
+        map.object_per_map[k] = 2.0F;
     }
-    return frame;
+    return map;
 }
-
-constexpr MapFormat kOrthographic[] = {MapFormat::kFloat32, MapFormat::kFixed8, MapFormat::kFrontBackHalf,
-                                       MapFormat::kFrontBackFixed};
 
 class DepthMapRendererGlTest : public GlTest {
   protected:
-    void SetUp() override {
-        GlTest::SetUp();
-        auto renderer = DepthMapRenderer::create();
-        ASSERT_TRUE(renderer);
-        renderer_ = std::move(*renderer);
-    }
-    void TearDown() override {
-        renderer_ = {};
-        GlTest::TearDown();
-    }
-
-    static GpuMesh upload(const Mesh& mesh, const GpuMeshOptions& options = {}) {
-        auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles, options);
+    static GpuMesh upload(const Mesh& mesh) {
+        auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
         if (!gpu_mesh) {
             ADD_FAILURE() << gpu_mesh.error().message;
             std::abort();
@@ -102,49 +87,21 @@ class DepthMapRendererGlTest : public GlTest {
         return std::move(*gpu_mesh);
     }
 
-    DepthMap render(GpuMesh& mesh, const DepthMapFrame& frame) {
-        DepthMap map;
-        map.format = frame.format;
-        map.compare = frame.compare;
-        map.decode = frame.decode;
-        map.width = frame.width;
-        map.height = frame.height;
-        map.texels.resize(map.texelBytes());
-        const auto target = DepthMapTarget::create(frame);
-        EXPECT_TRUE(target) << target.error().message;
-        const auto done = renderer_->render(mesh, frame, *target);
-        EXPECT_TRUE(done) << done.error().message;
-        EXPECT_TRUE(target->read(0, 0, target->width(), target->height(), map.texels));
+    static DepthMap render(GpuMesh& mesh, DepthMap map) {
+        const auto renderer = DepthMapRenderer::create(map.width, map.height);
+        if (!renderer) {
+            ADD_FAILURE() << renderer.error().message;
+            std::abort();
+        }
+        renderer->render(mesh, map);
+        map.texels = readTexels(*renderer);
         return map;
     }
-
-    std::optional<DepthMapRenderer> renderer_;
 };
-
-/// The bytes that the CPU writes for a texel.
-std::vector<std::byte> encoded(MapFormat format, const std::optional<Surface>& front,
-                               const std::optional<Surface>& back) {
-    std::vector<std::byte> bytes(texelSize(format));
-    encodeTexel(format, {front, back}, bytes);
-    return bytes;
-}
 
 /// x of the centre of a texel in [−1, 1].
 double centre(std::uint32_t i, std::uint32_t size) {
     return -1.0 + (i + 0.5) * 2.0 / size;
-}
-
-/// The same bytes; of floats, which GPUs round as they like, within two units in the last place.
-bool sameTexel(MapFormat format, std::span<const std::byte> want, std::span<const std::byte> got) {
-    if (format != MapFormat::kFloat32) {
-        return std::equal(want.begin(), want.end(), got.begin());
-    }
-    std::array<float, 4> a{};
-    std::array<float, 4> b{};
-    std::memcpy(a.data(), want.data(), sizeof(a));
-    std::memcpy(b.data(), got.data(), sizeof(b));
-    return std::equal(a.begin(), a.end(), b.begin(),
-                      [](float x, float y) { return std::abs(x - y) <= 2.4e-7F * std::abs(x); });
 }
 
 TEST_P(DepthMapRendererGlTest, APlaneIsWrittenToTheBit) {
@@ -152,39 +109,17 @@ TEST_P(DepthMapRendererGlTest, APlaneIsWrittenToTheBit) {
     constexpr float kZ = 0.25F;
     // Half of the image: edges between texels' centres, so that coverage is beyond doubt.
     GpuMesh mesh = upload(sheet({-0.5F, -0.25F}, {0.5F, 0.75F}, 3, [](float, float) { return kZ; }));
-    for (const MapFormat format : kOrthographic) {
-        for (const Compare compare : {Compare::kLess, Compare::kGreater}) {
-            for (const Decode decode : {Decode::kProjected, Decode::kPlane}) {
-                SCOPED_TRACE(std::string(mapFormatName(format)) + " " + compareName(compare) + " " +
-                             decodeName(decode));
-                const DepthMapFrame frame = alongZ(format, compare, kSize, decode);
-                const DepthMap map = render(mesh, frame);
-                // 0.625 is between two codes, 40958 and 40959: planes move towards their viewer.
-                const bool plane = decode == Decode::kPlane;
-                const double near_depth = plane ? 40958.0 / 65534.0 : 0.625;
-                double far_depth = plane ? 40959.0 / 65534.0 : 0.625;
-                double front_depth = near_depth;
-                if (plane && format == MapFormat::kFrontBackHalf) {  // halves are 2^-11 apart here
-                    front_depth = 0.625 - std::ldexp(1.0, -11);
-                    far_depth = 0.625 + std::ldexp(1.0, -11);
-                }
-                const Surface front{static_cast<float>(front_depth), {0.0F, 0.0F, -1.0F}};
-                const Surface back{static_cast<float>(far_depth), {0.0F, 0.0F, 1.0F}};
-                for (std::uint32_t y = 0; y < kSize; ++y) {
-                    for (std::uint32_t x = 0; x < kSize; ++x) {
-                        const bool covered =
-                            std::abs(centre(x, kSize)) < 0.5 && std::abs(centre(y, kSize) - 0.25) < 0.5;
-                        std::vector<std::byte> want = encoded(format, std::nullopt, std::nullopt);
-                        if (covered && isFrontBack(format)) {
-                            want = encoded(format, front, back);
-                        } else if (covered) {
-                            want = encoded(format, compare == Compare::kLess ? front : back, std::nullopt);
-                        }
-                        const auto got = map.texelAt(0, x, y);
-                        ASSERT_TRUE(sameTexel(format, want, got)) << x << " " << y;
-                    }
-                }
-            }
+    const DepthMap map = render(mesh, alongZ(kSize));
+    // 0.625 is between two codes, 40958 and 40959: planes move towards their viewer.
+    const Surface front{40958.0F / 65534.0F, {0.0F, 0.0F, -1.0F}};
+    const Surface back{40959.0F / 65534.0F, {0.0F, 0.0F, 1.0F}};
+    std::vector<std::byte> want(texelSize(map.format));
+    for (std::uint32_t y = 0; y < kSize; ++y) {
+        for (std::uint32_t x = 0; x < kSize; ++x) {
+            const bool covered = std::abs(centre(x, kSize)) < 0.5 && std::abs(centre(y, kSize) - 0.25) < 0.5;
+            encodeTexel(map.format, covered ? Texel{front, back} : Texel{}, want);
+            const auto got = map.texelAt(0, x, y);
+            ASSERT_TRUE(std::equal(want.begin(), want.end(), got.begin())) << x << " " << y;
         }
     }
 }
@@ -197,92 +132,18 @@ TEST_P(DepthMapRendererGlTest, TiltedPlanesHaveTheirDepthAndNormal) {
             return static_cast<float>(height(double{x}, double{y}));
         }));
         const glm::vec3 up = glm::vec3(glm::normalize(glm::dvec3(-slope.x, -slope.y, 1.0)));
-        for (const MapFormat format : kOrthographic) {
-            const DepthMap map = render(mesh, alongZ(format, Compare::kLess, kSize));
-            for (std::uint32_t y = 0; y < kSize; ++y) {
-                for (std::uint32_t x = 0; x < kSize; ++x) {
-                    const double depth = 0.5 * (height(centre(x, kSize), centre(y, kSize)) + 1.0);
-                    const Texel texel = decodeTexel(format, map.texelAt(0, x, y));
-                    ASSERT_TRUE(texel.front) << x << " " << y;
-                    // Half a step of the code, and what the corners' floats are rounded by.
-                    const double step = format == MapFormat::kFrontBackHalf ? std::ldexp(1.0, -12)
-                                        : format == MapFormat::kFloat32     ? 0.0
-                                                                            : 0.5 / 65534.0;
-                    ASSERT_NEAR(texel.front->depth, depth, step + 1e-6) << x << " " << y;
-                    const NormalIndex index = encodeNormal(-up);
-                    if (format == MapFormat::kFloat32) {
-                        ASSERT_GT(glm::dot(texel.front->normal, -up), 1.0F - 1e-6F);
-                    } else {
-                        ASSERT_EQ(encodeNormal(texel.front->normal), index) << x << " " << y;
-                    }
-                    if (isFrontBack(format)) {
-                        ASSERT_TRUE(texel.back);
-                        ASSERT_NEAR(texel.back->depth, depth, step + 1e-6);
-                        ASSERT_EQ(encodeNormal(texel.back->normal), encodeNormal(up));
-                    }
-                }
-            }
-        }
-    }
-}
-
-TEST_P(DepthMapRendererGlTest, BoxesRoundACubeMapHaveEveryTexel) {
-    constexpr std::uint32_t kSize = 32;
-    // One in the other: LESS keeps the inner one, GREATER the outer one.
-    Mesh both = box({0.25F, 0.5F, 0.375F});
-    const Mesh outer = box({0.75F, 0.625F, 0.875F});
-    for (const glm::uvec3& t : outer.triangles) {
-        both.triangles.push_back(t + 8U);
-    }
-    both.positions.insert(both.positions.end(), outer.positions.begin(), outer.positions.end());
-    GpuMesh mesh = upload(both);
-    for (const Compare compare : {Compare::kLess, Compare::kGreater}) {
-        const bool less = compare == Compare::kLess;
-        const glm::dvec3 half = less ? glm::dvec3(0.25, 0.5, 0.375) : glm::dvec3(0.75, 0.625, 0.875);
-        DepthMapFrame frame = alongZ(MapFormat::kCube8, compare, kSize);
-        const DepthMap map = render(mesh, frame);
-        for (std::uint32_t face = 0; face < 6; ++face) {
-            for (std::uint32_t y = 0; y < kSize; ++y) {
-                for (std::uint32_t x = 0; x < kSize; ++x) {
-                    const glm::dvec3 d =
-                        glm::normalize(glm::dvec3(cubeDirection({face, (static_cast<float>(x) + 0.5F) / kSize,
-                                                                 (static_cast<float>(y) + 0.5F) / kSize})));
-                    double depth = 10.0;
-                    int axis = 0;
-                    for (int k = 0; k < 3; ++k) {
-                        if (half[k] / std::abs(d[k]) < depth) {
-                            depth = half[k] / std::abs(d[k]);
-                            axis = k;
-                        }
-                    }
-                    glm::vec3 normal(0.0F);
-                    normal[axis] = (d[axis] > 0.0) == less ? -1.0F : 1.0F;
-                    const auto got = map.texelAt(face, x, y);
-                    const Texel texel = decodeTexel(MapFormat::kCube8, got);
-                    ASSERT_TRUE(texel.front) << face << " " << x << " " << y;
-                    ASSERT_NEAR(texel.front->depth, depth, 0.51 * double{kCubeDepthMax} / 65534.0)
-                        << face << " " << x << " " << y;
-                    ASSERT_EQ(texel.front->normal, normal) << face << " " << x << " " << y;
-                }
-            }
-        }
-    }
-}
-
-TEST_P(DepthMapRendererGlTest, NothingIsTooNearToACubesCentre) {
-    constexpr std::uint32_t kSize = 8;
-    for (const float near : {1e-4F, 1e-7F}) {
-        GpuMesh mesh = upload(sheet({-1.0F, -1.0F}, {1.0F, 1.0F}, 5, [near](float, float) { return near; }));
-        DepthMapFrame frame = alongZ(MapFormat::kCube8, Compare::kLess, kSize);
-        const DepthMap map = render(mesh, frame);
-        for (std::uint32_t y = 0; y < kSize; ++y) {
-            for (std::uint32_t x = 0; x < kSize; ++x) {
-                const Texel texel = decodeTexel(MapFormat::kCube8, map.texelAt(4, x, y));
-                ASSERT_TRUE(texel.front) << near << " " << x << " " << y;
-                const double slant =
-                    std::sqrt(1.0 + std::pow(centre(x, kSize), 2) + std::pow(centre(y, kSize), 2));
-                ASSERT_NEAR(texel.front->depth, slant * double{near}, 0.51 * double{kCubeDepthMax} / 65534.0);
-                ASSERT_FALSE(decodeTexel(MapFormat::kCube8, map.texelAt(5, x, y)).front) << "behind";
+        const DepthMap map = render(mesh, alongZ(kSize));
+        for (std::uint32_t y = 1; y + 1 < kSize; ++y) {
+            for (std::uint32_t x = 1; x + 1 < kSize; ++x) {
+                const double depth = 0.5 * (height(centre(x, kSize), centre(y, kSize)) + 1.0);
+                const Texel texel = decodeTexel(map.format, map.texelAt(0, x, y));
+                ASSERT_TRUE(texel.front && texel.back) << x << " " << y;
+                // Outwards by a step of the code at most, and what the corners' floats are rounded by.
+                constexpr double kHalfStep = 0.5 / 65534.0;
+                ASSERT_NEAR(texel.front->depth, depth - kHalfStep, kHalfStep + 1e-6) << x << " " << y;
+                ASSERT_NEAR(texel.back->depth, depth + kHalfStep, kHalfStep + 1e-6) << x << " " << y;
+                ASSERT_EQ(encodeNormal(texel.front->normal), encodeNormal(-up)) << x << " " << y;
+                ASSERT_EQ(encodeNormal(texel.back->normal), encodeNormal(up)) << x << " " << y;
             }
         }
     }
@@ -297,46 +158,38 @@ TEST_P(DepthMapRendererGlTest, StandingAndFacingPlanesKeepTheirWord) {
         const double width = 0.9 / slope;
         GpuMesh mesh = upload(sheet({static_cast<float>(-width), -1.0F}, {static_cast<float>(width), 1.0F}, 2,
                                     [&](float x, float) { return static_cast<float>(slope * double{x}); }));
-        for (const MapFormat format : {MapFormat::kFixed8, MapFormat::kFloat32, MapFormat::kFrontBackHalf}) {
-            DepthMapFrame frame = alongZ(format, Compare::kLess, kSize, Decode::kPlane);
-            // Eight times finer to the right, so that the sheet has texels.
-            frame.axis[0].x = 0.25;
-            frame.origin.x = -0.125;
-            DepthMap map = render(mesh, frame);
-            map.object_to_map.row[0] = {4.0F, 0.0F, 0.0F, 0.5F};
-            map.object_to_map.row[1] = {0.0F, 0.5F, 0.0F, 0.5F};
-            map.object_to_map.row[2] = {0.0F, 0.0F, 0.5F, 0.5F};
-            map.object_per_map = {0.25F, 2.0F, 2.0F};
-            int covered = 0;
-            for (std::uint32_t y = 1; y + 1 < kSize; ++y) {
-                for (std::uint32_t x = 1; x + 1 < kSize; ++x) {
-                    const double at = -0.125 + 0.25 * (x + 0.5) / kSize;
-                    const glm::vec3 on(static_cast<float>(at), static_cast<float>(centre(y, kSize)),
-                                       static_cast<float>(slope * at));
-                    const Texel texel = decodeTexel(format, map.texelAt(0, x, y));
-                    ASSERT_EQ(texel.front.has_value(), std::abs(at) < width) << slope << " " << x << " " << y;
-                    if (!texel.front) {
-                        continue;
-                    }
-                    ++covered;
-                    const auto said = vote(map, on);
-                    ASSERT_TRUE(said);
-                    // A step of the code, along the normal at most.
-                    const float step = format == MapFormat::kFrontBackHalf ? 2e-3F : 1e-4F;
-                    ASSERT_NEAR(said->distance, 0.0F, step) << slope << " " << x << " " << y;
-                    const float cosine = std::abs(texel.front->normal.z);
-                    ASSERT_GT(std::abs(cosine - kStandingCosine), 0.9e-4F)
-                        << "a reader could take it for the other";
-                    stood += cosine < kStandingCosine ? 1 : 0;
+        // Eight times finer to the right, so that the sheet has texels.
+        DepthMap map = alongZ(kSize);
+        map.object_to_map.row[0] = {4.0F, 0.0F, 0.0F, 0.5F};
+        map.object_per_map.x = 0.25F;
+        map = render(mesh, std::move(map));
+        int covered = 0;
+        for (std::uint32_t y = 1; y + 1 < kSize; ++y) {
+            for (std::uint32_t x = 1; x + 1 < kSize; ++x) {
+                const double at = -0.125 + 0.25 * (x + 0.5) / kSize;
+                const glm::vec3 on(static_cast<float>(at), static_cast<float>(centre(y, kSize)),
+                                   static_cast<float>(slope * at));
+                const Texel texel = decodeTexel(map.format, map.texelAt(0, x, y));
+                ASSERT_EQ(texel.front.has_value(), std::abs(at) < width) << slope << " " << x << " " << y;
+                if (!texel.front) {
+                    continue;
                 }
+                ++covered;
+                const auto said = vote(map, on);
+                ASSERT_TRUE(said);
+                // A step of the code, along the normal at most.
+                ASSERT_NEAR(said->distance, 0.0F, 1e-4F) << slope << " " << x << " " << y;
+                const float cosine = std::abs(texel.front->normal.z);
+                ASSERT_GT(std::abs(cosine - kStandingCosine), 0.9e-4F)
+                    << "a reader could take it for the other";
+                stood += cosine < kStandingCosine ? 1 : 0;
             }
-            EXPECT_GT(covered, 0) << slope;
-            // The border is empty.
-            for (std::uint32_t i = 0; i < kSize; ++i) {
-                EXPECT_FALSE(decodeTexel(format, map.texelAt(0, i, 0)).front);
-                EXPECT_FALSE(decodeTexel(format, map.texelAt(0, i, kSize - 1)).front);
-                EXPECT_FALSE(decodeTexel(format, map.texelAt(0, 0, i)).front);
-                EXPECT_FALSE(decodeTexel(format, map.texelAt(0, kSize - 1, i)).front);
+        }
+        EXPECT_GT(covered, 0) << slope;
+        // The border is empty.
+        for (std::uint32_t i = 0; i < kSize; ++i) {
+            for (const glm::uvec2& at : {glm::uvec2(i, 0), {i, kSize - 1}, {0, i}, {kSize - 1, i}}) {
+                EXPECT_FALSE(decodeTexel(map.format, map.texelAt(0, at.x, at.y)).front);
             }
         }
     }
@@ -345,10 +198,10 @@ TEST_P(DepthMapRendererGlTest, StandingAndFacingPlanesKeepTheirWord) {
 
 TEST_P(DepthMapRendererGlTest, RaysThatStartInsideLeaveTexelsEmpty) {
     GpuMesh mesh = upload(sheet({-1.0F, -1.0F}, {1.0F, 1.0F}, 1, [](float, float) { return 0.25F; }));
-    DepthMapFrame frame = alongZ(MapFormat::kFixed8, Compare::kLess, 8);
+    DepthMap frame = alongZ(8);
     // The view sees the inner side.
     for (const bool free : {true, false}) {
-        frame.starts_free[0] = free;
+        frame.encloses = free;
         const DepthMap map = render(mesh, frame);
         EXPECT_EQ(decodeTexel(map.format, map.texelAt(0, 3, 4)).front.has_value(), free);
     }
@@ -362,10 +215,9 @@ TEST_P(DepthMapRendererGlTest, ScaleDoesNotMatter) {
         for (glm::vec3& p : scaled.positions) {
             p *= std::ldexp(1.0F, power);
         }
-        DepthMapFrame frame = alongZ(MapFormat::kFrontBackFixed, Compare::kBoth, 32, Decode::kPlane);
-        frame.origin *= std::ldexp(1.0, power);
-        for (glm::dvec3& axis : frame.axis) {
-            axis *= std::ldexp(1.0, power);
+        DepthMap frame = alongZ(32);
+        for (int k = 0; k < 3; ++k) {
+            frame.object_to_map.row[k][k] *= std::ldexp(1.0F, -power);
         }
         GpuMesh mesh = upload(scaled);
         const DepthMap map = render(mesh, frame);
@@ -381,8 +233,8 @@ TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfacesMotionIsKnown) {
     for (glm::vec3& p : after.positions) {
         p += way;
     }
-    const DepthMapFrame frame = alongZ(MapFormat::kFrontBackFixed, Compare::kBoth, 16);
-    GpuMesh moved = upload(before, {.keep_previous = true});
+    const DepthMap frame = alongZ(16);
+    GpuMesh moved = upload(before);
     GpuMesh made = upload(after);
     const std::uint64_t revision = moved.revision();
     EXPECT_FALSE(render(moved, frame).texels == render(made, frame).texels);
@@ -397,24 +249,23 @@ TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfacesMotionIsKnown) {
     EXPECT_NE(moved.revision(), revision);
     EXPECT_TRUE(render(moved, frame).texels == render(made, frame).texels);
 
-    const auto target = DepthMapTarget::create(frame, true);
-    ASSERT_TRUE(target) << target.error().message;
+    const auto renderer = DepthMapRenderer::create(16, 16);
+    ASSERT_TRUE(renderer) << renderer.error().message;
     for (const bool settled : {false, true}) {
         if (settled) {
             moved.settle();
         }
-        ASSERT_TRUE(renderer_->render(moved, frame, *target));
+        renderer->render(moved, frame);
         const glm::vec3 want = settled ? glm::vec3(0.0F) : way;
         std::vector<float> motion[2];
         for (int i = 0; i < 2; ++i) {
             motion[i].resize(std::size_t{16} * 16 * 4);
-            glBindFramebuffer(GL_READ_FRAMEBUFFER, target->framebuffer());
+            glBindFramebuffer(GL_READ_FRAMEBUFFER, renderer->framebuffer());
             glReadBuffer(GL_COLOR_ATTACHMENT1 + static_cast<GLenum>(i));
             glReadPixels(0, 0, 16, 16, GL_RGBA, GL_FLOAT, motion[i].data());
         }
         glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-        std::vector<std::byte> texels(std::size_t{16} * 16 * 8);
-        ASSERT_TRUE(target->read(0, 0, 16, 16, texels));
+        const std::vector<std::byte> texels = readTexels(*renderer);
         int covered = 0;
         for (std::size_t i = 0; i < 256; ++i) {
             const Texel texel = decodeTexel(frame.format, std::span(texels).subspan(8 * i, 8));
@@ -447,11 +298,10 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
     EXPECT_EQ(mesh.triangleCount(), 36U);
     EXPECT_LE(mesh.slotCount(), 36U + 14U);
     // Each texel has the normal of a triangle that holds its centre, or comes within 1/100 texel of it.
-    const DepthMapFrame frame = alongZ(MapFormat::kFloat32, Compare::kLess, 63);
-    const DepthMap map = render(mesh, frame);
+    const DepthMap map = render(mesh, alongZ(63));
     int covered = 0;
     for (std::uint32_t i = 0; i < 63 * 63; ++i) {
-        const Texel texel = decodeTexel(frame.format, map.texelAt(0, i % 63, i / 63));
+        const Texel texel = decodeTexel(map.format, map.texelAt(0, i % 63, i / 63));
         if (!texel.front) {
             continue;
         }
@@ -469,7 +319,7 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
             const float turn = n.z < 0.0F ? -1.0F : 1.0F;
             const float least = std::min({turn * side(a, b), turn * side(b, c), turn * side(c, a)});
             return least > -0.02F / 63.0F &&
-                   glm::length(n - turn * glm::sign(texel.front->normal.z) * texel.front->normal) < 1e-5F;
+                   glm::length(n - turn * glm::sign(texel.front->normal.z) * texel.front->normal) < 0.03F;
         });
         EXPECT_TRUE(found) << i;
     }
@@ -502,52 +352,7 @@ TEST_P(DepthMapRendererGlTest, WhatIsWrongIsRefused) {
     EXPECT_EQ(mesh.setPositions(buffer.name(), std::numeric_limits<std::size_t>::max() - 3).error().code,
               ErrorCode::kUsage);
 
-    const DepthMapFrame frame = alongZ(MapFormat::kFixed8, Compare::kLess, 16);
-    const auto target = DepthMapTarget::create(frame);
-    ASSERT_TRUE(target);
-    const auto refused = [&](const std::function<void(DepthMapFrame&)>& spoil) {
-        DepthMapFrame spoilt = frame;
-        spoil(spoilt);
-        const auto done = renderer_->render(mesh, spoilt, *target);
-        return !done && done.error().code == ErrorCode::kUsage;
-    };
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.width = 2; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.height = kMapSizeMax + 1; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.width = 17; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.compare = Compare::kBoth; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) {
-        f.format = MapFormat::kFrontBackFixed;
-        f.compare = Compare::kGap;
-    }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.format = MapFormat::kFrontBackHalf; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.format = MapFormat::kFloat32; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.axis[1] = glm::dvec3(0.0); }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.axis[2].z = 1e300; }));
-    EXPECT_TRUE(refused([](DepthMapFrame& f) { f.origin.x = std::numeric_limits<double>::quiet_NaN(); }));
-    std::vector<std::byte> room(4);
-    EXPECT_EQ(target->read(16, 0, 1, 1, room).error().code, ErrorCode::kUsage);
-    EXPECT_EQ(target->read(0, 0, 2, 1, room).error().code, ErrorCode::kUsage);
-    DepthMapFrame huge = frame;
-    huge.width = 0;
-    EXPECT_EQ(DepthMapTarget::create(huge).error().code, ErrorCode::kUsage);
-    huge.format = MapFormat::kCube8;
-    huge.width = huge.height = kMapSizeMax;
-    EXPECT_EQ(DepthMapTarget::create(huge).error().code, ErrorCode::kLimit);
-}
-
-TEST_P(DepthMapRendererGlTest, AMapsOwnFrameIsFound) {
-    DepthMap map;
-    map.width = 24;
-    map.height = 16;
-    // Turned about y, scaled, shifted: x' = (z + 3)/4, y' = (y + 1)/2, z' = (2 - x)/8.
-    map.object_to_map.row[0] = {0.0F, 0.0F, 0.25F, 0.75F};
-    map.object_to_map.row[1] = {0.0F, 0.5F, 0.0F, 0.5F};
-    map.object_to_map.row[2] = {-0.125F, 0.0F, 0.0F, 0.25F};
-    const DepthMapFrame frame = frameOf(map);
-    EXPECT_LT(glm::length(frame.origin - glm::dvec3(2.0, -1.0, -3.0)), 1e-12);
-    EXPECT_LT(glm::length(frame.axis[0] - glm::dvec3(0.0, 0.0, 4.0)), 1e-12);
-    EXPECT_LT(glm::length(frame.axis[1] - glm::dvec3(0.0, 2.0, 0.0)), 1e-12);
-    EXPECT_LT(glm::length(frame.axis[2] - glm::dvec3(-8.0, 0.0, 0.0)), 1e-12);
+    EXPECT_EQ(DepthMapRenderer::create(1U << 20, 16).error().code, ErrorCode::kLimit);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "runtime/picture/frame.h"
 #include "runtime/picture/particle_renderer.h"
 #include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/depth_maps/read_texels.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -494,22 +495,24 @@ TEST_P(RendererGlTest, DepthMapsAreTheSameUnderOddState) {
         {{0.1F, 0.1F, 0.2F}, {0.9F, 0.1F, 0.4F}, {0.1F, 0.9F, 0.6F}, {0.8F, 0.8F, 0.1F}}};
     const std::array<glm::uvec3, 2> triangles{{{0, 1, 2}, {0, 2, 3}}};
     const auto run = [&](const std::function<void(const char*)>& check) {
-        auto mesh = GpuMesh::create(corners, triangles, {.keep_previous = true});
+        auto mesh = GpuMesh::create(corners, triangles);
         check("GpuMesh::create");
         EXPECT_TRUE(mesh->setPositions(corners));
         check("GpuMesh::setPositions");
-        auto renderer = DepthMapRenderer::create();
-        DepthMapFrame frame;
-        frame.format = MapFormat::kFrontBackFixed;
-        frame.compare = Compare::kBoth;
-        frame.width = frame.height = 16;
-        const auto target = DepthMapTarget::create(frame, true);
-        check("DepthMapTarget::create");
-        EXPECT_TRUE(renderer->render(*mesh, frame, *target));
+        const auto renderer = DepthMapRenderer::create(16, 16);
+        check("DepthMapRenderer::create");
+        DepthMap map;
+        map.format = MapFormat::kFrontBackFixed;
+        map.compare = Compare::kBoth;
+        map.decode = Decode::kPlane;
+        map.width = map.height = 16;
+        for (int k = 0; k < 3; ++k) {
+            map.object_to_map.row[k] = glm::vec4(0.0F);
+            map.object_to_map.row[k][k] = 1.0F;
+        }
+        renderer->render(*mesh, map);
         check("DepthMapRenderer::render");
-        std::vector<std::byte> texels(std::size_t{16} * 16 * 8);
-        EXPECT_TRUE(target->read(0, 0, 16, 16, texels));
-        check("DepthMapTarget::read");
+        const std::vector<std::byte> texels = readTexels(*renderer);
         return texels;
     };
     const std::vector<std::byte> plain = run([](const char*) {});
