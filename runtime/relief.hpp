@@ -6,7 +6,6 @@
 #include "formats/nearest_surface.h"
 #include "runtime/air/air.h"
 #include "runtime/collider/collider_textures.h"
-#include "runtime/collider/field_query.h"
 #include "runtime/collider/live_collider.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/particles/emitter.h"

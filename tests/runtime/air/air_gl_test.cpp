@@ -17,6 +17,7 @@
 #include "runtime/particles/emitter.h"
 #include "tests/runtime/air/air_reference.h"
 #include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/gl/query_program.h"
 
 namespace relief {
 namespace {
@@ -32,12 +33,31 @@ struct Sample {
     float stokes;
 };
 
+/// Evaluates air.glsl at the points of a texture, one a texel.
+constexpr const char* kQuery = R"(
+uniform highp sampler2D u_points;    // xyz: object space; w: time
+uniform highp sampler2D u_velocity;  // xyz: the particle's velocity; w: its radius
+uniform float u_viscosity;
+uniform float u_mass;
+
+layout(location = 0) out vec4 o_air;    // xyz: airVelocity
+layout(location = 1) out vec4 o_field;  // xyz: fieldAcceleration; w: stokesRate
+
+void main() {
+    vec4 point = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0);
+    vec4 particle = texelFetch(u_velocity, ivec2(gl_FragCoord.xy), 0);
+    o_air = vec4(airVelocity(point.xyz, point.w), 0.0);
+    o_field = vec4(fieldAcceleration(point.xyz, particle.xyz, point.w),
+                   stokesRate(u_viscosity, particle.w, u_mass));
+}
+)";
+
 class AirGlTest : public GlTest {
   protected:
     /// What the GPU says at points and times; `stokes` for radii of 1e-5 and up, by index.
     static std::vector<Sample> evaluate(const AirBlock& air, const std::vector<glm::vec4>& points) {
         const PassState state;
-        const auto program = makeProgram("base/quad.vert", "air/air_query.frag", air.defines());
+        const auto program = makeQueryProgram("air/air.glsl", kQuery, air.defines());
         EXPECT_TRUE(program) << program.error().message;
         if (!program) {
             return {};

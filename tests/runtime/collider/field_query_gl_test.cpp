@@ -7,7 +7,6 @@
 // of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
 // texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
 // answer at one of the surrounding points kBorder texels away, and such points are counted.
-#include "runtime/collider/field_query.h"
 
 #include <array>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "tests/formats/analytic_shapes.h"
+#include "tests/runtime/collider/field_query.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -288,8 +288,8 @@ std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const 
         std::copy_n(&points[i].x, 3, &texels[4 * i]);
     }
     const Result<ColliderTextures> textures = ColliderTextures::create(collider);
-    const Result<GlProgram> program = makeProgram("base/quad.vert", "collider/query.frag",
-                                                  textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
+    const Result<GlProgram> program = makeQueryProgram("collider/collider.glsl", kFieldQuery,
+                                                       textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
     EXPECT_TRUE(program) << program.error().message;
     if (!program) {
         return samples;

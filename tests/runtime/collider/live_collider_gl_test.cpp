@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "runtime/collider/field_query.h"
 #include "runtime/gl/gl_functions.h"
+#include "tests/runtime/collider/field_query.h"
 #include "tests/runtime/depth_maps/read_texels.h"
 #include "tests/runtime/particles/collision_test.h"
 

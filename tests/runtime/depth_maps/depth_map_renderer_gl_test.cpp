@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -8,7 +8,6 @@
 #include <memory>
 #include <string>
 
-#include "runtime/collider/field_query.h"
 #include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/picture/collider_mesh.h"
@@ -18,6 +17,7 @@
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/picture/sprite_atlas.h"
 #include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/collider/field_query.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {

@@ -15,6 +15,7 @@
 #include "shaders/picture/constants.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/gl/query_program.h"
 
 namespace relief {
 namespace {
@@ -25,6 +26,22 @@ struct Light {
     float sun;
     float sky;
 };
+
+/// Evaluates particle_light.glsl at the points of a texture, one a texel.
+constexpr const char* kQuery = R"(
+uniform highp sampler2D u_points;  // xyz: object space
+
+layout(location = 0) out vec4 o_light;  // shares of sun and sky, each the mean over all turns and jitters
+
+void main() {
+    vec3 point = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
+    o_light = vec4(0.0);
+    for (int i = 0; i < 64; ++i) {
+        ParticleLight light = particleLight(point, (float(i & 7) + 0.5) / 8.0, (float(i >> 3) + 0.5) / 8.0);
+        o_light += vec4(light.sun, light.sky, 0.0, 0.0) / 64.0;
+    }
+}
+)";
 
 class ColliderLightGlTest : public GlTest {
   protected:
@@ -58,7 +75,7 @@ class ColliderLightGlTest : public GlTest {
         const GlTexture input = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture output = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT);
         const auto target = makeFramebuffer(std::array<GLuint, 1>{output.name()});
-        const auto program = makeProgram("base/quad.vert", "picture/light_query.frag");
+        const auto program = makeQueryProgram("picture/particle_light.glsl", kQuery);
         EXPECT_TRUE(target && program);
         const GlVertexArray array = makeVertexArray();
         light_->attach(*program, 1);

@@ -334,8 +334,7 @@ class OddState {
           array_(makeVertexArray()) {
         const std::array<GLuint, 1> colors{texture_.name()};
         framebuffer_ = std::move(*makeFramebuffer(colors));
-        program_ = std::move(
-            *makeProgram("base/quad.vert", "collider/query.frag", "#define RELIEF_MAP_CAPACITY 1\n"));
+        program_ = std::move(*makeScreenProgram("picture/resolve.frag"));
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
         glUseProgram(program_.name());
         glBindVertexArray(array_.name());

@@ -1,23 +1,67 @@
-#include "runtime/collider/field_query.h"
+// Evaluates a collider at many points on the GPU, with the very shader code that the simulation runs: the proof that
+// shaders/collider/collider.glsl is formats/collider.cpp.
+#pragma once
 
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
 
+#include "runtime/collider/collider_textures.h"
 #include "runtime/gl/gl_fault.h"
-#include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
+#include "tests/runtime/gl/query_program.h"
 
 namespace relief {
-namespace {
 
-constexpr GLsizei kWidth = 1024;
-constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
-constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
+/// With RELIEF_QUERY_INSIDE by reliefSolid: the distance then is −1 inside and 1 outside.
+inline constexpr const char* kFieldQuery = R"(
+uniform highp sampler2D u_points;  // xyz: object space
+layout(location = 0) out vec4 o_normal_distance;
+layout(location = 1) out vec4 o_map;  // x: deciding map, −1 for none
+void main() {
+    vec3 p = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0).xyz;
+#ifdef RELIEF_QUERY_INSIDE
+    ReliefField field = reliefSolid(p);
+    bool inside = reliefInside(field);
+    o_normal_distance = vec4(inside ? field.normal : vec3(0.0), inside ? -1.0 : 1.0);
+#else
+    ReliefField field = reliefEvaluate(p);
+    o_normal_distance = vec4(field.normal, field.distance);
+#endif
+    o_map = vec4(float(field.map), 0.0, 0.0, 0.0);
+}
+)";
 
-}  // namespace
+class FieldQuery {
+  public:
+    /// Uploads the collider.
+    /// Fails as ColliderTextures::create and makeProgram do.
+    [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
 
-Result<FieldQuery> FieldQuery::create(const Collider& collider) {
+    /// Uses textures that are there already: of one collider, or of bodies in their world, some of which may be
+    /// live. They must outlive this. Fails as makeProgram does.
+    [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures);
+
+    /// One sample a point, in order. Waits for the GPU.
+    /// Errors: kLimit (no room on the GPU), kUnsupported, kFailure.
+    [[nodiscard]] Result<std::vector<FieldSample>> evaluate(std::span<const glm::vec3> points) const;
+
+  private:
+    static constexpr GLsizei kWidth = 1024;
+    static constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
+    static constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
+
+    FieldQuery() = default;
+
+    std::unique_ptr<ColliderTextures> own_;  // null: the caller's
+    const ColliderTextures* textures_ = nullptr;
+    GlProgram program_;
+};
+
+inline Result<FieldQuery> FieldQuery::create(const Collider& collider) {
     ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
     auto own = std::make_unique<ColliderTextures>(std::move(textures));
     auto query = create(*own);
@@ -27,18 +71,18 @@ Result<FieldQuery> FieldQuery::create(const Collider& collider) {
     return query;
 }
 
-Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
+inline Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
     RELIEF_TRY(checkContext());
     const PassState state;
     FieldQuery query;
     query.textures_ = &textures;
-    query.program_ = RELIEF_TRY(makeScreenProgram("collider/query.frag", textures.defines()));
+    query.program_ = RELIEF_TRY(makeQueryProgram("collider/collider.glsl", kFieldQuery, textures.defines()));
     textures.attach(query.program_, kBinding);
     query.program_.set("u_points", 0);
     return query;
 }
 
-Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
+inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm::vec3> points) const {
     const PassState state;
     std::vector<FieldSample> samples;
     samples.reserve(points.size());

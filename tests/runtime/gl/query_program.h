@@ -1,0 +1,43 @@
+// Programs of the tests that evaluate a shader of Relief's at the texels of a picture.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "runtime/gl/gl_capabilities.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/gl_object.h"
+
+namespace relief {
+
+/// For GlProgram::drawScreen(). \param file  in shaders/, which `text`, a main(), follows.
+inline Result<GlProgram> makeQueryProgram(std::string_view file, std::string_view text,
+                                          const std::string& defines = {}) {
+    const std::string head = std::string(isGles() ? "#version 300 es\n" : "#version 330 core\n") + defines +
+                             "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+                             "precision highp usampler2D;\nprecision highp sampler3D;\n";
+    const std::string vertex = head + RELIEF_TRY(shaderText("base/quad.vert"));
+    const std::string fragment = head + RELIEF_TRY(shaderText(file)) + std::string(text);
+    GlProgram program(glCreateProgram());
+    for (const auto& [stage, source] :
+         {std::pair(GL_VERTEX_SHADER, vertex.c_str()), {GL_FRAGMENT_SHADER, fragment.c_str()}}) {
+        const GLuint shader = glCreateShader(stage);
+        glShaderSource(shader, 1, &source, nullptr);
+        glCompileShader(shader);
+        glAttachShader(program.name(), shader);
+        glDeleteShader(shader);
+    }
+    glLinkProgram(program.name());
+    GLint linked = GL_FALSE;
+    glGetProgramiv(program.name(), GL_LINK_STATUS, &linked);
+    if (linked != GL_TRUE) {
+        std::string log(4096, '\0');
+        glGetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
+        return fail(ErrorCode::kFailure, log);
+    }
+    return program;
+}
+
+}  // namespace relief
