@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/repair/mesh_repair.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -161,19 +160,11 @@ class Inspection {
 
 }  // namespace
 
-Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, bool intersections) {
+MeshHealth inspectMesh(const PreparedMesh& mesh) {
     MeshHealth health;
     Inspection inspection(mesh);
     inspection.run();
     inspection.write(health);
-    if (intersections) {
-        const SelfIntersections found = RELIEF_TRY(selfIntersections(*mesh));
-        health.self_intersections = found.pairs;
-        if (found.pairs > 0 && !health.first_fault) {
-            health.first_fault =
-                MeshFault{"a triangle that another one cuts", inspection.middle(found.first_triangle)};
-        }
-    }
     return health;
 }
 
@@ -189,8 +180,6 @@ std::string faultsText(const MeshHealth& health) {
     add(health.inconsistent_edges, "edge wound inconsistently", "edges wound inconsistently");
     add(health.duplicate_triangles, "duplicate triangle", "duplicate triangles");
     add(health.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices");
-    add(health.self_intersections.value_or(0), "pair of triangles that intersect",
-        "pairs of triangles that intersect");
     if (health.inside_out) {
         text += text.empty() ? "inside out" : ", inside out";
     }

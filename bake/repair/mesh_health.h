@@ -35,13 +35,11 @@ struct MeshHealth {
     std::uint64_t nonmanifold_vertices = 0;  ///< whose triangles fall into groups that share no edge there
     std::uint64_t components = 0;            ///< of triangles connected by edges
     std::uint64_t closed_components = 0;
-    bool closed = false;      ///< no edge has an odd number of triangles: the mesh has an inside
-    bool inside_out = false;  ///< PreparedMesh::orientation is −1
-    /// Pairs of triangles that meet elsewhere than in common vertices and edges; only on request.
-    std::optional<std::uint64_t> self_intersections;
+    bool closed = false;                   ///< no edge has an odd number of triangles: the mesh has an inside
+    bool inside_out = false;               ///< PreparedMesh::orientation is −1
     std::optional<MeshFault> first_fault;  ///< of the gravest kind; none for a closed solid
 
-    /// Closed, manifold, wound outwards, without duplicates and known intersections. Degenerate triangles do not count.
+    /// Closed, manifold, wound outwards, without duplicates. Degenerate triangles do not count.
     [[nodiscard]] bool isSolid() const { return !first_fault.has_value(); }
 };
 
@@ -64,16 +62,12 @@ void fields(Visitor& visit, H& health) {
           {"Edges of two triangles that run along them in the same direction"});
     visit("components", health.components, {"Groups of triangles connected by edges"});
     visit("closed_components", health.closed_components, {"Components that are closed"});
-    visit("self_intersections", health.self_intersections,
-          {"Pairs of triangles that intersect; null without --check-intersections"});
     visit("first_fault", health.first_fault,
           {"First fault of the most serious kind; null if the mesh is solid"});
 }
 
 /// The result does not depend on the number of threads.
-/// \param intersections  also count these: some seconds for a million triangles.
-/// Errors: those of selfIntersections (mesh_repair.h).
-[[nodiscard]] Result<MeshHealth> inspectMesh(const PreparedMesh& mesh, bool intersections = false);
+[[nodiscard]] MeshHealth inspectMesh(const PreparedMesh& mesh);
 
 /// "12 boundary edges, 3 non-manifold vertices, inside out"
 [[nodiscard]] std::string faultsText(const MeshHealth& health);

@@ -1,25 +1,10 @@
-// Wraps of meshes, and their self-intersections, by CGAL, whose exceptions become errors.
+// Wraps of meshes by CGAL, whose exceptions become errors.
 #pragma once
-
-#include <cstdint>
 
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 
 namespace relief {
-
-struct SelfIntersections {
-    std::uint64_t pairs = 0;           ///< of triangles
-    std::uint32_t first_triangle = 0;  ///< the lowest that is part of a pair
-};
-
-/// Limit of pairs of triangles with overlapping boxes.
-inline constexpr std::uint64_t kIntersectionCandidateMax = 200'000'000;
-
-/// Pairs of triangles that meet elsewhere than in common vertices (equal positions are one) and edges, by exact predicates.
-/// Duplicates do not count. Single-threaded: about 1 s for 100,000 triangles.
-/// Errors: kLimit (kIntersectionCandidateMax), kFailure.
-[[nodiscard]] Result<SelfIntersections> selfIntersections(const TriangleMesh& mesh);
 
 inline constexpr double kWrapAlphaMin = 0.001;
 inline constexpr double kWrapAlphaMax = 0.5;

@@ -11,8 +11,8 @@ namespace relief {
 namespace {
 
 /// Examines the wrap, and fails where it is no solid.
-Result<void> checkWrap(const PreparedMesh& mesh, const RepairOptions& options, RepairReport& report) {
-    report.repaired = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
+Result<void> checkWrap(const PreparedMesh& mesh, RepairReport& report) {
+    report.repaired = inspectMesh(mesh);
     mesh.freeEdges();
     if (!report.repaired->isSolid()) {
         return fail(ErrorCode::kFailure,
@@ -43,8 +43,8 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
     const double alpha = RELIEF_TRY(wrapAlpha(options.method));
     const bool wraps = alpha > 0.0;
     RepairReport report;
-    if (options.examine || options.strict || options.check_intersections || wraps) {
-        report.health = RELIEF_TRY(inspectMesh(mesh, options.check_intersections));
+    if (options.examine || options.strict || wraps) {
+        report.health = inspectMesh(mesh);
     }
     if (options.strict && !wraps) {
         RELIEF_TRY(requireSolid(*report.health, mesh->name));
@@ -61,7 +61,7 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
         if (mesh.orientation() < 0.0) {
             mesh = std::move(mesh).woundOutwards(std::vector<bool>(mesh->triangles.size(), true));
         }
-        RELIEF_TRY(checkWrap(mesh, options, report));
+        RELIEF_TRY(checkWrap(mesh, report));
     }
     return RepairedMesh{std::move(mesh), std::move(report)};
 }

@@ -14,7 +14,6 @@ namespace relief {
 
 struct RepairOptions {
     bool strict = false;
-    bool check_intersections = false;
     std::string method;   ///< "wrap" or "wrap=ALPHA"; empty: none
     bool examine = true;  ///< count faults even where no other option needs that
 };
@@ -25,8 +24,6 @@ void fields(Visitor& visit, Options& options) {
         "strict", options.strict,
         {.help = "Refuse a mesh that is not a closed solid wound outwards, with exit code 3; with --repair, "
                  "a repaired one that is still open"});
-    visit("check_intersections", options.check_intersections,
-          {.help = "Also count the pairs of triangles that intersect, for the report and --strict"});
     visit("repair", options.method,
           {.help = "Bake another surface: wrap[=ALPHA], a closed one shrunk round the mesh, spanning gaps of "
                    "ALPHA longest sides, 0.01 by default",

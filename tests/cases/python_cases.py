@@ -44,7 +44,7 @@ VALUES = {
     "depth": ["half", "unorm16", "byte"],
     "time_limit": ["100", "0", "x"],
 }
-FLAGS = ["paper", "strict", "check_intersections", "no_check"]
+FLAGS = ["paper", "strict", "no_check"]
 
 
 def mesh_file(folder):

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "bake/import/mesh_import.h"
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/triangle_plane.h"
 #include "bake/repair/mesh_repair.h"
@@ -17,10 +16,8 @@
 namespace relief::test {
 namespace {
 
-MeshHealth healthOf(const TriangleMesh& mesh, bool intersections = false) {
-    const Result<MeshHealth> health = inspectMesh(mesh, intersections);
-    EXPECT_TRUE(health) << health.error().message;
-    return health.value_or(MeshHealth{});
+MeshHealth healthOf(const TriangleMesh& mesh) {
+    return inspectMesh(mesh);
 }
 
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
@@ -73,14 +70,13 @@ TriangleMesh makeMoebiusStrip(unsigned around, unsigned across) {
 TEST(MeshHealth, ClosedSolidsHaveNoFault) {
     for (const TriangleMesh& mesh :
          {unitBox({1, 2, 3}), makeIcosphere({0, 0, 0}, 1.0, 3), makeTorusMesh(1, 0.3, 20, 9)}) {
-        const MeshHealth health = healthOf(mesh, true);
+        const MeshHealth health = healthOf(mesh);
         EXPECT_TRUE(health.isSolid()) << faultsText(health);
         EXPECT_TRUE(health.closed);
         EXPECT_FALSE(health.inside_out);
         EXPECT_EQ(health.triangles, mesh.triangles.size());
         EXPECT_EQ(health.components, 1U);
         EXPECT_EQ(health.closed_components, 1U);
-        EXPECT_EQ(health.self_intersections, 0U);
         EXPECT_TRUE(requireSolid(health, "m"));
     }
 }
@@ -111,7 +107,7 @@ TEST(MeshHealth, EveryFaultIsCounted) {
     EXPECT_EQ(health.nonmanifold_edges, 3U);
 
     // Two boxes that share an edge, and two that share a corner.
-    health = healthOf(joined(unitBox({0, 0, 0}), unitBox({1, 1, 0})), true);
+    health = healthOf(joined(unitBox({0, 0, 0}), unitBox({1, 1, 0})));
     EXPECT_EQ(health.nonmanifold_edges, 1U);
     EXPECT_EQ(health.nonmanifold_vertices, 0U);
     EXPECT_EQ(health.components, 1U);
@@ -142,26 +138,6 @@ TEST(MeshHealth, StrictNamesCountsAndPlace) {
     EXPECT_NE(solid.error().message.find("open.obj: not a closed solid: 3 boundary edges"),
               std::string::npos);
     EXPECT_NE(solid.error().message.find("-0.5/0/0.5"), std::string::npos) << solid.error().message;
-}
-
-TEST(MeshHealth, IntersectionsAreCountedInPairs) {
-    // A spike through one triangle: its three sides cut it, and nothing else.
-    const TriangleMesh sheet = finished({{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {{0, 1, 2}});
-    const TriangleMesh spike =
-        finished({{0, 0, -1}, {1, 0, 1}, {-1, 1, 1}, {-1, -1, 1}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}});
-    EXPECT_EQ(healthOf(joined(sheet, spike), true).self_intersections, 3U);
-    EXPECT_EQ(healthOf(joined(sheet, sheet), true).self_intersections, 0U)
-        << "duplicates have a count of their own";
-    // Folded onto itself along an edge: in one plane, on the same side.
-    const TriangleMesh folded =
-        finished({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}});
-    EXPECT_EQ(healthOf(folded, true).self_intersections, 1U);
-    const TriangleMesh flat = finished({{0, 0, 0}, {2, 0, 0}, {1, 2, 0}, {1, -1, 0}}, {{0, 1, 2}, {1, 0, 3}});
-    EXPECT_EQ(healthOf(flat, true).self_intersections, 0U);
-    // One common corner, and the opposite edge through the other triangle.
-    const TriangleMesh corner =
-        finished({{0, 0, 0}, {4, -2, 0}, {4, 2, 0}, {2, 0, 1}, {2, 0, -1}}, {{0, 1, 2}, {0, 3, 4}});
-    EXPECT_EQ(healthOf(corner, true).self_intersections, 1U);
 }
 
 // --- winding ---
@@ -294,7 +270,6 @@ TEST(Winding, WhereSolidsOverlapIsInside) {
     const auto insideAt = [](const TriangleMesh& mesh, const glm::vec3& p) {
         const Result<Winding> winding = windOutwards(withRandomFlips(mesh, 11));
         const Result<MeshQuery> query = MeshQuery::build(winding->mesh);
-        EXPECT_EQ(query->inside(p), insideByParity(winding->mesh, p));
         return query->inside(p);
     };
     EXPECT_TRUE(insideAt(crossing, {0.2F, 0.1F, 0.1F})) << "in both";
@@ -320,9 +295,8 @@ TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
     for (const double alpha : {0.1, 0.05}) {
         const Result<TriangleMesh> wrap = wrapMesh(soup, alpha);
         ASSERT_TRUE(wrap) << wrap.error().message;
-        const MeshHealth health = healthOf(*wrap, true);
+        const MeshHealth health = healthOf(*wrap);
         EXPECT_TRUE(health.isSolid()) << faultsText(health);
-        EXPECT_EQ(health.self_intersections, 0U);
         EXPECT_EQ(wrap->name, soup.name);
         const Result<MeshQuery> query = MeshQuery::build(*wrap);
         ASSERT_TRUE(query);
