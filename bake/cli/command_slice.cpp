@@ -1,4 +1,4 @@
-// relief slice: the field on a plane, as numbers or as a figure.
+// relief slice: the field on a plane, as a figure.
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -32,19 +32,6 @@ struct SliceCommand {
     std::uint64_t size = 512;
 };
 
-enum class ImageKind { kPng, kExr };
-
-Result<ImageKind> imageKind(const std::string& output) {
-    const std::string extension = lowerCase(std::filesystem::path(output).extension().string());
-    if (extension == ".png" || output == "-") {
-        return ImageKind::kPng;
-    }
-    if (extension == ".exr") {
-        return ImageKind::kExr;
-    }
-    return fail(ErrorCode::kUsage, "--output " + quotedPath(output) + " must end in .png or .exr");
-}
-
 std::optional<Place> parsePlace(const std::string& word) {
     const Place place{parseFloat(word)};
     return place.at || word == "center" ? std::optional(place) : std::nullopt;
@@ -75,15 +62,17 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
 
 Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
     startLogging(command.common);
-    const ImageKind kind = RELIEF_TRY(imageKind(command.output));
+    const std::filesystem::path extension = std::filesystem::path(command.output).extension();
+    if (lowerCase(extension.string()) != ".png" && command.output != "-") {
+        return fail(ErrorCode::kUsage, "--output " + quotedPath(command.output) + " must end in .png");
+    }
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.writes(command.output, "-o"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     warnOutside(command, collider);
     const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
     const std::vector<std::byte> bytes =
-        RELIEF_TRY(kind == ImageKind::kPng ? drawSlice(slice, {inputName(command.file), collider.unit})
-                                           : encodeExr(sliceImage(slice, collider.unit)));
+        RELIEF_TRY(drawSlice(slice, {inputName(command.file), collider.unit}));
     return writeFile(command.output, bytes);
 }
 
@@ -92,11 +81,9 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
 void addSlice(CLI::App& app, Action& action) {
     auto command = std::make_shared<SliceCommand>();
     CLI::App& verb =
-        addVerb(app, command->common, "slice",
-                "Draws the field on a plane\n\nPNG: inside and outside beside the distance in false "
-                "colours.\nEXR: channels distance, inside, map, N.X N.Y N.Z",
+        addVerb(app, command->common, "slice", "Draws the field on a plane: the distance in false colours",
                 "relief slice bunny.relief --axis z --at center -o slice.png\n"
-                "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
+                "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.png");
     verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     addWords(verb, "--axis", command->axis, WordsFor<Axis>{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}},
              "The plane is across this axis; default z");
@@ -106,8 +93,8 @@ void addSlice(CLI::App& app, Action& action) {
     verb.add_option("--size", command->size, "Samples along the longer side; default 512")
         ->option_text("N")
         ->transform(wholeNumber());
-    verb.add_option("-o,--output", command->output, "OUT.png or OUT.exr; - for a PNG on standard output")
-        ->option_text("OUT")
+    verb.add_option("-o,--output", command->output, "The PNG; - for standard output")
+        ->option_text("OUT.png")
         ->required();
     addMemoryOption(verb, command->limits);
     verb.callback(

@@ -7,8 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "formats/base/text.h"
-
 namespace relief {
 namespace {
 
@@ -69,41 +67,6 @@ Result<Slice> evaluateSlice(const Collider& collider, const SliceOptions& option
         }
     });
     return slice;
-}
-
-FloatImage sliceImage(const Slice& slice, const std::string& unit) {
-    FloatImage image;
-    image.width = slice.width;
-    image.height = slice.height;
-    for (const char* name : {"distance", "inside", "map", "N.X", "N.Y", "N.Z"}) {
-        image.channels.push_back({name, std::vector<float>(slice.samples.size())});
-    }
-    for (std::uint32_t y = 0; y < slice.height; ++y) {
-        for (std::uint32_t x = 0; x < slice.width; ++x) {
-            const FieldSample& sample = slice.sample(x, y);
-            const std::size_t pixel = std::size_t{slice.height - 1 - y} * slice.width + x;
-            const float distance = sample.map < 0                   ? std::numeric_limits<float>::quiet_NaN()
-                                   : sample.distance >= kFarOutside ? std::numeric_limits<float>::infinity()
-                                                                    : sample.distance;
-            const glm::vec3 normal = sample.map < 0 ? glm::vec3(0.0F) : sample.normal;
-            const float values[6] = {
-                distance, sample.inside() ? 1.0F : 0.0F, static_cast<float>(sample.map), normal.x, normal.y,
-                normal.z};
-            for (std::size_t i = 0; i < 6; ++i) {
-                image.channels[i].values[pixel] = values[i];
-            }
-        }
-    }
-    image.attributes = {
-        {"relief.plane", std::string(1, axisName(slice.axis)) + " = " + shortest(slice.at)},
-        {"relief.axes", std::string("right: ") + axisName(slice.right) + ", up: " + axisName(slice.up)},
-        {"relief.corner",
-         shortest(static_cast<float>(slice.corner.x)) + " " + shortest(static_cast<float>(slice.corner.y))},
-        {"relief.spacing", shortest(static_cast<float>(slice.spacing))},
-        {"relief.distance", "object units, positive outside; +inf: outside, no distance; NaN: no map votes"},
-        {"relief.unit", unit},
-    };
-    return image;
 }
 
 }  // namespace relief

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/picture/exr.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
@@ -45,17 +44,13 @@ struct Slice {
 /// Errors: kUsage and kLimit (size), kInvalidInput (bounds too large for floats).
 [[nodiscard]] Result<Slice> evaluateSlice(const Collider& collider, const SliceOptions& options);
 
-/// Channels: distance (object units, positive outside; +inf outside without a distance, NaN where no map
-/// votes), inside (1 or 0), map (deciding map, −1 where none), N.X N.Y N.Z.
-[[nodiscard]] FloatImage sliceImage(const Slice& slice, const std::string& unit);
-
 struct SliceFigureOptions {
     std::string name;  ///< of the collider, for the title
     std::string unit;  ///< of lengths: "m", or "" for object units
 };
 
-/// A PNG: inside and outside on the left, the signed distance in false colours with isolines on the right, the zero contour on
-/// both, a colour bar and a legend. The same slice gives the same bytes. Errors: kFailure with Cairo's message.
+/// A PNG: the signed distance in false colours, the surface, a colour bar and a legend. The same slice gives the same
+/// bytes. Errors: kFailure with Cairo's message.
 [[nodiscard]] Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options);
 
 [[nodiscard]] constexpr char axisName(int axis) {

@@ -1,4 +1,4 @@
-// The false colours of `relief slice`, as bake/picture/slice_image.cpp has them.
+// The false colours of maps and of slices.
 
 /** Of map i, for the page: mapColor() below. */
 export const mapCss = (i) => `oklch(0.74 0.13 ${25 + 137.508 * i})`;

@@ -54,39 +54,6 @@ TEST(Slice, RefusesSizes) {
     EXPECT_EQ(evaluateSlice(collider, {.axis = 0, .at = {}, .size = 8193}).error().code, ErrorCode::kLimit);
 }
 
-TEST(SliceImage, HasTheChannelsTopRowFirst) {
-    Collider collider = sampleCollider();
-    collider.maps.erase(collider.maps.begin());  // the sub-box map abstains
-    collider.maps.pop_back();
-    const Result<Slice> slice = evaluateSlice(collider, {.axis = 1, .at = 0.0F, .size = 64});
-    ASSERT_TRUE(slice);
-    const FloatImage image = sliceImage(*slice, "m");
-    ASSERT_EQ(image.channels.size(), 6U);
-    bool abstained = false;
-    bool far = false;
-    for (std::uint32_t y = 0; y < slice->height; ++y) {
-        for (std::uint32_t x = 0; x < slice->width; ++x) {
-            const FieldSample& sample = slice->sample(x, y);
-            const std::size_t pixel = std::size_t{slice->height - 1 - y} * slice->width + x;
-            const auto value = [&](std::size_t channel) { return image.channels[channel].values[pixel]; };
-            EXPECT_EQ(value(1), sample.inside() ? 1.0F : 0.0F);
-            EXPECT_EQ(value(2), static_cast<float>(sample.map));
-            if (sample.map < 0) {
-                abstained = true;
-                EXPECT_TRUE(std::isnan(value(0)));
-            } else if (sample.distance == kFarOutside) {
-                far = true;
-                EXPECT_TRUE(std::isinf(value(0)));
-            } else {
-                EXPECT_EQ(value(0), sample.distance);
-                EXPECT_EQ(value(3), sample.normal.x);
-            }
-        }
-    }
-    EXPECT_TRUE(abstained);
-    EXPECT_TRUE(far);
-}
-
 /// Big-endian number in a PNG's header.
 std::uint32_t pngNumber(const std::vector<std::byte>& png, std::size_t at) {
     std::uint32_t value = 0;
@@ -96,7 +63,7 @@ std::uint32_t pngNumber(const std::vector<std::byte>& png, std::size_t at) {
     return value;
 }
 
-TEST(SliceFigure, IsAPngOfTwoPanelsAndRepeatable) {
+TEST(SliceFigure, IsAPngAndRepeatable) {
     const Collider collider = sampleCollider();
     for (const std::uint32_t size : {2U, 33U, 700U}) {
         const Result<Slice> slice = evaluateSlice(collider, {.axis = 1, .at = 0.0F, .size = size});
@@ -105,7 +72,7 @@ TEST(SliceFigure, IsAPngOfTwoPanelsAndRepeatable) {
         ASSERT_TRUE(png) << png.error().message;
         ASSERT_GT(png->size(), 1000U);
         EXPECT_EQ(std::memcmp(png->data(), "\x89PNG\r\n\x1a\n", 8), 0);
-        EXPECT_GT(pngNumber(*png, 16), 2 * std::max(size, 440U));
+        EXPECT_GT(pngNumber(*png, 16), std::max(size, 440U));
         EXPECT_EQ(*png, *drawSlice(*slice, {"torus.relief", "m"}));
     }
 }
