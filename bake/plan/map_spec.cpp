@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/base/text.h"
+#include "formats/fields/text.h"
 
 namespace relief {
 namespace {
@@ -47,22 +48,21 @@ tl::unexpected<Error> unknown(const std::string& what, std::string_view word,
 Result<bool> parseWord(std::string_view key, std::string_view value,
                        const std::array<std::string_view, 2>& words) {
     if (value != words[0] && value != words[1]) {
-        return badValue(key, value,
-                        std::string(words[0]) + " or " + std::string(words[1]) + didYouMean(value, words));
+        return usage(std::string(key) + " " + butMustBeOneOf(value, words));
     }
     return value == words[1];
 }
 
-template <std::size_t N>
-std::optional<std::array<float, N>> parseNumbers(std::string_view value) {
+/// As many numbers as said; empty: there are others, or no numbers.
+std::vector<float> parseNumbers(std::string_view value, std::size_t count) {
     const std::vector<std::string_view> parts = split(value, '/');
-    std::array<float, N> numbers{};
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const std::optional<float> number = parseFloat(parts[i]);
-        if (!number || parts.size() != N) {
-            return std::nullopt;
+    std::vector<float> numbers;
+    for (const std::string_view part : parts) {
+        const std::optional<float> number = parseFloat(part);
+        if (!number || parts.size() != count) {
+            return {};
         }
-        numbers[i] = *number + 0.0F;  // −0 becomes 0, so that one setting has one text
+        numbers.push_back(*number + 0.0F);  // −0 becomes 0, so that one setting has one text
     }
     return numbers;
 }
@@ -73,11 +73,11 @@ Result<glm::vec3> parseDirection(std::string_view key, std::string_view value) {
             return axis.direction;
         }
     }
-    const std::optional<std::array<float, 3>> numbers = parseNumbers<3>(value);
-    if (!numbers || *numbers == std::array<float, 3>{}) {
+    const std::vector<float> n = parseNumbers(value, 3);
+    if (n.empty() || glm::vec3(n[0], n[1], n[2]) == glm::vec3(0.0F)) {
         return badValue(key, value, "+x, -x, +y, -y, +z, -z or a vector a/b/c that is not 0/0/0");
     }
-    return glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    return glm::vec3(n[0], n[1], n[2]);
 }
 
 std::string directionText(const glm::vec3& direction) {
@@ -121,12 +121,54 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
     if (std::exchange(seen_.at(index), true)) {
         return usage(std::string(key) + " is given twice; keep one");
     }
-    using Set = Result<void> (MapSpecBuilder::*)(std::string_view);
-    constexpr std::array<Set, kKeys.size()> kSetters = {
-        &MapSpecBuilder::setDirection, &MapSpecBuilder::setUp,     &MapSpecBuilder::setSize,
-        &MapSpecBuilder::setCompare,   &MapSpecBuilder::setCenter, &MapSpecBuilder::setBox,
-        &MapSpecBuilder::setDepth,     &MapSpecBuilder::setDecode};
-    return (this->*kSetters.at(index))(value);
+    if (const std::string useless = uselessness(key); !useless.empty()) {
+        return usage(std::string(key) + useless);
+    }
+    if (key == "dir") {
+        spec_.direction = RELIEF_TRY(parseDirection(key, value));
+    } else if (key == "up") {
+        spec_.up = RELIEF_TRY(parseDirection(key, value));
+    } else if (key == "center") {
+        const std::vector<float> n = parseNumbers(value, 3);
+        if (n.empty()) {
+            return badValue(key, value, "three numbers a/b/c");
+        }
+        spec_.center = glm::vec3(n[0], n[1], n[2]);
+    } else {
+        return key == "size" ? setSize(value) : key == "box" ? setBox(value) : setWord(key, value);
+    }
+    return {};
+}
+
+/// The reason why a key has no effect for the format, and the cure; empty: it has one.
+std::string MapSpecBuilder::uselessness(std::string_view key) const {
+    if ((key == "dir" || key == "up") && isCube()) {
+        return " does nothing for a cube, which looks all round; leave it out";
+    }
+    if (key == "center" && !isCube()) {
+        return " does nothing but for a cube; use box to move an orthographic map";
+    }
+    return key == "depth" && !isFrontBack(spec_.format) ? " does nothing but for front-back; leave it out"
+                                                        : "";
+}
+
+Result<void> MapSpecBuilder::setWord(std::string_view key, std::string_view value) {
+    if (key == "depth") {
+        const bool fixed = RELIEF_TRY(parseWord(key, value, {"half", "unorm16"}));
+        spec_.format = fixed ? MapFormat::kFrontBackFixed : MapFormat::kFrontBackHalf;
+    } else if (key == "decode") {
+        const bool plane = RELIEF_TRY(parseWord(key, value, {"projected", "plane"}));
+        spec_.decode = plane ? Decode::kPlane : Decode::kProjected;
+    } else if (!isFrontBack(spec_.format)) {
+        const bool greater = RELIEF_TRY(parseWord(key, value, {"less", "greater"}));
+        spec_.compare = greater ? Compare::kGreater : Compare::kLess;
+    } else if (value == "gap") {
+        spec_.compare = Compare::kGap;
+    } else {
+        return usage(
+            "front-back keeps both surfaces; leave compare out, or keep those of gaps by compare=gap");
+    }
+    return {};
 }
 
 Result<MapSpec> MapSpecBuilder::finish() const {
@@ -138,37 +180,6 @@ Result<MapSpec> MapSpecBuilder::finish() const {
     }
     RELIEF_TRY(checkUp(spec_));
     return spec_;
-}
-
-Result<void> MapSpecBuilder::setDirection(std::string_view value) {
-    if (isCube()) {
-        return usage("dir does nothing for a cube, which looks all round; leave it out");
-    }
-    spec_.direction = RELIEF_TRY(parseDirection("dir", value));
-    return {};
-}
-
-Result<void> MapSpecBuilder::setUp(std::string_view value) {
-    if (isCube()) {
-        return usage("up does nothing for a cube, whose faces lie along the axes; leave it out");
-    }
-    spec_.up = RELIEF_TRY(parseDirection("up", value));
-    return {};
-}
-
-Result<void> MapSpecBuilder::setDepth(std::string_view value) {
-    if (!isFrontBack(spec_.format)) {
-        return usage("depth does nothing but for front-back; leave it out");
-    }
-    const bool fixed = RELIEF_TRY(parseWord("depth", value, {"half", "unorm16"}));
-    spec_.format = fixed ? MapFormat::kFrontBackFixed : MapFormat::kFrontBackHalf;
-    return {};
-}
-
-Result<void> MapSpecBuilder::setDecode(std::string_view value) {
-    const bool plane = RELIEF_TRY(parseWord("decode", value, {"projected", "plane"}));
-    spec_.decode = plane ? Decode::kPlane : Decode::kProjected;
-    return {};
 }
 
 Result<void> MapSpecBuilder::setSize(std::string_view value) {
@@ -183,43 +194,17 @@ Result<void> MapSpecBuilder::setSize(std::string_view value) {
     return {};
 }
 
-Result<void> MapSpecBuilder::setCompare(std::string_view value) {
-    if (isFrontBack(spec_.format)) {
-        if (value != "gap") {
-            return usage(
-                "front-back keeps both surfaces; leave compare out, or keep those of gaps by compare=gap");
-        }
-        spec_.compare = Compare::kGap;
-        return {};
-    }
-    const bool greater = RELIEF_TRY(parseWord("compare", value, {"less", "greater"}));
-    spec_.compare = greater ? Compare::kGreater : Compare::kLess;
-    return {};
-}
-
-Result<void> MapSpecBuilder::setCenter(std::string_view value) {
-    if (!isCube()) {
-        return usage("center does nothing but for a cube; use box to move an orthographic map");
-    }
-    const std::optional<std::array<float, 3>> numbers = parseNumbers<3>(value);
-    if (!numbers) {
-        return badValue("center", value, "three numbers a/b/c");
-    }
-    spec_.center = glm::vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
-    return {};
-}
-
 Result<void> MapSpecBuilder::setBox(std::string_view value) {
     if (value == "tight") {
         return {};
     }
-    const std::optional<std::array<float, 6>> n = parseNumbers<6>(value);
-    if (!n) {
+    const std::vector<float> n = parseNumbers(value, 6);
+    if (n.empty()) {
         return badValue("box", value, "tight or two corners x0/y0/z0/x1/y1/z1");
     }
     Bounds box;
-    box.min = {(*n)[0], (*n)[1], (*n)[2]};
-    box.max = {(*n)[3], (*n)[4], (*n)[5]};
+    box.min = {n[0], n[1], n[2]};
+    box.max = {n[3], n[4], n[5]};
     if (!(box.min.x < box.max.x && box.min.y < box.max.y && box.min.z < box.max.z)) {
         return badValue("box", value, "two corners x0/y0/z0/x1/y1/z1 with x0 < x1, y0 < y1 and z0 < z1");
     }

@@ -85,13 +85,9 @@ class MapSpecBuilder {
 
   private:
     [[nodiscard]] bool isCube() const { return spec_.format == MapFormat::kCube8; }
-    Result<void> setDepth(std::string_view value);
-    Result<void> setDecode(std::string_view value);
-    Result<void> setDirection(std::string_view value);
-    Result<void> setUp(std::string_view value);
+    [[nodiscard]] std::string uselessness(std::string_view key) const;
+    Result<void> setWord(std::string_view key, std::string_view value);
     Result<void> setSize(std::string_view value);
-    Result<void> setCompare(std::string_view value);
-    Result<void> setCenter(std::string_view value);
     Result<void> setBox(std::string_view value);
 
     MapSpecDefaults defaults_;

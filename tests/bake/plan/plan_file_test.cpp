@@ -76,10 +76,8 @@ TEST(PlanFile, TakesWhatAPersonWrites) {
 TEST(PlanFile, SaysWhatIsWrongAndWhere) {
     struct Case {
         std::string text;
-        ErrorCode code;
         const char* says;
     };
-    constexpr ErrorCode kInvalid = ErrorCode::kInvalidInput;
     const std::string head = kHead;
     const std::string map = "[[map]]\nformat = 'float'\nsize = 9\n";
     std::string many = head;
@@ -87,47 +85,47 @@ TEST(PlanFile, SaysWhatIsWrongAndWhere) {
         many += "[[map]]\nformat = 'float'\nsize = 9\n";
     }
     const Case cases[] = {
-        {"", kInvalid, "p.toml:1:1: a plan starts with version = 1"},
-        {"version = ", kInvalid, "p.toml:1:"},
-        {"version = 2\n" + map, kInvalid, "p.toml:1:11: version must be 1"},
-        {"version = '1'\n" + map, kInvalid, "p.toml:1:11: version must be 1"},
-        {head, kInvalid, "at least one [[map]]"},
-        {head + "map = []", kInvalid, "at least one [[map]]"},
-        {head + "map = 3", kInvalid, "p.toml:2:7: map must be a list of tables"},
-        {head + "map = [3]", kInvalid, "p.toml:2:8: a map must be a table"},
-        {head + "[map]\nformat = 'float'", kInvalid, "write [[map]]"},
-        {head + "qualty = 'best'\n" + map, kInvalid,
-         "p.toml:2:1: unknown key 'qualty'; did you mean 'quality'"},
-        {head + "quality = 'bests'\n" + map, kInvalid, "p.toml:2:11: quality must be"},
-        {head + "thickness = 0\n" + map, kInvalid, "p.toml:2:13: thickness must be"},
-        {head + "thickness = '1'\n" + map, kInvalid, "p.toml:2:13: thickness must be"},
-        {head + "thickness = nan\n" + map, kInvalid, "p.toml:2:13: thickness must be"},
-        {head + "quality = 3\n" + map, kInvalid, "p.toml:2:11: quality must be"},
-        {head + "[[map]]\nsize = 9\n", kInvalid, "p.toml:2:1: a map needs format"},
-        {head + "[[map]]\nformat = 'float'\n", kInvalid, "p.toml:2:1: a map needs size"},
-        {head + "[[map]]\nformat = 3\nsize = 9\n", kInvalid, "p.toml:3:10: format must be a string"},
-        {head + "[[map]]\nformat = 'flat'\nsize = 9\n", kInvalid, "p.toml:3:10: unknown format 'flat'"},
-        {head + map + "sise = 3\n", kInvalid, "p.toml:5:1: unknown key 'sise'; did you mean 'size'"},
-        {head + map + "\"a\\u001bb\" = 3\n", kInvalid, "p.toml:5:1: unknown key"},
-        {head + map + "dir = [0, 1, 0]\n", kInvalid, "p.toml:5:7: dir must be a string"},
-        {head + map + "dir = '+x,size=5'\n", kInvalid, "p.toml:5:7: dir is"},
-        {head + map + "dir = '0/0/0'\n", kInvalid, "p.toml:5:7: dir is"},
-        {head + map + "depth = 'half'\n", kInvalid, "p.toml:5:9: depth does nothing"},
-        {head + map + "dir = '+x'\nup = '-x'\n", kInvalid, "p.toml:2:1: up is parallel"},
-        {head + map + "size = 10\n", kInvalid, "p.toml:5:"},
-        {head + "[[map]]\nformat = 'float'\nsize = -3\n", kInvalid, "p.toml:4:8: size is '-3'"},
-        {head + "[[map]]\nformat = 'float'\nsize = 2\n", kInvalid, "p.toml:4:8: size is 2"},
-        {head + "[[map]]\nformat = 'float'\nsize = 9.5\n", kInvalid, "p.toml:4:8: size must be"},
-        {head + "[[map]]\nformat = 'float'\nsize = 16385\n", ErrorCode::kLimit, "p.toml:4:8: size is 16385"},
-        {many, ErrorCode::kLimit, "1025 maps"},
-        {head + "x = " + std::string(5000, '['), kInvalid, "p.toml:2:"},
-        {"\xff\xfe", kInvalid, "p.toml:1:"},
+        {"", "p.toml:1:1: version is missing"},
+        {"version = ", "p.toml:1:"},
+        {"version = 2\n" + map, "p.toml:1:11: version = 2 is out of range"},
+        {"version = '1'\n" + map, "p.toml:1:11: version must be a whole number"},
+        {head, "map is missing"},
+        {head + "map = []", "at least one [[map]]"},
+        {head + "map = 3", "p.toml:2:7: map must be tables"},
+        {head + "map = [3]", "p.toml:2:8: map must be tables"},
+        {head + "[map]\nformat = 'float'", "as in [[map]]"},
+        {head + "qualty = 'best'\n" + map, "p.toml:2:1: unknown table 'qualty'; did you mean 'quality'"},
+        {head + "quality = 'bests'\n" + map, "p.toml:2:11: quality = 'bests' is unknown"},
+        {head + "thickness = 0\n" + map, "p.toml:2:13: thickness = 0 is out of range"},
+        {head + "thickness = '1'\n" + map, "p.toml:2:13: thickness must be"},
+        {head + "thickness = nan\n" + map, "p.toml:2:13: thickness = nan is out of range"},
+        {head + "quality = 3\n" + map, "p.toml:2:11: quality must be"},
+        {head + "[[map]]\nsize = 9\n", "p.toml:2:1: a map needs format"},
+        {head + "[[map]]\nformat = 'float'\n", "p.toml:2:1: a map needs size"},
+        {head + "[[map]]\nformat = 3\nsize = 9\n", "p.toml:3:10: map.format must be a string"},
+        {head + "[[map]]\nformat = 'flat'\nsize = 9\n", "p.toml:3:10: unknown format 'flat'"},
+        {head + map + "sise = 3\n", "p.toml:5:1: unknown key 'sise'; did you mean 'size'"},
+        {head + map + "\"a\\u001bb\" = 3\n", "p.toml:5:1: unknown key"},
+        {head + map + "dir = [0, 1, 0]\n", "p.toml:5:7: map.dir must be a string"},
+        {head + map + "dir = '+x,size=5'\n", "p.toml:5:7: dir is"},
+        {head + map + "dir = '0/0/0'\n", "p.toml:5:7: dir is"},
+        {head + map + "depth = 'half'\n", "p.toml:5:9: depth does nothing"},
+        {head + map + "dir = '+x'\nup = '-x'\n", "p.toml:2:1: up is parallel"},
+        {head + map + "size = 10\n", "p.toml:5:"},
+        {head + "[[map]]\nformat = 'float'\nsize = -3\n", "p.toml:4:8: size is '-3'"},
+        {head + "[[map]]\nformat = 'float'\nsize = 2\n", "p.toml:4:8: size is 2"},
+        {head + "[[map]]\nformat = 'float'\nsize = 9.5\n", "p.toml:4:8: map.size must be"},
+        {head + "[[map]]\nformat = 'float'\nsize = 16385\n", "p.toml:4:8: size is 16385"},
+        {many, "there are 1025 of [[map]]"},
+        {head + "x = " + std::string(5000, '['), "p.toml:2:"},
+        {"\xff\xfe", "p.toml:1:"},
     };
     for (const Case& c : cases) {
         const Result<PlanFile> plan = parsePlan(c.text, "p.toml");
         const std::string shown = c.text.substr(0, 200);
         ASSERT_FALSE(plan) << shown;
-        EXPECT_EQ(plan.error().code, c.code) << shown;
+        const bool limit = c.text == many || c.text.find("16385") != std::string::npos;
+        EXPECT_EQ(plan.error().code, limit ? ErrorCode::kLimit : ErrorCode::kInvalidInput) << shown;
         EXPECT_EQ(plan.error().message.find("p.toml:"), 0U) << plan.error().message;
         EXPECT_NE(plan.error().message.find(c.says), std::string::npos) << shown << plan.error().message;
         EXPECT_EQ(plan.error().message.find_first_of("\n\x1b"), std::string::npos);
