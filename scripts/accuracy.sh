@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Wrong points per byte, on the meshes that bake/measure/README.md writes about: a dense signed distance volume, the
 # paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes a few
-# minutes. Further arguments go to relief-accuracy, such as --only bunny,camel --budgets 1MB --methods ours for quick rounds
+# minutes. Further arguments go to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds
 # of work on the baker.
 #
 #   scripts/accuracy.sh                  the table

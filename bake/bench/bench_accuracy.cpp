@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -195,30 +194,8 @@ struct Arguments {
     std::uint32_t samples = AccuracyOptions{}.samples;
     std::uint64_t seed = AccuracyOptions{}.seed;
     std::vector<std::string> methods = {"volume", "paper", "ours"};
-    std::vector<std::string> only;  ///< stems of meshes; empty: all
     std::string collider;
 };
-
-/// The meshes of the command line that --only names, in the command line's order.
-Result<std::vector<std::string>> chosenMeshes(const Arguments& arguments) {
-    const auto stem = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
-    for (const std::string& name : arguments.only) {
-        if (std::none_of(arguments.meshes.begin(), arguments.meshes.end(),
-                         [&](const std::string& path) { return stem(path) == name; })) {
-            return fail(ErrorCode::kUsage, "--only has '" + cleanUtf8(name) +
-                                               "', but no mesh is called so; --methods chooses among volume, "
-                                               "paper and ours");
-        }
-    }
-    std::vector<std::string> chosen;
-    for (const std::string& path : arguments.meshes) {
-        if (arguments.only.empty() ||
-            std::find(arguments.only.begin(), arguments.only.end(), stem(path)) != arguments.only.end()) {
-            chosen.push_back(path);
-        }
-    }
-    return chosen;
-}
 
 Result<std::vector<std::uint64_t>> parseBudgets(const std::vector<std::string>& texts) {
     std::vector<std::uint64_t> budgets;
@@ -227,14 +204,7 @@ Result<std::vector<std::uint64_t>> parseBudgets(const std::vector<std::string>& 
         if (!bytes) {
             return fail(ErrorCode::kUsage, "--budgets has '" + cleanUtf8(text) + "'; write 0.25MB,1MB,4MB");
         }
-        if (std::find(budgets.begin(), budgets.end(), *bytes) != budgets.end()) {
-            return fail(ErrorCode::kUsage,
-                        "--budgets has " + std::to_string(*bytes) + " bytes twice; name each budget once");
-        }
         budgets.push_back(*bytes);
-    }
-    if (budgets.empty()) {
-        return fail(ErrorCode::kUsage, "--budgets names none; write 0.25MB,1MB,4MB");
     }
     return budgets;
 }
@@ -293,15 +263,14 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
 
 Result<void> run(const Arguments& arguments) {
     const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
-    const std::vector<std::string> paths = RELIEF_TRY(chosenMeshes(arguments));
-    if (!arguments.collider.empty() && (paths.size() != 1 || budgets.size() != 1)) {
+    if (!arguments.collider.empty() && (arguments.meshes.size() != 1 || budgets.size() != 1)) {
         return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
     }
     const BakeRequest shape = RELIEF_TRY(recordedShapeOf(arguments));
     ImportOptions import;
     import.names = RELIEF_TRY(parseShapeOptions(shape.as)).names();
     Measured measured;
-    for (const std::string& path : paths) {
+    for (const std::string& path : arguments.meshes) {
         const Stopwatch watch;
         TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(path, import));
         const auto winding = RELIEF_TRY(windOutwards(std::move(mesh)));
@@ -332,9 +301,6 @@ int main(int argc, char** argv) {
     app.add_option("--samples", arguments.samples, "Points of each kind; default 200000")
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Of the points; default 1");
-    app.add_option("--only", arguments.only,
-                   "Meshes to measure, by file name without extension; default: all")
-        ->delimiter(',');
     app.add_option("--methods", arguments.methods, "volume, paper or ours; default: all")
         ->delimiter(',')
         ->check(CLI::IsMember({"volume", "paper", "ours"}));

@@ -49,9 +49,6 @@ class Advisor {
         if (any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
             tryBudget(roundBudget(2 * input_.collider.gpuBytes()), "planned maps of twice the bytes");
         }
-        if (any({WrongCause::kOther})) {
-            tryBudget(*planned_.budget, "planned maps of as many bytes");
-        }
         if (input_.shape.sheets > 0 && input_.shape.thickness > 0.0) {
             tryThicker();
         }

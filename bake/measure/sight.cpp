@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <utility>
 
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
@@ -106,57 +105,6 @@ std::optional<glm::dvec3> Sight::reaches(const glm::dvec3& p) const {
         }
     }
     return std::nullopt;
-}
-
-Sight::Ray Sight::texelRay(const glm::dvec3& in_map, double across, double along) const {
-    const auto within = [](double at, std::uint32_t texels, double offset) {
-        return (std::floor(at * texels) + 0.5 + offset) / texels;
-    };
-    if (map_.projection() == Projection::kCube) {
-        const CubeCoordinates at = cubeCoordinates(glm::vec3(in_map));
-        const glm::vec3 direction =
-            cubeDirection({at.face, static_cast<float>(within(double{at.s}, map_.width, across)),
-                           static_cast<float>(within(double{at.t}, map_.width, along))});
-        return {to_object_ * -offset_, to_object_ * (glm::dvec3(direction) - offset_)};
-    }
-    const glm::dvec3 start(within(in_map.x, map_.width, across), within(in_map.y, map_.height, along), 0.0);
-    const glm::dvec3 from = to_object_ * (start - offset_);
-    return {from, from + to_object_[2]};
-}
-
-bool Sight::isFlat(const std::array<Ray, 9>& rays, bool from_far_end, double tolerance) const {
-    const auto hitOf = [&](const Ray& ray) {
-        const glm::dvec3& from = from_far_end ? ray.to : ray.from;
-        const glm::dvec3 sight = (from_far_end ? ray.from : ray.to) - from;
-        const std::optional<FirstHit> hit = query_.firstHit(from, sight);
-        return hit && hit->along <= 1.0 ? std::optional(std::pair(from + hit->along * sight, hit->triangle))
-                                        : std::nullopt;
-    };
-    const auto middle = hitOf(rays[4]);
-    glm::dvec3 normal(0.0);
-    if (middle) {
-        normal = planeOf(query_.mesh(), middle->second).normal;
-        normal /= glm::length(normal);
-    }
-    return std::ranges::all_of(rays, [&](const Ray& ray) {
-        const auto hit = hitOf(ray);
-        return hit.has_value() == middle.has_value() &&
-               (!hit || std::abs(glm::dot(normal, hit->first - middle->first)) <= tolerance);
-    });
-}
-
-bool Sight::isFlatRound(const glm::dvec3& p, double tolerance) const {
-    const glm::dvec3 in_map = inMap(p);
-    if (!isInVolume(in_map) || map_.compare == Compare::kGap) {
-        return false;
-    }
-    std::array<Ray, 9> rays;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        rays[i] = texelRay(in_map, 0.5 * (static_cast<double>(i % 3) - 1.0),
-                           0.5 * (static_cast<double>(i / 3) - 1.0));
-    }
-    return (map_.compare == Compare::kGreater || isFlat(rays, false, tolerance)) &&
-           (map_.compare == Compare::kLess || isFlat(rays, true, tolerance));
 }
 
 Sights::Sights(std::span<const DepthMap> maps, const MeshQuery& query) {

@@ -35,10 +35,6 @@ class Sight {
     /// the point outside.
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
-    /// The surfaces in the texel of a point are flat: all lines of sight through the texel meet them within `tolerance`,
-    /// object units, of the plane at the middle one, or none does. Always false for maps of gaps.
-    [[nodiscard]] bool isFlatRound(const glm::dvec3& p, double tolerance) const;
-
   private:
     struct Line {
         glm::dvec3 start;  ///< where the map's ray starts, object space
@@ -50,13 +46,6 @@ class Sight {
     };
     [[nodiscard]] glm::dvec3 inMap(const glm::dvec3& p) const;
     [[nodiscard]] bool isInVolume(const glm::dvec3& in_map) const;
-    /// A line of sight at an offset across the texel of p, object space.
-    struct Ray {
-        glm::dvec3 from;
-        glm::dvec3 to;
-    };
-    [[nodiscard]] Ray texelRay(const glm::dvec3& in_map, double across, double along) const;
-    [[nodiscard]] bool isFlat(const std::array<Ray, 9>& rays, bool from_far_end, double tolerance) const;
     [[nodiscard]] Lines linesTo(const glm::dvec3& p, const glm::dvec3& in_map) const;
 
     const DepthMap& map_;

@@ -24,11 +24,6 @@ constexpr double kAsBad = 0.25;
 /// Points of a place whose causes are found.
 constexpr std::size_t kCausesMax = 200;
 
-/// Error of a plane, in texels, from the rounding of normals and depths.
-constexpr double kRounding = 0.1;
-/// Tolerance of flatness, in units of a point's distance to the surface.
-constexpr double kFlat = 0.25;
-
 /// A point near the surface on the wrong side.
 struct Wrong {
     std::uint32_t sample = 0;  ///< index of the point
@@ -126,9 +121,8 @@ class Cells {
 /// Finds the causes of wrong points.
 class Causes {
   public:
-    Causes(const TruthSamples& samples, const MeshQuery& query, const Sights& sights,
-           const Collider& collider)
-        : samples_(samples), query_(query), sights_(sights), collider_(collider) {}
+    Causes(const TruthSamples& samples, const MeshQuery& query, const Sights& sights)
+        : samples_(samples), query_(query), sights_(sights) {}
 
     [[nodiscard]] WrongCause of(const Wrong& wrong) const {
         const TruthPoint& point = samples_.near[wrong.sample];
@@ -147,14 +141,8 @@ class Causes {
             return WrongCause::kUnseen;
         }
         const Sight& sight = sights_.maps()[static_cast<std::size_t>(wrong.map)];
-        if ((!point.inside() && !reached) || !sight.sees(surface)) {
-            return WrongCause::kSilhouette;
-        }
-        const DepthMap& map = collider_.maps[static_cast<std::size_t>(wrong.map)];
-        const double off = std::abs(double{point.distance});
-        const bool flat = map.decode == Decode::kPlane && off > kRounding * texelAt(map, point.position) &&
-                          sight.isFlatRound(point.position, kFlat * off);
-        return flat ? WrongCause::kOther : WrongCause::kTexel;
+        const bool hidden = (!point.inside() && !reached) || !sight.sees(surface);
+        return hidden ? WrongCause::kSilhouette : WrongCause::kTexel;
     }
 
   private:
@@ -178,7 +166,6 @@ class Causes {
     const TruthSamples& samples_;
     const MeshQuery& query_;
     const Sights& sights_;
-    const Collider& collider_;
 };
 
 /// The index of the greatest count, of equals the lowest, and that count.
@@ -257,7 +244,7 @@ std::vector<WorstPlace> worstPlaces(const TruthSamples& samples, const MeshQuery
     std::ranges::stable_sort(found, std::greater<>(), [](const Found& one) { return one.place.points; });
     found.resize(std::min(found.size(), count));
 
-    const Causes causes(samples, query, sights, collider);
+    const Causes causes(samples, query, sights);
     std::vector<WorstPlace> places;
     for (const auto& [place, points] : found) {
         const std::size_t stride = (points.size() + kCausesMax - 1) / kCausesMax;

@@ -22,12 +22,11 @@ enum class WrongCause : std::uint8_t {
     kOpen,        ///< inside, but a line of sight reaches it: the mesh is open, and the map looks in
     kUnseen,      ///< outside, but no line of sight reaches it, nor the surface beside it; or no map votes
     kSilhouette,  ///< for the deciding map, the surface beside it lies behind another part of the mesh
-    kOther,       ///< the deciding map is wrong although one plane per texel would do: it is of another mesh
     kTexel,       ///< the surface beside it is finer than the texel of the deciding map
 };
 template <>
-inline constexpr std::array<std::string_view, 6> kWordsOf<WrongCause>{"sheet",      "open",  "unseen",
-                                                                      "silhouette", "other", "texel"};
+inline constexpr std::array<std::string_view, 5> kWordsOf<WrongCause>{"sheet", "open", "unseen", "silhouette",
+                                                                      "texel"};
 inline constexpr std::size_t kWrongCauses = kWordsOf<WrongCause>.size();
 
 /// A part of the surface with many points near it on the wrong side.

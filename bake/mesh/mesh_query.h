@@ -74,7 +74,7 @@ class MeshQuery {
     [[nodiscard]] const PreparedMesh& prepared() const { return mesh_; }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
-    /// By the majority of seven rays, as insideByParity (inside.h): independent of the winding, and for most points of the
+    /// By the majority of seven rays, kParityDirections (inside.h): independent of the winding, and for most points of the
     /// holes of an open mesh. For PreparedMesh::woundShells the winding number decides instead, so that the overlap of two
     /// solids is inside. In a union (PreparedMesh::unionOf) each body decides for itself, by two of three rays.
     [[nodiscard]] bool inside(const glm::vec3& p) const;

@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "bake/mesh/inside.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/ray_cost.h"
 #include "bake/plan/view.h"
@@ -49,19 +48,23 @@ struct Job {
     MapSpec spec;  // complete
     View view;
     bool compare_was_given;
+    bool centre_inside = false;  // of a given compare
 
     [[nodiscard]] std::uint64_t texels() const {
         return std::uint64_t{view.faceCount()} * view.width * view.height;
     }
 };
 
-/// Whether the centre of a view's rays is nearer to the surface than floats can be trusted to tell its sides.
-Result<bool> centreIsOnSurface(const PreparedMesh& mesh, const View& view) {
-    if (view.projection() != Projection::kCube || view.compare != Compare::kLess) {
-        return false;
+/// Where a cube that keeps the nearest surface looks from: nearer to the surface than floats can be trusted to tell its
+/// sides, or inside.
+Result<void> examineCentre(const PreparedMesh& mesh, Job& job) {
+    if (job.view.projection() == Projection::kCube && job.view.compare == Compare::kLess) {
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+        job.view.centre_on_surface =
+            query.closest(job.view.origin).distance <= kOnSurface * mesh->bounds.longestSide();
+        job.centre_inside = job.compare_was_given && query.inside(job.view.origin);
     }
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-    return query.closest(view.origin).distance <= kOnSurface * mesh->bounds.longestSide();
+    return {};
 }
 
 Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& options) {
@@ -76,9 +79,9 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     const VertexBlocks* const blocks = specs.size() >= kManyViews ? &mesh.vertexBlocks() : nullptr;
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
-        View view = RELIEF_TRY(makeView(complete, *mesh, blocks));
-        view.centre_on_surface = RELIEF_TRY(centreIsOnSurface(mesh, view));
+        const View view = RELIEF_TRY(makeView(complete, *mesh, blocks));
         jobs.push_back({complete, view, spec.compare.has_value()});
+        RELIEF_TRY(examineCentre(mesh, jobs.back()));
         bytes += jobs.back().texels() * texelSize(view.format);
     }
     if (bytes > limits.texel_bytes) {
@@ -123,8 +126,7 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
                 ") has its centre on the surface of the mesh; move center into free space");
-        } else if (view.projection() == Projection::kCube && jobs[i].compare_was_given &&
-                   view.compare == Compare::kLess && insideByParity(mesh, view.origin)) {
+        } else if (jobs[i].centre_inside) {
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
                 ") compares less but its centre seems to lie inside the mesh; move center, or "

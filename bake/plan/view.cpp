@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
 
 namespace relief {
 namespace {
@@ -260,8 +260,12 @@ Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32
         spec.center = mesh->bounds.center();
     }
     if (!isFrontBack(spec.format) && !spec.compare) {
-        const bool outwards = cube && insideByParity(mesh, spec.center ? *spec.center : spec.box->center());
-        spec.compare = outwards ? Compare::kGreater : Compare::kLess;
+        spec.compare = Compare::kLess;
+        if (cube) {
+            const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+            const bool outwards = query.inside(spec.center ? *spec.center : spec.box->center());
+            spec.compare = outwards ? Compare::kGreater : Compare::kLess;
+        }
     }
     return spec;
 }

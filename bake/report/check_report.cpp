@@ -105,8 +105,6 @@ std::string causeText(const WorstPlace& place, const Collider& collider) {
             return "unseen by any map; " + decides;
         case WrongCause::kSilhouette:
             return "behind a silhouette: " + decides + ", for which another part lies before it";
-        case WrongCause::kOther:
-            return map + " decides, and holds another surface; was it baked from this mesh?";
         case WrongCause::kTexel:
             break;
     }

@@ -32,7 +32,6 @@ CAUSES = {
     "unseen": "no map sees it: more maps, or more bytes",
     "silhouette": "it lies behind another part for the map that decides: more maps, or more bytes",
     "texel": "it is finer than a texel: more bytes",
-    "other": "the map that decides is of another mesh: bake again",
 }
 
 

@@ -171,7 +171,7 @@ class WorstPlace:
     map: int
     """That decides most of them; -1: no map says anything."""
     cause: str
-    """ "sheet", "open", "unseen", "silhouette", "texel" or "other", as `relief check --json` has it."""
+    """ "sheet", "open", "unseen", "silhouette" or "texel", as `relief check --json` has it."""
 
 
 @dataclasses.dataclass(frozen=True)

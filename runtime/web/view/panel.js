@@ -8,7 +8,7 @@ export const $ = (id) => document.getElementById(id);
 const narrow = matchMedia("(max-width: 720px)");
 // The causes of wrong places, as `relief check` names them to programs.
 const kKinds = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
-                 other: "of another mesh", texel: "finer than a texel" };
+                 texel: "finer than a texel" };
 
 function element(tag, attributes = {}, ...children) {
     const { onclick, ...rest } = attributes;

@@ -73,7 +73,7 @@ TEST(WorstPlaces, AreWhereAMapWasTamperedWith) {
         const WorstPlace& place = found.places[i];
         EXPECT_EQ(place.map, 1);
         EXPECT_GT(place.map_percent, 95.0);
-        EXPECT_EQ(place.cause, WrongCause::kOther) << wordOf(place.cause);
+        EXPECT_EQ(place.cause, WrongCause::kTexel) << wordOf(place.cause);
         EXPECT_LT(place.inside_percent, 5.0);
         EXPECT_NEAR(place.texel, texel, 1e-4);
         EXPECT_NEAR(double{place.position.x}, x, 5.0 * texel);

@@ -18,7 +18,7 @@
 #include <cmath>
 #include <random>
 
-#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
@@ -182,13 +182,15 @@ TEST(Oracle, SubBoxesNeverCallTheSolidFree) {
 
 TEST(Oracle, ParityAgreesWithCgal) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 30, 15);
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    ASSERT_TRUE(query);
     const SurfaceMesh surface = toCgal(mesh);
     const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
     std::mt19937 random(3);
     std::uniform_real_distribution<float> at(-1.4F, 1.4F);
     for (int i = 0; i < 3000; ++i) {
         const glm::vec3 p(at(random), at(random), 0.3F * at(random));
-        EXPECT_EQ(insideByParity(mesh, p), side({p.x, p.y, p.z}) == CGAL::ON_BOUNDED_SIDE);
+        EXPECT_EQ(query->inside(p), side({p.x, p.y, p.z}) == CGAL::ON_BOUNDED_SIDE);
     }
 }
 

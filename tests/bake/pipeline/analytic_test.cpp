@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
@@ -341,10 +341,12 @@ TEST(BakeSphere, DepthsLieBetweenTheSphereAndItsSagitta) {
 
 TEST(BakeTorus, AutomaticCubeComparesByWhereItsCentreIs) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.25, 96, 48);
-    EXPECT_FALSE(insideByParity(mesh, {0, 0, 0}));
-    EXPECT_TRUE(insideByParity(mesh, {1, 0, 0}));
-    EXPECT_TRUE(insideByParity(mesh, {0, -1.2F, 0}));
-    EXPECT_FALSE(insideByParity(mesh, {0, 0, 0.3F}));
+    const Result<MeshQuery> query = MeshQuery::build(mesh);
+    ASSERT_TRUE(query);
+    EXPECT_FALSE(query->inside({0, 0, 0}));
+    EXPECT_TRUE(query->inside({1, 0, 0}));
+    EXPECT_TRUE(query->inside({0, -1.2F, 0}));
+    EXPECT_FALSE(query->inside({0, 0, 0.3F}));
 
     const DepthMap hole = bakeMap(mesh, "cube:size=65");
     EXPECT_EQ(hole.compare, Compare::kLess);
