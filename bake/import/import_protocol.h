@@ -9,10 +9,9 @@
 
 #include <fcntl.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <string_view>
-
-#include "formats/base/retry.h"
 
 namespace relief {
 
@@ -34,15 +33,17 @@ inline constexpr int kImportExitErrno = 128;
 /// Allocates the first bytes of a memfd now: touching a page that cannot be allocated raises SIGBUS.
 /// \return 0 or an errno: ENOSPC and ENOMEM where the system has no more.
 [[nodiscard]] inline int reserveMemory(int file, std::uint64_t bytes) {
-    return bytes == 0 ? 0 : retryTransient([&] {
-        return ::fallocate(file, 0, 0, static_cast<off_t>(bytes)) == 0 ? 0 : errno;
-    });
+    while (bytes != 0 && ::fallocate(file, 0, 0, static_cast<off_t>(bytes)) != 0) {
+        if (errno != EINTR) {
+            return errno;
+        }
+    }
+    return 0;
 }
 
-/// Seals a memfd; none of its pages may be mapped for writing. Retries while the kernel itself holds a page (EBUSY).
-/// \return 0 or an errno.
+/// Seals a memfd; none of its pages may be mapped for writing. \return 0 or an errno.
 [[nodiscard]] inline int addSeals(int file, int seals) {
-    return retryTransient([&] { return ::fcntl(file, F_ADD_SEALS, seals) == 0 ? 0 : errno; });
+    return ::fcntl(file, F_ADD_SEALS, seals) == 0 ? 0 : errno;
 }
 
 }  // namespace relief

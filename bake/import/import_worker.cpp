@@ -38,12 +38,8 @@ constexpr std::uint64_t kMemoryMax = std::uint64_t{1} << 46;
 
 /// Empty on failure, with errno.
 Descriptor memoryFile(std::uint64_t size) {
-    Descriptor file;
-    errno = retryTransient([&] {
-        file = Descriptor(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-        return file && ::ftruncate(file.get(), static_cast<off_t>(size)) == 0 ? 0 : errno;
-    });
-    return errno == 0 ? std::move(file) : Descriptor();
+    Descriptor file(::memfd_create("relief-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    return file && ::ftruncate(file.get(), static_cast<off_t>(size)) == 0 ? std::move(file) : Descriptor();
 }
 
 /// The file size limit counts for memory, too.
@@ -154,7 +150,7 @@ class Import {
         }
         Descriptor alive;
         Descriptor alive_end;
-        if (const int failed = retryTransient([&] { return makePipe(alive, alive_end); })) {
+        if (const int failed = makePipe(alive, alive_end)) {
             return notStarted(failed);
         }
         Process worker;

@@ -12,7 +12,6 @@
 #include "bake/import/import_scene.h"
 #include "bake/import/import_source.h"
 #include "formats/base/file_io.h"
-#include "formats/base/retry.h"
 #include "formats/base/text.h"
 #include "formats/polygons/obj_mesh.h"
 #include "formats/polygons/ply_mesh.h"
@@ -152,7 +151,7 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
         unmarked.extension = *format;
     }
     Import import{unmarked, std::nullopt};
-    if (const int failed = retryTransient([&] { return startOnDeepStack(import); })) {
+    if (const int failed = startOnDeepStack(import)) {
         return unreadable(
             job, {ErrorCode::kFailure, std::string("no thread could be started (") + std::strerror(failed) +
                                            "); free memory, or end processes or raise their "

@@ -8,7 +8,6 @@
 #include <cerrno>
 
 #include "formats/base/descriptor.h"
-#include "formats/base/retry.h"
 
 namespace relief {
 
@@ -20,10 +19,6 @@ Process::~Process() {
 }
 
 int Process::start(const ProcessStart& start) {
-    return retryTransient([&] { return startOnce(start); });
-}
-
-int Process::startOnce(const ProcessStart& start) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     ::posix_spawn_file_actions_init(&actions);

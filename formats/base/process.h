@@ -42,8 +42,7 @@ class Process {
     }
     ~Process();
 
-    /// Returns when the program has begun to run. Tries again for a moment where the system is short of processes,
-    /// memory or files (retryTransient). \return 0 or an errno: no process, no such program, …
+    /// Returns when the program has begun to run. \return 0 or an errno: no process, no such program, …
     [[nodiscard]] int start(const ProcessStart& start);
 
     [[nodiscard]] bool running() const { return pid_ > 0; }  ///< started and not waited for
@@ -53,8 +52,6 @@ class Process {
     ProcessEnd wait();
 
   private:
-    [[nodiscard]] int startOnce(const ProcessStart& start);
-
     pid_t pid_ = -1;
 };
 
