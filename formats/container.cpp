@@ -3,14 +3,16 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "collider_generated.h"
-#include "formats/bake_first.h"
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
+#include "formats/base/result.h"
+#include "formats/base/text.h"
 #include "formats/compression.h"
 #include "formats/container_reader.h"
 #include "formats/row_spans.h"
@@ -174,6 +176,14 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     return bytes;
 }
 
+/// What `relief bake` reads and people have; formats that nobody mixes up with a collider are left out.
+constexpr std::array<std::string_view, 14> kMeshExtensions = {".3ds",  ".b3d",  ".blend", ".dae", ".fbx",
+                                                              ".glb",  ".gltf", ".lwo",   ".obj", ".off",
+                                                              ".ms3d", ".ply",  ".stl",   ".x"};
+
+/// The first byte of every container (formats/README.md, "Bytes"): no letter, and not the beginning of any mesh above.
+constexpr std::byte kContainerBegins{0xAB};
+
 }  // namespace
 
 Result<std::vector<std::byte>> writeContainer(const Collider& collider,
@@ -226,6 +236,22 @@ Result<void> saveCollider(const std::filesystem::path& path, const Collider& col
                           const ContainerWriteOptions& options) {
     return writeFile(
         path, RELIEF_TRY(inFront("cannot write " + quotedPath(path), writeContainer(collider, options))));
+}
+
+Result<void> refuseMeshName(const std::filesystem::path& path) {
+    const std::string extension = lowerCase(path.extension().native());
+    if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end()) {
+        return {};
+    }
+    std::filesystem::path baked = path;
+    baked.replace_extension(".relief");
+    return fail(ErrorCode::kInvalidInput, quotedPath(path) +
+                                              " is a mesh, and no collider; bake it first: relief bake " +
+                                              quotedPath(path) + " -o " + quotedPath(baked));
+}
+
+Result<void> refuseMesh(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+    return !bytes.empty() && bytes.front() == kContainerBegins ? Result<void>() : refuseMeshName(path);
 }
 
 }  // namespace relief

@@ -18,7 +18,7 @@ struct ContainerLimits {
     /// Of all maps together, uncompressed. A machine of 32 bits (WebAssembly) has room for less.
     std::uint64_t texel_bytes = std::uint64_t{1} << (sizeof(std::size_t) == 4 ? 29 : 31);
     /// What texels may take in memory whatever the size of their file. Beyond it they may take kUnpackedPerStored times
-    /// their file: a file of 66 kB can claim 2 GiB. The tools lower it (runtime/command_line/memory_option.h).
+    /// their file: a file of 66 kB can claim 2 GiB. The tools lower it (runtime/command_line/option_values.h).
     std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();
 };
 

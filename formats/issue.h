@@ -2,9 +2,14 @@
 // meaning from version to version.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+
+#include "formats/base/field.h"
 
 namespace relief {
 
@@ -14,7 +19,8 @@ enum class Severity : std::uint8_t {
     kWarning,  ///< readers take the file; it is hardly what was meant
 };
 
-[[nodiscard]] const char* severityName(Severity severity);  ///< "fatal", "error" or "warning"
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<Severity>{"fatal", "error", "warning"};
 
 /// 1xxx: damage, 2xxx: suspicions, which are warnings.
 enum class IssueCode : std::uint16_t {
@@ -66,8 +72,18 @@ struct Issue {
     std::optional<std::uint64_t> offset;  ///< byte of the file, where one can be named
     std::string message;                  ///< one line for a person, the map not named
 
-    [[nodiscard]] Severity severity() const;
-    [[nodiscard]] std::string id() const;  ///< "RLF-1407"
+    [[nodiscard]] Severity severity() const {
+        using enum IssueCode;
+        constexpr std::array kFatal = {kTooShort,      kSignature,     kMajorVersion, kMetadataLimit,
+                                       kMetadataPlace, kMetadataTable, kMapLimit};
+        if (std::find(kFatal.begin(), kFatal.end(), code) != kFatal.end()) {
+            return Severity::kFatal;
+        }
+        return code < kLaterMinor ? Severity::kError : Severity::kWarning;
+    }
+    [[nodiscard]] std::string id() const {  ///< "RLF-1407"
+        return "RLF-" + std::to_string(static_cast<int>(code));
+    }
 };
 
 /// What may be believed of a map or of another part of the file.
@@ -78,6 +94,8 @@ enum class PartState : std::uint8_t {
     kDamaged,     ///< read, and wrong
     kUnreadable,  ///< could not be looked at
 };
-[[nodiscard]] const char* partStateName(PartState state);  ///< "sound", "suspicious", …
+template <>
+inline constexpr std::array<std::string_view, 5> kWordsOf<PartState>{"sound", "suspicious", "unverified",
+                                                                     "damaged", "unreadable"};
 
 }  // namespace relief

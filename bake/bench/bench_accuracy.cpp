@@ -19,7 +19,6 @@
 #include "bake/report/check_report.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape.h"
-#include "formats/base/byte_count.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"

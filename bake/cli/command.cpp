@@ -5,10 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "formats/bake_first.h"
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
+#include "formats/container.h"
 #include "formats/container_reader.h"
 #include "runtime/command_line/command_line.h"
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <span>
 
-#include "bake/cli/bake_outputs.h"
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/director/bake_json.h"
@@ -18,8 +17,7 @@
 #include "formats/container.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/field_options.h"
-#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
 #include "runtime/command_line/progress.h"
 
 namespace relief {
@@ -52,7 +50,6 @@ BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
     BakeWatcher watcher;
     watcher.begin = [&progress](const char* stage) { progress.begin(stage); };
     watcher.progress = [&progress](double share) { progress.set(share); };
-    watcher.checkpoint = [&progress] { progress.checkpoint(); };
     watcher.tried = [&progress](const BudgetTry& made) {
         progress.print([&made] {
             spdlog::info("{}: {:.3g} % of the points near the surface are on the wrong side",
@@ -119,12 +116,7 @@ Result<void> report(const BakeCommand& command, const BakeResult& result, std::s
 Result<void> runBake(BakeCommand& command, FileGuard& files) {
     startLogging(command.common);
     const Stopwatch total;
-    Progress progress({quotedPath(command.request.mesh),
-                       !command.common.quiet,
-                       command.request.time_limit,
-                       {},
-                       reportError});
-    RELIEF_TRY(progress.ready());
+    Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
     RELIEF_TRY(preflight(command, files));
     command.request.repair.examine = command.outputs.json || !command.common.quiet;

@@ -3,22 +3,19 @@
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/cli/view_source.h"
-#include "bake/director/check_advice.h"
+#include "bake/cli/command_view.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/inspect_report.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
-#include "formats/bake_first.h"
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/container_reader.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {
@@ -76,17 +73,16 @@ void addAdvice(const CheckCommand& command, MeshCheck& run) {
     if (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent) {
         return;
     }
-    const std::string output = command.file == "-" ? "out.relief" : command.file;
-    run.advice = adviceFor({command.request.mesh, output, run.collider, run.recorded, run.imported, run.baked,
-                            run.shape, *run.query, run.judged().samples, run.places, run.wrongPercent()});
+    run.advice = adviceFor(run, command.request.mesh, command.file == "-" ? "out.relief" : command.file);
 }
 
-Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container, const MeshCheck& run) {
+Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container, const MeshCheck& run,
+                       FileGuard& files) {
     if (command.html.empty()) {
         return {};
     }
-    const std::string page =
-        RELIEF_TRY(makeCheckPage(inputName(command.file), std::move(container), run, command.max_error));
+    const std::string page = RELIEF_TRY(
+        makeCheckPage(inputName(command.file), std::move(container), run, command.max_error, files));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
@@ -125,7 +121,7 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
         RELIEF_TRY(files.reads(file));
     }
     addAdvice(command, run);
-    RELIEF_TRY(writePage(command, std::move(container), run));
+    RELIEF_TRY(writePage(command, std::move(container), run, files));
     RELIEF_TRY(printOut(
         command.json ? jsonText(jsonOf(MeshCheckReport{run, inputName(command.file), command.max_error}))
                      : checkText(command, run)));

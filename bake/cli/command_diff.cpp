@@ -5,7 +5,6 @@
 #include "bake/report/diff_report.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {

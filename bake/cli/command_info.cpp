@@ -5,11 +5,11 @@
 
 #include "bake/cli/command.h"
 #include "bake/report/collider_report.h"
-#include "formats/base/error_context.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
 
 namespace relief {
 namespace {

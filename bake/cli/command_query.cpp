@@ -11,7 +11,6 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
-#include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {

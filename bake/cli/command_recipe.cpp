@@ -9,7 +9,6 @@
 #include <set>
 #include <thread>
 
-#include "bake/cli/bake_outputs.h"
 #include "bake/director/bake_request.h"
 #include "bake/import/import_format.h"
 #include "bake/import/mesh_import.h"
@@ -19,7 +18,6 @@
 #include "bake/report/recipe_report.h"
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
-#include "formats/base/preflight.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"

@@ -9,7 +9,6 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
-#include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {

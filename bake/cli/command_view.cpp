@@ -1,58 +1,324 @@
 // relief view: a page to turn a collider round in, drop particles on it, and see where it is wrong.
+#include "bake/cli/command_view.h"
+
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <glm/geometric.hpp>
+#include <map>
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/cli/view_source.h"
+#include "bake/director/mesh_check_report.h"
+#include "bake/import/mesh_import.h"
+#include "bake/pipeline/bake.h"
+#include "bake/repair/winding.h"
+#include "bake/report/parts_report.h"
+#include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
+#include "formats/base/text.h"
+#include "formats/container.h"
+#include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/memory_option.h"
+#include "runtime/command_line/option_values.h"
+#include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_pictures.h"
 
 namespace relief {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct ViewCommand {
     CommonOptions common;
-    ViewSource source;
+    std::string file;        ///< a container, "-" for standard input, or a scene (.toml)
+    CheckRequest check;      ///< mesh empty: none
+    ContainerLimits limits;  ///< of the container, or of those of a scene
     std::string output;
+
+    [[nodiscard]] bool isScene() const { return lowerCase(fs::path(file).extension().native()) == ".toml"; }
 };
 
-/// Beside FILE unless -o says where.
+std::string textOf(const std::vector<std::byte>& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+constexpr std::string_view kPlaceBegin = R"(<script type="application/json" id="relief-page-data">)";
+constexpr std::string_view kPlaceEmpty = "null";
+constexpr std::string_view kPlaceEnd = "</script>";
+
+// Vertices and corners go as they lie in memory.
+static_assert(std::endian::native == std::endian::little);
+static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::uvec3) == 12);
+
+/// RFC 4648, with padding and without line ends.
+std::string base64(std::span<const std::byte> bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t group = 0;
+        for (std::size_t j = 0; j < 3; ++j) {
+            group = group << 8 | (j < count ? std::to_integer<std::uint32_t>(bytes[i + j]) : 0U);
+        }
+        for (std::size_t j = 0; j < 4; ++j) {
+            text += j <= count ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
+        }
+    }
+    return text;
+}
+
+/// Ready to stand between <script> and </script>: whatever a name says, it ends nothing there.
+std::string scriptText(const Json& json) {
+    const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string safe;
+    safe.reserve(text.size());
+    for (const char c : text) {
+        if (c == '<') {
+            safe += "\\u003c";
+        } else {
+            safe += c;
+        }
+    }
+    return safe;
+}
+
+/// Bytes of everything that one page holds, before they become text: more, and browsers give up.
+constexpr std::uint64_t kViewBytesMax = std::uint64_t{128} << 20;
+
+/// The contents of a page.
+struct Page {
+    FileGuard& files_of_run;
+    std::string name = {};                  ///< without its folder
+    std::vector<std::byte> container = {};  ///< what is shown; empty: `shows`
+    std::string shows = {};                 ///< which of `files` is shown; empty: `container`
+    const TriangleMesh* mesh = nullptr;
+    Json check = nullptr;                           ///< the report of `relief check`
+    std::optional<std::string> scene = {};          ///< text of a scene.toml
+    std::map<std::string, std::string> files = {};  ///< that the scene names, by the names it has for them
+
+    /// Reads a file that the page depends on.
+    Result<std::vector<std::byte>> read(const fs::path& path) {
+        RELIEF_TRY(files_of_run.reads(path));
+        return readFile(path, kViewBytesMax);
+    }
+
+    Result<std::string> make() {
+        const fs::path file = RELIEF_TRY(findViewPage());
+        const std::string text = textOf(RELIEF_TRY(read(file)));
+        const std::string place = std::string(kPlaceBegin).append(kPlaceEmpty).append(kPlaceEnd);
+        const std::size_t at = text.find(place);
+        if (at == std::string::npos || text.find(place, at + 1) != std::string::npos) {
+            return invalidInput(quotedPath(file) + " is no page for `relief view`: its place for data, " +
+                                place + ", is not there once; make it anew with scripts/build.sh web");
+        }
+        RELIEF_TRY(checkSize());
+        const std::size_t data = at + kPlaceBegin.size();
+        return text.substr(0, data) + scriptText(json()) + text.substr(data + kPlaceEmpty.size());
+    }
+
+  private:
+    [[nodiscard]] Result<void> checkSize() const {
+        std::uint64_t rest = container.size() + (scene ? scene->size() : 0);
+        for (const auto& [name_in_scene, bytes] : files) {
+            rest += bytes.size();
+        }
+        const std::uint64_t of_mesh =
+            mesh == nullptr ? 0 : std::uint64_t{12} * (mesh->positions.size() + mesh->triangles.size());
+        if (rest + of_mesh <= kViewBytesMax) {
+            return {};
+        }
+        const std::string limit = "; a page holds " + bytesText(kViewBytesMax);
+        if (rest <= kViewBytesMax) {
+            return fail(ErrorCode::kLimit,
+                        mesh->name + " has " + std::to_string(mesh->triangles.size()) + " triangles, " +
+                            bytesText(of_mesh) + limit +
+                            "; leave out the page or the mesh, or give it with fewer triangles");
+        }
+        return fail(ErrorCode::kLimit, name + " has " + bytesText(rest) + limit +
+                                           "; bake with a smaller --budget, or smaller maps");
+    }
+
+    [[nodiscard]] Json json() const {
+        Json all = {{"format", 2},
+                    {"name", name},
+                    {"collider", shows.empty() ? Json(base64(container)) : Json(nullptr)},
+                    {"shows", shows.empty() ? Json(nullptr) : Json(shows)},
+                    {"mesh", nullptr},
+                    {"check", check},
+                    {"scene", scene ? Json(*scene) : Json(nullptr)},
+                    {"files", scene ? Json::object() : Json(nullptr)}};
+        if (mesh != nullptr) {
+            all["mesh"] = {{"name", mesh->name},
+                           {"vertices", base64(std::as_bytes(std::span(mesh->positions)))},
+                           {"triangles", base64(std::as_bytes(std::span(mesh->triangles)))}};
+        }
+        for (const auto& [name_in_scene, bytes] : files) {
+            all["files"][name_in_scene] = base64(std::as_bytes(std::span(bytes)));
+        }
+        return all;
+    }
+};
+
+/// The report, and what the page needs to show it.
+Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
+    Json report = jsonOf(MeshCheckReport{check, page.name, max_error});
+    report.erase("times_ms");  // no two runs have the same
+    report["verdict"]["text"] = verdictText(check.wrongPercent(), check.part_accuracy);
+    report["parts"]["text"] = partsText(check.part_accuracy, check.parts, check.collider);
+    for (std::size_t i = 0; i < check.places.size(); ++i) {
+        const ClosestPoint closest = check.query->closest(check.places[i].position);
+        const glm::dvec3 normal = planeOf(check.query->mesh(), closest.triangle).normal;
+        report["worst_places"][i]["normal"] = jsonOf(glm::vec3(glm::normalize(normal)));
+    }
+    page.mesh = &*check.imported;
+    page.check = std::move(report);
+    return page.make();
+}
+
+Result<std::string> colliderPage(const ViewCommand& command, Page page) {
+    page.container = RELIEF_TRY(page.read(command.file));
+    RELIEF_TRY(refuseMesh(command.file, page.container));
+    Collider collider =
+        RELIEF_TRY(inFront(shownInput(command.file), readContainer(page.container, command.limits)));
+    if (command.check.mesh.empty()) {
+        return page.make();
+    }
+    const MeshCheck check = RELIEF_TRY(relief::check(command.check, std::move(collider)));
+    showCheckWarnings(check);
+    for (const std::string& file : check.imported->dependencies) {
+        RELIEF_TRY(page.files_of_run.reads(file));
+    }
+    return checkPage(std::move(page), check, {});
+}
+
+/// A body that deforms has no container: its mesh at rest, baked, to look at.
+/// \param files  gets those that the mesh refers to.
+Result<std::vector<std::byte>> bakedAtRest(const SceneCollider& live, FileGuard& files) {
+    TriangleMesh mesh = RELIEF_TRY(importMeshInWorker(live.path, {}, {}));
+    for (const std::string& file : mesh.dependencies) {
+        RELIEF_TRY(files.reads(file));
+    }
+    const Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
+    BakeOptions options;
+    options.resolution = live.resolution;
+    const Baked baked = RELIEF_TRY(bake(winding.mesh, options));
+    return writeContainer(baked.collider, {9});
+}
+
+/// Of a file that a scene names, as the scene names it.
+std::string nameInScene(const fs::path& file, const fs::path& scene) {
+    return file.lexically_normal().lexically_relative(scene.parent_path().lexically_normal());
+}
+
+/// The first collider that has texels, else the first.
+Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
+    for (const SceneCollider& collider : scene.colliders) {
+        if (!collider.live) {
+            page.shows = nameInScene(collider.path, file);
+            return {};
+        }
+    }
+    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front(), page.files_of_run));
+    return {};
+}
+
+Result<std::string> scenePage(const ViewCommand& command, Page page) {
+    const fs::path file = command.file;
+    page.scene = textOf(RELIEF_TRY(page.read(file)));
+    SceneOverrides overrides;
+    overrides.limits = command.limits;
+    const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
+    RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
+    if (loaded.scene.flow) {
+        return fail(ErrorCode::kUnsupported,
+                    quotedPath(file) +
+                        " has a [flow], which browsers do not read; take relief-sim, or "
+                        "leave it out");
+    }
+    for (const fs::path& named : filesOf(loaded.scene)) {
+        page.files[nameInScene(named, file)] = textOf(RELIEF_TRY(page.read(named)));
+    }
+    RELIEF_TRY(chooseShown(loaded.scene, file, page));
+    return page.make();
+}
+
+/// Beside FILE unless -o names another place.
 Result<std::string> outputOf(const ViewCommand& command) {
     if (!command.output.empty()) {
         return command.output;
     }
-    if (command.source.file == "-") {
+    if (command.file == "-") {
         return fail(ErrorCode::kUsage,
                     "a page of standard input has no name of its own; give it one with -o");
     }
-    return std::filesystem::path(command.source.file).replace_extension(".html").string();
+    return fs::path(command.file).replace_extension(".html").string();
 }
 
-Result<void> checkSource(const ViewSource& source) {
-    if (source.isScene() && !source.check.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(source.file) +
-                                           " is a scene; leave out --mesh, or view the collider");
-    }
-    return {};
-}
-
+/// The same input gives the same bytes. Files are checked as `relief check` and `relief-sim` do.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
     startLogging(command.common);
-    RELIEF_TRY(checkSource(command.source));
-    const std::string output = RELIEF_TRY(outputOf(command));
-    RELIEF_TRY(files.reads(command.source.file));
-    RELIEF_TRY(files.reads(command.source.check.mesh));
-    RELIEF_TRY(files.writes(output, "-o"));
-    const MadePage page = RELIEF_TRY(makeViewPage(command.source));
-    // What the inputs refer to is known only now.
-    for (const std::filesystem::path& file : page.files) {
-        RELIEF_TRY(files.reads(file));
+    if (command.isScene() && !command.check.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(command.file) +
+                                           " is a scene; leave out --mesh, or view the collider");
     }
-    return writeFile(output, std::as_bytes(std::span(page.html)));
+    const std::string output = RELIEF_TRY(outputOf(command));
+    RELIEF_TRY(files.reads(command.file));
+    RELIEF_TRY(files.reads(command.check.mesh));
+    RELIEF_TRY(files.writes(output, "-o"));
+    Page page{files, inputName(command.file)};
+    const std::string html = RELIEF_TRY(command.isScene() ? scenePage(command, std::move(page))
+                                                          : colliderPage(command, std::move(page)));
+    return writeFile(output, std::as_bytes(std::span(html)));
 }
 
 }  // namespace
+
+Result<fs::path> findViewPage() {
+    if (const char* named = std::getenv("RELIEF_VIEW_PAGE"); named != nullptr && *named != '\0') {
+        return fs::path(named);
+    }
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (const char* place : {"../share/relief/view.html", "../../web/bin/view.html"}) {
+        const fs::path page = folder / place;
+        if (fs::is_regular_file(page, error)) {
+            return page;
+        }
+    }
+    return fail(ErrorCode::kUnsupported,
+                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which "
+                "makes it, or name one with RELIEF_VIEW_PAGE");
+}
+
+Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte> container,
+                                  const MeshCheck& check, std::optional<float> max_error, FileGuard& files) {
+    return checkPage({files, name, std::move(container)}, check, max_error);
+}
+
+CLI::Option* addMeshOptions(CLI::App& verb, CheckRequest& request) {
+    CLI::Option* mesh =
+        verb.add_option("--mesh", request.mesh, "The mesh that it was baked from")->option_text("MESH");
+    FieldOptions visitor(verb);
+    measurementFields(visitor, request);
+    for (CLI::Option* option : visitor.options()) {
+        option->needs(mesh);
+    }
+    return mesh;
+}
+
+void showCheckWarnings(const MeshCheck& check) {
+    for (const std::string& warning : check.warnings) {
+        spdlog::warn(warning);
+    }
+    spdlog::debug("truth {:.2f} s, field {:.2f} s", check.original.samples.seconds,
+                  check.original.accuracy.field.seconds);
+}
 
 void addView(CLI::App& app, Action& action) {
     auto command = std::make_shared<ViewCommand>();
@@ -66,14 +332,14 @@ void addView(CLI::App& app, Action& action) {
         "relief view bunny.relief\n"
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
         "relief view scene.toml");
-    verb.add_option("FILE", command->source.file,
+    verb.add_option("FILE", command->file,
                     "The collider, or a scene (.toml); - for a collider on standard input")
         ->type_name("")
         ->required();
-    addMeshOptions(verb, command->source.check);
-    addFields(verb, command->source.check.import);
-    addFields(verb, command->source.check.import_limits);
-    addMemoryOption(verb, command->source.limits);
+    addMeshOptions(verb, command->check);
+    addFields(verb, command->check.import);
+    addFields(verb, command->check.import_limits);
+    addMemoryOption(verb, command->limits);
     verb.add_option("-o,--output", command->output,
                     "The page; - for standard output; default FILE with .html in place of its extension")
         ->option_text("OUT");

@@ -1,6 +1,5 @@
 #include "bake/cli/generated.h"
 
-#include "bake/cli/bake_outputs.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/mesh_check_report.h"

@@ -1,5 +1,3 @@
-#include "bake/director/check_advice.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -8,6 +6,7 @@
 #include <optional>
 
 #include "bake/director/director.h"
+#include "bake/director/mesh_check.h"
 #include "bake/measure/accuracy.h"
 #include "bake/report/report_text.h"
 #include "formats/base/text.h"
@@ -15,6 +14,11 @@
 namespace relief {
 namespace {
 
+/// Bakes of meshes and budgets beyond these take more than a few seconds, and are not tried.
+constexpr std::uint64_t kTrialTrianglesMax = 200'000;
+constexpr std::uint64_t kTrialBytesMax = 2'500'000;
+/// Points near the surface that a trial is measured at.
+constexpr std::uint32_t kTrialSamplesMax = 50'000;
 /// At most this share of the wrong points is left by an option that helps.
 constexpr double kHelps = 0.9;
 /// A cube at a place looks this far from the surface at most, in units of the longest side.
@@ -29,14 +33,16 @@ float rounded(double value) {
 
 class Advisor {
   public:
-    explicit Advisor(const AdviceInput& input) : input_(input), planned_(input.recorded.request) {
-        truth_.options = input.truth.options;
+    Advisor(const MeshCheck& run, const std::string& mesh_file, const std::string& output)
+        : run_(run), output_(output), planned_(run.recorded.request) {
+        const TruthSamples& truth = run.judged().samples;
+        truth_.options = truth.options;
         truth_.options.samples = std::min(truth_.options.samples, kTrialSamplesMax);
-        truth_.longest_side = input.truth.longest_side;
-        truth_.near.assign(input.truth.near.begin(), input.truth.near.begin() + truth_.options.samples);
-        planned_.mesh = input.mesh_file;
+        truth_.longest_side = truth.longest_side;
+        truth_.near.assign(truth.near.begin(), truth.near.begin() + truth_.options.samples);
+        planned_.mesh = mesh_file;
         planned_.map.clear();
-        planned_.budget = roundBudget(input.collider.gpuBytes());
+        planned_.budget = roundBudget(run.collider.gpuBytes());
         // A default thickness follows the budget of the next bake.
         if (planned_.thickness && planned_.thickness->by_part) {
             planned_.thickness.reset();
@@ -47,9 +53,12 @@ class Advisor {
         const bool sheet = any({WrongCause::kSheet});
         const bool open = any({WrongCause::kOpen});
         if (any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryBudget(roundBudget(2 * input_.collider.gpuBytes()), "planned maps of twice the bytes");
+            tryBudget(roundBudget(2 * run_.collider.gpuBytes()), "planned maps of twice the bytes");
         }
-        if (input_.shape.sheets > 0 && input_.shape.thickness > 0.0) {
+        if (any({WrongCause::kOther})) {
+            tryBudget(*planned_.budget, "planned maps of as many bytes");
+        }
+        if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();
         }
         if (any({WrongCause::kSilhouette, WrongCause::kUnseen})) {
@@ -63,9 +72,8 @@ class Advisor {
                 })) {
                 BakeRequest wrapped = planned_;
                 wrapped.repair.method = "wrap";
-                advice_.push_back({commandLine(wrapped, input_.output),
-                                   "a closed surface wrapped round the mesh", std::nullopt,
-                                   "wrapping takes up to a minute", false});
+                advice_.push_back({commandLine(wrapped, output_), "a closed surface wrapped round the mesh",
+                                   std::nullopt, "wrapping takes up to a minute", false});
             }
         }
         std::stable_sort(advice_.begin(), advice_.end(),
@@ -75,7 +83,7 @@ class Advisor {
 
   private:
     [[nodiscard]] bool any(std::initializer_list<WrongCause> causes) const {
-        return std::any_of(input_.places.begin(), input_.places.end(), [&](const WorstPlace& place) {
+        return std::any_of(run_.places.begin(), run_.places.end(), [&](const WorstPlace& place) {
             return std::find(causes.begin(), causes.end(), place.cause) != causes.end();
         });
     }
@@ -87,10 +95,10 @@ class Advisor {
 
     /// The reason why a bake is not tried; empty: it is.
     [[nodiscard]] std::string tooMuch(std::uint64_t bytes) const {
-        if (!input_.recorded.understood) {
+        if (!run_.recorded.understood) {
             return "the collider's record of its options is not understood";
         }
-        const std::size_t triangles = input_.baked->triangles.size();
+        const std::size_t triangles = run_.baked->triangles.size();
         if (triangles > kTrialTrianglesMax) {
             return std::to_string(triangles) + " triangles would take more than a few seconds";
         }
@@ -104,35 +112,35 @@ class Advisor {
         return measureField(truth, fieldOf(baked.collider)).near.total();
     }
     [[nodiscard]] Result<double> wrongOf(const BakeRequest& request) const {
-        return wrongOf(request, input_.baked, truth_);
+        return wrongOf(request, run_.baked, truth_);
     }
     /// Of another solid, against that solid.
     [[nodiscard]] Result<double> wrongOfSolid(const BakeRequest& request) const {
-        const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, input_.imported));
+        const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, run_.imported));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
         return wrongOf(request, shaped.mesh, sampleTruth(query, truth_.options));
     }
 
     /// Tries, and advises if it could be tried or is too much to be.
     void attempt(const BakeRequest& request, const char* about, std::uint64_t bytes, bool same_solid) {
-        const std::string command = commandLine(request, input_.output);
+        const std::string command = commandLine(request, output_);
         const std::string too_much = tooMuch(bytes);
         if (!too_much.empty()) {
             advice_.push_back({command, about, std::nullopt, too_much, false});
         } else if (const Result<double> wrong = same_solid ? wrongOf(request) : wrongOfSolid(request)) {
-            advice_.push_back({command, about, *wrong, "", *wrong <= kHelps * input_.wrong_percent});
+            advice_.push_back({command, about, *wrong, "", *wrong <= kHelps * run_.wrongPercent()});
         }
     }
 
     void tryBudget(std::uint64_t budget, const char* about) {
         BakeRequest request = planned_;
         request.budget = budget;
-        attempt(request, about, budget, !(input_.shape.default_thickness > 0.0) || repaired());
+        attempt(request, about, budget, !(run_.shape.default_thickness > 0.0) || repaired());
     }
 
     /// More maps than a plan has by default, where there are as many.
     void tryMoreMaps() {
-        if (input_.collider.maps.size() != kPlannedMapsMax) {
+        if (run_.collider.maps.size() != kPlannedMapsMax) {
             return;
         }
         BakeRequest request = planned_;
@@ -141,17 +149,17 @@ class Advisor {
     }
     /// A cube in the free space before a place, as far as its size and no wall reach. nullopt: there is none.
     [[nodiscard]] std::optional<MapSpec> cubeAt(const WorstPlace& place) const {
-        const double side = input_.truth.longest_side;
-        const ClosestPoint closest = input_.query.closest(place.position);
+        const double side = truth_.longest_side;
+        const ClosestPoint closest = run_.query->closest(place.position);
         const glm::dvec3 offset = glm::dvec3(place.position) - closest.point;
         const double distance = glm::length(offset);
         if (!(distance > 0.0)) {
             return std::nullopt;
         }
         // The place may lie in the solid: the free space is on the other side of the surface then.
-        const glm::dvec3 away = (input_.query.inside(place.position) ? -1.0 : 1.0) / distance * offset;
+        const glm::dvec3 away = (run_.query->inside(place.position) ? -1.0 : 1.0) / distance * offset;
         const glm::dvec3 at = closest.point + std::max(distance, 1e-3 * side) * away;
-        const std::optional<FirstHit> hit = input_.query.firstHit(at, away);
+        const std::optional<FirstHit> hit = run_.query->firstHit(at, away);
         const double reach = std::min(
             {hit ? hit->along : kCubeReach * side, kCubeReach * side, std::max(place.size(), 0.01 * side)});
         const glm::dvec3 center = at + 0.5 * reach * away;
@@ -177,9 +185,9 @@ class Advisor {
     void tryCubes() {
         BakeRequest request = planned_;
         request.budget.reset();
-        request.map = input_.recorded.request.map;
-        std::uint64_t bytes = input_.collider.gpuBytes();
-        for (const WorstPlace& place : input_.places) {
+        request.map = run_.recorded.request.map;
+        std::uint64_t bytes = run_.collider.gpuBytes();
+        for (const WorstPlace& place : run_.places) {
             if (place.cause != WrongCause::kUnseen && place.cause != WrongCause::kSilhouette) {
                 continue;
             }
@@ -188,7 +196,7 @@ class Advisor {
                 bytes += std::uint64_t{24} * cube->width * cube->width;
             }
         }
-        const std::size_t recorded = input_.recorded.request.map.size();
+        const std::size_t recorded = run_.recorded.request.map.size();
         if (recorded > 0 && request.map.size() > recorded) {
             attempt(request, "the same maps, and a cube at each place that they do not see", bytes, true);
         }
@@ -206,12 +214,13 @@ class Advisor {
     void tryThicker() {
         if (!repaired()) {
             BakeRequest request = planned_;
-            request.thickness = Thickness{double{rounded(2.0 * input_.shape.thickness)}, false};
+            request.thickness = Thickness{double{rounded(2.0 * run_.shape.thickness)}, false};
             attempt(request, "sheets twice as thick", *request.budget, false);
         }
     }
 
-    const AdviceInput& input_;
+    const MeshCheck& run_;
+    const std::string& output_;
     BakeRequest planned_;  // the recorded bake, planned anew for as many bytes
     TruthSamples truth_;   // near the surface alone, and fewer
     std::vector<Advice> advice_;
@@ -219,8 +228,8 @@ class Advisor {
 
 }  // namespace
 
-std::vector<Advice> adviceFor(const AdviceInput& input) {
-    return Advisor(input).run();
+std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file, const std::string& output) {
+    return Advisor(run, mesh_file, output).run();
 }
 
 }  // namespace relief

@@ -98,4 +98,11 @@ struct MeshCheck {
     const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
 
+/// Commands that may help a collider that is wrong too often, tried in memory before they are advised. By the causes of the
+/// places: twice the budget, cubes at places that no map sees, holes filled, the mesh wrapped. The best comes first, what does
+/// not help last. The same for any number of threads, and on every machine: what is tried does not depend on the time it takes.
+/// \param run  a check's result. \param mesh_file  as the command names it. \param output  of the advised bake
+[[nodiscard]] std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file,
+                                            const std::string& output);
+
 }  // namespace relief

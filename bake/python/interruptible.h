@@ -2,10 +2,13 @@
 #pragma once
 
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -44,10 +47,24 @@ struct Abandoned {};
 /// destructors of libraries would take down.
 class MayBeAbandoned {
   public:
-    MayBeAbandoned();
-    ~MayBeAbandoned();
+    MayBeAbandoned() {
+        // Called before the destructors of libraries, whose registration is older.
+        static const int registered = ::on_exit(endAtOnce, nullptr);
+        static_cast<void>(registered);
+        ++running;
+    }
+    ~MayBeAbandoned() { --running; }
     MayBeAbandoned(const MayBeAbandoned&) = delete;
     MayBeAbandoned& operator=(const MayBeAbandoned&) = delete;
+
+  private:
+    static void endAtOnce(int status, void* /*nothing*/) {
+        if (running > 0) {
+            std::fflush(nullptr);
+            ::_exit(status);
+        }
+    }
+    static inline std::atomic<int> running = 0;
 };
 
 /// work(checkpoint) on a thread of its own, without the GIL, while this one looks at signals: a handler of Python that

@@ -87,8 +87,8 @@ struct Samples {
     py::array_t<std::int32_t> map;
 };
 
-/// Points evaluated before the first check for signals.
-constexpr std::size_t kFirstPoints = std::size_t{1} << 14;
+/// Points between two looks at signals: a tenth of a second on a few cores.
+constexpr std::size_t kPart = std::size_t{1} << 16;
 
 /// ask(p) at all points, on all cores. Of a point that is not finite, which no collider knows anything of, distance and
 /// normal are NaN.
@@ -114,10 +114,8 @@ Samples sampleAll(const Floats& points, const Ask& ask) {
         std::copy_n(&sample.normal.x, 3, normal + 3 * i);
         map[i] = sample.map;
     };
-    std::size_t part = kFirstPoints;
-    for (std::size_t begin = 0; begin < at.size();) {
-        const Stopwatch watch;
-        const std::size_t end = std::min(begin + part, at.size());
+    for (std::size_t begin = 0; begin < at.size(); begin += kPart) {
+        const std::size_t end = std::min(begin + kPart, at.size());
         released([&] {
             tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
                 for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -126,9 +124,6 @@ Samples sampleAll(const Floats& points, const Ask& ask) {
             });
         });
         raiseSignals();
-        begin = end;
-        const bool quick = watch.ms() < static_cast<double>(kSignalInterval.count());
-        part = quick ? 2 * part : std::max(kFirstPoints, part / 2);
     }
     return out;
 }

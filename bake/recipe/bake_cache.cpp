@@ -9,9 +9,9 @@
 #include <system_error>
 
 #include "formats/base/descriptor.h"
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -22,7 +22,7 @@ std::string trustText(const Inspection& inspection) {
     }
     if (inspection.metadata != PartState::kSound) {
         return "Nothing of it can be trusted: what describes the maps is " +
-               std::string(partStateName(inspection.metadata)) + ".\n";
+               std::string(wordOf(inspection.metadata)) + ".\n";
     }
     return count == 0 ? "What describes the maps can be trusted, none of the maps can.\n"
                       : "Can be trusted: what describes the maps, and of them" + maps + ".\n";
@@ -48,7 +48,7 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
     }
     text += "\n";
     for (const Issue& issue : inspection.issues) {
-        text += issue.id() + " " + severityName(issue.severity()) + ": " +
+        text += issue.id() + " " + std::string(wordOf(issue.severity())) + ": " +
                 (issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "") + issue.message +
                 (issue.offset ? " (byte " + std::to_string(*issue.offset) + ")" : "") + "\n";
     }
@@ -57,7 +57,7 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
             {"map", "is", "format", "size>", "stored>", "covered>"}};
         for (std::size_t i = 0; i < inspection.maps.size(); ++i) {
             const MapInspection& map = inspection.maps[i];
-            rows.push_back({std::to_string(i), partStateName(map.state),
+            rows.push_back({std::to_string(i), std::string(wordOf(map.state)),
                             map.frame ? mapFormatName(map.frame->format) : "-",
                             map.frame ? sizeText(*map.frame) : "-",
                             map.payload ? bytesText(map.payload->stored_size) : "-",

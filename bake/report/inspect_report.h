@@ -18,15 +18,11 @@ namespace relief {
 
 // --- The same as fields.
 
-inline constexpr std::span<const std::string_view> kPartStateWords =
-    kWords<"sound", "suspicious", "unverified", "damaged", "unreadable">;
-
 template <class Visitor, FieldsOf<Issue> I>
 void fields(Visitor& visit, I& issue) {
     visit("code", issue.id(),
           {.help = "Code of the issue; codes keep their meaning", .pattern = "^RLF-[0-9]{4}$"});
-    visit("severity", severityName(issue.severity()),
-          {.help = "Severity of the code", .words = kWords<"fatal", "error", "warning">});
+    visit("severity", issue.severity(), {"Severity of the code"});
     visit("map", onlyIf(issue.map >= 0, issue.map),
           {"Index of the map; null if the issue is not about a map", {}, kFromZero});
     visit("offset", issue.offset, {"Byte of the file; null if there is none to name"});
@@ -43,8 +39,7 @@ void fields(Visitor& visit, R& report) {
     const std::optional<DepthMap>& frame = report.map.frame;
     const std::optional<PayloadInfo>& payload = report.map.payload;
     visit("index", report.index, {"Position in the container"});
-    visit("state", partStateName(report.map.state),
-          {.help = "How far the map can be trusted", .words = kPartStateWords});
+    visit("state", report.map.state, {"How far the map can be trusted"});
     visit(
         "format", frame ? std::optional(mapFormatName(frame->format)) : std::nullopt,
         {.help = "Format of the texels; null if the map's description is invalid", .words = kMapFormatWords});
@@ -79,10 +74,8 @@ void fields(Visitor& visit, R& report) {
     visit("fatal", all.count(Severity::kFatal), {"Issues behind which nothing can be read"});
     visit("errors", all.count(Severity::kError), {"Issues for which readers refuse the file"});
     visit("warnings", all.count(Severity::kWarning), {"Issues that readers accept"});
-    visit("header", partStateName(all.header),
-          {.help = "State of the first 64 bytes", .words = kPartStateWords});
-    visit("metadata", partStateName(all.metadata),
-          {.help = "State of the description of the maps", .words = kPartStateWords});
+    visit("header", all.header, {"State of the first 64 bytes"});
+    visit("metadata", all.metadata, {"State of the description of the maps"});
     visit("issues", all.issues, {"Issues, in the order of the file"});
     visit("maps", report.maps(), {"Maps, as many as the metadata lists"});
 }

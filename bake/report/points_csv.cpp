@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "formats/base/csv_reader.h"
 #include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
 
 namespace relief {
 namespace {

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
-#include "formats/base/destination.h"
 #include "formats/base/file_io.h"
-#include "formats/base/preflight.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
@@ -158,6 +158,21 @@ Result<void> FileGuard::writes(const NumberedFiles& files, std::string_view opti
     series_.push_back({std::move(real), files_.size()});
     files_.push_back(self);
     return {};
+}
+
+fs::path NumberedFiles::path(std::uint32_t number) const {
+    const std::string digits = std::to_string(number);
+    return folder / (head + std::string(4 - std::min<std::size_t>(digits.size(), 4), '0') + digits + ending);
+}
+
+bool NumberedFiles::hold(const std::string& name) const {
+    if (name.size() <= head.size() + ending.size() || !std::string_view(name).starts_with(head) ||
+        !std::string_view(name).ends_with(ending)) {
+        return false;
+    }
+    const auto number =
+        parseUnsigned(std::string_view(name).substr(head.size(), name.size() - head.size() - ending.size()));
+    return number && *number < count && path(static_cast<std::uint32_t>(*number)).filename() == name;
 }
 
 }  // namespace relief

@@ -2,16 +2,29 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "formats/base/numbered_files.h"
 #include "formats/base/result.h"
 
 namespace relief {
+
+/// The names of files that are written one after the other: frames/frame_0000.png and so on.
+struct NumberedFiles {
+    std::filesystem::path folder;
+    std::string head;         ///< "frame_"
+    std::string ending;       ///< ".png"
+    std::uint32_t count = 0;  ///< they are numbered from 0
+
+    /// The folder's file of this number, which has four digits or more.
+    [[nodiscard]] std::filesystem::path path(std::uint32_t number) const;
+    /// Whether a file of the folder is one of them.
+    [[nodiscard]] bool hold(const std::string& name) const;
+};
 
 /// Knows files by what they are and not by how they are named: through symbolic links, dangling ones included, through
 /// hard links, and behind standard input and output. Name every file before the first one is written. Devices may be

@@ -101,18 +101,11 @@ Result<std::vector<std::byte>> readAll(int fd, const std::string& name, std::uin
     }
 }
 
-/// Where a path leads when its last part is a symbolic link, one that leads to nothing included.
-/// \return 0 or an errno.
-int followLinks(fs::path& path) {
-    for (int i = 0; i < kLinksMax; ++i) {
-        std::error_code error;
-        const fs::path target = fs::read_symlink(path, error);
-        if (error) {
-            return 0;  // no link: an error of any other kind comes back when the file is written
-        }
-        path = path.parent_path() / target;  // an absolute target replaces the left side
-    }
-    return ELOOP;
+/// weakly_canonical takes a dangling link for a file that does not exist yet, and leaves it as it is.
+fs::path settled(const fs::path& path, std::error_code& error) {
+    fs::path result = fs::weakly_canonical(fs::absolute(path, error), error);
+    // A folder that does not exist keeps the slash at its end, which would count as a part.
+    return result.has_filename() ? result : result.parent_path();
 }
 
 bool isStream(mode_t mode) {
@@ -257,11 +250,11 @@ Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
     } else if (errno != ENOENT) {
         return ioError("write", name, errno);
     }
-    fs::path target = path;
-    if (const int code = followLinks(target)) {
-        return ioError("write", name, code);
-    }
-    return replaceFile(target, name, bytes, older_mode);
+    std::error_code error;
+    const bool link = fs::is_symlink(fs::symlink_status(path, error));
+    const fs::path target = link ? destination(path, error) : path;
+    return error && link ? ioError("write", name, error.value())
+                         : replaceFile(target, name, bytes, older_mode);
 }
 
 std::string quotedPath(const fs::path& path) {
@@ -277,6 +270,80 @@ std::string quotedPath(const fs::path& path) {
         }
     }
     return text + "'";
+}
+
+Result<void> preflightFile(const fs::path& path, std::string_view option) {
+    const auto refuse = [&](const std::string& why) {
+        return fail(ErrorCode::kIo,
+                    "cannot write " + quotedPath(path) + " of " + std::string(option) + ": " + why);
+    };
+    if (path == "-") {
+        return {};
+    }
+    std::error_code error;
+    if (path.empty()) {
+        return refuse("no name; name a file");
+    }
+    if (fs::is_directory(path, error)) {
+        return refuse("it is a folder; name a file");
+    }
+    if (mayBlock(path)) {
+        return refuse("it is a pipe, a socket or a disk; name a file, or - for standard output");
+    }
+    if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+        if (::access(path.c_str(), W_OK) != 0) {
+            return refuse("no permission; choose another file");
+        }
+        return {};
+    }
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (!fs::is_directory(folder, error)) {
+        return refuse("its folder does not exist; make the folder first");
+    }
+    // A file is replaced by renaming, so it is the folder that must be writable.
+    if (!fs::is_symlink(path, error) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+        return refuse("its folder cannot be written; change its permissions or choose another");
+    }
+    return {};
+}
+
+Result<void> preflightFolder(const fs::path& path, std::string_view option) {
+    const std::string name = quotedPath(path) + " of " + std::string(option);
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error || !fs::is_directory(path, error)) {
+        return fail(ErrorCode::kIo, "cannot make the folder " + name + ": " +
+                                        (error ? error.message() : "a file of that name is in the way") +
+                                        "; choose another");
+    }
+    if (::access(path.c_str(), W_OK | X_OK) != 0) {
+        return fail(ErrorCode::kIo,
+                    "cannot write into the folder " + name + "; change its permissions or choose another");
+    }
+    return {};
+}
+
+fs::path destination(const fs::path& path, std::error_code& error) {
+    fs::path result = settled(path, error);
+    for (int i = 0; i < kLinksMax && !error; ++i) {
+        const auto link =
+            std::find_if(result.begin(), result.end(), [walked = fs::path()](const fs::path& part) mutable {
+                std::error_code none;
+                return fs::is_symlink(fs::symlink_status(walked /= part, none));
+            });
+        if (link == result.end()) {
+            return result;
+        }
+        fs::path before;
+        std::for_each(result.begin(), link, [&](const fs::path& part) { before /= part; });
+        fs::path followed = before / fs::read_symlink(before / *link, error);
+        std::for_each(std::next(link), result.end(), [&](const fs::path& part) { followed /= part; });
+        result = settled(followed, error);
+    }
+    if (!error) {
+        error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
+    }
+    return result;
 }
 
 }  // namespace relief

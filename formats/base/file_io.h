@@ -8,6 +8,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -41,5 +43,20 @@ namespace relief {
 
 /// A path for a message: in single quotes, control characters as hexadecimal escapes so that the message stays one line.
 [[nodiscard]] std::string quotedPath(const std::filesystem::path& path);
+
+/// An absolute path without symbolic links, "." and ".."; parts that do not exist stay. Dangling links are followed too:
+/// by the time that the path is opened their target may be there.
+/// \param error  set where links lead in a circle, or a folder cannot be looked into.
+[[nodiscard]] std::filesystem::path destination(const std::filesystem::path& path, std::error_code& error);
+
+/// \param path    a file that will be written by writeFile; "-" for standard output.
+/// \param option  that names it, for messages: "--dump".
+/// Errors: kIo: it is a folder, its folder is missing or cannot be written.
+[[nodiscard]] Result<void> preflightFile(const std::filesystem::path& path, std::string_view option);
+
+/// \param path    a folder that will be filled; made, with its parents, if it is missing.
+/// \param option  that names it, for messages: "--frames".
+/// Errors: kIo.
+[[nodiscard]] Result<void> preflightFolder(const std::filesystem::path& path, std::string_view option);
 
 }  // namespace relief

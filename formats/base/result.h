@@ -67,4 +67,13 @@ inline void valueOf(Result<void>&& /*result*/) {}
 /// "file or I/O", "invalid input", …: the words of the exit code table.
 [[nodiscard]] const char* errorCodeName(ErrorCode code);
 
+/// The same Result; an error's message with "WORDS: " in front.
+template <class T>
+[[nodiscard]] Result<T> inFront(const std::string& words, Result<T> result) {
+    if (!result) {
+        result.error().message.insert(0, words + ": ");
+    }
+    return result;
+}
+
 }  // namespace relief

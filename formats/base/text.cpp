@@ -1,12 +1,14 @@
 #include "formats/base/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "formats/base/float_chars.h"
 
@@ -246,6 +248,34 @@ std::string oneCleanLine(std::string_view text) {
     std::replace_if(
         line.begin(), line.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
     return cleanUtf8(trimmed(line));
+}
+
+std::optional<std::uint64_t> parseByteCount(std::string_view text) {
+    constexpr std::array<std::pair<std::string_view, double>, 8> kUnits = {{{"", 1.0},
+                                                                            {"b", 1.0},
+                                                                            {"kb", 1e3},
+                                                                            {"mb", 1e6},
+                                                                            {"gb", 1e9},
+                                                                            {"kib", 0x1p10},
+                                                                            {"mib", 0x1p20},
+                                                                            {"gib", 0x1p30}}};
+    text = trimmed(text);
+    double number = 0.0;
+    const char* end = text.data() + text.size();
+    const auto [rest, error] = fromChars(text.data(), end, number, true);
+    if (error != std::errc()) {
+        return std::nullopt;
+    }
+    const std::string unit = lowerCase(trimmed({rest, static_cast<std::size_t>(end - rest)}));
+    for (const auto& [name, factor] : kUnits) {
+        if (unit == name) {
+            const double bytes = number * factor;
+            // Written so that NaN fails too.
+            return bytes >= 1.0 && bytes <= 0x1p53 ? std::optional(static_cast<std::uint64_t>(bytes))
+                                                   : std::nullopt;
+        }
+    }
+    return std::nullopt;
 }
 
 }  // namespace relief

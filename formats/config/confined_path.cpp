@@ -4,7 +4,6 @@
 #include <string>
 #include <system_error>
 
-#include "formats/base/destination.h"
 #include "formats/base/file_io.h"
 
 namespace relief {

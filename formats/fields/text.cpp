@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cstdio>
 
-#include "formats/base/byte_count.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -83,7 +82,7 @@ std::string readFloat(std::string_view word, const FieldInfo& info, float& value
     const bool percent = info.unit == "%";
     std::string_view plain = trimmed(word);
     plain.remove_suffix(percent && plain.ends_with('%') ? 1 : 0);
-    const std::optional<float> number = parseFloat(plain);
+    const std::optional<float> number = parseFloat(trimmed(plain));
     if (!number || !info.range.holds(double{*number})) {
         return butMustBe(word, !info.must.empty() ? info.must
                                : percent          ? "a share in percent, such as 1.5"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "formats/base/finite.h"
 #include "formats/base/text.h"
 #include "formats/base/text_scanner.h"
 #include "formats/polygons/decimal.h"
@@ -183,10 +183,6 @@ class ObjReader {
         mesh_.others.lines += line && count > 0 ? count - 1 : 0;
         mesh_.others.points += line ? 0 : count;
         return {};
-    }
-
-    static bool isFinite(const glm::vec3& p) {
-        return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
     }
 
     /// Vertices that no face uses may be anywhere.

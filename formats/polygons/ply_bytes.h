@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "formats/base/bits.h"
-
 namespace relief {
 
 class PlyBytes {
@@ -24,7 +22,7 @@ class PlyBytes {
             byte(static_cast<std::uint8_t>(word >> shift & 0xffU));
         }
     }
-    void number(float value) { word(bitCast<std::uint32_t>(value)); }
+    void number(float value) { word(__builtin_bit_cast(std::uint32_t, value)); }
     void reserve(std::size_t bytes) { bytes_.reserve(bytes); }
     [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
 

@@ -7,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "formats/base/bits.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -146,9 +145,9 @@ std::optional<double> PlyNumbers::nextBytes(PlyType type) {
         case PlyType::kInt32:
             return static_cast<std::int32_t>(bits);
         case PlyType::kFloat32:
-            return bitCast<float>(static_cast<std::uint32_t>(bits));
+            return __builtin_bit_cast(float, static_cast<std::uint32_t>(bits));
         case PlyType::kFloat64:
-            return bitCast<double>(bits);
+            return __builtin_bit_cast(double, bits);
         default:
             return static_cast<double>(bits);
     }

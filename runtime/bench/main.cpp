@@ -23,7 +23,7 @@ Result<void> run(int argc, char** argv) {
     Bench bench;
     app.add_option("CASE", name, "step, picture or mesh")
         ->required()
-        ->transform(oneOf({"step", "picture", "mesh"}));
+        ->transform(oneOf(kWords<"step", "picture", "mesh">));
     app.add_option("FILE", bench.file, "The collider of step and picture; the .obj or .ply of mesh")
         ->required();
     app.add_option("--particles", bench.particles, "For step, a multiple of 1024")

@@ -10,8 +10,6 @@
 #include "formats/config/confined_path.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/field_options.h"
-#include "runtime/command_line/memory_option.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/command_line/progress.h"
 #include "runtime/player/report.h"

@@ -1,73 +1,82 @@
 #include "runtime/command_line/option_values.h"
 
-#include <algorithm>
-
-#include "formats/base/byte_count.h"
-#include "formats/base/text.h"
-
 namespace relief {
 namespace {
 
-std::string wholeNumberText(std::uint64_t least, std::uint64_t most) {
-    const bool any = least == 0 && most == std::numeric_limits<std::uint64_t>::max();
-    return "a whole number" + (any ? "" : " from " + std::to_string(least) + " to " + std::to_string(most));
-}
-
-/// \param parse  the word as what CLI11 converts, or nullopt.
-template <class Parse>
-CLI::Validator validator(const std::string& must, const Parse& parse) {
-    return {[must, parse](std::string& word) -> std::string {
-                std::optional<std::string> plain = parse(word);
-                if (!plain) {
-                    return butMustBe(word, must);
-                }
-                word = std::move(*plain);
-                return {};
+/// The words that readWord() takes for a T, as words that CLI11 converts.
+template <class T>
+CLI::Validator fieldValue(const FieldInfo& info, const std::string& must = {}) {
+    return {[info, must](std::string& word) {
+                FieldInfo named = info;
+                named.must = must;
+                T value{};
+                std::string wrong = readWord(word, named, value);
+                word = wrong.empty() ? wordsOf(value).front() : word;
+                return wrong;
             },
             ""};
 }
 
-CLI::Validator counted(std::uint64_t least, std::uint64_t most, const std::string& must,
-                       std::optional<std::uint64_t> (*parse)(std::string_view)) {
-    return validator(must, [=](const std::string& word) -> std::optional<std::string> {
-        const std::optional<std::uint64_t> count = parse(word);
-        return count && *count >= least && *count <= most ? std::optional(std::to_string(*count))
-                                                          : std::nullopt;
-    });
-}
-
-std::optional<std::string> plainFloat(std::string_view word, float least, float most) {
-    const std::optional<float> value = parseFloat(trimmed(word));
-    return value && *value >= least && *value <= most ? std::optional(shortest(*value)) : std::nullopt;
+/// The sentence, the default and the largest value of a count.
+std::string helpOf(const FieldWords& field) {
+    std::string help(field.info.help);
+    if (const std::string value = defaultText(field); !value.empty()) {
+        help += "; default: " + value;
+    }
+    const FieldRange& range = field.info.range;
+    if (field.number && field.info.must.empty() && range.high < 1e9) {
+        help += "; at most " + numberWord(range.high);
+    }
+    return help;
 }
 
 }  // namespace
 
-CLI::Validator wholeNumber(std::uint64_t least, std::uint64_t most, const std::string& must) {
-    return counted(least, most, must.empty() ? wholeNumberText(least, most) : must, parseUnsigned);
+CLI::Validator wholeNumber(std::uint64_t least, std::uint64_t most) {
+    return fieldValue<std::uint64_t>({.range = {static_cast<double>(least), static_cast<double>(most)}});
 }
 
 CLI::Validator number(float least, float most, const std::string& must) {
-    return validator(must, [=](const std::string& word) { return plainFloat(word, least, most); });
+    return fieldValue<float>({.range = {double{least}, double{most}}}, must);
 }
 
 CLI::Validator percent() {
-    return validator("a share in percent, such as 1.5", [](std::string_view word) {
-        word = trimmed(word);
-        return plainFloat(word.substr(0, word.size() - (word.ends_with('%') ? 1 : 0)), 0.0F,
-                          std::numeric_limits<float>::max());
-    });
+    return fieldValue<float>({.unit = "%", .range = kFromZero});
 }
 
-CLI::Validator byteCount(std::uint64_t least, std::uint64_t most, const std::string& must) {
-    return counted(least, most, must, parseByteCount);
+CLI::Validator oneOf(std::span<const std::string_view> words) {
+    return fieldValue<std::string>({.words = words});
 }
 
-CLI::Validator oneOf(std::vector<std::string_view> words) {
-    return {[words = std::move(words)](std::string& word) {
-                return std::ranges::find(words, word) == words.end() ? butMustBeOneOf(word, words) : "";
-            },
-            ""};
+void addMemoryOption(CLI::App& app, ContainerLimits& limits) {
+    limits.memory = kToolMemory;
+    app.add_option(
+           "--max-memory", limits.memory,
+           "Texels that a collider may unpack to; default 160MB, or 16 times its file if that is more")
+        ->option_text("BYTES")
+        ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
+}
+
+void FieldOptions::add(const FieldWords& field, const std::function<std::string(const std::string&)>& read) {
+    const std::string name = optionName(field.name);
+    const std::string letter = field.info.letter == '\0' ? "" : std::string{'-', field.info.letter, ','};
+    CLI::Option* option = app_.add_option(
+        letter + name,
+        [name, read](const CLI::results_t& words) {
+            for (const std::string& word : words) {
+                const std::string wrong = read(word);
+                if (!wrong.empty()) {
+                    throw CLI::ValidationError(name, wrong);
+                }
+            }
+            return true;
+        },
+        helpOf(field));
+    option->option_text(valueText(field));
+    if (field.kind == FieldKind::kList) {
+        option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+    }
+    options_.push_back(option);
 }
 
 }  // namespace relief

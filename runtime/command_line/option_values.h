@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,26 +15,20 @@
 #include <utility>
 #include <vector>
 
+#include "formats/container_limits.h"
 #include "formats/fields/text.h"
 
 namespace relief {
 
 /// Decimal digits alone, from `least` to `most`.
-/// \param must  what the value must be; empty: "a whole number from … to …".
 [[nodiscard]] CLI::Validator wholeNumber(std::uint64_t least = 0,
-                                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
-                                         const std::string& must = {});
+                                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 /// A finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
 [[nodiscard]] CLI::Validator number(float least, float most, const std::string& must);
 /// "1.5" or "1.5%", 0 or more; for a float field.
 [[nodiscard]] CLI::Validator percent();
-/// "1MB" and such, as parseByteCount, from `least` to `most` bytes.
-[[nodiscard]] CLI::Validator byteCount(std::uint64_t least = 1,
-                                       std::uint64_t most = std::numeric_limits<std::uint64_t>::max(),
-                                       const std::string& must = "a number of bytes, such as 1MB or 512KiB");
-
-/// One of some words, for a field that holds text.
-[[nodiscard]] CLI::Validator oneOf(std::vector<std::string_view> words);
+/// One of some words, as kWords, for a field that holds text.
+[[nodiscard]] CLI::Validator oneOf(std::span<const std::string_view> words);
 
 template <class Enum>
 using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
@@ -76,6 +71,49 @@ CLI::Option* addParsed(CLI::App& app, const std::string& names, std::optional<T>
         return true;
     };
     return app.add_option(names, read, help);
+}
+
+/// What the tools unpack of a file that is smaller than a sixteenth of it, bytes: a map of 4096x4096 of eight bytes a
+/// texel, and a little.
+inline constexpr std::uint64_t kToolMemory = 160'000'000;
+
+/// Lowers limits.memory to kToolMemory, and adds --max-memory, which sets it. `limits` must outlive the app.
+void addMemoryOption(CLI::App& app, ContainerLimits& limits);
+
+// The fields of a struct as options of a command line: "max_error" is --max-error.
+
+/// A visitor of fields() that adds an option for each. The struct must outlive the app. Messages are those of readWord(), with
+/// the name of the option in front (parseCommandLine).
+class FieldOptions {
+  public:
+    explicit FieldOptions(CLI::App& app) : app_(app) {}
+
+    template <class T>
+    void operator()(std::string_view name, T& value, const FieldInfo& info) {
+        if constexpr (std::same_as<T, bool>) {
+            options_.push_back(app_.add_flag(optionName(name), value, std::string(info.help)));
+        } else {
+            FieldCollector described;
+            described(name, value, info);
+            add(described.take().front(),
+                [&value, info](const std::string& word) { return readWord(word, info, value); });
+        }
+    }
+    [[nodiscard]] const std::vector<CLI::Option*>& options() const { return options_; }
+
+  private:
+    void add(const FieldWords& field, const std::function<std::string(const std::string&)>& read);
+
+    CLI::App& app_;
+    std::vector<CLI::Option*> options_;
+};
+
+/// Adds the fields of a struct. \return the options, in that order.
+template <class S>
+std::vector<CLI::Option*> addFields(CLI::App& app, S& target) {
+    FieldOptions visitor(app);
+    fields(visitor, target);
+    return visitor.options();
 }
 
 }  // namespace relief

@@ -9,11 +9,11 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "formats/base/temporary_file.h"
+#include "runtime/command_line/command_line.h"
 
 namespace relief {
 namespace {
@@ -47,17 +47,12 @@ struct Progress::Impl {
     std::atomic<double> share{kUnknown};
     bool shown = false;  ///< there is a line on the terminal
     bool ends = false;
-    std::string failure;  ///< why there is no thread
     std::thread thread;
 
     explicit Impl(ProgressOptions wanted) : options(std::move(wanted)) {
         options.drawn = options.drawn && ::isatty(STDERR_FILENO) == 1;
         if (options.drawn || options.seconds) {
-            try {
-                thread = std::thread([this] { watch(); });
-            } catch (const std::system_error& error) {
-                failure = error.code().message();
-            }
+            thread = std::thread([this] { watch(); });
         }
     }
 
@@ -91,10 +86,10 @@ struct Progress::Impl {
     [[noreturn]] void timeIsUp() {
         wipe();
         TemporaryFile::removeAll();
-        options.report({ErrorCode::kLimit, options.name + ": the bake did not end within " +
-                                               secondsText(double{*options.seconds}) + "; it was " + stage +
-                                               ", for " + secondsText(secondsSince(stage_start)) +
-                                               "; simplify the mesh, ask for less, or raise --time-limit"});
+        reportError({ErrorCode::kLimit, options.name + ": the bake did not end within " +
+                                            secondsText(double{*options.seconds}) + "; it was " + stage +
+                                            ", for " + secondsText(secondsSince(stage_start)) +
+                                            "; simplify the mesh, ask for less, or raise --time-limit"});
         ::_exit(static_cast<int>(ErrorCode::kLimit));
     }
 
@@ -126,23 +121,7 @@ Progress::~Progress() {
     finish();
 }
 
-Result<void> Progress::ready() const {
-    if (impl_->options.seconds && !impl_->failure.empty()) {
-        return fail(ErrorCode::kFailure, "--time-limit: no thread could be started to watch the time (" +
-                                             impl_->failure +
-                                             "); end processes or raise their limit (ulimit -u)");
-    }
-    return {};
-}
-
-void Progress::checkpoint() const {
-    if (impl_->options.checkpoint) {
-        impl_->options.checkpoint();
-    }
-}
-
 void Progress::begin(const std::string& stage) {
-    checkpoint();
     const std::lock_guard lock(impl_->mutex);
     impl_->stage = stage;
     impl_->stage_start = Clock::now();
@@ -150,7 +129,6 @@ void Progress::begin(const std::string& stage) {
 }
 
 void Progress::set(double share) {
-    checkpoint();
     impl_->share = share;
 }
 

@@ -7,18 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "formats/base/result.h"
-
 namespace relief {
 
 struct ProgressOptions {
     std::string name;                   ///< of what is baked: its path, as messages quote it
     bool drawn = true;                  ///< false: no line
     std::optional<float> seconds = {};  ///< that may pass from here to finish(); none: any
-    /// Called whenever a stage begins or has come on. It may throw: that ends the bake.
-    std::function<void()> checkpoint = {};
-    /// Prints the error of a bake whose time is up.
-    std::function<void(const Error&)> report = {};
 };
 
 /// The line names the stage, how much of it is done where that is known, and how long it has taken. It is drawn ten times
@@ -30,19 +24,15 @@ struct ProgressOptions {
 /// All members are for the thread that made it, but set(), which any may call.
 class Progress {
   public:
+    /// Throws std::system_error where no thread can be had to draw or to watch the time.
     explicit Progress(ProgressOptions options);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     /// As finish().
     ~Progress();
 
-    /// Errors: kFailure (the time is limited, and no thread can be had to watch it).
-    [[nodiscard]] Result<void> ready() const;
-
     /// \param stage  "planning the maps"
     void begin(const std::string& stage);
-    /// Calls ProgressOptions::checkpoint. Any thread may.
-    void checkpoint() const;
     /// \param share  of the stage that is done, in [0, 1].
     void set(double share);
     /// Prints something else, which the line gives way to.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 
 namespace relief {
 namespace {

@@ -1,7 +1,7 @@
 #include "runtime/files/mesh_file.h"
 
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "formats/polygons/obj_mesh.h"
 #include "formats/polygons/ply_mesh.h"

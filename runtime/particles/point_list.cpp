@@ -5,10 +5,10 @@
 #include <optional>
 #include <string_view>
 
-#include "formats/base/csv_reader.h"
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
+#include "formats/base/text_scanner.h"
 #include "formats/polygons/ply_reader.h"
 #include "runtime/particles/random.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "formats/base/error_context.h"
+#include "formats/base/result.h"
 
 namespace relief {
 

@@ -4,10 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "formats/base/file_guard.h"
 #include "formats/base/file_io.h"
-#include "formats/base/numbered_files.h"
-#include "formats/base/preflight.h"
-#include "formats/base/text.h"
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watched.h"

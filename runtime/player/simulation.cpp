@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/watched.h"
 

@@ -4,9 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "formats/bake_first.h"
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "formats/config/toml_reader.h"
 #include "formats/container.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 
 namespace relief {
 namespace {

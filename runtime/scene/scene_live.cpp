@@ -4,8 +4,8 @@
 #include <glm/glm.hpp>
 #include <numbers>
 
-#include "formats/base/error_context.h"
 #include "formats/base/file_io.h"
+#include "formats/base/result.h"
 #include "runtime/collider/live_collider.h"
 #include "runtime/files/mesh_file.h"
 

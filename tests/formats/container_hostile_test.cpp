@@ -14,7 +14,7 @@
 #include "collider_generated.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
-#include "formats/container_header.h"
+#include "formats/container_reader.h"
 #include "formats/inspect.h"
 #include "formats/row_spans.h"
 #include "formats/validate.h"

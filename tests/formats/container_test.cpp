@@ -13,7 +13,7 @@
 #include <string>
 
 #include "formats/base/file_io.h"
-#include "formats/container_header.h"
+#include "formats/container_reader.h"
 #include "formats/row_spans.h"
 #include "formats/validate.h"
 #include "tests/formats/analytic_shapes.h"

@@ -14,7 +14,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
-#include "formats/container_header.h"
+#include "formats/container_reader.h"
 #include "formats/plane.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/sample_colliders.h"
@@ -262,7 +262,7 @@ TEST(Inspect, CodesOfTheReadmeAscendAndHaveTheirSeverity) {
     EXPECT_TRUE(std::ranges::is_sorted(rows));
     for (const auto& [code, severity] : rows) {
         const Issue issue{code, -1, {}, {}};
-        EXPECT_EQ(severityName(issue.severity()), severity) << issue.id();
+        EXPECT_EQ(wordOf(issue.severity()), severity) << issue.id();
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include "formats/base/hash.h"
 #include "formats/container.h"
-#include "formats/container_header.h"
+#include "formats/container_reader.h"
 #include "tests/formats/analytic_shapes.h"
 
 namespace relief::test {

@@ -5,7 +5,7 @@
 
 #include "collider_generated.h"
 #include "formats/base/hash.h"
-#include "formats/container_header.h"
+#include "formats/container_reader.h"
 
 namespace {
 

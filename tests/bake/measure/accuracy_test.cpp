@@ -15,7 +15,7 @@
 #include "bake/mesh/inside.h"
 #include "bake/report/check_report.h"
 #include "bake/report/report_text.h"
-#include "formats/base/byte_count.h"
+#include "formats/base/text.h"
 #include "formats/fields/json.h"
 #include "tests/bake/meshes.h"
 

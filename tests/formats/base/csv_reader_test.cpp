@@ -1,4 +1,4 @@
-#include "formats/base/csv_reader.h"
+#include "formats/base/text_scanner.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Whether an output can be written shows before the work.
-#include "formats/base/preflight.h"
+#include "formats/base/file_io.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

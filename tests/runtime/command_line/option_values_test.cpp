@@ -14,7 +14,7 @@ struct Values {
     std::uint32_t count = 0;
     float degrees = 0.0F;
     float share = 0.0F;
-    std::uint64_t bytes = 0;
+    ContainerLimits limits;
     std::string color;
     std::optional<Fruit> fruit;
     std::optional<char> letter;
@@ -25,8 +25,8 @@ void define(CLI::App& app, Values& values) {
     app.add_option("--count", values.count)->transform(wholeNumber(1, 4'000'000'000));
     app.add_option("--degrees", values.degrees)->transform(number(0.0F, 360.0F, "degrees, 0 to 360"));
     app.add_option("--share", values.share)->transform(percent());
-    app.add_option("--bytes", values.bytes)->transform(byteCount());
-    app.add_option("--color", values.color)->check(oneOf({"red", "blue"}));
+    addMemoryOption(app, values.limits);
+    app.add_option("--color", values.color)->check(oneOf(kWords<"red", "blue">));
     addWords(app, "--fruit", values.fruit,
              WordsFor<Fruit>{{"apple", Fruit::kApple}, {"pear", Fruit::kPear}, {"plum", Fruit::kPlum}}, "");
     addParsed(
@@ -62,8 +62,8 @@ TEST(OptionValues, AreTakenExactly) {
     EXPECT_EQ(taken("--degrees", "+1e-2").degrees, 0.01F);
     EXPECT_EQ(taken("--share", "1.5%").share, 1.5F);
     EXPECT_EQ(taken("--share", " 33.3333333 % ").share, 33.3333333F);
-    EXPECT_EQ(taken("--bytes", "1.5MB").bytes, 1'500'000U);
-    EXPECT_EQ(taken("--bytes", "1KiB").bytes, 1024U);
+    EXPECT_EQ(taken("--max-memory", "1.5MB").limits.memory, 1'500'000U);
+    EXPECT_EQ(taken("--max-memory", "1KiB").limits.memory, 1024U);
     EXPECT_EQ(taken("--color", "blue").color, "blue");
     EXPECT_EQ(taken("--fruit", "plum").fruit, Fruit::kPlum);
     EXPECT_EQ(taken("--letter", "x").letter, 'x');
@@ -83,8 +83,8 @@ TEST(OptionValues, SayWhatToWriteInstead) {
         EXPECT_EQ(refused("--share", word),
                   "--share is '" + std::string(word) + "' but must be a share in percent, such as 1.5");
     }
-    EXPECT_EQ(refused("--bytes", "1XB"),
-              "--bytes is '1XB' but must be a number of bytes, such as 1MB or 512KiB");
+    EXPECT_EQ(refused("--max-memory", "1XB"),
+              "--max-memory is '1XB' but must be a number of bytes, such as 1MB or 512KiB");
     EXPECT_EQ(refused("--color", "green"), "--color is 'green' but must be red or blue");
     EXPECT_EQ(refused("--fruit", "aple"),
               "--fruit is 'aple' but must be one of apple, pear, plum; did you mean 'apple'?");
