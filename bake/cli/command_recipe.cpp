@@ -20,7 +20,6 @@
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
-#include "formats/config/confined_path.h"
 #include "formats/fields/json.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
@@ -32,7 +31,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr std::string_view kPlan = "--plan=";
-constexpr float kTimeoutMax = 1e7F;  // seconds
 
 /// Options of a bake that a run of a recipe has its own place for: they are no keys.
 constexpr std::array<std::string_view, 4> kOfTheRun = {"threads", "plan_out", "json", "depfile"};
@@ -126,9 +124,7 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
     RecipeRun run;
     run.recipe = options.recipe;
     run.output_folder = call.output.empty() ? recipeFolder(options.recipe) : fs::path(call.output);
-    run.fail_fast = options.fail_fast;
     run.dry_run = options.dry_run;
-    run.seconds_max = double{options.timeout};
     run.at_once = call.threads.value_or(std::max(1U, std::thread::hardware_concurrency()));
     if (call.output == "-") {
         return fail(ErrorCode::kUsage, "--output is a folder beside --recipe, and not standard output");
@@ -200,13 +196,9 @@ Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& ca
     RecipeWork work;
     RELIEF_TRY(checkOptions(call));
     work.run = RELIEF_TRY(runOf(options, call));
-    if (!options.root.empty()) {
-        RELIEF_TRY(checkRoot(options.root));
-    }
     const std::vector<RecipeAsset> assets = RELIEF_TRY(loadRecipe(options.recipe, recipeKeys()));
     RELIEF_TRY(checkAssets(assets));
-    RecipeJobs all =
-        RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, options.root, call.files));
+    RecipeJobs all = RELIEF_TRY(recipeJobs(assets, options.recipe, work.run.output_folder, call.files));
     work.folders = std::move(all.folders);
     work.files = std::move(all.files);
     const Shard shard = options.shard.value_or(Shard{});
@@ -351,18 +343,6 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
     verb.add_option("--stamp", options.stamp,
                     "Of --recipe: write this file when everything is up to date: the target for --depfile")
         ->option_text("FILE")
-        ->needs(recipe);
-    verb.add_option("--root", options.root,
-                    "Of --recipe: a folder whose meshes and plans it may name too, by .. at the start;\n"
-                    "default: those of its own folder alone")
-        ->option_text("DIR")
-        ->needs(recipe);
-    verb.add_option("--timeout", options.timeout, "Of --recipe: for one asset; default 3600, 0 for any")
-        ->option_text("SECONDS")
-        ->transform(number(0.0F, kTimeoutMax, "a number of seconds, 0 for any"))
-        ->needs(recipe);
-    verb.add_flag("--fail-fast", options.fail_fast,
-                  "Of --recipe: begin no further asset once one has failed; otherwise the others are baked")
         ->needs(recipe);
     verb.add_flag("--dry-run", options.dry_run, "Of --recipe: only print what would be baked, and why")
         ->needs(recipe);

@@ -36,9 +36,6 @@ struct RecipeOptionsOfBake {
     std::string events;
     std::optional<Shard> shard;
     std::string stamp;
-    std::string root;         ///< a folder; empty: none
-    float timeout = 3600.0F;  ///< seconds for one asset; 0: any
-    bool fail_fast = false;
     bool dry_run = false;
 };
 

@@ -45,7 +45,6 @@ struct ChildProcesses::Child {
     Descriptor out;  ///< files in memory
     Descriptor err;
     Clock::time_point start = Clock::now();
-    Clock::time_point deadline = Clock::time_point::max();
     ChildEnd end = {};
 
     void kill(int signal) const { ::kill(-process.pid(), signal); }
@@ -81,8 +80,7 @@ ChildProcesses::~ChildProcesses() {
     ::unsetenv(kParentVariable);
 }
 
-Result<void> ChildProcesses::startSelf(const std::vector<std::string>& arguments, double seconds_max,
-                                       std::size_t tag) {
+Result<void> ChildProcesses::startSelf(const std::vector<std::string>& arguments, std::size_t tag) {
     Child child;
     const Descriptor nothing(openRetry("/dev/null", O_RDONLY));
     child.out = Descriptor(::memfd_create("stdout", MFD_CLOEXEC));
@@ -99,10 +97,6 @@ Result<void> ChildProcesses::startSelf(const std::vector<std::string>& arguments
                                              "; choose a smaller -j, or raise the limits (ulimit -n -u)");
     }
     std::ofstream("/proc/" + std::to_string(child.process.pid()) + "/oom_score_adj") << kOomScore;
-    if (seconds_max > 0.0) {
-        child.deadline = child.start + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(seconds_max));
-    }
     child.end.tag = tag;
     child.end.pid = child.process.pid();
     children_.push_back(std::move(child));
@@ -153,21 +147,12 @@ std::vector<ChildEnd> ChildProcesses::wait(std::chrono::milliseconds at_most) {
     std::vector<ChildEnd> ended;
     const Clock::time_point until = Clock::now() + at_most;
     while (true) {
-        const Clock::time_point now = Clock::now();
-        Clock::time_point next = until;
-        for (Child& child : children_) {
-            if (now >= child.deadline) {
-                child.end.timed_out = true;
-                child.deadline = Clock::time_point::max();
-                child.kill(SIGKILL);
-            }
-            next = std::min(next, child.deadline);
-        }
         collect(ended);
+        const Clock::time_point now = Clock::now();
         if (!ended.empty() || askedToEnd() != 0 || now >= until || children_.empty()) {
             return ended;
         }
-        takeSignal(next - now);
+        takeSignal(until - now);
     }
 }
 

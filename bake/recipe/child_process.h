@@ -19,12 +19,11 @@ namespace relief {
 struct ChildEnd {
     std::size_t tag = 0;  ///< as given to start()
     pid_t pid = 0;
-    int exit_code = 0;       ///< valid if signal is 0
-    int signal = 0;          ///< that ended it
-    bool timed_out = false;  ///< it was ended because its time was up
-    double ms = 0.0;         ///< from its start
-    std::string out;         ///< its standard output: the end of it, at most kChildOutputMax
-    std::string err;         ///< its standard error: the end of it, at most kChildErrorMax
+    int exit_code = 0;  ///< valid if signal is 0
+    int signal = 0;     ///< that ended it
+    double ms = 0.0;    ///< from its start
+    std::string out;    ///< its standard output: the end of it, at most kChildOutputMax
+    std::string err;    ///< its standard error: the end of it, at most kChildErrorMax
 };
 
 inline constexpr std::size_t kChildOutputMax = std::size_t{64} << 20;
@@ -42,11 +41,9 @@ class ChildProcesses {
 
     /// Runs this same program again. Its standard input is empty. If this process dies, it is ended too; where
     /// memory runs out, the system ends it before others.
-    /// \param arguments    without the program's name.
-    /// \param seconds_max  of wall time; 0: any.
+    /// \param arguments  without the program's name.
     /// Errors: kFailure: no process, or no pipe.
-    [[nodiscard]] Result<void> startSelf(const std::vector<std::string>& arguments, double seconds_max,
-                                         std::size_t tag);
+    [[nodiscard]] Result<void> startSelf(const std::vector<std::string>& arguments, std::size_t tag);
 
     [[nodiscard]] std::size_t running() const;
 

@@ -31,8 +31,8 @@ std::string inQuotes(const std::string& text) {
 
 class Expander {
   public:
-    Expander(fs::path folder, fs::path output_folder, fs::path root, FileGuard files)
-        : folder_(std::move(folder)), output_folder_(std::move(output_folder)), root_(std::move(root)) {
+    Expander(fs::path folder, fs::path output_folder, FileGuard files)
+        : folder_(std::move(folder)), output_folder_(std::move(output_folder)) {
         result_.files = std::move(files);
     }
 
@@ -45,7 +45,7 @@ class Expander {
                 continue;
             }
             for (std::string& value : found->second.values) {
-                const Result<fs::path> path = resolveInside(folder_, value, "recipe", root_);
+                const Result<fs::path> path = resolveInside(folder_, value, "recipe");
                 if (!path) {
                     return at(found->second.place, found->first + " " + path.error().message);
                 }
@@ -93,87 +93,44 @@ class Expander {
     }
 
   private:
-    /// Length of the "../" at the start of a pattern or a name, where it may leave the recipe's folder.
-    [[nodiscard]] std::size_t climb(std::string_view text) const {
-        constexpr std::string_view kUp = "../";
-        std::size_t end = 0;
-        while (!root_.empty() && text.substr(end).starts_with(kUp)) {
-            end += kUp.size();
-        }
-        return end;
-    }
-
-    /// Of a pattern that begins so: everything before its first wildcard or its last name.
-    [[nodiscard]] std::string beginning(std::string_view text) const {
-        std::size_t end = climb(text);
-        for (std::size_t slash = text.find('/', end); end > 0 && slash != std::string_view::npos;
-             slash = text.find('/', end)) {
-            const std::string_view part = text.substr(end, slash - end);
-            if (part.empty() || part == "." || part == ".." ||
-                part.find_first_of("*?[\\") != std::string_view::npos) {
-                break;
-            }
-            end = slash + 1;
-        }
-        return std::string(text.substr(0, end));
-    }
-
-    /// The folder that this leads to: only it is searched.
-    Result<fs::path> folderAt(const std::string& up, const RecipeAsset& asset) const {
-        if (up.empty()) {
-            return folder_;
-        }
-        const Result<fs::path> path = resolveInside(folder_, up, "recipe", root_);
-        if (!path) {
-            return at(asset.mesh_place, "mesh " + path.error().message);
-        }
-        return path->parent_path();  // without the slash at the end
-    }
-
     /// The files of all patterns, each once, without the excluded ones.
     Result<std::vector<std::string>> meshesOf(const RecipeAsset& asset) {
-        std::vector<std::pair<std::string, GlobPattern>> excluded;
+        std::vector<GlobPattern> excluded;
         for (const std::string& text : asset.exclude) {
-            const std::string up = text.substr(0, climb(text));
-            Result<GlobPattern> pattern = GlobPattern::parse(text.substr(up.size()));
+            Result<GlobPattern> pattern = GlobPattern::parse(text);
             if (!pattern) {
                 return at(asset.place, "exclude " + inQuotes(text) + " " + pattern.error().message,
                           pattern.error().code);
             }
-            excluded.emplace_back(up, std::move(*pattern));
+            excluded.push_back(std::move(*pattern));
         }
         std::vector<std::string> meshes;
         std::set<std::string> seen;
         for (const std::string& text : asset.meshes) {
-            const std::string up = beginning(text);
-            const fs::path from = RELIEF_TRY(folderAt(up, asset));
-            const Result<GlobPattern> pattern = GlobPattern::parse(text.substr(up.size()));
+            const Result<GlobPattern> pattern = GlobPattern::parse(text);
             if (!pattern) {
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + " " + pattern.error().message,
                           pattern.error().code);
             }
-            const Result<GlobResult> found = globFiles(from, *pattern);
+            const Result<GlobResult> found = globFiles(folder_, *pattern);
             if (!found) {
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + ": " + found.error().message,
                           found.error().code);
             }
             if (found->files.empty() && !asset.optional) {
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + " matches no file in " +
-                                                quotedPath(from) + "; mend it, or set optional = true");
+                                                quotedPath(folder_) + "; mend it, or set optional = true");
             }
-            for (const std::string& file : found->files) {
-                const std::string mesh = up + file;
-                const std::size_t climbed = climb(mesh);
-                const bool out = std::any_of(excluded.begin(), excluded.end(), [&](const auto& e) {
-                    return e.first == mesh.substr(0, climbed) && e.second.matches(mesh.substr(climbed));
-                });
+            for (const std::string& mesh : found->files) {
+                const bool out = std::any_of(excluded.begin(), excluded.end(),
+                                             [&](const GlobPattern& e) { return e.matches(mesh); });
                 if (!out && seen.insert(mesh).second) {
                     meshes.push_back(mesh);
                 }
             }
             if (pattern->wild()) {
                 for (const std::string& folder : found->folders) {
-                    result_.folders.push_back(folder.empty() ? from : from / folder);
+                    result_.folders.push_back(folder.empty() ? folder_ : folder_ / folder);
                 }
             }
         }
@@ -184,7 +141,7 @@ class Expander {
                         const std::vector<std::string>& arguments, const std::vector<std::string>& options) {
         RecipeJob job;
         job.mesh = mesh;
-        const Result<fs::path> path = resolveInside(folder_, mesh, "recipe", root_);
+        const Result<fs::path> path = resolveInside(folder_, mesh, "recipe");
         if (!path) {
             return at(asset.mesh_place, "mesh " + path.error().message);
         }
@@ -247,7 +204,6 @@ class Expander {
 
     fs::path folder_;
     fs::path output_folder_;
-    fs::path root_;
     RecipeJobs result_;
     std::vector<RecipePlace> places_;  // of the jobs' outputs
     std::vector<fs::path> inputs_;
@@ -260,9 +216,9 @@ fs::path recipeFolder(const fs::path& recipe) {
 }
 
 Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets, const fs::path& recipe,
-                              const fs::path& output_folder, const fs::path& root, FileGuard files) {
+                              const fs::path& output_folder, FileGuard files) {
     const fs::path folder = recipeFolder(recipe);
-    Expander expander(folder, output_folder.empty() ? folder : output_folder, root, std::move(files));
+    Expander expander(folder, output_folder.empty() ? folder : output_folder, std::move(files));
     for (const RecipeAsset& asset : assets) {
         RELIEF_TRY(expander.add(asset));
     }

@@ -38,15 +38,13 @@ struct RecipeJobs {
 
 /// \param recipe  meshes are named from its folder and may not lie outside of it; "-": the current one.
 /// \param output_folder  need not exist; empty for the recipe's folder.
-/// \param root  another folder whose files may be named, by `..` at the start; empty: none.
 /// \param files  holds what else is read. Errors, at a place of
 /// the recipe: kInvalidInput (a pattern that matches nothing, a file outside of the recipe's folder, an
 /// output outside of the output folder, without .relief at its end, or the same as another output or as an
 /// input), kLimit (kRecipeJobsMax), those of globFiles.
 [[nodiscard]] Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets,
                                             const std::filesystem::path& recipe,
-                                            const std::filesystem::path& output_folder,
-                                            const std::filesystem::path& root = {}, FileGuard files = {});
+                                            const std::filesystem::path& output_folder, FileGuard files = {});
 
 /// The folder of a recipe: never empty.
 [[nodiscard]] std::filesystem::path recipeFolder(const std::filesystem::path& recipe);

@@ -109,7 +109,7 @@ class Runner {
         std::size_t next = 0;
         Clock::time_point cached = Clock::now();
         while (children_.askedToEnd() == 0) {
-            while (!stop_ && children_.running() < run_.at_once) {
+            while (children_.running() < run_.at_once) {
                 while (next < result_.assets.size() && result_.assets[next].state != AssetState::kStale) {
                     ++next;
                 }
@@ -149,7 +149,7 @@ class Runner {
                                               "--output=" + asset.job.output_path.string(), "--json",
                                               "--threads=" + std::to_string(run_.threads)};
         arguments.insert(arguments.end(), asset.job.arguments.begin(), asset.job.arguments.end());
-        if (const Result<void> started = children_.startSelf(arguments, run_.seconds_max, index); !started) {
+        if (const Result<void> started = children_.startSelf(arguments, index); !started) {
             failAsset(asset, started.error());
         }
     }
@@ -157,7 +157,6 @@ class Runner {
     void failAsset(AssetResult& asset, Error error) {
         asset.state = AssetState::kFailed;
         asset.error = std::move(error);
-        stop_ = stop_ || run_.fail_fast;
         tell(run_.ended, asset);
     }
 
@@ -174,11 +173,7 @@ class Runner {
         }
         if (end.signal != 0) {
             removeTemporaries(asset.job.output_path.parent_path(), end.pid);
-            if (end.timed_out) {
-                failAsset(asset, {ErrorCode::kLimit,
-                                  "it took longer than --timeout allows and was ended; allow more, or "
-                                  "simplify the mesh"});
-            } else if (children_.askedToEnd() == 0) {
+            if (children_.askedToEnd() == 0) {
                 failAsset(asset, {ErrorCode::kFailure,
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +
                                       ::strsignal(end.signal) + "); repair or simplify the mesh"});
@@ -235,7 +230,6 @@ class Runner {
     ChildProcesses children_;
     RecipeResult result_;
     BakeCacheEntries fresh_;  ///< not yet in the cache file
-    bool stop_ = false;
 };
 
 fs::path realFolder(const fs::path& path) {

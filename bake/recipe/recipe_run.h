@@ -43,8 +43,6 @@ struct RecipeRun {
     std::filesystem::path output_folder;  ///< exists, unless dry_run
     unsigned at_once = 1;                 ///< at least 1
     unsigned threads = 1;                 ///< of each bake; results do not depend on either
-    double seconds_max = 0.0;             ///< for one asset; 0: any
-    bool fail_fast = false;               ///< begin none after one has failed
     bool dry_run = false;                 ///< only find out what is to be done
     // Called between the work; may be empty.
     std::function<void(const AssetResult&)> started;
