@@ -1,7 +1,5 @@
 // relief info: what is in a container.
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <optional>
 
 #include "bake/cli/command.h"
 #include "bake/report/collider_report.h"
@@ -18,7 +16,7 @@ constexpr std::size_t kLineMost = 80;  // characters of options on one line
 
 struct InfoCommand {
     CommonOptions common;
-    std::vector<std::string> files;
+    std::string file;
     ContainerLimits limits;
     bool json = false;
 };
@@ -76,62 +74,14 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     return text;
 }
 
-/// A container that has been checked as a whole, payloads included.
-struct Shown {
-    std::string file;
-    Collider collider;
-    ContainerInfo info;
-};
-
-Result<Shown> open(const std::string& file, const ContainerLimits& limits) {
-    auto [bytes, collider] = RELIEF_TRY(readColliderFile(file, limits));
-    ContainerInfo info = RELIEF_TRY(inFront(shownInput(file), readContainerInfo(bytes, limits)));
-    return Shown{file, std::move(collider), std::move(info)};
-}
-
-std::string shownName(const Shown& shown) {
-    return shown.file == "-" ? "standard input" : cleanUtf8(shown.file);
-}
-
-/// The report of one file among several, under its name.
-std::string humanPart(const Shown& shown, bool first) {
-    return (first ? "" : "\n") + shownName(shown) + "\n" + humanReport(shown.collider, shown.info);
-}
-
-Result<void> runMany(const InfoCommand& command) {
-    bool first = true;
-    std::optional<Error> failed;
-    for (const std::string& file : command.files) {
-        const Result<Shown> shown = open(file, command.limits);
-        if (!shown) {
-            // The others are shown all the same. The last error is the program's own, with the code of the first.
-            const ErrorCode code = failed ? failed->code : shown.error().code;
-            if (failed) {
-                reportError(*failed);
-            }
-            failed = Error{code, shown.error().message};
-        } else if (command.json) {
-            RELIEF_TRY(
-                printOut(jsonLine(jsonOf(InfoReport(shownName(*shown), shown->collider, shown->info)))));
-        } else {
-            RELIEF_TRY(printOut(humanPart(*shown, first)));
-            first = false;
-        }
-    }
-    return failed ? Result<void>(tl::unexpected<Error>(std::move(*failed))) : Result<void>();
-}
-
 Result<void> runInfo(const InfoCommand& command) {
     startLogging(command.common);
-    if (std::ranges::count(command.files, "-") > 1) {
-        return fail(ErrorCode::kUsage, "standard input can be shown once; name a file instead of one -");
-    }
-    if (command.files.size() > 1) {
-        return runMany(command);
-    }
-    const Shown shown = RELIEF_TRY(open(command.files.front(), command.limits));
-    return printOut(command.json ? jsonText(jsonOf(InfoReport("", shown.collider, shown.info)))
-                                 : humanReport(shown.collider, shown.info));
+    // Checked as a whole, payloads included.
+    const ColliderFile shown = RELIEF_TRY(readColliderFile(command.file, command.limits));
+    const ContainerInfo info =
+        RELIEF_TRY(inFront(shownInput(command.file), readContainerInfo(shown.bytes, command.limits)));
+    return printOut(command.json ? jsonText(jsonOf(infoReport(shown.collider, info)))
+                                 : humanReport(shown.collider, info));
 }
 
 }  // namespace
@@ -141,12 +91,10 @@ void addInfo(CLI::App& app, Action& action) {
     CLI::App& verb =
         addVerb(app, command->common, "info", "Shows what is in a collider, and where it comes from",
                 "relief info bunny.relief\n"
-                "relief info *.relief\n"
                 "relief info bunny.relief --json | jq .maps[0].object_to_map");
-    verb.add_option("FILE", command->files, "The colliders; - for standard input")->type_name("")->required();
+    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
     addMemoryOption(verb, command->limits);
-    verb.add_flag("--json", command->json,
-                  "Print JSON; of several files a line for each, with its name as file");
+    verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bake/report/report_text.h"
@@ -91,24 +90,13 @@ void fields(Visitor& visit, const ColliderReport<Map>& report) {
 }
 
 /// The report of `relief info`.
-struct InfoReport {
-    std::string file;  ///< of several; else empty
-    ColliderReport<ColliderMapReport> collider = {};
-
-    InfoReport() = default;
-    InfoReport(std::string name, const Collider& shown, const ContainerInfo& info)
-        : file(std::move(name)), collider{shown, info} {
-        for (std::size_t i = 0; i < shown.maps.size(); ++i) {
-            collider.maps.push_back({i, shown.maps[i], info.payloads[i]});
-        }
+[[nodiscard]] inline ColliderReport<ColliderMapReport> infoReport(const Collider& collider,
+                                                                  const ContainerInfo& info) {
+    ColliderReport<ColliderMapReport> report{collider, info};
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        report.maps.push_back({i, collider.maps[i], info.payloads[i]});
     }
-};
-
-template <class Visitor, FieldsOf<InfoReport> R>
-void fields(Visitor& visit, R& report) {
-    visit("file", report.file,
-          {.help = "File name as given; only for several files, of which each has a line", .left_out = true});
-    fields(visit, report.collider);
+    return report;
 }
 
 }  // namespace relief

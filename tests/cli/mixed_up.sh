@@ -19,7 +19,6 @@ f 2 3 7 6
 f 1 5 8 4
 O
 "$relief" bake box.obj -o box.relief --map cube:size=16 -q
-"$relief" bake box.obj -o paper.relief --paper --resolution 16 -q
 
 # A mesh where a collider is needed.
 bake_first="'box\.obj' is a mesh, and no collider; bake it first: relief bake 'box\.obj' -o 'box\.relief'"
@@ -56,33 +55,6 @@ for at in "x -1" "z 3" "y center"; do
     expect 0 "$relief" slice box.relief --axis ${at% *} --at ${at#* } --size 16 -o near.png
     [ ! -s stderr ] || die "said of --at $at: $(cat stderr)"
 done
-
-# Several files: each as it is alone, under its name; a line of JSON each, of the same schema.
-expect 0 "$relief" info box.relief
-cp stdout alone
-expect 0 "$relief" info box.relief paper.relief
-cp stdout both
-grep -qx 'box.relief' both && grep -qx 'paper.relief' both || die "no names: $(cat both)"
-diff <(head -n "$(wc -l <alone)" <(tail -n +2 both)) alone || die "of several it says something else"
-expect 0 "$relief" info box.relief --json
-cp stdout alone.json
-expect 0 "$relief" info box.relief paper.relief --json
-python3 - stdout alone.json "$RELIEF_SOURCE/formats/schemas/info.schema.json" <<'P' || die "wrong JSON of several files"
-import json, sys
-from jsonschema import Draft202012Validator
-lines = [json.loads(line) for line in open(sys.argv[1])]
-for line in lines:
-    Draft202012Validator(json.load(open(sys.argv[3]))).validate(line)
-assert [line.pop('file') for line in lines] == ['box.relief', 'paper.relief']
-assert lines[0] == json.load(open(sys.argv[2])) and len(lines[1]['maps']) == 4
-P
-# A bad one among them: the others are shown, each mistake has its line, the first one's code counts.
-expect 3 "$relief" info box.obj paper.relief missing.relief
-grep -qx 'paper.relief' stdout || die "a good file is not shown: $(cat stdout)"
-[ "$(grep -c '^relief: error: ' stderr)" -eq 2 ] && grep -q 'missing' stderr || die "said: $(cat stderr)"
-"$relief" info box.relief - <paper.relief >said || die "standard input among several"
-grep -qx 'standard input' said || die "said: $(cat said)"
-expect_error 1 'standard input can be shown once' "$relief" info - -
 
 # Lists of options: a line for each in `info`; of two colliders the fields that differ. Help is no wider than 120 columns.
 "$relief" bake box.obj -o maps.relief --map cube:size=16 --map fixed8:dir=-y,size=16 --quality fast -q
