@@ -56,14 +56,6 @@ enum class IssueCode : std::uint16_t {
     kNoToolVersion = 2102,
     kNoTriangles = 2103,
     kNothingCovered = 2201,
-    kDuplicateMap = 2202,
-    kDepthSaturated = 2203,
-    kOutsideBounds = 2204,
-    kOutsideVolume = 2205,
-    kNormalsInward = 2206,
-    kBorderCovered = 2207,
-    kTexelBits = 2208,
-    kGapReversed = 2209,
 };
 
 struct Issue {
