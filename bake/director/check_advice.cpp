@@ -55,9 +55,6 @@ class Advisor {
         if (any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
             tryBudget(roundBudget(2 * run_.collider.gpuBytes()), "planned maps of twice the bytes");
         }
-        if (any({WrongCause::kOther})) {
-            tryBudget(*planned_.budget, "planned maps of as many bytes");
-        }
         if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();
         }

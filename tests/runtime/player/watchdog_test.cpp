@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "runtime/command_line/command_line.h"
-#include "runtime/command_line/field_options.h"
+#include "runtime/command_line/option_values.h"
 #include "runtime/player/player_options.h"
 
 namespace relief {
