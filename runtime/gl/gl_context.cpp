@@ -41,32 +41,24 @@ std::vector<EGLDeviceEXT> eglDevices() {
     if (!hasClientExtension("EGL_EXT_device_enumeration") && !hasClientExtension("EGL_EXT_device_base")) {
         return {};
     }
+    std::vector<EGLDeviceEXT> devices(64);
     EGLint count = 0;
-    if (eglQueryDevicesEXT(0, nullptr, &count) != EGL_TRUE || count < 1) {
-        return {};
-    }
-    std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
-    if (eglQueryDevicesEXT(count, devices.data(), &count) != EGL_TRUE || count < 1) {
+    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE) {
         return {};
     }
     devices.resize(static_cast<std::size_t>(count));
     return devices;
 }
 
-// EGL_NO_DISPLAY where there is no such platform. The display is not yet initialised.
-EGLDisplay surfacelessDisplay() {
-    if (!hasClientExtension("EGL_MESA_platform_surfaceless") ||
-        !hasClientExtension("EGL_EXT_platform_base")) {
-        return EGL_NO_DISPLAY;
-    }
-    return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+/// EGL_NO_DISPLAY where there is no such platform. The display is not yet initialised.
+EGLDisplay platformDisplay(const char* extension, EGLenum platform, void* native) {
+    return hasClientExtension(extension) && hasClientExtension("EGL_EXT_platform_base")
+               ? eglGetPlatformDisplayEXT(platform, native, nullptr)
+               : EGL_NO_DISPLAY;
 }
 
 EGLDisplay deviceDisplay(EGLDeviceEXT device) {
-    if (!hasClientExtension("EGL_EXT_platform_device") || !hasClientExtension("EGL_EXT_platform_base")) {
-        return EGL_NO_DISPLAY;
-    }
-    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+    return platformDisplay("EGL_EXT_platform_device", EGL_PLATFORM_DEVICE_EXT, device);
 }
 
 /// "" for null.
@@ -81,31 +73,20 @@ std::string eglErrorText() {
     return text;
 }
 
-/// The attributes of a context that reports resets; none where EGL has no such contexts.
-std::vector<EGLint> resetAttributes(EGLDisplay display, bool es) {
-    if (es) {
-        return epoxy_has_egl_extension(display, "EGL_EXT_create_context_robustness")
-                   ? std::vector<EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT,
-                                         EGL_LOSE_CONTEXT_ON_RESET_EXT}
-                   : std::vector<EGLint>{};
-    }
-    return epoxy_egl_version(display) >= 15 || epoxy_has_egl_extension(display, "EGL_KHR_create_context")
-               ? std::vector<EGLint>{EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
-                                     EGL_LOSE_CONTEXT_ON_RESET_KHR}
-               : std::vector<EGLint>{};
-}
-
 EGLContext createContext(EGLDisplay display, EGLConfig config, bool es) {
-    const std::vector<EGLint> reset = resetAttributes(display, es);
+    const EGLint on_reset = es ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT
+                               : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR;
     // The version with compute shaders first: some drivers give exactly the requested version.
     const std::array<EGLint, 2> with_compute = es ? std::array<EGLint, 2>{3, 1} : std::array<EGLint, 2>{4, 3};
     const std::array<EGLint, 2> without = es ? std::array<EGLint, 2>{3, 0} : std::array<EGLint, 2>{3, 3};
     for (const auto& [major, minor] : {with_compute, without}) {
-        // A driver may know the attribute and still refuse it.
+        // Without reports of resets where EGL, or the driver, refuses them.
         for (const bool with_reset : {true, false}) {
-            std::vector<EGLint> attributes = with_reset ? reset : std::vector<EGLint>{};
-            attributes.insert(attributes.end(),
-                              {EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor});
+            std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION,
+                                           minor};
+            if (with_reset) {
+                attributes.insert(attributes.end(), {on_reset, EGL_LOSE_CONTEXT_ON_RESET_KHR});
+            }
             if (!es) {
                 attributes.insert(attributes.end(),
                                   {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
@@ -200,7 +181,9 @@ struct GlContext::Impl {
             tried += (tried.empty() ? "" : "; ") + name + ": " + problem;
             return false;
         };
-        if (opens(surfacelessDisplay(), "surfaceless")) {
+        const EGLDisplay surfaceless = platformDisplay("EGL_MESA_platform_surfaceless",
+                                                       EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+        if (opens(surfaceless, "surfaceless")) {
             return {};
         }
         const std::vector<EGLDeviceEXT> devices = eglDevices();

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "shaders/particles/constants.h"
@@ -114,21 +115,27 @@ Result<void> EventList::createPrograms() {
 }
 
 bool EventList::request(const Step& step) {
-    if (lists_.full()) {
+    if (in_flight_ == kInFlightMax) {
         return false;
     }
     const std::uint32_t rows = rowsOf(std::min(options_.most, step.extent));
-    const std::size_t floats = rows == 0 ? 0 : kFloats * (list_.size() * listWidth() * rows + 1);
-    lists_.request({step.tag, step.number, step.begin, step.end}, floats, [&] {
-        count(step);
-        makeList(step, rows);
-        read(rows);
-    });
+    Request& request = requests_[(oldest_ + static_cast<std::size_t>(in_flight_++)) % kInFlightMax];
+    request.tag = step.tag;
+    request.number = step.number;
+    request.begin = step.begin;
+    request.end = step.end;
+    request.floats = rows == 0 ? 0 : kFloats * (list_.size() * listWidth() * rows + 1);
     if (rows == 0) {  // the list on the GPU becomes empty, too
         const std::array<float, 4> zero{};
         glBindFramebuffer(GL_FRAMEBUFFER, counts_.back().target.name());
         glClearBufferfv(GL_COLOR, 0, zero.data());
+        return true;
     }
+    bindPackBuffer(request.buffer, static_cast<GLsizeiptr>(request.floats * sizeof(float)));
+    count(step);
+    makeList(step, rows);
+    read(rows);
+    request.fence.insert();
     return true;
 }
 
@@ -180,21 +187,49 @@ void EventList::read(std::uint32_t rows) const {
 }
 
 std::optional<EventList::Collected> EventList::poll() {
-    const auto done = lists_.poll();
-    return done ? std::optional(decoded(*done)) : std::nullopt;
+    const Request& oldest = requests_[oldest_];
+    return in_flight_ == 0 || (oldest.floats > 0 && !oldest.fence.passed()) ? std::nullopt : collect();
 }
 
 Result<std::optional<EventList::Collected>> EventList::wait() {
-    const auto done = RELIEF_TRY(lists_.wait("the list of events"));
-    return done ? std::optional(decoded(*done)) : std::nullopt;
+    if (in_flight_ == 0) {
+        return std::optional<Collected>();
+    }
+    constexpr GLuint64 kPatience = 10'000'000'000;  // nanoseconds
+    static constexpr const char* kReading = "reading the list of events";
+    const Request& oldest = requests_[oldest_];
+    if (oldest.floats > 0 && !waitToRead(oldest.fence, kPatience)) {
+        RELIEF_TRY(checkGpu(kReading));
+        return fail(ErrorCode::kFailure, "the GPU has not finished the list of events within ten seconds");
+    }
+    auto collected = collect();
+    RELIEF_TRY(checkGpu(kReading));
+    if (!collected) {
+        return fail(ErrorCode::kFailure,
+                    "the list of events cannot be read from the GPU; choose a smaller capacity");
+    }
+    return collected;
 }
 
-EventList::Collected EventList::decoded(const Lists::Done& done) const {
-    const std::vector<float>& values = done.values;
+std::optional<EventList::Collected> EventList::collect() {
+    Request& request = requests_[oldest_];
+    oldest_ = (oldest_ + 1) % kInFlightMax;
+    --in_flight_;
+    std::vector<float> values(request.floats);
+    if (request.floats > 0) {
+        request.fence.remove();
+        if (!readBuffer(request.buffer, std::as_writable_bytes(std::span(values)))) {
+            return std::nullopt;
+        }
+    }
+    return decoded(request, values);
+}
+
+EventList::Collected EventList::decoded(const Request& request, const std::vector<float>& values) const {
     Collected collected;
-    collected.number = done.tag.number;
-    collected.events.tag = done.tag.tag;
-    collected.events.time = done.tag.end;
+    collected.number = request.number;
+    collected.events.tag = request.tag;
+    collected.events.time = request.end;
     if (values.empty()) {
         return collected;
     }
@@ -213,7 +248,7 @@ EventList::Collected EventList::decoded(const Lists::Done& done) const {
         event.index = static_cast<std::uint32_t>(identity[0]);
         event.id = static_cast<std::uint32_t>(identity[1]);
         event.type = static_cast<std::uint32_t>(identity[2]);
-        event.time = done.tag.begin + static_cast<double>(position[3]);
+        event.time = request.begin + static_cast<double>(position[3]);
         event.position = {position[0], position[1], position[2]};
         event.velocity = {velocity[0], velocity[1], velocity[2]};
         event.hit = (flags & kEventCollision) != 0;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_object.h"
-#include "runtime/gl/readbacks.h"
 #include "runtime/particles/particle_event.h"
 #include "runtime/particles/particle_type.h"
 
@@ -55,10 +55,10 @@ class EventList {
     /// The oldest list, which the GPU is waited for; nullopt if none is under way.
     /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
     [[nodiscard]] Result<std::optional<Collected>> wait();
-    [[nodiscard]] int inFlight() const { return lists_.inFlight(); }
+    [[nodiscard]] int inFlight() const { return in_flight_; }
     /// The number of the oldest step under way.
     [[nodiscard]] std::optional<std::uint64_t> oldestNumber() const {
-        return lists_.oldest() == nullptr ? std::nullopt : std::optional(lists_.oldest()->number);
+        return in_flight_ == 0 ? std::nullopt : std::optional(requests_[oldest_].number);
     }
 
     [[nodiscard]] const EventOptions& options() const { return options_; }
@@ -74,13 +74,16 @@ class EventList {
         GlTexture texture;
         GlFramebuffer target;
     };
-    struct Tag {
-        std::uint64_t tag = 0;
+    /// A list on its way back. Requests are collected in their order.
+    struct Request {
+        std::uint64_t tag = 0;  // these as Step has them
         std::uint64_t number = 0;
         double begin = 0.0;
         double end = 0.0;
+        std::size_t floats = 0;  // 0: nothing to wait for
+        GlBuffer buffer;
+        GlFence fence;
     };
-    using Lists = Readbacks<Tag, kInFlightMax>;
     EventList() = default;
     [[nodiscard]] Result<void> createTextures(std::uint32_t capacity);
     [[nodiscard]] Result<void> createPrograms();
@@ -89,7 +92,9 @@ class EventList {
     void count(const Step& step) const;
     void makeList(const Step& step, std::uint32_t rows) const;
     void read(std::uint32_t rows) const;
-    [[nodiscard]] Collected decoded(const Lists::Done& done) const;
+    /// The oldest, which the GPU has finished; nullopt if its memory was lost.
+    [[nodiscard]] std::optional<Collected> collect();
+    [[nodiscard]] Collected decoded(const Request& request, const std::vector<float>& values) const;
 
     EventOptions options_;
     std::array<Level, kLevels> counts_;
@@ -98,7 +103,9 @@ class EventList {
     GlProgram count_program_;
     GlProgram sum_program_;
     GlProgram list_program_;
-    Lists lists_;
+    std::array<Request, kInFlightMax> requests_;
+    std::size_t oldest_ = 0;
+    int in_flight_ = 0;
 };
 
 }  // namespace relief

@@ -1,40 +1,8 @@
 #include "runtime/particles/spawner.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 
 namespace relief {
-namespace {
-
-const char* problemOf(const SpawnSettings& s) {
-    const auto ordered = [](float least, float most) {
-        return least >= 0.0F && least <= most && std::isfinite(most);
-    };
-    if (s.count_min > s.count_max || s.count_max == 0 || s.most == 0) {
-        return "counts must be in order, and the most at least 1";
-    }
-    if (!(s.lifetime_min > 0.0F) || !ordered(s.lifetime_min, s.lifetime_max)) {
-        return "lifetime_min must be above 0 and not above lifetime_max";
-    }
-    if (!ordered(s.speed_min, s.speed_max) || !ordered(s.kick, s.kick) || !ordered(s.inherit, s.inherit) ||
-        !ordered(s.min_speed, s.min_speed)) {
-        return "speeds, kick and inherit must be finite, at least 0 and in order";
-    }
-    if (!(s.cone_degrees >= 0.0F && s.cone_degrees <= 180.0F)) {
-        return "cone_degrees must be 0 to 180";
-    }
-    return nullptr;
-}
-
-}  // namespace
-
-Result<void> Spawner::check(const SpawnSettings& settings) {
-    if (const char* problem = problemOf(settings); problem != nullptr) {
-        return fail(ErrorCode::kUsage, std::string("a spawner's ") + problem);
-    }
-    return {};
-}
 
 Spawner::Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream)
     : settings_(settings),

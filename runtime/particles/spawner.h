@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "formats/base/result.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_event.h"
 #include "runtime/particles/particle_type.h"
@@ -93,11 +92,7 @@ void fields(Visitor& visit, S& s) {
 
 class Spawner {
   public:
-    /// Refuses settings with which the constructor would have to guess.
-    /// Errors: kUsage, naming the member.
-    [[nodiscard]] static Result<void> check(const SpawnSettings& settings);
-
-    /// \param settings  that check() finds nothing wrong with.
+    /// \param settings  finite, within the ranges of its members, spans in order.
     /// \param stream    spawners of one seed and different streams are independent.
     Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream = 0);
 

@@ -8,7 +8,7 @@
 #include "formats/base/file_io.h"
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
-#include "runtime/player/watched.h"
+#include "runtime/player/watchdog.h"
 #include "runtime/vdb/vdb_writer.h"
 
 namespace relief {

@@ -11,7 +11,7 @@
 #include "runtime/player/outputs.h"
 #include "runtime/player/scene_warnings.h"
 #include "runtime/player/simulation.h"
-#include "runtime/player/watched.h"
+#include "runtime/player/watchdog.h"
 
 namespace relief {
 namespace {

@@ -8,7 +8,6 @@
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "runtime/gl/gl_fault.h"
-#include "runtime/player/watched.h"
 
 namespace relief {
 namespace {
@@ -81,13 +80,12 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, 
         quotedPath(scene.colliders.front().path),
         watched(watchdog, "uploading the collider", [&] { return makeTextures(scene, loaded.colliders); })));
     made.textures_ = std::make_unique<ColliderTextures>(std::move(textures));
-    made.live_ =
-        RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return LiveBodies::create(loaded); }));
+    RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
                                         [&] { return makeParticles(scene, *made.textures_, path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
-                       [&] { return made.live_.show(made.particles_->time(), *made.textures_); }));
+                       [&] { return made.showLive(made.particles_->time()); }));
     RELIEF_TRY(watched(watchdog, "the shaders of events", [&] { return made.setEvents(); }));
     RELIEF_TRY(made.prewarm(watchdog, checkpoint));
     return made;
@@ -199,7 +197,40 @@ Result<void> Simulation::moveColliders(double time) {
     if (poses_change_) {
         textures_->setPoses(posesAt(*scene_, time));
     }
-    return live_.show(time, *textures_);
+    return showLive(time);
+}
+
+Result<void> Simulation::makeLive(const LoadedScene& loaded) {
+    for (std::size_t i = 0; i < loaded.live.size(); ++i) {
+        if (!loaded.live[i]) {
+            continue;
+        }
+        const LiveMesh& live = *loaded.live[i];
+        const std::string& origin = loaded.scene.colliders[i].origin;
+        auto collider = RELIEF_TRY(
+            inFront(origin + ": collider.mesh",
+                    LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames)));
+        auto pass =
+            RELIEF_TRY(inFront(origin + ": collider.deform",
+                               WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals)));
+        live_.push_back({i, std::move(collider), std::move(pass)});
+    }
+    return {};
+}
+
+Result<void> Simulation::showLive(double time) {
+    for (LiveBody& body : live_) {
+        body.pass.run(time);
+        RELIEF_TRY(body.collider.setPositions(body.pass.buffer().name()));
+        RELIEF_TRY(body.collider.update(*textures_, body.index));
+    }
+    return {};
+}
+
+const GpuMesh* Simulation::mesh(std::size_t collider) const {
+    const auto found = std::find_if(live_.begin(), live_.end(),
+                                    [&](const LiveBody& body) { return body.index == collider; });
+    return found == live_.end() ? nullptr : &found->collider.mesh();
 }
 
 }  // namespace relief

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/collider/live_collider.h"
+#include "runtime/collider/wobble_pass.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
-#include "runtime/player/live_bodies.h"
 #include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
 
@@ -24,7 +25,7 @@ class Simulation {
     /// \param path      of the particles' steps.
     /// \param watchdog  may be null.
     /// \param checkpoint  called between steps before time 0; what it throws comes out of here. May be empty.
-    /// Fails as ColliderTextures, LiveBodies and ParticleSystem do. An error of the textures names the scene's
+    /// Fails as ColliderTextures, LiveCollider, WobblePass and ParticleSystem do. An error of the textures names the scene's
     /// first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, StepPath path,
                                                    Watchdog* watchdog,
@@ -32,7 +33,7 @@ class Simulation {
 
     /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
     /// at the step's end, then the particles' step.
-    /// Fails as LiveBodies::show and ParticleSystem::step do.
+    /// Fails as LiveCollider::update and ParticleSystem::step do.
     [[nodiscard]] Result<void> step() { return step(scene_->time.dt); }
     /// \param dt  seconds, > 0, instead of the scene's.
     [[nodiscard]] Result<void> step(float dt);
@@ -65,10 +66,18 @@ class Simulation {
     /// Births of emitters and [[spawn]] that were dropped because the particle system had no room.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     /// The mesh of a collider that deforms, as it is now; null: that one does not.
-    [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const { return live_.mesh(collider); }
+    [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
 
   private:
+    struct LiveBody {
+        std::size_t index;  // in the scene
+        LiveCollider collider;
+        WobblePass pass;
+    };
     Simulation() = default;
+    [[nodiscard]] Result<void> makeLive(const LoadedScene& loaded);
+    /// Deforms all that are live to a time, in seconds, and draws their maps. Before each step, for its end.
+    [[nodiscard]] Result<void> showLive(double time);
     [[nodiscard]] Result<void> giveBirth(float dt);
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
     /// \param tag  of its events; 0: not passed on.
@@ -85,7 +94,7 @@ class Simulation {
     std::vector<Emitter> emitters_;
     std::vector<EmitterMotion> motions_;          // as many
     std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it
-    LiveBodies live_;
+    std::vector<LiveBody> live_;
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // of a step, kept for its memory
     std::uint64_t refused_ = 0;

@@ -167,26 +167,5 @@ TEST(Spawner, WhatIsLostHasNoChildren) {
     }
 }
 
-TEST(Spawner, WrongSettingsAreNamed) {
-    EXPECT_TRUE(Spawner::check({}));
-    const auto refused = [](const char* part, auto change) {
-        SpawnSettings settings;
-        change(settings);
-        const auto checked = Spawner::check(settings);
-        ASSERT_FALSE(checked) << part;
-        EXPECT_EQ(checked.error().code, ErrorCode::kUsage);
-        EXPECT_NE(checked.error().message.find(part), std::string::npos) << checked.error().message;
-    };
-    refused("count", [](SpawnSettings& s) { s.count_min = 2; });
-    refused("count", [](SpawnSettings& s) { s.count_min = s.count_max = 0; });
-    refused("most", [](SpawnSettings& s) { s.most = 0; });
-    refused("lifetime", [](SpawnSettings& s) { s.lifetime_min = 0.0F; });
-    refused("lifetime", [](SpawnSettings& s) { s.lifetime_max = 0.5F; });
-    refused("speed", [](SpawnSettings& s) { s.speed_min = 1.0F; });
-    refused("kick", [](SpawnSettings& s) { s.kick = NAN; });
-    refused("inherit", [](SpawnSettings& s) { s.inherit = -1.0F; });
-    refused("cone", [](SpawnSettings& s) { s.cone_degrees = 181.0F; });
-}
-
 }  // namespace
 }  // namespace relief

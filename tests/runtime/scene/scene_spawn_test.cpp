@@ -42,9 +42,6 @@ TEST(SceneSpawn, EveryKeyIsRead) {
     EXPECT_TRUE(SpawnSettings(scene->spawns[1]) == death);
     EXPECT_EQ(scene->spawns[2].of, 1U);
     EXPECT_EQ(scene->spawns[2].cone_degrees, 60.0F);
-    for (const SceneSpawn& spawn : scene->spawns) {
-        EXPECT_TRUE(Spawner::check(spawn));
-    }
     EXPECT_EQ(makeSpawners(scene->spawns).size(), 3U);
 }
 
