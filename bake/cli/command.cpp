@@ -31,14 +31,13 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
             "Print warnings and errors only")
         ->excludes(quiet)
         ->excludes(verbose);
+    verb->parse_complete_callback([&common] {
+        spdlog::set_level(common.warnings  ? spdlog::level::warn
+                          : common.quiet   ? spdlog::level::err
+                          : common.verbose ? spdlog::level::debug
+                                           : spdlog::level::info);
+    });
     return *verb;
-}
-
-void startLogging(const CommonOptions& common) {
-    spdlog::set_level(common.warnings  ? spdlog::level::warn
-                      : common.quiet   ? spdlog::level::err
-                      : common.verbose ? spdlog::level::debug
-                                       : spdlog::level::info);
 }
 
 std::string shownInput(const std::string& file) {

@@ -9,6 +9,7 @@
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 #include "formats/container.h"
+#include "formats/fields/generated.h"
 
 namespace CLI {
 class App;
@@ -25,13 +26,10 @@ struct CommonOptions {
     bool warnings = false;  ///< with quiet: warnings too
 };
 
-/// Adds a verb with -q and -v.
+/// Adds a verb with -q, -v and --warnings-only, which choose the messages that appear.
 /// \param example  complete command lines, one a line: the help begins with them.
 CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example);
-
-/// Which messages appear.
-void startLogging(const CommonOptions& common);
 
 /// "standard input" for "-", else the path in quotes: for messages.
 [[nodiscard]] std::string shownInput(const std::string& file);
@@ -60,5 +58,9 @@ struct ColliderFile {
 };
 /// Errors: those of loadCollider, with the file in front.
 [[nodiscard]] Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits);
+
+/// Derived from the options of the verbs: the README's table, Python's arguments, the fuzz dictionary of recipes; and the
+/// JSON Schemas of what `relief` prints.
+[[nodiscard]] GeneratedTexts bakeTexts();
 
 }  // namespace relief

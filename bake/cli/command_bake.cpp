@@ -114,7 +114,6 @@ Result<void> report(const BakeCommand& command, const BakeResult& result, std::s
 }
 
 Result<void> runBake(BakeCommand& command, FileGuard& files) {
-    startLogging(command.common);
     const Stopwatch total;
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));

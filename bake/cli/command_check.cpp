@@ -108,7 +108,6 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
 }
 
 Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
-    startLogging(command.common);
     if (command.request.mesh.empty()) {
         return checkFile(command.file, command.json, command.limits);
     }

@@ -22,7 +22,6 @@ struct DiffCommand {
 };
 
 Result<void> runDiff(const DiffCommand& command) {
-    startLogging(command.common);
     if (command.a == "-" && command.b == "-") {
         return fail(ErrorCode::kUsage, "A and B cannot both be standard input; give one of them a file");
     }

@@ -174,7 +174,6 @@ Result<void> exportGrids(const Collider& collider, const ExportCommand& command)
 }
 
 Result<void> runExport(const ExportCommand& command, FileGuard& files) {
-    startLogging(command.common);
     RELIEF_TRY(checkTogether(command));
     RELIEF_TRY(files.reads(command.file));
     if (!command.vdb.empty() || !command.mesh.empty()) {

@@ -75,7 +75,6 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
 }
 
 Result<void> runInfo(const InfoCommand& command) {
-    startLogging(command.common);
     // Checked as a whole, payloads included.
     const ColliderFile shown = RELIEF_TRY(readColliderFile(command.file, command.limits));
     const ContainerInfo info =

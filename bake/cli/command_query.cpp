@@ -41,7 +41,6 @@ std::vector<FieldSample> sampled(const Collider& collider, std::span<const glm::
 }
 
 Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
-    startLogging(command.common);
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
                     "FILE and --points cannot both be standard input; give one of them a file");

@@ -349,7 +349,6 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
 }
 
 Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call) {
-    startLogging(call.common);
     const Stopwatch watch;
     RecipeWork work = RELIEF_TRY(plan(options, call));
     RecipeEvents events;

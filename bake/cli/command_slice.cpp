@@ -60,11 +60,7 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
 }
 
 Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
-    startLogging(command.common);
-    const std::filesystem::path extension = std::filesystem::path(command.output).extension();
-    if (lowerCase(extension.string()) != ".png" && command.output != "-") {
-        return fail(ErrorCode::kUsage, "--output " + quotedPath(command.output) + " must end in .png");
-    }
+    const ImageKind kind = RELIEF_TRY(imageKind(command.output));
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.writes(command.output, "-o"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));

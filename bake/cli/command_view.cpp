@@ -262,7 +262,6 @@ Result<std::string> outputOf(const ViewCommand& command) {
 
 /// The same input gives the same bytes. Files are checked as `relief check` and `relief-sim` do.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
-    startLogging(command.common);
     if (command.isScene() && !command.check.mesh.empty()) {
         return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(command.file) +
                                            " is a scene; leave out --mesh, or view the collider");

@@ -1,5 +1,4 @@
-#include "bake/cli/generated.h"
-
+#include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/mesh_check_report.h"
@@ -50,15 +49,12 @@ GeneratedTexts bakeTexts() {
         options.push_back(std::move(field));
     }
     const std::string init = "bake/python/relief/__init__.py";
-    return {{"bake/cli/README.md", "bake-options", optionTable(options)},
-            {"bake/cli/README.md", "check-options", optionTable(check)},
-            {init, "bake-arguments", pythonArguments(bake, "         ")},
-            {init, "check-arguments", pythonArguments(check, "          ")},
-            {"tests/fuzz/recipe.dict", "bake-keys", recipeDictionary()}};
-}
-
-GeneratedTexts bakeSchemas() {
     return {
+        {"bake/cli/README.md", "bake-options", optionTable(options)},
+        {"bake/cli/README.md", "check-options", optionTable(check)},
+        {init, "bake-arguments", pythonArguments(bake, "         ")},
+        {init, "check-arguments", pythonArguments(check, "          ")},
+        {"tests/fuzz/recipe.dict", "bake-keys", recipeDictionary()},
         schemaFile("bake", "relief bake --json", "A bake.", schemaOf(BakeJson{})),
         schemaFile("check", "relief check --mesh --json", "A collider measured against its mesh.",
                    schemaOf(MeshCheckReport{})),
@@ -71,8 +67,7 @@ GeneratedTexts bakeSchemas() {
                    schemaOf(ColliderReport<ColliderMapReport>{})),
         schemaFile("recipe", "relief bake --recipe --json", "A run of a recipe.", schemaOf(RecipeJson{})),
         schemaFile("recipe-events", "relief bake --recipe --events",
-                   "One line: an event of a run of a recipe.", schemaOf(RecipeEvent{})),
-    };
+                   "One line: an event of a run of a recipe.", schemaOf(RecipeEvent{}))};
 }
 
 }  // namespace relief

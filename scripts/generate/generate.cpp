@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bake/cli/generated.h"
+#include "bake/cli/command.h"
 #include "formats/base/file_io.h"
 #include "formats/fields/generated.h"
 #include "runtime/player/report.h"
@@ -22,7 +22,7 @@ Result<std::string> readText(const fs::path& path) {
 /// All that is derived. Each library that declares fields has a function of its own.
 GeneratedTexts all() {
     GeneratedTexts texts;
-    for (GeneratedTexts (*const of)() : {bakeTexts, bakeSchemas, playerSchemas, sceneReference}) {
+    for (GeneratedTexts (*const of)() : {bakeTexts, playerSchemas, sceneReference}) {
         for (GeneratedText& text : of()) {
             texts.push_back(std::move(text));
         }
