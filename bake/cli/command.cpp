@@ -55,7 +55,7 @@ void defineRelief(CLI::App& app, Action& action) {
         "relief bake bunny.obj -o bunny.relief\nrelief info bunny.relief\n"
         "relief slice bunny.relief --axis z --at center -o slice.png");
     app.require_subcommand(1);
-    for (const auto& add : {addBake, addCheck, addDiff, addInfo, addQuery, addSlice, addView, addExport}) {
+    for (const auto& add : {addBake, addCheck, addInfo, addQuery, addSlice, addView, addExport}) {
         add(app, action);
     }
 }

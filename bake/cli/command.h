@@ -39,7 +39,6 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
 // Each adds a verb. When it is called, `action` becomes what it does.
 void addBake(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);
-void addDiff(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);
 void addQuery(CLI::App& app, Action& action);
 void addSlice(CLI::App& app, Action& action);

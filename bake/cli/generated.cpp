@@ -3,7 +3,6 @@
 #include "bake/director/bake_json.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/report/collider_report.h"
-#include "bake/report/diff_report.h"
 #include "bake/report/inspect_report.h"
 #include "bake/report/recipe_report.h"
 #include "formats/fields/json.h"
@@ -62,7 +61,6 @@ GeneratedTexts bakeTexts() {
             "check-file", "relief check FILE --json",
             "Faults of a container, and the parts that can be trusted. formats/README.md lists the codes.",
             schemaOf(InspectionReport{})),
-        schemaFile("diff", "relief diff --json", "The differences of two colliders.", schemaOf(DiffReport{})),
         schemaFile("info", "relief info --json", "The contents of a collider.",
                    schemaOf(ColliderReport<ColliderMapReport>{})),
         schemaFile("recipe", "relief bake --recipe --json", "A run of a recipe.", schemaOf(RecipeJson{})),

@@ -60,11 +60,10 @@ def read_large(cases, folder):
         cases.expect("--max-memory" in done.stderr, f"a limit without its option: {done.stderr}")
 
 
-def compare_tiny(cases, folder):
-    for name in ("a", "b"):
-        (folder / f"{name}.relief").write_bytes(tiny_maps(cases))
-    done = cases.run("relief", "diff", "a.relief", "b.relief", cwd=folder, seconds=SECONDS, memory=MEMORY)
-    cases.expect(done is None or done.returncode in (0, 7), "diff of sound files fails")
+def check_tiny(cases, folder):
+    (folder / "a.relief").write_bytes(tiny_maps(cases))
+    done = cases.run("relief", "check", "a.relief", cwd=folder, seconds=SECONDS, memory=MEMORY)
+    cases.expect(done is None or done.returncode == 0, "check of a sound file fails")
 
 
 # --- meshes: (positions, faces) ---
@@ -156,7 +155,7 @@ def bake(cases, folder):
 def main():
     cases = Cases("appetite", 60)
     for _, folder in cases.each():
-        cases.random.choice((read_large, read_large, compare_tiny, bake, bake, bake))(cases, folder)
+        cases.random.choice((read_large, read_large, check_tiny, bake, bake, bake))(cases, folder)
     cases.finish()
 
 

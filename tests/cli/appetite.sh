@@ -22,7 +22,6 @@ open("large.relief", "wb").write(container([empty_map(4096, 8192, 1)] * 2))  # 2
 open("small.relief", "wb").write(container([empty_map(512, 512)]))
 texel = struct.pack("<4H", 0x7f7f, 0x7f7f, 9000, 50000)
 open("tiny.relief", "wb").write(container([plain_map(4, 4, texel * 16)] * 1024))
-open("tinier.relief", "wb").write(container([plain_map(3, 3, texel * 9)] * 1024))
 open("points.csv", "w").write("0,0,0\n")
 
 
@@ -54,7 +53,6 @@ expect_error 6 "$refused" within 500 "$relief" info bomb.relief
 expect_error 6 "$refused" within 500 "$relief" slice bomb.relief -o x.png
 expect_error 6 "$refused" within 500 "$relief" query bomb.relief --points points.csv -o out.csv
 expect_error 6 "$refused" within 500 "$relief" export bomb.relief -o maps
-expect_error 6 "$refused" within 500 "$relief" diff small.relief bomb.relief
 expect_error 6 "$refused" within 500 "$relief_sim" bomb.relief --check
 expect 6 within 500 "$relief" check bomb.relief
 matches -q 'RLF-1402' <stdout || die "check says nothing of the limit: $(cat stdout)"
@@ -68,9 +66,8 @@ expect 0 within 800 "$relief" check large.relief --max-memory 300MB
 expect 0 within 500 "$relief_sim" small.relief --check --max-memory 10MB
 expect_error 1 'max-memory' "$relief" info small.relief --max-memory much
 
-# A thousand maps against a thousand others: fewer points are asked about.
-expect 7 within 500 "$relief" diff tiny.relief tinier.relief --json
-python3 -c 'import json; d = json.load(open("stdout")); assert 50 < d["points"]["points"] < 1000, d["points"]'
+# A thousand maps.
+expect 0 within 500 "$relief" query tiny.relief --points points.csv -o out.csv
 
 # Parts far apart: bounded maps, and an error that names what was given and what helps.
 expect 0 within 2000 "$relief" bake apart.obj -o apart.relief --no-check

@@ -110,9 +110,6 @@ cp stdout short.json
 expect 3 "$relief" check plan.toml --json
 cp stdout none.json
 outputs+=(check-file:sound.json check-file:damaged.json check-file:short.json check-file:none.json)
-expect 7 "$relief" diff b.relief p.relief --json
-cp stdout diff.json
-outputs+=(diff:diff.json)
 
 # A scene with everything in it.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"

@@ -65,8 +65,10 @@ with open(folder / "ball.obj", "w") as out:
     for t in triangles + 1:
         out.write("f %d %d %d\n" % tuple(t))
 subprocess.run([tool, "bake", folder / "ball.obj", "-o", folder / "tool.relief", "-q", "--budget", "1MB"], check=True)
-said = subprocess.run([tool, "diff", folder / "ball_Y.relief", folder / "tool.relief"], capture_output=True, text=True)
-assert "hold the same collider" in said.stdout, f"the add-on and the tool bake different maps: {said.stdout}"
+for name in ("ball_Y", "tool"):
+    subprocess.run([tool, "export", folder / f"{name}.relief", "--gpu", folder / name, "-q"], check=True)
+for file in (folder / "tool").iterdir():
+    assert file.read_bytes() == (folder / "ball_Y" / file.name).read_bytes(), f"the add-on bakes another {file.name}"
 
 # The overlay is coloured by the distance that the collider says of the surface, and white where that is 0.
 bpy.ops.mesh.primitive_monkey_add(size=2)
