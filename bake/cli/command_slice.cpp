@@ -44,7 +44,7 @@ SliceOptions optionsOf(const SliceCommand& command) {
     return options;
 }
 
-/// The picture is drawn all the same: it shows what the collider says there.
+/// The picture is drawn all the same: it shows the field there.
 void warnOutside(const SliceCommand& command, const Collider& collider) {
     const std::optional<float> at = optionsOf(command).at;
     const int axis = static_cast<int>(command.axis);
@@ -60,7 +60,10 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
 }
 
 Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
-    const ImageKind kind = RELIEF_TRY(imageKind(command.output));
+    const std::filesystem::path extension = std::filesystem::path(command.output).extension();
+    if (lowerCase(extension.string()) != ".png" && command.output != "-") {
+        return fail(ErrorCode::kUsage, "--output " + quotedPath(command.output) + " must end in .png");
+    }
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.writes(command.output, "-o"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
