@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -148,7 +149,12 @@ class Runner {
         std::vector<std::string> arguments = {"bake", asset.job.mesh_path.string(),
                                               "--output=" + asset.job.output_path.string(), "--json",
                                               "--threads=" + std::to_string(run_.threads)};
-        arguments.insert(arguments.end(), asset.job.arguments.begin(), asset.job.arguments.end());
+        const std::vector<std::string>& own = asset.job.arguments;
+        arguments.insert(arguments.end(), own.begin(), own.end());
+        if (std::ranges::none_of(own,
+                                 [](const std::string& word) { return word.starts_with("--time-limit"); })) {
+            arguments.emplace_back("--time-limit=3600");  // a bake that hangs must not hold up the others
+        }
         if (const Result<void> started = children_.startSelf(arguments, index); !started) {
             failAsset(asset, started.error());
         }
