@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds one preset of CMakePresets.json: scripts/build.sh release|debug|sanitize|fuzz|web [TARGET]…
+# Builds one preset of CMakePresets.json: scripts/build.sh release|tools|debug|sanitize|fuzz|web [TARGET]…
 # Prints the folder of the executables. web is the runtime as WebAssembly (runtime/web/README.md), which needs packages
 # of its own and installs them.
 set -euo pipefail
@@ -11,6 +11,11 @@ if [ "$preset" = web ]; then
     scripts/setup.sh web
     scripts/web_modules.sh >&2
 fi
-[ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >&2
+# tools is a part of release; what it left out is added when release is built.
+folder=build/${preset/tools/release}
+if [ ! -f "$folder/build.ninja" ] ||
+    { [ "$preset" = release ] && grep -q '^RELIEF_BUILD_TESTS:.*=OFF' "$folder/CMakeCache.txt"; }; then
+    cmake --preset "$preset" >&2
+fi
 cmake --build --preset "$preset" ${1:+--target "$@"} >&2
-echo "$PWD/build/$preset/bin"
+echo "$PWD/$folder/bin"

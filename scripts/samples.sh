@@ -14,8 +14,8 @@ for name in "${names[@]}"; do
     }
 done
 
-scripts/setup.sh
-bin=$(scripts/build.sh release relief relief-sim)
+scripts/setup.sh tools
+bin=$(scripts/build.sh tools relief relief-sim)
 models=/usr/share/glmark2/models
 
 # mesh NAME: out/samples/…/NAME, by samples/meshes.py.

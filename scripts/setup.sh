@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that Relief needs to build and run. Does nothing, and needs no network, when all are
+# Installs the Debian 12 packages that Relief needs to build, test and run. Does nothing, and needs no network, when all are
 # there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the packages that they need besides.
 #
+# scripts/setup.sh tools [PACKAGE]…: what the preset tools needs, without tests, Python and OpenVDB.
 # scripts/setup.sh web: also what runtime/web and its tests need. node and npm may come from elsewhere.
 set -euo pipefail
 
@@ -12,25 +13,30 @@ if [ "${1-}" = web ]; then
     command -v npm >/dev/null || set -- npm "$@"
 fi
 
-packages=(
-    # tools
-    ca-certificates clang-format cmake g++ git mold ninja-build pkg-config
+tools=(
+    ca-certificates cmake g++ git mold ninja-build pkg-config
     # formats
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
-    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev
-    libopenexr-dev libopenvdb-dev libopenvdb-tools libpugixml-dev libseccomp-dev libspdlog-dev libtbb-dev
-    nlohmann-json3-dev
+    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libopenexr-dev libpugixml-dev
+    libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev
     fonts-dejavu-core
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
-    # tests, benchmarks and the demo
-    assimp-testmodels bsdextrautils doxygen glmark2-data groff-base imagemagick libcgal-demo libgtest-dev
-    libglew-dev libglfw3-dev libjansson-dev libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev python3 python3-dev
-    python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-venv
-    qemu-user-static strace xauth xvfb
-    "$@"
+    # samples
+    glmark2-data imagemagick python3
 )
+tests=(
+    assimp-testmodels bsdextrautils clang-format doxygen groff-base libcgal-demo libgtest-dev libglew-dev libglfw3-dev
+    libjansson-dev libopenvdb-dev libopenvdb-tools libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev
+    python3-dev python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-venv
+    qemu-user-static strace xauth xvfb
+)
+if [ "${1-}" = tools ]; then
+    shift
+    tests=()
+fi
+packages=("${tools[@]}" "${tests[@]}" "$@")
 
 missing=()
 for package in "${packages[@]}"; do
