@@ -1,25 +1,14 @@
 #include "formats/base/result.h"
 
+#include <array>
+
 namespace relief {
 
 const char* errorCodeName(ErrorCode code) {
-    switch (code) {
-        case ErrorCode::kUsage:
-            return "usage";
-        case ErrorCode::kIo:
-            return "file or I/O";
-        case ErrorCode::kInvalidInput:
-            return "invalid input";
-        case ErrorCode::kFailure:
-            return "failure";
-        case ErrorCode::kUnsupported:
-            return "unsupported";
-        case ErrorCode::kLimit:
-            return "limit exceeded";
-        case ErrorCode::kDifference:
-            return "difference found";
-    }
-    return "unknown";
+    constexpr std::array<const char*, 8> kNames{"success",        "usage",           "file or I/O",
+                                                "invalid input",  "failure",         "unsupported",
+                                                "limit exceeded", "difference found"};
+    return kNames.at(static_cast<std::size_t>(code));
 }
 
 }  // namespace relief

@@ -30,12 +30,18 @@ Watchdog::Watchdog(const std::string& program, std::chrono::milliseconds limit)
     sigevent event{};
     event.sigev_notify = SIGEV_THREAD;
     event.sigev_notify_function = starved;
-    ::timer_create(CLOCK_MONOTONIC, &event, &timer_);
+    has_timer_ = ::timer_create(CLOCK_MONOTONIC, &event, &timer_) == 0;
+    if (!has_timer_) {
+        std::fprintf(stderr, "%s: warning: the system has no timer for --gpu-timeout; raise ulimit -i\n",
+                     program.c_str());
+    }
 }
 
 Watchdog::~Watchdog() {
     rest();
-    ::timer_delete(timer_);
+    if (has_timer_) {
+        ::timer_delete(timer_);
+    }
 }
 
 void Watchdog::feed(const std::string& what) {
@@ -57,6 +63,9 @@ void Watchdog::rest() {
 }
 
 void Watchdog::set(std::chrono::milliseconds limit) {
+    if (!has_timer_) {
+        return;
+    }
     itimerspec wait{};
     wait.it_value.tv_sec = limit.count() / 1000;
     wait.it_value.tv_nsec = limit.count() % 1000 * 1'000'000;

@@ -12,7 +12,8 @@ namespace relief {
 /// ends the process with exit code 4, at once: a driver that hangs would hang in every destructor too. One at a time.
 class Watchdog {
   public:
-    /// \param limit  longest time between feed and the next feed or rest; 0: none.
+    /// \param limit  longest time between feed and the next feed or rest; 0: none. Where the system has no timer left, a warning on
+    ///               standard error, and no limit.
     Watchdog(const std::string& program, std::chrono::milliseconds limit);
     ~Watchdog();
     Watchdog(const Watchdog&) = delete;
@@ -31,6 +32,7 @@ class Watchdog {
     std::string program_;
     std::chrono::milliseconds limit_;
     timer_t timer_{};
+    bool has_timer_ = false;
 };
 
 /// Calls `work` and returns its result. The watchdog is fed before it and rests after it.
