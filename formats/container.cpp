@@ -176,13 +176,13 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     return bytes;
 }
 
-/// What `relief bake` reads and people have; formats that nobody mixes up with a collider are left out.
+/// Common formats of `relief bake`; those that cannot be mistaken for a collider are left out.
 constexpr std::array<std::string_view, 14> kMeshExtensions = {".3ds",  ".b3d",  ".blend", ".dae", ".fbx",
                                                               ".glb",  ".gltf", ".lwo",   ".obj", ".off",
                                                               ".ms3d", ".ply",  ".stl",   ".x"};
 
-/// The first byte of every container (formats/README.md, "Bytes"): no letter, and not the beginning of any mesh above.
-constexpr std::byte kContainerBegins{0xAB};
+/// No letter, and not the beginning of any mesh above.
+constexpr std::byte kContainerBegins{ContainerHeader::kSignature[0]};
 
 }  // namespace
 

@@ -75,7 +75,7 @@ std::vector<std::string> gpuFileNames(const Collider& collider) {
     return names;
 }
 
-/// What a program of one's own uploads: runtime/collider/LAYOUT.md.
+/// Writes the files that a program of one's own uploads: runtime/collider/LAYOUT.md.
 Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
     const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));

@@ -55,8 +55,8 @@ struct Job {
     }
 };
 
-/// Where a cube that keeps the nearest surface looks from: nearer to the surface than floats can be trusted to tell its
-/// sides, or inside.
+/// Finds out whether the centre of a cube that keeps the nearest surface is inside, or nearer to the surface than floats can
+/// be trusted to tell its sides.
 Result<void> examineCentre(const PreparedMesh& mesh, Job& job) {
     if (job.view.projection() == Projection::kCube && job.view.compare == Compare::kLess) {
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));

@@ -73,7 +73,7 @@ CLI::Option* addParsed(CLI::App& app, const std::string& names, std::optional<T>
     return app.add_option(names, read, help);
 }
 
-/// What the tools unpack of a file that is smaller than a sixteenth of it, bytes: a map of 4096x4096 of eight bytes a
+/// Bytes that the tools unpack of a file that is smaller than a sixteenth of it: a map of 4096x4096 of eight bytes a
 /// texel, and a little.
 inline constexpr std::uint64_t kToolMemory = 160'000'000;
 
