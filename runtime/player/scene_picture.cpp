@@ -49,11 +49,7 @@ Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& parti
     const Camera camera = sceneCamera(loaded_->scene, loaded_->bounds, particles.time());
     ParticleOrder order;
     if (sorter_) {
-        const std::uint32_t passes =
-            DepthSorter::passesPerFrame(particles.extent(), loaded_->scene.render.sort_frames);
-        sorter_->update(particles.positions(), particles.textureWidth(), particles.extent(), camera.eye,
-                        passes);
-        order = {&sorter_->order(), sorter_->count()};
+        order = sortedFor(loaded_->scene, particles, camera.eye, *sorter_);
     }
     if (wobble_) {
         wobble_->run(particles.time());

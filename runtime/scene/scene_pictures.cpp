@@ -108,6 +108,13 @@ ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {
     return style;
 }
 
+ParticleOrder sortedFor(const Scene& scene, const ParticleSystem& particles, const glm::vec3& eye,
+                        DepthSorter& sorter) {
+    sorter.update(particles.positions(), particles.textureWidth(), particles.extent(), eye,
+                  DepthSorter::passesPerFrame(particles.extent(), scene.render.sort_frames));
+    return {&sorter.order(), sorter.count()};
+}
+
 Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds) {
     const auto& given = scene.camera;
     Camera camera;

@@ -6,6 +6,7 @@
 #include "formats/base/result.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/collider_mesh.h"
+#include "runtime/picture/depth_sort.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/picture/sprite_atlas.h"
 #include "runtime/scene/loaded_scene.h"
@@ -33,6 +34,10 @@ namespace relief {
 /// \param scene  complete (withDefaults).
 /// \param atlas  may be null; must outlive the style.
 [[nodiscard]] ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas);
+
+/// Goes on with the sort that render.sort_frames spreads over frames, above 0. \return the order, until the next call.
+[[nodiscard]] ParticleOrder sortedFor(const Scene& scene, const ParticleSystem& particles,
+                                      const glm::vec3& eye, DepthSorter& sorter);
 
 /// The camera of a complete scene after so many seconds.
 [[nodiscard]] Camera sceneCamera(const Scene& scene, const Bounds& bounds, double seconds);

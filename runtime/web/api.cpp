@@ -241,10 +241,7 @@ Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& p
     const CameraMatrices camera(view, projection);
     ParticleOrder order;
     if (player.sorter && player.loaded.scene.render.sort_frames > 0) {
-        player.sorter->update(
-            particles.positions(), particles.textureWidth(), particles.extent(), camera.eye(),
-            DepthSorter::passesPerFrame(particles.extent(), player.loaded.scene.render.sort_frames));
-        order = {&player.sorter->order(), player.sorter->count()};
+        order = sortedFor(player.loaded.scene, particles, camera.eye(), *player.sorter);
     }
     RELIEF_TRY(player.renderer->draw(particles, camera, player.style, target, order));
     return 0;
