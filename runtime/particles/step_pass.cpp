@@ -4,10 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
-#include "runtime/gl/gl_object.h"
-#include "runtime/particles/step_path.h"
 #include "shaders/collider/constants.h"
 
 namespace relief {
@@ -26,19 +23,6 @@ bool toursMaps(const StepFeatures& features) {
 }
 
 }  // namespace
-
-Result<StepPath> chosenPath(StepPath wanted) {
-    if (wanted == StepPath::kCompute && !hasCompute()) {
-        return fail(ErrorCode::kUnsupported,
-                    "the compute path needs OpenGL 4.3 or OpenGL ES 3.1, and this context has " +
-                        std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
-                        "; take the fragment path");
-    }
-    if (wanted == StepPath::kAuto) {
-        return hasCompute() && !isSoftwareRenderer() ? StepPath::kCompute : StepPath::kFragment;
-    }
-    return wanted;
-}
 
 float dragRate(const Forces& forces, const ParticleType& type) {
     return forces.viscosity > 0.0F ? stokesRate(forces.viscosity, type.radius, type.mass)

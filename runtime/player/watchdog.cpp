@@ -45,15 +45,12 @@ Watchdog::~Watchdog() {
 }
 
 void Watchdog::feed(const std::string& what) {
-    rest();
-    if (limit_.count() > 0) {
-        char seconds[32];
-        std::snprintf(seconds, sizeof(seconds), "%g", static_cast<double>(limit_.count()) / 1000.0);
-        const std::lock_guard lock(mutex);
-        last_line = program_ + ": error: the GPU has not finished " + what + " within " + seconds +
-                    " seconds; if it is only slow, raise --gpu-timeout (0: wait for ever)\n";
-        set(limit_);
-    }
+    char seconds[32];
+    std::snprintf(seconds, sizeof(seconds), "%g", static_cast<double>(limit_.count()) / 1000.0);
+    const std::lock_guard lock(mutex);
+    last_line = program_ + ": error: the GPU has not finished " + what + " within " + seconds +
+                " seconds; if it is only slow, raise --gpu-timeout (0: wait for ever)\n";
+    set(limit_);  // 0 stops the timer
 }
 
 void Watchdog::rest() {
