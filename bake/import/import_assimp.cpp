@@ -10,7 +10,6 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <string_view>

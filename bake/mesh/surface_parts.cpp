@@ -1,7 +1,6 @@
 #include "bake/mesh/surface_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>

@@ -1,8 +1,6 @@
 #include "bake/shape/shape_options.h"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "bake/mesh/mesh.h"
 #include "formats/base/text.h"

@@ -1,7 +1,6 @@
 #include "bake/texels/deep_solid.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace relief {
 namespace {

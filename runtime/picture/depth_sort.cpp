@@ -1,7 +1,6 @@
 #include "runtime/picture/depth_sort.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <string>
 

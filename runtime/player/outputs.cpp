@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 
 #include "formats/base/file_guard.h"
 #include "formats/base/file_io.h"

@@ -8,8 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "runtime/particles/emitter.h"
-
 namespace relief {
 namespace {
 
