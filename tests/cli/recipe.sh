@@ -127,6 +127,9 @@ while json.loads(run.stdout.readline())['event'] != 'started':
 while not (children := open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()):
     pass
 child = int(children[0])
+while b'--json' not in (words := open(f'/proc/{child}/cmdline', 'rb').read()):  # not yet the bake's own
+    pass
+assert b'--time-limit=3600' in words.split(b'\0'), words
 os.kill(child, signal.SIGSEGV)
 events = [json.loads(line) for line in run.stdout]
 failed = [e for e in events if e['event'] == 'failed']
