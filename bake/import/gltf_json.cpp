@@ -1,5 +1,6 @@
 #include "bake/import/gltf_json.h"
 
+#include <optional>
 #include <set>
 
 #include "formats/base/text.h"
@@ -9,36 +10,50 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDepthMax = 256;
+constexpr std::size_t kDepthMax = 256;
 constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
 constexpr std::size_t kShownMax = 200;  // bytes of the file or of the parser's message that are shown
 
-/// Thrown and caught in this file; the parser can only be stopped by an exception.
-struct Refusal {
-    Error error;
-};
-
-/// Follows the parser's events.
-class Strictness {
+/// Looks through a text before it is parsed: nlohmann's parser takes time by the square of an array's length if a callback
+/// listens to it.
+class Strictness final : public nlohmann::json_sax<Json> {
   public:
-    void hear(int depth, Json::parse_event_t event, const Json& parsed) {
-        using Event = Json::parse_event_t;
-        if (event == Event::object_start || event == Event::array_start) {
-            if (depth >= kDepthMax) {
-                throw Refusal{{ErrorCode::kLimit, "its JSON is nested more than " +
-                                                      std::to_string(kDepthMax) + " deep; export it again"}};
-            }
-            keys_.emplace_back();
-        } else if (event == Event::object_end || event == Event::array_end) {
-            keys_.pop_back();
-        } else if (event == Event::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-            throw Refusal{{ErrorCode::kInvalidInput, "its JSON has the key '" +
-                                                         cleanUtf8(parsed.get<std::string>(), kShownMax) +
-                                                         "' twice in one object; export it again"}};
+    std::optional<Error> refused;
+
+    bool start_object(std::size_t) override { return begin(); }
+    bool start_array(std::size_t) override { return begin(); }
+    bool end_object() override { return end(); }
+    bool end_array() override { return end(); }
+    bool key(std::string& name) override {
+        if (!keys_.back().insert(name).second) {
+            refused = {ErrorCode::kInvalidInput, "its JSON has the key '" + cleanUtf8(name, kShownMax) +
+                                                     "' twice in one object; export it again"};
         }
+        return !refused;
     }
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(std::int64_t) override { return true; }
+    bool number_unsigned(std::uint64_t) override { return true; }
+    bool number_float(double, const std::string&) override { return true; }
+    bool string(std::string&) override { return true; }
+    bool binary(Json::binary_t&) override { return true; }
+    bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
 
   private:
+    bool begin() {
+        if (keys_.size() >= kDepthMax) {
+            refused = {ErrorCode::kLimit, "its JSON is nested more than " + std::to_string(kDepthMax) +
+                                              " deep; export it again"};
+        }
+        keys_.emplace_back();
+        return !refused;
+    }
+    bool end() {
+        keys_.pop_back();
+        return true;
+    }
+
     std::vector<std::set<std::string>> keys_;  // of the open objects
 };
 
@@ -50,15 +65,13 @@ Result<Json> parseGltfJson(std::string_view text) {
     if (text.find('\0') != std::string_view::npos) {
         return invalidInput("it is no valid JSON: it holds a byte of 0");
     }
+    Strictness strict;
+    Json::sax_parse(text.begin(), text.end(), &strict);
+    if (strict.refused) {
+        return tl::unexpected<Error>(std::move(*strict.refused));
+    }
     try {
-        Strictness strict;
-        return Json::parse(text.begin(), text.end(),
-                           [&strict](int depth, Json::parse_event_t event, Json& parsed) {
-                               strict.hear(depth, event, parsed);
-                               return true;
-                           });
-    } catch (const Refusal& refusal) {
-        return tl::unexpected<Error>(refusal.error);
+        return Json::parse(text.begin(), text.end());
     } catch (const Json::exception& error) {  // also a number out of range
         const std::string_view words(error.what());
         return invalidInput("it is no valid JSON: " +
