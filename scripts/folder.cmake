@@ -1,14 +1,15 @@
-# relief_folder(FOLDER [UNITY] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
+# relief_folder(FOLDER [UNITY] [NUMBERS] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
 # Makes a library of every .cpp of FOLDER, except those named after EXCEPT. The target's name is FOLDER with _ for /.
 #
 # Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; other includes
 # do not compile. To this end each folder has an include root of its own in the build tree, with a link to that folder and
 # nothing else. USES takes only folders declared earlier, so no arrow can run back.
 #
-# UNITY joins sources (scripts/fast_build.cmake).
+# UNITY joins sources (scripts/fast_build.cmake). NUMBERS marks a folder whose tests would take minutes without
+# optimisation: the sanitizer build optimises it, and nothing else.
 # LINKS are libraries that only the sources use; PUBLIC are those whose headers the folder's own headers include.
 function(relief_folder folder)
-    cmake_parse_arguments(ARG "UNITY" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
+    cmake_parse_arguments(ARG "UNITY;NUMBERS" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
     string(REPLACE / _ target ${folder})
     set(root ${PROJECT_BINARY_DIR}/folders/${target})
     cmake_path(GET folder PARENT_PATH parent)
@@ -21,7 +22,12 @@ function(relief_folder folder)
     add_library(${target} STATIC ${sources})
     target_include_directories(${target} PUBLIC ${root})
     target_link_libraries(${target} PUBLIC relief_options ${ARG_PUBLIC} PRIVATE ${ARG_LINKS})
-    relief_precompile(${target} relief_headers)
+    if(RELIEF_SANITIZE AND ARG_NUMBERS)
+        target_compile_options(${target} PRIVATE -O1)
+        relief_precompile(${target} relief_number_headers)
+    else()
+        relief_precompile(${target} relief_headers)
+    endif()
     if(ARG_UNITY)
         relief_unity(${target})
     endif()

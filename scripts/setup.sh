@@ -27,7 +27,7 @@ tools=(
     glmark2-data imagemagick python3
 )
 tests=(
-    assimp-testmodels bsdextrautils clang-format doxygen groff-base libcgal-demo libgtest-dev libglew-dev libglfw3-dev
+    assimp-testmodels bsdextrautils clang clang-format doxygen groff-base libcgal-demo libclang-rt-dev libgtest-dev libglew-dev libglfw3-dev
     libjansson-dev libopenvdb-dev libopenvdb-tools libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev
     python3-dev python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-venv
     qemu-user-static strace xauth xvfb

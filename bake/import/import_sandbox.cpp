@@ -124,7 +124,7 @@ constexpr int kAllowed[] = {
     SCMP_SYS(sysinfo),
     SCMP_SYS(uname),
     SCMP_SYS(getrandom),
-#ifdef __SANITIZE_ADDRESS__
+#ifdef RELIEF_SANITIZED
     // The sanitizers probe memory through pipes, give each thread a signal stack, and write reports.
     SCMP_SYS(pipe),
     SCMP_SYS(pipe2),
@@ -146,7 +146,7 @@ constexpr Refused kRefused[] = {
     {SCMP_SYS(access), EACCES},   {SCMP_SYS(faccessat), EACCES},  {SCMP_SYS(faccessat2), EACCES},
     {SCMP_SYS(readlink), EACCES}, {SCMP_SYS(readlinkat), EACCES}, {SCMP_SYS(getcwd), EACCES},
     {SCMP_SYS(ioctl), ENOTTY},    {SCMP_SYS(writev), EPERM},
-#ifndef __SANITIZE_ADDRESS__
+#ifndef RELIEF_SANITIZED
     {SCMP_SYS(write), EPERM},
 #endif
 };
@@ -259,7 +259,7 @@ Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) {
         return cannot("ask to end with its parent");
     }
-#ifndef __SANITIZE_ADDRESS__  // the sanitizer's shadow memory takes terabytes of address space
+#ifndef RELIEF_SANITIZED  // the sanitizer's shadow memory takes terabytes of address space
     const std::uint64_t taken = addressSpace();
     if (taken == 0 || !lowerLimit(RLIMIT_AS, taken + limits.memory, taken + limits.memory)) {
         return cannot("limit its memory");

@@ -128,6 +128,16 @@ std::vector<SortedTriangle> sortedTriangles(const TriangleMesh& mesh, std::span<
     return sorted;
 }
 
+std::size_t dropRepeats(std::vector<SortedTriangle>& sorted) {
+    // clang 14 cannot compile std::ranges::unique of libstdc++ 12.
+    const auto end =
+        std::unique(sorted.begin(), sorted.end(),
+                    [](const SortedTriangle& a, const SortedTriangle& b) { return a.corners == b.corners; });
+    const auto dropped = static_cast<std::size_t>(sorted.end() - end);
+    sorted.erase(end, sorted.end());
+    return dropped;
+}
+
 bool isSeveralShells(const MeshEdges& edges) {
     DisjointSets triangles(edges.uses.size() / 3);
     std::size_t groups = edges.uses.size() / 3;

@@ -110,6 +110,8 @@ struct SortedTriangle {
 [[nodiscard]] std::vector<SortedTriangle> sortedTriangles(const TriangleMesh& mesh,
                                                           std::span<const std::uint32_t> welded,
                                                           std::span<const std::uint32_t> triangles);
+/// Keeps the first of those with equal corners. \return how many are dropped.
+std::size_t dropRepeats(std::vector<SortedTriangle>& sorted);
 
 /// Several closed surfaces, each wound consistently: every edge runs equally often in both directions, and the triangles
 /// fall into groups that share no edge. Such surfaces may overlap; the winding number of a point, not the parity of a ray's

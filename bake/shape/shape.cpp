@@ -232,10 +232,8 @@ class Shaper {
             return false;  // a coincident pair with manifold edges is a part of its own, without a volume
         }
         std::vector<SortedTriangle> sorted = sortedTriangles(mesh_, welded_, part.triangles);
-        const auto copies = std::ranges::unique(sorted, {}, &SortedTriangle::corners);
-        const auto once = static_cast<double>(copies.begin() - sorted.begin());
-        const auto all = static_cast<double>(part.triangles.size());
-        return 2.0 * (all - once) > kTwice * all;
+        const auto repeats = static_cast<double>(dropRepeats(sorted));
+        return 2.0 * repeats > kTwice * static_cast<double>(part.triangles.size());
     }
 
     /// All open parts as sheets, for now.

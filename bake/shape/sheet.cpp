@@ -190,9 +190,7 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
         }
     }
     std::vector<SortedTriangle> sorted = sortedTriangles(mesh, welded, with_area);
-    const auto [end, last] = std::ranges::unique(sorted, {}, &SortedTriangle::corners);
-    sheet.duplicates = static_cast<std::uint64_t>(last - end);
-    sorted.erase(end, last);
+    sheet.duplicates = dropRepeats(sorted);
     std::ranges::sort(sorted, {}, &SortedTriangle::index);
     for (const SortedTriangle& kept : sorted) {
         const glm::uvec3& t = mesh.triangles[kept.index];

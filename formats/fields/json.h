@@ -182,8 +182,9 @@ class SchemaWriter {
         schema.update(schemaOf(value, info));
         if (info.rules.single) {
             const Json one = schema["items"];
-            schema = {{"description", description(info)},
-                      {"anyOf", Json::array({one, arraySchema(one, {2.0})})}};
+            schema = Json::object();
+            schema["description"] = description(info);
+            schema["anyOf"] = Json::array({one, arraySchema(one, {2.0})});
         }
         properties_[std::string(name)] = std::move(schema);
         if (!info.left_out && info.rules.only.empty()) {

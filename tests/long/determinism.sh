@@ -38,7 +38,7 @@ declare -A executable
 if [ "$mode" = --quick ]; then
     executable[gcc]=${RELIEF_BIN:?the folder of relief}/relief
 else
-    scripts/setup.sh clang
+    scripts/setup.sh
     executable[gcc]=$(scripts/build.sh release relief)/relief
     executable[clang]=$(relief_of clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo)
     executable[debug]=$(relief_of debug -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)

@@ -7,6 +7,7 @@
 #           100,000 (RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS say others).
 #   import  every file of assimp-testmodels is read or refused, and none crashes the worker.
 #   mutants 2,000 broken mesh files and every file of assimp-testmodels are baked soundly or refused (tests/long/mutants.sh)
+#   gles    the tests in OpenGL ES that repeat long ones in OpenGL, which CI leaves out
 #   package a build without the baker, from nothing, installs a runtime that samples/glfw builds with.
 #   headers a build of each file alone, without precompiled headers: every file includes what it uses, and no warning of
 #           GCC is off.
@@ -34,7 +35,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants package headers bytes seeds cases level clang sanitize load bare packages embree4 outputs blender slurm
+all_runs=(sweep rest import mutants gles package headers bytes seeds cases level clang sanitize load bare packages embree4 outputs blender slurm
     corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
@@ -76,6 +77,10 @@ P
 sanitize() {
     built sanitize --preset sanitize -DRELIEF_BUILD_NUMBER_TESTS=ON &&
         logged sanitize env LSAN_OPTIONS="suppressions=$PWD/tests/lsan.supp" ctest --test-dir "$work/sanitize" -LE night -j "$(nproc)"
+}
+
+gles() {
+    scripts/build.sh release >/dev/null && logged gles ctest --test-dir build/release -R '/Gles30$' -j "$(nproc)"
 }
 
 package() {
@@ -298,7 +303,6 @@ P
 }
 
 clang() {
-    scripts/setup.sh clang || return 1
     built clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O2 -g1 -DNDEBUG' &&
         logged clang ctest --test-dir "$work/clang" -j "$(nproc)" --output-on-failure || return 1
     echo "clang: $(clang++ -dumpversion) builds everything, and it passes its tests"

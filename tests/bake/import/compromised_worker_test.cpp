@@ -367,7 +367,7 @@ TEST(CompromisedWorker, ReachesNothing) {
         if (!kernelHasLandlock() && std::string_view(attempt.name).starts_with("openat2 ")) {
             continue;
         }
-#ifdef __SANITIZE_ADDRESS__
+#ifdef RELIEF_SANITIZED
         // The sanitizers write what they find.
         if (std::string_view(attempt.name).starts_with("write to ") ||
             attempt.name == std::string_view("write")) {
@@ -460,7 +460,7 @@ TEST(CompromisedWorker, HasALittleStack) {
                   .code,
               kDone);
     const End end = ask(place, true, recurse);
-#ifdef __SANITIZE_ADDRESS__
+#ifdef RELIEF_SANITIZED
     EXPECT_TRUE(end.signal != 0 || end.code == 1);  // reported
 #else
     EXPECT_EQ(end.signal, SIGSEGV);

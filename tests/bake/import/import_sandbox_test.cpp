@@ -88,7 +88,7 @@ TEST(ImportSandbox, LimitsAreTheKernels) {
                             return ::prctl(PR_GET_PDEATHSIG, &number) == 0 && number == SIGKILL;
                         }),
               0);
-#ifndef __SANITIZE_ADDRESS__
+#ifndef RELIEF_SANITIZED
     const auto maps = [](std::uint64_t size) {
         return ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
                MAP_FAILED;

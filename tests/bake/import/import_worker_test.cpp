@@ -320,7 +320,7 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
     std::size_t read = 0;
     for (std::size_t i = 0; i < files.size(); ++i) {
         const bool invalid = files[i].parent_path().filename() == "invalid";
-#ifdef __SANITIZE_ADDRESS__
+#ifdef RELIEF_SANITIZED
         // The address sanitizer ends a process that asks for too much.
         if (files[i].filename() == "OutOfMemory.off") {
             continue;

@@ -17,7 +17,7 @@
 namespace relief {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(RELIEF_SANITIZED) || defined(__SANITIZE_THREAD__)
 constexpr bool kOwnHeap = false;  // a sanitizer's
 #else
 constexpr bool kOwnHeap = true;
