@@ -31,7 +31,8 @@ PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
 def listed():
     """The names of corpus.txt."""
     with open(os.path.join(HERE, 'corpus.txt'), encoding='ascii') as file:
-        return [line for line in file.read().split('\n') if line and line[0] != '#']
+        lines = [line.split(': ') for line in file.read().splitlines() if line[0] != '#']
+    return [os.path.join(package, name) for package, names in lines for name in names.split()]
 
 
 def unpack(folder, thirteen):

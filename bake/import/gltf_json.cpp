@@ -16,29 +16,21 @@ constexpr std::size_t kShownMax = 200;  // bytes of the file or of the parser's 
 
 /// Looks through a text before it is parsed: nlohmann's parser takes time by the square of an array's length if a callback
 /// listens to it.
-class Strictness final : public nlohmann::json_sax<Json> {
+class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
   public:
     std::optional<Error> refused;
 
-    bool start_object(std::size_t) override { return begin(); }
-    bool start_array(std::size_t) override { return begin(); }
-    bool end_object() override { return end(); }
-    bool end_array() override { return end(); }
-    bool key(std::string& name) override {
+    bool start_object(std::size_t) { return begin(); }
+    bool start_array(std::size_t) { return begin(); }
+    bool end_object() { return end(); }
+    bool end_array() { return end(); }
+    bool key(std::string& name) {
         if (!keys_.back().insert(name).second) {
             refused = {ErrorCode::kInvalidInput, "its JSON has the key '" + cleanUtf8(name, kShownMax) +
                                                      "' twice in one object; export it again"};
         }
         return !refused;
     }
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(std::int64_t) override { return true; }
-    bool number_unsigned(std::uint64_t) override { return true; }
-    bool number_float(double, const std::string&) override { return true; }
-    bool string(std::string&) override { return true; }
-    bool binary(Json::binary_t&) override { return true; }
-    bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
 
   private:
     bool begin() {
