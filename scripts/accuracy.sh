@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Wrong points per byte, on the meshes that bake/measure/README.md writes about: a dense signed distance volume, the
-# paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes a few
-# minutes. Further arguments go to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds
+# Wrong points per byte, on the meshes that bake/measure/README.md writes about: distance volumes, dense and sparse, the
+# paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes half an hour on
+# two cores. Further arguments go to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds
 # of work on the baker.
 #
 #   scripts/accuracy.sh                  the table
@@ -41,8 +41,8 @@ if [ "${1:-}" = --page ]; then
     {
         echo '# Wrong points per byte'
         echo
-        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: a dense 16-bit signed distance volume on the'
-        echo 'tight box, with exact values and trilinear lookup; the maps of the paper; the maps that `relief bake` plans.'
+        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the distance volumes of [README.md](README.md),'
+        echo 'dense and sparse; the maps of the paper; the maps that `relief bake` plans.'
         echo
         "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
     } >"$folder/accuracy.md"

@@ -114,7 +114,8 @@ class Accuracy(unittest.TestCase):
         found = [contest("a", True, 250000, 0.1, 9.0), contest("b", True, 250000, 0.225),
                  contest("a", True, 1000000, 0.2, 2.9), contest("b", False, 1000000, 0.05)]
         text = accuracy_table.summary_text(found)
-        self.assertIn("0.25 MB, 2 meshes: ours/volume 0.15 (target at most 0.2), paper/volume 0.3; worst b", text)
+        self.assertIn("0.25 MB, 2 meshes:\n  ours / dense 0.15 (target at most 0.2), worst b (0.225), closed above it: none", text)
+        self.assertIn("  ours / fitted bricks not measured\n  paper / dense 0.3\n", text)
         self.assertIn("slowest bake a (2.90 s, target", text)
         self.assertIn("slowest bake a (9.00 s)\n", text)  # bakes are timed at 1 MB
         self.assertIn("verdict: every target is met", text)
@@ -126,8 +127,33 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(missed, [])
         found[1]["closed"] = True
         line, missed = accuracy_table.summary(found, 4000000)
-        self.assertIn("above the volume: bad (1.5)", line)
-        self.assertEqual(missed, ["1 closed above the volume at 4 MB"])
+        self.assertIn("above it: bad (1.5)", line)
+        self.assertEqual(missed, ["1 closed above dense at 4 MB"])
+
+    def test_each_rival_has_its_targets(self):
+        found = [{**contest(mesh, True, 4000000, 0.1), "ours/bricks": 0.5, "ours/fitted": fitted, "ours/unreal": 3.0}
+                 for mesh, fitted in (("a", 0.4), ("b", 1.2), ("c", 0.7))]
+        line, missed = accuracy_table.summary(found, 4000000)
+        self.assertEqual(missed, [])  # one may be above; Unreal's has no target
+        self.assertIn("ours / exact bricks 0.5 (target at most 0.5)", line)
+        self.assertIn("above it: b (1.2)", line)
+        found[2]["ours/fitted"] = 1.1
+        self.assertEqual(accuracy_table.summary(found, 4000000)[1],
+                         ["ours / fitted bricks 0.808 at 4 MB", "2 closed above fitted bricks at 4 MB"])
+        found = [{**of, "budget": 1000000} for of in found]
+        self.assertIn("ours / exact bricks 0.5 at 1 MB", accuracy_table.summary(found, 1000000)[1])
+
+    def test_tables_have_the_methods_that_were_measured(self):
+        field = {"near": {"wrong_percent": 0.5, "false_inside_percent": 0.3, "false_outside_percent": 0.2},
+                 "distance_error": {"mean_percent": 0.01, "p99_percent": 0.2}, "normal_error_degrees": {"mean": 1.5, "p99": 20.0}}
+        result = {"mesh": "a", "budget": 1000000, "closed": False, "accuracy": field, "bytes": 999, "maps": 4,
+                  "build_seconds": None}
+        found = accuracy_table.contests({"meshes": [{"samples": 1000}],
+                                         "results": [{**result, "method": method} for method in ("fitted", "ours")]})
+        self.assertEqual(accuracy_table.sides(found)[0][2:5], ["fitted bricks %>", "ours %>", "ours / fitted bricks>"])
+        self.assertEqual(accuracy_table.sides(found)[1],
+                         ["a (open)", "1 MB", "0.500", "0.500", "1.000", "0.300", "0.200", "999", "4", "-"])
+        self.assertEqual(accuracy_table.errors(found)[1][2:], ["0.0100 / 0.200; 1.50° / 20°"] * 2)
 
     def test_missed_targets_are_named(self):
         found = [contest("a", True, 250000, 0.21), contest("a", True, 1000000, 0.21, 3.1)]

@@ -1,4 +1,4 @@
-// relief-accuracy: wrong points per byte of a distance volume, of the paper's maps, and of ours, as JSON.
+// relief-accuracy: wrong points per byte of distance volumes, dense and sparse, of the paper's maps, and of ours, as JSON.
 // scripts/accuracy.sh runs it on its list of meshes, and makes tables of it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "bake/bench/brick_volume.h"
 #include "bake/bench/distance_volume.h"
 #include "bake/director/director.h"
 #include "bake/import/mesh_import.h"
@@ -35,7 +36,7 @@ struct AccuracyEntry {
     std::string mesh;
     bool closed = false;
     std::uint64_t budget = 0;
-    std::string method;  ///< "volume", "paper" or "ours"
+    std::string method;  ///< of Arguments
     std::string what;    ///< lattice or maps
     std::size_t maps = 0;
     std::uint64_t bytes = 0;
@@ -149,6 +150,34 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
     return entry;
 }
 
+/// The best of several layouts.
+AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
+                            std::uint64_t budget) {
+    AccuracyEntry entry;
+    entry.method = method;
+    // Unreal's band is 2 to 4 voxels; 2 has the finest codes. Bricks of 3³ and an octree of 2³ were the best of 2³ to 8³.
+    std::vector<BrickLayout> layouts = {{.cells = 8, .flat_index = true}};
+    if (method != "unreal") {
+        const bool fitted = method == "fitted";
+        layouts = {{.cells = 3, .fitted = fitted}, {.cells = 2, .octree = true, .fitted = fitted}};
+    }
+    std::optional<FieldAccuracy> best;
+    for (const BrickLayout& layout : layouts) {
+        const Stopwatch watch;
+        const BrickVolume volume = BrickVolume::build(query, layout, budget);
+        const double seconds = watch.seconds();
+        const FieldAccuracy accuracy = measureField(samples, fieldOf(volume));
+        if (!best || accuracy.near.total() < best->near.total()) {
+            best = accuracy;
+            entry.what = volume.text();
+            entry.bytes = volume.bytes();
+            entry.build_seconds = seconds;
+        }
+    }
+    entry.accuracy = jsonOf(FieldAccuracyReport{*best, samples.longest_side});
+    return entry;
+}
+
 AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
                           const Collider& collider) {
     AccuracyEntry entry;
@@ -192,7 +221,7 @@ struct Arguments {
     std::vector<std::string> budgets = {"0.25MB", "1MB", "4MB"};
     std::uint32_t samples = AccuracyOptions{}.samples;
     std::uint64_t seed = AccuracyOptions{}.seed;
-    std::vector<std::string> methods = {"volume", "paper", "ours"};
+    std::vector<std::string> methods = {"volume", "unreal", "bricks", "fitted", "paper", "ours"};
     std::string collider;
 };
 
@@ -249,6 +278,8 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
             entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
         } else if (method == "volume") {
             entry = measureVolume(query, samples, budget);
+        } else if (method != "paper" && method != "ours") {
+            entry = measureBricks(query, samples, method, budget);
         } else {
             entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
         }
@@ -292,7 +323,7 @@ int report(const Error& error) {
 
 int main(int argc, char** argv) {
     using namespace relief;
-    CLI::App app("Wrong points per byte: a distance volume, the paper's maps, and ours", "relief-accuracy");
+    CLI::App app("Wrong points per byte: distance volumes, the paper's maps, and ours", "relief-accuracy");
     Arguments arguments;
     app.add_option("mesh", arguments.meshes, "Meshes")->option_text("MESH...")->required();
     app.add_option("--budgets,--budget", arguments.budgets, "Bytes for each collider; default 0.25MB,1MB,4MB")
@@ -300,9 +331,10 @@ int main(int argc, char** argv) {
     app.add_option("--samples", arguments.samples, "Points of each kind; default 200000")
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Of the points; default 1");
-    app.add_option("--methods", arguments.methods, "volume, paper or ours; default: all")
+    app.add_option("--methods", arguments.methods,
+                   "volume, unreal, bricks, fitted, paper or ours; default: all")
         ->delimiter(',')
-        ->check(CLI::IsMember({"volume", "paper", "ours"}));
+        ->check(CLI::IsMember(Arguments{}.methods));
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");

@@ -1,0 +1,618 @@
+#include "bake/bench/brick_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Cholesky>
+
+#include "bake/measure/truth.h"
+#include "bake/mesh/loops.h"
+#include "bake/mesh/mersenne.h"
+
+namespace relief {
+namespace {
+
+constexpr double kCodeMax = 127.0;
+// A fit looks at so many random points of each voxel along each axis, one in each part of it.
+constexpr unsigned kFitParts = 3;
+// Surface points that judge which cubes to split, for each byte of the budget and at most.
+constexpr double kJudges = 0.5;
+constexpr std::uint32_t kJudgesMax = 1'500'000;
+
+/// A cube in object space.
+struct Box {
+    glm::dvec3 low{0.0};
+    double size = 0.0;
+
+    [[nodiscard]] glm::dvec3 middle() const { return low + 0.5 * size; }
+    [[nodiscard]] double halfDiagonal() const { return 0.5 * std::sqrt(3.0) * size; }
+    [[nodiscard]] bool holds(const glm::dvec3& p) const {
+        return glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, low + size));
+    }
+    [[nodiscard]] Box octant(unsigned i) const {
+        return {low + 0.5 * size * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U), 0.5 * size};
+    }
+};
+
+/// Signed distances at points, each near the one before.
+class DistanceWalk {
+  public:
+    explicit DistanceWalk(const MeshQuery& query) : query_(query) {}
+
+    [[nodiscard]] double at(const glm::dvec3& exact) {
+        const glm::vec3 p = exact;
+        const ClosestPoint closest = query_.closest(p, nearby_);
+        // No surface lies between two points that are closer to each other than one of them is to the surface; a little
+        // more for the rounding of p.
+        const bool same_side =
+            nearby_ && query_.watertight() && std::abs(before_) > 1.01 * glm::distance(exact, from_);
+        const bool inside = same_side ? before_ < 0.0 : query_.inside(p);
+        nearby_ = closest.triangle;
+        from_ = exact;
+        before_ = inside ? -closest.distance : closest.distance;
+        return before_;
+    }
+
+  private:
+    const MeshQuery& query_;
+    std::optional<std::uint32_t> nearby_;
+    glm::dvec3 from_{0.0};
+    double before_ = 0.0;
+};
+
+/// Whether surface lies in a box: certain but for a corner of a sixteenth of its side, which counts as surface.
+bool holdsSurface(const MeshQuery& query, const Box& box, std::optional<std::uint32_t> hint = {},
+                  unsigned halvings = 4) {
+    const ClosestPoint closest = query.closest(glm::vec3(box.middle()), hint);
+    if (closest.distance > 1.0001 * box.halfDiagonal()) {
+        return false;
+    }
+    if (halvings == 0 || box.holds(closest.point)) {
+        return true;
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+        if (holdsSurface(query, box.octant(i), closest.triangle, halvings - 1)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The eight corners' shares of a point in a voxel, x fastest.
+std::array<double, 8> sharesAt(const glm::dvec3& t) {
+    std::array<double, 8> shares;
+    for (unsigned i = 0; i < 8; ++i) {
+        shares[i] = ((i & 1U) != 0 ? t.x : 1.0 - t.x) * ((i >> 1U & 1U) != 0 ? t.y : 1.0 - t.y) *
+                    ((i >> 2U) != 0 ? t.z : 1.0 - t.z);
+    }
+    return shares;
+}
+
+/// A brick of `cells`³ voxels: where a point lies in it.
+struct BrickGrid {
+    unsigned cells;
+
+    [[nodiscard]] unsigned side() const { return cells + 1; }
+    [[nodiscard]] unsigned nodes() const { return side() * side() * side(); }
+    [[nodiscard]] glm::uvec3 node(unsigned i) const {
+        return {i % side(), i / side() % side(), i / side() / side()};
+    }
+    [[nodiscard]] unsigned corner(const glm::uvec3& voxel, unsigned i) const {
+        return ((voxel.z + (i >> 2U)) * side() + voxel.y + (i >> 1U & 1U)) * side() + voxel.x + (i & 1U);
+    }
+    [[nodiscard]] glm::uvec3 voxelAt(const glm::dvec3& in_voxels) const {
+        return glm::clamp(glm::floor(in_voxels), 0.0, cells - 1.0);
+    }
+    template <class Value>
+    [[nodiscard]] double valueAt(const std::vector<Value>& values, const glm::dvec3& in_voxels) const {
+        const glm::uvec3 voxel = voxelAt(in_voxels);
+        const std::array<double, 8> shares = sharesAt(in_voxels - glm::dvec3(voxel));
+        double value = 0.0;
+        for (unsigned i = 0; i < 8; ++i) {
+            value += shares[i] * static_cast<double>(values[corner(voxel, i)]);
+        }
+        return value;
+    }
+};
+
+std::vector<double> exactNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box) {
+    std::vector<double> nodes(grid.nodes());
+    DistanceWalk walk(query);
+    const double voxel = box.size / grid.cells;
+    for (unsigned i = 0; i < nodes.size(); ++i) {
+        // Back and forth, so that each node is next to the one before.
+        glm::uvec3 at = grid.node(i);
+        at.y = at.z % 2 == 0 ? at.y : grid.cells - at.y;
+        at.x = (at.z * grid.side() + at.y) % 2 == 0 ? at.x : grid.cells - at.x;
+        nodes[(at.z * grid.side() + at.y) * grid.side() + at.x] = walk.at(box.low + voxel * glm::dvec3(at));
+    }
+    return nodes;
+}
+
+bool ofOneSign(const std::vector<double>& nodes) {
+    return std::ranges::all_of(nodes, [](double d) { return d >= 0.0; }) ||
+           std::ranges::all_of(nodes, [](double d) { return d < 0.0; });
+}
+
+/// Moves nodes so that the trilinear value is closest to the distances at points of the voxels that the surface crosses.
+void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std::vector<double>& nodes) {
+    using Matrix = Eigen::MatrixXd;
+    using Vector = Eigen::VectorXd;
+    const double voxel = box.size / grid.cells;
+    Matrix normal = Matrix::Zero(grid.nodes(), grid.nodes());
+    Vector right = Vector::Zero(grid.nodes());
+    DistanceWalk walk(query);
+    const glm::dvec3 place = box.middle() / box.size;  // a seed of the place alone
+    Mersenne64 random(splitMix64(static_cast<std::uint64_t>(std::llround(place.x * 64.0))) +
+                      splitMix64(static_cast<std::uint64_t>(std::llround(place.y * 64.0)) + 1) +
+                      splitMix64(static_cast<std::uint64_t>(std::llround(place.z * 64.0)) + 2));
+    const auto unit = [&] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
+    for (unsigned i = 0; i < grid.cells * grid.cells * grid.cells; ++i) {
+        const glm::uvec3 at(i % grid.cells, i / grid.cells % grid.cells, i / grid.cells / grid.cells);
+        if (std::abs(walk.at(box.low + voxel * (glm::dvec3(at) + 0.5))) > 0.5 * std::sqrt(3.0) * voxel) {
+            continue;
+        }
+        for (unsigned k = 0; k < kFitParts * kFitParts * kFitParts; ++k) {
+            const glm::dvec3 part(k % kFitParts, k / kFitParts % kFitParts, k / kFitParts / kFitParts);
+            const glm::dvec3 t = (part + glm::dvec3(unit(), unit(), unit())) / double{kFitParts};
+            const double distance = walk.at(box.low + voxel * (glm::dvec3(at) + t)) / voxel;
+            const double weight = 1.0 / (0.01 + distance * distance);
+            const std::array<double, 8> shares = sharesAt(t);
+            for (unsigned a = 0; a < 8; ++a) {
+                const unsigned row = grid.corner(at, a);
+                right(row) += weight * shares[a] * distance;
+                for (unsigned b = 0; b < 8; ++b) {
+                    normal(row, grid.corner(at, b)) += weight * shares[a] * shares[b];
+                }
+            }
+        }
+    }
+    // Nodes that few points tell about stay about where they were.
+    for (unsigned i = 0; i < grid.nodes(); ++i) {
+        const double pull = 0.01 + 1e-3 * normal(i, i);
+        normal(i, i) += pull;
+        right(i) += pull * nodes[i] / voxel;
+    }
+    const Vector fitted = normal.ldlt().solve(right);
+    for (unsigned i = 0; i < grid.nodes(); ++i) {
+        nodes[i] = fitted(i) * voxel;
+    }
+}
+
+}  // namespace
+
+/// Fills a BrickVolume.
+class BrickBuilder {
+  public:
+    BrickBuilder(const MeshQuery& query, const BrickLayout& layout, double root_size)
+        : query_(query), grid_{layout.cells}, volume_(query, layout, root_size) {}
+
+    [[nodiscard]] BrickVolume uniform() && {
+        const std::vector<std::uint64_t> cells = cellsWithSurface();
+        std::vector<std::vector<double>> nodes(cells.size());
+        forEachIndex(0, cells.size(), 16, [&](std::size_t i) {
+            const Box box = boxOf(cells[i]);
+            nodes[i] = exactNodes(query_, grid_, box);
+            if (volume_.layout_.fitted) {
+                fitNodes(query_, grid_, box, nodes[i]);
+            }
+        });
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            volume_.roots_.push_back({cells[i], stored(nodes[i], volume_.root_size_)});
+        }
+        return std::move(volume_);
+    }
+
+    [[nodiscard]] std::uint64_t uniformBytes() {
+        for (const std::uint64_t cell : cellsWithSurface()) {
+            volume_.roots_.push_back({cell, {}});
+        }
+        return volume_.roots_.size() * grid_.nodes() + volume_.indexBytes(volume_.roots_.size());
+    }
+
+    [[nodiscard]] BrickVolume octree(std::uint64_t bytes) && {
+        AccuracyOptions options;
+        options.samples = static_cast<std::uint32_t>(
+            std::clamp(kJudges * static_cast<double>(bytes), 1e4, 1.0 * kJudgesMax));
+        options.seed = 0x6f637472;
+        judges_ = sampleSurface(query_, options);
+        std::erase_if(judges_, [](const SurfacePoint& point) { return point.buried; });
+        for (const std::uint64_t cell : cellsWithSurface()) {
+            volume_.roots_.push_back({cell, {}});
+        }
+        leaves_.resize(volume_.roots_.size());
+        std::vector<std::vector<std::uint32_t>> judged(leaves_.size());
+        for (std::uint32_t i = 0; i < judges_.size(); ++i) {
+            const std::uint64_t cell = volume_.cellAt(judges_[i].position);
+            const auto at = std::ranges::lower_bound(volume_.roots_, cell, {}, &BrickVolume::Root::cell);
+            if (at != volume_.roots_.end() && at->cell == cell) {
+                judged[static_cast<std::size_t>(at - volume_.roots_.begin())].push_back(i);
+            }
+        }
+        forEachIndex(0, leaves_.size(), 16, [&](std::size_t i) {
+            leaves_[i] = makeLeaf(boxOf(volume_.roots_[i].cell), 0, std::move(judged[i]));
+            leaves_[i].slot = static_cast<std::uint32_t>(i);
+        });
+        for (std::size_t i = 0; i < leaves_.size(); ++i) {
+            bricks_ += leaves_[i].stored ? 1 : 0;
+        }
+        while (splitWorst(bytes)) {
+        }
+        store();
+        return std::move(volume_);
+    }
+
+  private:
+    struct Leaf {
+        Box box;
+        unsigned level = 0;
+        std::uint32_t slot = 0;  // in roots_ at level 0, else in cubes_
+        bool surface = false;
+        bool stored = false;
+        bool split = false;
+        double error = 0.0;  // sum over its judges of the displacement of the surface
+        std::vector<double> nodes;
+        std::vector<std::uint32_t> judges;
+    };
+
+    [[nodiscard]] Box boxOf(std::uint64_t cell) const {
+        const glm::uvec3 n = volume_.roots_count_;
+        return {
+            volume_.origin_ + volume_.root_size_ * glm::dvec3(cell % n.x, cell / n.x % n.y, cell / n.x / n.y),
+            volume_.root_size_};
+    }
+
+    /// In order.
+    [[nodiscard]] std::vector<std::uint64_t> cellsWithSurface() const {
+        const glm::uvec3 n = volume_.roots_count_;
+        std::uint32_t span = 1;
+        while (span < std::max({n.x, n.y, n.z})) {
+            span *= 2;
+        }
+        // A few levels down on one core, then on all.
+        std::vector<glm::uvec3> blocks = {glm::uvec3(0)};
+        for (int level = 0; level < 4 && span > 1; ++level) {
+            span /= 2;
+            std::vector<glm::uvec3> finer;
+            for (const glm::uvec3& block : blocks) {
+                for (unsigned i = 0; i < 8; ++i) {
+                    const glm::uvec3 at = block + span * glm::uvec3(i & 1U, i >> 1U & 1U, i >> 2U);
+                    if (glm::all(glm::lessThan(at, n)) && near(at, span)) {
+                        finer.push_back(at);
+                    }
+                }
+            }
+            blocks = std::move(finer);
+        }
+        std::vector<std::vector<std::uint64_t>> found(blocks.size());
+        forEachIndex(0, blocks.size(), 1, [&](std::size_t i) { descend(blocks[i], span, found[i]); });
+        std::vector<std::uint64_t> cells;
+        for (const std::vector<std::uint64_t>& of : found) {
+            cells.insert(cells.end(), of.begin(), of.end());
+        }
+        std::ranges::sort(cells);
+        return cells;
+    }
+    [[nodiscard]] bool near(const glm::uvec3& at, std::uint32_t span) const {
+        const Box box{volume_.origin_ + volume_.root_size_ * glm::dvec3(at), volume_.root_size_ * span};
+        return query_.closest(glm::vec3(box.middle())).distance <= 1.0001 * box.halfDiagonal();
+    }
+    void descend(const glm::uvec3& at, std::uint32_t span, std::vector<std::uint64_t>& found) const {
+        const glm::uvec3 n = volume_.roots_count_;
+        if (!glm::all(glm::lessThan(at, n))) {
+            return;
+        }
+        if (span == 1) {
+            const std::uint64_t cell = (std::uint64_t{at.z} * n.y + at.y) * n.x + at.x;
+            if (holdsSurface(query_, boxOf(cell))) {
+                found.push_back(cell);
+            }
+            return;
+        }
+        if (near(at, span)) {
+            for (unsigned i = 0; i < 8; ++i) {
+                descend(at + span / 2 * glm::uvec3(i & 1U, i >> 1U & 1U, i >> 2U), span / 2, found);
+            }
+        }
+    }
+
+    /// Adds a brick, unless a sign does as well.
+    [[nodiscard]] BrickVolume::Cube stored(const std::vector<double>& nodes, double size) {
+        using Kind = BrickVolume::Kind;
+        const double range = volume_.layout_.band * size / grid_.cells;
+        std::vector<std::int8_t> codes(nodes.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const double code = std::clamp(nodes[i] / range * kCodeMax, -kCodeMax, kCodeMax);
+            codes[i] = static_cast<std::int8_t>(std::lround(code));
+        }
+        const auto outside = [](std::int8_t code) { return code >= 0; };
+        if (std::ranges::all_of(codes, outside)) {
+            return {Kind::kOutside, 0};
+        }
+        if (std::ranges::none_of(codes, [](std::int8_t code) { return code > 0; })) {
+            return {Kind::kInside, 0};
+        }
+        const auto brick = static_cast<std::uint32_t>(volume_.bricks());
+        volume_.codes_.insert(volume_.codes_.end(), codes.begin(), codes.end());
+        return {Kind::kBrick, brick};
+    }
+
+    [[nodiscard]] Leaf makeLeaf(const Box& box, unsigned level, std::vector<std::uint32_t> judges) const {
+        Leaf leaf;
+        leaf.box = box;
+        leaf.level = level;
+        leaf.judges = std::move(judges);
+        leaf.surface = holdsSurface(query_, box);
+        if (!leaf.surface) {
+            return leaf;
+        }
+        leaf.nodes = exactNodes(query_, grid_, box);
+        leaf.stored = !ofOneSign(leaf.nodes);
+        for (const std::uint32_t judge : leaf.judges) {
+            const glm::dvec3 in_voxels =
+                (glm::dvec3(judges_[judge].position) - box.low) / box.size * static_cast<double>(grid_.cells);
+            // A brick without a sign change displaces the surface to wherever it ends.
+            leaf.error += leaf.stored ? std::abs(grid_.valueAt(leaf.nodes, in_voxels)) : 0.25 * box.size;
+        }
+        return leaf;
+    }
+
+    [[nodiscard]] std::uint64_t bytesNow() const {
+        return bricks_ * grid_.nodes() + volume_.indexBytes(bricks_);
+    }
+
+    /// Splits the leaves with the largest errors. \return false if the bytes are used up.
+    bool splitWorst(std::uint64_t bytes) {
+        const std::uint64_t now = bytesNow();
+        // Four of eight cubes hold surface, at least.
+        const std::uint64_t cost = 3 * grid_.nodes() + 8 * 4;
+        if (now + 2 * cost > bytes) {
+            return false;
+        }
+        std::vector<std::uint32_t> worst;
+        for (std::uint32_t i = 0; i < leaves_.size(); ++i) {
+            if (leaves_[i].surface && !leaves_[i].split && leaves_[i].error > 0.0) {
+                worst.push_back(i);
+            }
+        }
+        const std::size_t count =
+            std::min<std::size_t>({worst.size(), (bytes - now) / (2 * cost), 16 + worst.size() / 8});
+        const auto larger = [&](std::uint32_t a, std::uint32_t b) {
+            return leaves_[a].error != leaves_[b].error ? leaves_[a].error > leaves_[b].error : a < b;
+        };
+        std::ranges::partial_sort(worst, worst.begin() + static_cast<std::ptrdiff_t>(count), larger);
+        worst.resize(count);
+        std::vector<std::array<Leaf, 8>> made(count);
+        forEachIndex(0, count, 4, [&](std::size_t i) {
+            const Leaf& leaf = leaves_[worst[i]];
+            std::array<std::vector<std::uint32_t>, 8> judges;
+            for (const std::uint32_t judge : leaf.judges) {
+                const glm::dvec3 p = judges_[judge].position;
+                const glm::dvec3 middle = leaf.box.middle();
+                judges[(p.x >= middle.x ? 1U : 0U) + (p.y >= middle.y ? 2U : 0U) +
+                       (p.z >= middle.z ? 4U : 0U)]
+                    .push_back(judge);
+            }
+            for (unsigned k = 0; k < 8; ++k) {
+                made[i][k] = makeLeaf(leaf.box.octant(k), leaf.level + 1, std::move(judges[k]));
+            }
+        });
+        for (std::size_t i = 0; i < count; ++i) {
+            Leaf& parent = leaves_[worst[i]];
+            parent.split = true;
+            bricks_ -= parent.stored ? 1 : 0;
+            cubeOf(parent) = {BrickVolume::Kind::kSplit, static_cast<std::uint32_t>(volume_.cubes_.size())};
+            parent.judges = {};
+            parent.nodes = {};
+            volume_.levels_ = std::max(volume_.levels_, parent.level + 1);
+            for (Leaf& leaf : made[i]) {
+                leaf.slot = static_cast<std::uint32_t>(volume_.cubes_.size());
+                bricks_ += leaf.stored ? 1 : 0;
+                volume_.cubes_.push_back({});
+                leaves_.push_back(std::move(leaf));
+            }
+        }
+        return count > 0;
+    }
+
+    BrickVolume::Cube& cubeOf(const Leaf& leaf) {
+        return leaf.level == 0 ? volume_.roots_[leaf.slot].cube : volume_.cubes_[leaf.slot];
+    }
+
+    void store() {
+        std::erase_if(leaves_, [](const Leaf& leaf) { return leaf.split || !leaf.surface; });
+        if (volume_.layout_.fitted) {
+            forEachIndex(0, leaves_.size(), 16, [&](std::size_t i) {
+                if (leaves_[i].stored) {
+                    fitNodes(query_, grid_, leaves_[i].box, leaves_[i].nodes);
+                }
+            });
+        }
+        for (const Leaf& leaf : leaves_) {
+            cubeOf(leaf) = stored(leaf.nodes, leaf.box.size);
+        }
+    }
+
+    const MeshQuery& query_;
+    BrickGrid grid_;
+    BrickVolume volume_;
+    std::vector<SurfacePoint> judges_;
+    std::vector<Leaf> leaves_;
+    std::uint64_t bricks_ = 0;
+};
+
+BrickVolume::BrickVolume(const MeshQuery& query, const BrickLayout& layout, double root_size)
+    : query_(&query), layout_(layout), root_size_(root_size) {
+    const glm::dvec3 low = query.mesh().bounds.min;
+    const glm::dvec3 size = glm::dvec3(query.mesh().bounds.max) - low;
+    roots_count_ = glm::max(glm::ceil(size / root_size * (1.0 - 1e-12)), 1.0);
+    origin_ = low + 0.5 * (size - root_size * glm::dvec3(roots_count_));
+}
+
+BrickVolume BrickVolume::withVoxels(const MeshQuery& query, const BrickLayout& layout, double voxel) {
+    return BrickBuilder(query, layout, voxel * layout.cells).uniform();
+}
+
+BrickVolume BrickVolume::build(const MeshQuery& query, const BrickLayout& layout, std::uint64_t bytes) {
+    const auto longest = static_cast<double>(query.mesh().bounds.longestSide());
+    if (layout.octree) {
+        // A root for each 80 bytes: an index of a twentieth.
+        const glm::dvec3 size = query.mesh().bounds.size();
+        const auto roots = [&](double root) {
+            const glm::dvec3 n = glm::ceil(size / root);
+            return std::max(n.x, 1.0) * std::max(n.y, 1.0) * std::max(n.z, 1.0);
+        };
+        double root = longest;
+        while (roots(root * 0.9) * 80.0 <= static_cast<double>(bytes)) {
+            root *= 0.9;
+        }
+        return BrickBuilder(query, layout, root).octree(bytes);
+    }
+    // Bytes go by the square of a voxel.
+    double large = longest / layout.cells;
+    double small = large;
+    while (BrickBuilder(query, layout, small * layout.cells).uniformBytes() <= bytes &&
+           small > 1e-6 * longest) {
+        large = small;
+        small *= 0.5;
+    }
+    for (int i = 0; i < 6; ++i) {
+        const double middle = std::sqrt(small * large);
+        (BrickBuilder(query, layout, middle * layout.cells).uniformBytes() <= bytes ? large : small) = middle;
+    }
+    BrickVolume best = withVoxels(query, layout, large);
+    // Bricks of one sign made room.
+    for (int i = 0; i < 3 && best.bytes() < bytes - bytes / 64; ++i) {
+        const double finer = best.voxel() * std::sqrt(static_cast<double>(best.bytes()) /
+                                                      (static_cast<double>(bytes) * 0.997));
+        BrickVolume next = withVoxels(query, layout, finer);
+        if (next.bytes() > bytes) {
+            break;
+        }
+        best = std::move(next);
+    }
+    return best;
+}
+
+std::size_t BrickVolume::nodesOfBrick() const {
+    return BrickGrid{layout_.cells}.nodes();
+}
+
+double BrickVolume::voxel() const {
+    return std::ldexp(root_size_ / layout_.cells, -static_cast<int>(levels_));
+}
+
+std::uint64_t BrickVolume::indexBytes(std::uint64_t bricks) const {
+    const std::uint64_t roots = std::uint64_t{roots_count_.x} * roots_count_.y * roots_count_.z;
+    // Two signs need values of their own.
+    const auto width = [](std::uint64_t values) { return values + 2 <= 65536 ? 2U : 4U; };
+    if (layout_.octree) {
+        return (roots + cubes_.size()) * width(bricks + cubes_.size() / 8);
+    }
+    std::uint64_t least = roots * width(roots_.size());
+    if (layout_.flat_index) {
+        return least;
+    }
+    // Blocks of k³ cubes, the first brick of each in the upper level; below, bricks count from there.
+    for (std::uint64_t k = 2; k <= 8; ++k) {
+        const glm::uvec3 upper = (roots_count_ + std::uint32_t(k - 1)) / std::uint32_t(k);
+        std::vector<std::uint64_t> blocks;
+        for (const Root& root : roots_) {
+            const std::uint64_t x = root.cell % roots_count_.x;
+            const std::uint64_t y = root.cell / roots_count_.x % roots_count_.y;
+            const std::uint64_t z = root.cell / roots_count_.x / roots_count_.y;
+            blocks.push_back((z / k * upper.y + y / k) * upper.x + x / k);
+        }
+        std::ranges::sort(blocks);
+        blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+        const std::uint64_t lower = k * k * k + 2 <= 256 ? 1 : 2;
+        least = std::min(least,
+                         std::uint64_t{upper.x} * upper.y * upper.z * 4 + blocks.size() * k * k * k * lower);
+    }
+    return least;
+}
+
+std::uint64_t BrickVolume::cellAt(const glm::dvec3& p) const {
+    const glm::uvec3 at =
+        glm::clamp(glm::floor((p - origin_) / root_size_), glm::dvec3(0.0), glm::dvec3(roots_count_) - 1.0);
+    return (std::uint64_t{at.z} * roots_count_.y + at.y) * roots_count_.x + at.x;
+}
+
+FieldValue BrickVolume::clamped(bool inside, double cube_size) const {
+    const double range = layout_.band * cube_size / layout_.cells;
+    return {.distance = static_cast<float>(inside ? -range : range)};
+}
+
+FieldValue BrickVolume::inBrick(std::uint32_t brick, const glm::dvec3& in_voxels, double voxel) const {
+    const BrickGrid grid{layout_.cells};
+    const glm::uvec3 at = grid.voxelAt(in_voxels);
+    const glm::dvec3 t = in_voxels - glm::dvec3(at);
+    const std::array<double, 8> shares = sharesAt(t);
+    double value = 0.0;
+    glm::dvec3 gradient(0.0);
+    for (unsigned i = 0; i < 8; ++i) {
+        const double code = codes_[std::size_t{brick} * grid.nodes() + grid.corner(at, i)];
+        value += shares[i] * code;
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::dvec3 without = t;
+            without[axis] = (i >> unsigned(axis) & 1U) != 0 ? 1.0 : 0.0;
+            gradient[axis] += ((i >> unsigned(axis) & 1U) != 0 ? 1.0 : -1.0) * sharesAt(without)[i] * code;
+        }
+    }
+    FieldValue result{.distance = static_cast<float>(value / kCodeMax * layout_.band * voxel)};
+    const double length = glm::length(gradient);
+    if (length > 0.0) {
+        result.normal = gradient / length;
+    }
+    return result;
+}
+
+FieldValue BrickVolume::at(const glm::vec3& p) const {
+    const Bounds& bounds = query_->mesh().bounds;
+    const glm::dvec3 exact = p;
+    const glm::dvec3 held = glm::clamp(exact, glm::dvec3(bounds.min), glm::dvec3(bounds.max));
+    const std::uint64_t cell = cellAt(held);
+    const glm::dvec3 root(cell % roots_count_.x, cell / roots_count_.x % roots_count_.y,
+                          cell / roots_count_.x / roots_count_.y);
+    Box box{origin_ + root_size_ * root, root_size_};
+    const auto found = std::ranges::lower_bound(roots_, cell, {}, &Root::cell);
+    Cube cube = found != roots_.end() && found->cell == cell ? found->cube : Cube{};
+    while (cube.kind == Kind::kSplit) {
+        const glm::dvec3 middle = box.middle();
+        const unsigned octant =
+            (held.x >= middle.x ? 1U : 0U) + (held.y >= middle.y ? 2U : 0U) + (held.z >= middle.z ? 4U : 0U);
+        cube = cubes_[cube.first + octant];
+        box = box.octant(octant);
+    }
+    FieldValue value;
+    if (cube.kind == Kind::kBrick) {
+        const double voxel = box.size / layout_.cells;
+        value = inBrick(cube.first, (held - box.low) / voxel, voxel);
+    } else {
+        value = clamped(cube.kind == Kind::kInside ||
+                            (cube.kind == Kind::kTruth && query_->inside(glm::vec3(box.middle()))),
+                        box.size);
+    }
+    const double beyond = glm::distance(exact, held);
+    if (beyond > 0.0) {
+        value.distance = std::max(value.distance, 0.0F) + static_cast<float>(beyond);
+    }
+    return value;
+}
+
+std::string BrickVolume::text() const {
+    const std::string n = std::to_string(layout_.cells);
+    return std::to_string(bricks()) + " bricks of " + n + "x" + n + "x" + n +
+           (layout_.octree ? " in an octree" : "") + (layout_.fitted ? ", fitted" : "");
+}
+
+Field fieldOf(const BrickVolume& volume) {
+    return [&volume](const glm::vec3& p) -> std::optional<FieldValue> { return volume.at(p); };
+}
+
+}  // namespace relief

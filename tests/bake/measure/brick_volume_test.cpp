@@ -1,0 +1,184 @@
+// The sparse rivals against closed forms, and their bytes against counts by hand.
+#include "bake/bench/brick_volume.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+MeshQuery queryOf(const TriangleMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+    for (const glm::uvec3& triangle : other.triangles) {
+        mesh.triangles.push_back(triangle + first);
+    }
+    return finished(std::move(mesh.positions), std::move(mesh.triangles));
+}
+
+std::vector<BrickLayout> layouts() {
+    return {{.cells = 3},
+            {.cells = 8, .flat_index = true, .band = 4.0},
+            {.cells = 2, .octree = true},
+            {.cells = 3, .fitted = true},
+            {.cells = 2, .octree = true, .fitted = true}};
+}
+
+TEST(BrickVolume, PlaneIsExactButForTheCodes) {
+    // A tilted cube; points round the middle of one face see that plane alone.
+    const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
+    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes));
+    for (const BrickLayout& layout : layouts()) {
+        const BrickVolume volume = BrickVolume::build(query, layout, 200'000);
+        // The largest voxel that can lie there: a fifth of the face's distance from its edges.
+        std::mt19937 random(4);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        for (int i = 0; i < 2000; ++i) {
+            const glm::dvec3 local(0.5 * unit(random), 1.0 + 0.002 * unit(random), 0.5 * unit(random));
+            const FieldValue value = volume.at(glm::vec3(axes * local));
+            const double quantum = layout.band * 0.1 / 127.0;
+            ASSERT_NEAR(value.distance, local.y - 1.0, quantum) << volume.text();
+            ASSERT_GT(glm::dot(glm::dvec3(value.normal), axes[1]), 0.995) << volume.text();
+        }
+    }
+}
+
+TEST(BrickVolume, BallsSignsAreRightBeyondTheBendOfAVoxel) {
+    TriangleMesh mesh = makeIcosphere({-1.5, 0, 0}, 1.0, 5);
+    const TriangleMesh other = makeIcosphere({1.25, 0.2, 0}, 0.75, 5);
+    for (const bool two : {false, true}) {
+        if (two) {
+            mesh = joined(std::move(mesh), other);
+        }
+        const MeshQuery query = queryOf(mesh);
+        AccuracyOptions options;
+        options.samples = 4000;
+        const TruthSamples samples = sampleTruth(query, options);
+        for (const BrickLayout& layout : layouts()) {
+            const BrickVolume volume = BrickVolume::build(query, layout, 40'000);
+            // Between nodes a distance bends by an eighth of the curvature a voxel squared, along each of two axes; leaves of
+            // an octree may be four times the smallest.
+            const double voxel = volume.voxel() * (layout.octree ? 4.0 : 1.0);
+            const double bend = voxel * voxel / 0.75 / 4.0 + layout.band * voxel / 127.0;
+            for (const std::vector<TruthPoint>* points : {&samples.near, &samples.uniform}) {
+                for (const TruthPoint& point : *points) {
+                    if (points == &samples.uniform || std::abs(static_cast<double>(point.distance)) > bend) {
+                        const double distance = query.signedDistance(point.position);
+                        if (std::abs(distance) > bend) {
+                            ASSERT_EQ(volume.at(point.position).distance < 0.0F, distance < 0.0)
+                                << volume.text() << ", " << distance;
+                        }
+                    }
+                }
+            }
+            EXPECT_LT(measureField(samples, fieldOf(volume)).normal_mean, 2.0) << volume.text();
+        }
+    }
+}
+
+TEST(BrickVolume, BytesAreThoseOfNodesAndIndex) {
+    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {0.5, 0.25, 0.25}));
+    BrickLayout layout{.cells = 4, .flat_index = true};
+    // Voxels of a 32nd: cubes of an eighth, 8x4x4 in the box, whose surface lies on the outermost faces.
+    const BrickVolume flat = BrickVolume::withVoxels(query, layout, 1.0 / 32.0);
+    EXPECT_EQ(flat.nodeBytes(), flat.bricks() * 125);
+    EXPECT_EQ(flat.indexBytes(), 8U * 4U * 4U * 2U);
+    layout.flat_index = false;
+    const BrickVolume levels = BrickVolume::withVoxels(query, layout, 1.0 / 32.0);
+    // Two blocks of 4x4x4, whose lower level counts from their first brick in a byte a cube.
+    EXPECT_EQ(levels.indexBytes(), 2U * (4U + 64U));
+}
+
+TEST(BrickVolume, IndexOfTwoLevelsPaysWhereMostIsEmpty) {
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 5));
+    const BrickVolume flat = BrickVolume::withVoxels(query, {.cells = 3, .flat_index = true}, 0.01);
+    const BrickVolume levels = BrickVolume::withVoxels(query, {.cells = 3}, 0.01);
+    EXPECT_EQ(flat.bricks(), levels.bricks());
+    EXPECT_LT(levels.indexBytes(), flat.indexBytes() / 2);
+    // A sphere crosses about 3/2 of its area in squares of the cubes' size, for the direction's mean of |x| + |y| + |z|.
+    const double expected = 4.0 * 3.14159265 * 1.5 / (0.03 * 0.03);
+    EXPECT_NEAR(static_cast<double>(flat.bricks()), 1.2 * expected, 0.25 * expected);
+}
+
+TEST(BrickVolume, BudgetIsKeptAndUsed) {
+    const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.3, 96, 48));
+    for (const BrickLayout& layout : layouts()) {
+        for (const std::uint64_t bytes : {30'000U, 120'000U}) {
+            const BrickVolume volume = BrickVolume::build(query, layout, bytes);
+            EXPECT_LE(volume.bytes(), bytes) << volume.text();
+            // A few dozen large bricks come in leaps.
+            EXPECT_GE(volume.bytes(), bytes - (volume.bricks() < 100 ? bytes / 2 : bytes / 10))
+                << volume.text();
+        }
+    }
+}
+
+TEST(BrickVolume, FitHalvesTheMistakesOfABall) {
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 6));
+    const TruthSamples samples = sampleTruth(query, AccuracyOptions{});
+    for (const bool octree : {false, true}) {
+        BrickLayout layout{.cells = octree ? 2U : 3U, .octree = octree};
+        const BrickVolume exact = BrickVolume::build(query, layout, 60'000);
+        layout.fitted = true;
+        const BrickVolume fitted = BrickVolume::build(query, layout, 60'000);
+        const double wrong = measureField(samples, fieldOf(exact)).near.total();
+        EXPECT_GT(wrong, 0.5);
+        EXPECT_LT(measureField(samples, fieldOf(fitted)).near.total(), 0.6 * wrong);
+    }
+}
+
+TEST(BrickVolume, PlateThinnerThanAVoxelVanishes) {
+    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1e-6}, rotation({1, 2, 3}, 33.0)));
+    const BrickVolume volume = BrickVolume::withVoxels(query, {.cells = 3}, 0.1);
+    EXPECT_EQ(volume.bricks(), 0U);
+    EXPECT_GT(volume.at({0, 0, 0}).distance, 0.0F);
+}
+
+TEST(BrickVolume, PointsBeyondTheBoxAreOutsideByTheirWay) {
+    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}));
+    const BrickVolume volume = BrickVolume::withVoxels(query, {.cells = 3}, 0.05);
+    EXPECT_NEAR(volume.at({1.5F, 0.0F, 0.0F}).distance, 0.5, 1e-3);
+    EXPECT_NEAR(volume.at({0.0F, -3.0F, 0.0F}).distance, 2.0, 1e-3);
+    EXPECT_LT(volume.at({0.0F, 0.0F, 0.0F}).distance, 0.0F);
+}
+
+TEST(BrickVolume, IsTheSameForAnyNumberOfThreads) {
+    const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.3, 48, 24));
+    AccuracyOptions options;
+    options.samples = 5000;
+    const TruthSamples samples = sampleTruth(query, options);
+    for (const BrickLayout& layout : layouts()) {
+        std::vector<float> first;
+        for (const int threads : {1, 3}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(threads));
+            tbb::task_arena arena(threads);
+            arena.execute([&] {
+                const BrickVolume volume = BrickVolume::build(query, layout, 50'000);
+                std::vector<float> distances;
+                for (const TruthPoint& point : samples.near) {
+                    distances.push_back(volume.at(point.position).distance);
+                }
+                if (first.empty()) {
+                    first = distances;
+                }
+                EXPECT_EQ(first, distances) << volume.text();
+            });
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
