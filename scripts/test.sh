@@ -7,7 +7,7 @@
 #              repeat another in OpenGL ES, or by compute shaders
 set -euo pipefail
 cd "$(dirname "$0")/.."
-jobs=$(($(nproc) + 2)) # some tests wait more than they work
+jobs=$(($(nproc) + 1)) # some tests wait more than they work
 
 quick=0
 case ${1-} in

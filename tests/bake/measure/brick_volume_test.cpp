@@ -67,7 +67,7 @@ TEST(BrickVolume, BallsSignsAreRightBeyondTheBendOfAVoxel) {
         options.samples = 4000;
         const TruthSamples samples = sampleTruth(query, options);
         for (const BrickLayout& layout : layouts()) {
-            const BrickVolume volume = BrickVolume::build(query, layout, 40'000);
+            const BrickVolume volume = BrickVolume::build(query, layout, 100'000);
             // Between nodes a distance bends by an eighth of the curvature a voxel squared, along each of two axes; leaves of
             // an octree may be four times the smallest.
             const double voxel = volume.voxel() * (layout.octree ? 4.0 : 1.0);
@@ -115,7 +115,7 @@ TEST(BrickVolume, IndexOfTwoLevelsPaysWhereMostIsEmpty) {
 TEST(BrickVolume, BudgetIsKeptAndUsed) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.3, 96, 48));
     for (const BrickLayout& layout : layouts()) {
-        for (const std::uint64_t bytes : {30'000U, 120'000U}) {
+        for (const std::uint64_t bytes : {30'000U, 250'000U}) {
             const BrickVolume volume = BrickVolume::build(query, layout, bytes);
             EXPECT_LE(volume.bytes(), bytes) << volume.text();
             // A few dozen large bricks come in leaps.
