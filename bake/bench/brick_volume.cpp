@@ -37,6 +37,11 @@ struct Box {
     [[nodiscard]] Box octant(unsigned i) const {
         return {low + 0.5 * size * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U), 0.5 * size};
     }
+    /// The octant of a point in the box.
+    [[nodiscard]] unsigned octantOf(const glm::dvec3& p) const {
+        const glm::bvec3 upper = glm::greaterThanEqual(p, middle());
+        return (upper.x ? 1U : 0U) + (upper.y ? 2U : 0U) + (upper.z ? 4U : 0U);
+    }
 };
 
 /// Signed distances at points, each near the one before.
@@ -392,11 +397,7 @@ class BrickBuilder {
             const Leaf& leaf = leaves_[worst[i]];
             std::array<std::vector<std::uint32_t>, 8> judges;
             for (const std::uint32_t judge : leaf.judges) {
-                const glm::dvec3 p = judges_[judge].position;
-                const glm::dvec3 middle = leaf.box.middle();
-                judges[(p.x >= middle.x ? 1U : 0U) + (p.y >= middle.y ? 2U : 0U) +
-                       (p.z >= middle.z ? 4U : 0U)]
-                    .push_back(judge);
+                judges[leaf.box.octantOf(judges_[judge].position)].push_back(judge);
             }
             for (unsigned k = 0; k < 8; ++k) {
                 made[i][k] = makeLeaf(leaf.box.octant(k), leaf.level + 1, std::move(judges[k]));
@@ -583,9 +584,7 @@ FieldValue BrickVolume::at(const glm::vec3& p) const {
     const auto found = std::ranges::lower_bound(roots_, cell, {}, &Root::cell);
     Cube cube = found != roots_.end() && found->cell == cell ? found->cube : Cube{};
     while (cube.kind == Kind::kSplit) {
-        const glm::dvec3 middle = box.middle();
-        const unsigned octant =
-            (held.x >= middle.x ? 1U : 0U) + (held.y >= middle.y ? 2U : 0U) + (held.z >= middle.z ? 4U : 0U);
+        const unsigned octant = box.octantOf(held);
         cube = cubes_[cube.first + octant];
         box = box.octant(octant);
     }
