@@ -150,7 +150,9 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                                   [](const PackedPayload& one) { return one.packing == Packing::kRows; });
     const bool gaps = std::any_of(collider.maps.begin(), collider.maps.end(),
                                   [](const DepthMap& map) { return map.compare == Compare::kGap; });
-    header.minor = !collider.provenance.options.empty() ? 3 : gaps ? 2 : rows ? 1 : 0;
+    const bool patches = std::any_of(collider.maps.begin(), collider.maps.end(),
+                                     [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
+    header.minor = patches ? 4 : !collider.provenance.options.empty() ? 3 : gaps ? 2 : rows ? 1 : 0;
     header.metadata_size = writeMetadata(collider, payloads, packed).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {

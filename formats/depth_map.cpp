@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "formats/patch_tree.h"
+
 namespace relief {
 namespace {
 
@@ -137,7 +139,23 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
     return Vote{distance, surface.normal};
 }
 
+std::optional<Vote> voteLocal(const DepthMap& map, const glm::vec3& p) {
+    const std::optional<PatchVote> said = votePatches(map.texels, p);
+    if (!said) {
+        return map.encloses ? std::optional(kFarOutsideVote) : std::nullopt;
+    }
+    const float root = map.object_per_map.x;  // T turns, and scales all axes alike
+    const auto row = [&](int i) { return glm::vec3(map.object_to_map.row[i]) * root; };
+    return Vote{said->distance * root,
+                row(0) * said->normal.x + (row(1) * said->normal.y + row(2) * said->normal.z)};
+}
+
 }  // namespace
+
+const char* projectionName(Projection projection) {
+    constexpr std::array kNames = {"orthographic", "cube", "local"};
+    return kNames.at(static_cast<std::size_t>(projection));
+}
 
 const char* compareName(Compare compare) {
     constexpr std::array kNames = {"less", "greater", "both", "gap"};
@@ -173,7 +191,15 @@ std::span<std::byte> DepthMap::texelAt(std::uint32_t face, std::uint32_t x, std:
 
 std::optional<Vote> vote(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 in_map = map.object_to_map.apply(p);
-    return map.projection() == Projection::kCube ? voteCube(map, in_map) : voteOrthographic(map, in_map);
+    switch (map.projection()) {
+        case Projection::kCube:
+            return voteCube(map, in_map);
+        case Projection::kLocal:
+            return voteLocal(map, in_map);
+        case Projection::kOrthographic:
+            break;
+    }
+    return voteOrthographic(map, in_map);
 }
 
 CubeCoordinates cubeCoordinates(const glm::vec3& d) {

@@ -27,7 +27,10 @@
 
 namespace relief {
 
-enum class Projection : std::uint8_t { kOrthographic = 0, kCube = 1 };
+/// kLocal: each patch has a direction of its own (patch_tree.h).
+enum class Projection : std::uint8_t { kOrthographic = 0, kCube = 1, kLocal = 2 };
+
+[[nodiscard]] const char* projectionName(Projection projection);  ///< "orthographic", "cube" or "local"
 
 /// Which surface along the ray a map keeps: the nearest, the farthest, or both (front-back); or the two at the ends of a
 /// gap between solids, which no outer view may see. Of a gap the front is the surface that closes it, and faces the
@@ -89,9 +92,8 @@ inline constexpr float kFarOutside = 1e30F;
 /// compile with, takes its shortest digits for infinite.
 inline constexpr float kFarInside = -16777215.0F * 2.028240960365167e31F;
 
-/// Limits that every map keeps; `container.h` refuses files beyond them.
-inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side
-inline constexpr std::uint32_t kMapSizeMin = 3;      ///< orthographic: one texel inside the border
+/// A limit that every map keeps, beside kMapSizeMax; `container.h` refuses files beyond them.
+inline constexpr std::uint32_t kMapSizeMin = 3;  ///< orthographic: one texel inside the border
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;
@@ -113,7 +115,9 @@ struct DepthMap {
     std::vector<std::byte> texels;
 
     [[nodiscard]] Projection projection() const {
-        return format == MapFormat::kCube8 ? Projection::kCube : Projection::kOrthographic;
+        return format == MapFormat::kCube8     ? Projection::kCube
+               : format == MapFormat::kPatches ? Projection::kLocal
+                                               : Projection::kOrthographic;
     }
     [[nodiscard]] std::uint32_t faceCount() const { return projection() == Projection::kCube ? 6 : 1; }
     [[nodiscard]] std::uint64_t texelBytes() const {

@@ -9,6 +9,9 @@ namespace {
 
 /// The share of texels that hold a surface, 0…1.
 double coverageOf(const DepthMap& map) {
+    if (map.projection() == Projection::kLocal) {
+        return 1.0;  // patches are made where there is surface
+    }
     std::size_t texels = 0;
     std::size_t covered = 0;
     for (std::uint32_t face = 0; face < map.faceCount(); ++face) {

@@ -72,12 +72,12 @@ Texel decodeFrontBack(std::span<const std::byte> bytes, bool half) {
 }  // namespace
 
 const char* mapFormatName(MapFormat format) {
-    constexpr std::array kNames = {"float", "fixed8", "front-back", "cube", "front-back"};
+    constexpr std::array kNames = {"float", "fixed8", "front-back", "cube", "front-back", "patches"};
     return kNames.at(static_cast<std::size_t>(format));
 }
 
 const char* depthEncodingName(MapFormat format) {
-    constexpr std::array kNames = {"float32", "unorm16", "half", "unorm16", "unorm16"};
+    constexpr std::array kNames = {"float32", "unorm16", "half", "unorm16", "unorm16", "unorm8"};
     return kNames.at(static_cast<std::size_t>(format));
 }
 
@@ -130,6 +130,8 @@ void encodeTexel(MapFormat format, const std::optional<IndexedSurface>& front,
             encodeEnd(front, 0, format == MapFormat::kFrontBackHalf, bytes);
             encodeEnd(back, 1, format == MapFormat::kFrontBackHalf, bytes);
             return;
+        case MapFormat::kPatches:
+            return;
     }
 }
 
@@ -149,6 +151,8 @@ Texel decodeTexel(MapFormat format, std::span<const std::byte> bytes) {
         case MapFormat::kFrontBackHalf:
         case MapFormat::kFrontBackFixed:
             return decodeFrontBack(bytes, format == MapFormat::kFrontBackHalf);
+        case MapFormat::kPatches:
+            break;
     }
     return texel;
 }

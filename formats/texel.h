@@ -7,6 +7,7 @@
 //                              B = half-float depth of the front   A = of the back
 //     front-back fixed    8    the same with 16-bit fixed-point depths, as fixed8's
 //     cube8               4    as fixed8, in six faces
+//     patches             8    a record of a tree, or heights: patch_tree.h; the functions below are for the others
 //
 // Over a box of length 2 a half's 11 significant bits alone move a surface by 2·10^-4 on average; fixed point
 // is 32 times finer in the far half of the volume. Half floats are the paper's choice.
@@ -31,14 +32,17 @@ enum class MapFormat : std::uint8_t {
     kFixed8 = 1,
     kFrontBackHalf = 2,
     kCube8 = 3,
-    kFrontBackFixed = 4
+    kFrontBackFixed = 4,
+    kPatches = 5
 };
-inline constexpr int kMapFormatCount = 5;
+inline constexpr int kMapFormatCount = 6;
 
 /// Whether a texel holds two surfaces, the nearest and the farthest.
 [[nodiscard]] constexpr bool isFrontBack(MapFormat format) {
     return format == MapFormat::kFrontBackHalf || format == MapFormat::kFrontBackFixed;
 }
+
+inline constexpr std::uint32_t kMapSizeMax = 16384;  ///< texels along one side of a map
 
 /// Bytes of one texel, see the table above.
 [[nodiscard]] constexpr std::size_t texelSize(MapFormat format) {
@@ -47,6 +51,7 @@ inline constexpr int kMapFormatCount = 5;
             return 16;
         case MapFormat::kFrontBackHalf:
         case MapFormat::kFrontBackFixed:
+        case MapFormat::kPatches:
             return 8;
         case MapFormat::kFixed8:
         case MapFormat::kCube8:
@@ -55,11 +60,11 @@ inline constexpr int kMapFormatCount = 5;
     return 0;
 }
 
-/// "float", "fixed8", "front-back" (of either depth) or "cube": the words of `relief bake --map` and of the
+/// "float", "fixed8", "front-back" (of either depth), "cube" or "patches": the words of `relief bake --map` and of the
 /// reports.
 [[nodiscard]] const char* mapFormatName(MapFormat format);
 
-/// How depths are stored: "float32", "unorm16" or "half".
+/// How depths are stored: "float32", "unorm16", "half", or "unorm8" of a range of its own for each patch.
 [[nodiscard]] const char* depthEncodingName(MapFormat format);
 
 /// One surface as a texel holds it.

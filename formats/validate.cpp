@@ -10,6 +10,7 @@
 
 #include "formats/base/finite.h"
 #include "formats/base/text.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -75,7 +76,7 @@ Result<void> validateSize(const DepthMap& map) {
                                            "x" + std::to_string(kMapSizeMax));
     }
     const bool cube = map.projection() == Projection::kCube;
-    const std::uint32_t smallest = cube ? 1 : kMapSizeMin;
+    const std::uint32_t smallest = map.projection() == Projection::kOrthographic ? kMapSizeMin : 1;
     if (map.width < smallest || map.height < smallest) {
         return invalidInput("its size " + size + " is below " + std::to_string(smallest) + "x" +
                             std::to_string(smallest));
@@ -198,6 +199,14 @@ Result<void> validateFrame(const DepthMap& map) {
         (map.decode != Decode::kPlane || map.encloses || map.empty_is_outside)) {
         return invalidInput("a map of gaps has planes, and encloses nothing");
     }
+    if (map.format == MapFormat::kPatches && map.decode != Decode::kPlane) {
+        return invalidInput("a map of patches decodes planes");
+    }
+    if (const glm::vec3& s = map.object_per_map;
+        map.format == MapFormat::kPatches && (s.x != s.y || s.x != s.z)) {
+        return invalidInput("object_per_map " + words(s) +
+                            " has several lengths; the cells of patches are cubes");
+    }
     return validateSize(map).and_then([&] { return validateTransform(map); });
 }
 
@@ -205,6 +214,9 @@ Result<void> validateTexels(const DepthMap& map) {
     if (map.texels.size() != map.texelBytes()) {
         return invalidInput("it has " + std::to_string(map.texels.size()) +
                             " bytes of texels where its size needs " + std::to_string(map.texelBytes()));
+    }
+    if (map.format == MapFormat::kPatches) {
+        return validatePatches(map.texels);
     }
     if (map.format != MapFormat::kFloat32 && map.format != MapFormat::kFrontBackHalf) {
         return {};  // every code has a meaning

@@ -14,6 +14,7 @@
 #include "bake/director/director.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
+#include "bake/patches/patch_planner.h"
 #include "bake/plan/view.h"
 #include "bake/repair/winding.h"
 #include "bake/report/bake_report.h"
@@ -25,6 +26,7 @@
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/fields/json.h"
+#include "formats/validate.h"
 
 namespace relief {
 namespace {
@@ -278,6 +280,15 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
             entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
         } else if (method == "volume") {
             entry = measureVolume(query, samples, budget);
+        } else if (method == "patches") {
+            const Stopwatch watch;
+            Collider collider;
+            collider.bounds = query.mesh().bounds;
+            collider.maps.push_back(bakePatches(query, budget));
+            const double seconds = watch.seconds();
+            RELIEF_TRY(validate(collider));
+            entry = measureMaps(query, samples, method, collider);
+            entry.build_seconds = seconds;
         } else if (method != "paper" && method != "ours") {
             entry = measureBricks(query, samples, method, budget);
         } else {
@@ -332,9 +343,9 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Of the points; default 1");
     app.add_option("--methods", arguments.methods,
-                   "volume, unreal, bricks, fitted, paper or ours; default: all")
+                   "volume, unreal, bricks, fitted, paper, ours or patches; default: all but patches")
         ->delimiter(',')
-        ->check(CLI::IsMember(Arguments{}.methods));
+        ->check(CLI::IsMember({"volume", "unreal", "bricks", "fitted", "paper", "ours", "patches"}));
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");

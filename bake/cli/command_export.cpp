@@ -112,6 +112,13 @@ std::vector<std::string> mapFileNames(const Collider& collider) {
 
 Result<void> exportMaps(const Collider& collider, const std::filesystem::path& folder) {
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
+        if (collider.maps[i].projection() == Projection::kLocal) {
+            return fail(
+                ErrorCode::kUnsupported,
+                "map " + std::to_string(i) + " is of patches, which are no image; export it by --gpu");
+        }
+    }
+    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
         for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
             const std::filesystem::path path = folder / mapImageName(map, i, face);

@@ -61,7 +61,8 @@ template <class Visitor, FieldsOf<BakeRequest> Request>
 void fields(Visitor& visit, Request& request) {
     visit("map", request.map,
           {.help = "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
-                   "FORMAT   float, fixed8, front-back or cube\n"
+                   "FORMAT   float, fixed8, front-back, cube or patches\n"
+                   "bytes    of patches, such as 1MB; they have no other key\n"
                    "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
                    "up       direction that points upwards in the image: as dir\n"
                    "size     texels, N or WxH (cube: N)\n"

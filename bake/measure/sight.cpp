@@ -26,6 +26,9 @@ glm::dvec3 Sight::inMap(const glm::dvec3& p) const {
 }
 
 bool Sight::isInVolume(const glm::dvec3& in_map) const {
+    if (map_.projection() == Projection::kLocal) {
+        return true;
+    }
     if (map_.projection() == Projection::kCube) {
         const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
         return reach <= 1.0 && reach > 0.0;
@@ -75,6 +78,9 @@ bool Sight::sees(const SurfacePoint& point) const {
     if (!isInVolume(in_map)) {
         return false;
     }
+    if (map_.projection() == Projection::kLocal) {
+        return true;  // some patch looks at it from above
+    }
     const Lines lines = linesTo(p, in_map);
     for (std::size_t i = 0; i < lines.count; ++i) {
         const auto& [start, parallel] = lines.line[i];
@@ -95,6 +101,9 @@ bool Sight::sees(const SurfacePoint& point) const {
 
 std::optional<glm::dvec3> Sight::reaches(const glm::dvec3& p) const {
     const glm::dvec3 in_map = inMap(p);
+    if (map_.projection() == Projection::kLocal) {
+        return p;
+    }
     if (!isInVolume(in_map)) {
         return map_.encloses ? std::optional(p) : std::nullopt;
     }

@@ -11,6 +11,7 @@
 
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -209,6 +210,9 @@ WorstPlace describe(const std::vector<std::uint32_t>& points, const std::vector<
 }  // namespace
 
 double texelAt(const DepthMap& map, const glm::vec3& p) {
+    if (map.projection() == Projection::kLocal) {
+        return patchSpacing(map.texels) * double{map.object_per_map.x};
+    }
     if (map.projection() == Projection::kOrthographic) {
         return std::max(double{map.object_per_map.x} / map.width, double{map.object_per_map.y} / map.height);
     }

@@ -40,24 +40,6 @@ int sideOf(const RTCFilterFunctionNArguments* args, unsigned i) {
     return along < 0.0 ? -1 : 1;
 }
 
-/// Tracks which bodies of a union a ray is in.
-struct BodyCounter {
-    int winding = 0;                 ///< about body 0
-    std::vector<std::uint32_t> odd;  ///< other bodies, crossed an odd number of times so far
-
-    [[nodiscard]] bool inside() const { return winding != 0 || !odd.empty(); }
-
-    void cross(std::uint32_t body, int side) {
-        if (body == 0) {
-            winding += side;
-        } else if (const auto found = std::ranges::find(odd, body); found != odd.end()) {
-            odd.erase(found);
-        } else {
-            odd.push_back(body);
-        }
-    }
-};
-
 /// The point of a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
 glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                              const glm::dvec3& c) {
@@ -203,6 +185,16 @@ class WaysOut {
 
 }  // namespace
 
+void BodyCounter::cross(std::uint32_t body, int side) {
+    if (body == 0) {
+        winding += side;
+    } else if (const auto found = std::ranges::find(odd, body); found != odd.end()) {
+        odd.erase(found);
+    } else {
+        odd.push_back(body);
+    }
+}
+
 LineSpan cornerSpan(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
                     const glm::dvec3& direction) {
     LineSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -247,11 +239,36 @@ bool MeshQuery::rayIsInside(const glm::vec3& p, const glm::dvec3& direction) con
         });
         return shells_ ? winding != 0 : count % 2 == 1;
     }
+    return countAlong(p, direction).inside();
+}
+
+BodyCounter MeshQuery::countAlong(const glm::vec3& p, const glm::dvec3& direction) const {
     BodyCounter counter;
     trace(*tree_, p, direction, [&](const RTCFilterFunctionNArguments* args, unsigned i) {
-        counter.cross(bodies_[RTCHitN_primID(args->hit, args->N, i)], sideOf(args, i));
+        counter.cross(bodyOf(RTCHitN_primID(args->hit, args->N, i)), sideOf(args, i));
     });
-    return counter.inside();
+    return counter;
+}
+
+BodyCounter MeshQuery::bodiesAt(const glm::vec3& p) const {
+    BodyCounter counter;
+    if (!shells_ && bodies_.empty()) {
+        if (inside(p)) {
+            counter.odd.push_back(1);
+        }
+        return counter;
+    }
+    const bool is_inside = inside(p);
+    const WaysOut ways(mesh().bounds, p);
+    // A ray through an edge may count it twice.
+    for (std::size_t i = 0; i < kParityDirections.size(); ++i) {
+        counter = countAlong(p, ways[i]);
+        counter.winding = -counter.winding;  // from outside to p
+        if (counter.inside() == is_inside) {
+            break;
+        }
+    }
+    return counter;
 }
 
 unsigned MeshQuery::crossings(const glm::vec3& p, const glm::dvec3& direction) const {

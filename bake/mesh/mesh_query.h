@@ -64,6 +64,16 @@ template <class IsKnown>
     return unknown;
 }
 
+/// The bodies of a mesh that a path is in.
+struct BodyCounter {
+    int winding = 0;                 ///< about body 0
+    std::vector<std::uint32_t> odd;  ///< other bodies, crossed an odd number of times so far
+
+    [[nodiscard]] bool inside() const { return winding != 0 || !odd.empty(); }
+    /// \param side  1 if the path leaves by the surface that it crosses, −1 if it enters.
+    void cross(std::uint32_t body, int side);
+};
+
 /// All queries are thread-safe, and their results independent of the threads and of each other. Directions may have any
 /// length but 0.
 class MeshQuery {
@@ -78,6 +88,14 @@ class MeshQuery {
     /// holes of an open mesh. For PreparedMesh::woundShells the winding number decides instead, so that the overlap of two
     /// solids is inside. In a union (PreparedMesh::unionOf) each body decides for itself, by two of three rays.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
+
+    /// The bodies that `p` is in, for a path that begins there and counts each triangle on its way by bodyOf(). On open meshes
+    /// the path may end in another state than inside() has it.
+    [[nodiscard]] BodyCounter bodiesAt(const glm::vec3& p) const;
+    /// The body of a triangle: 0 where the winding number decides, else a number of one that decides by parity.
+    [[nodiscard]] std::uint32_t bodyOf(std::uint32_t triangle) const {
+        return shells_ ? 0 : bodies_.empty() ? 1 : bodies_[triangle];
+    }
 
     /// Number of triangles that a ray from `p` meets.
     [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
@@ -130,6 +148,8 @@ class MeshQuery {
         : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()), bodies_(mesh_.bodies()) {}
 
     [[nodiscard]] bool rayIsInside(const glm::vec3& p, const glm::dvec3& direction) const;
+    /// The bodies at the begin of a ray.
+    [[nodiscard]] BodyCounter countAlong(const glm::vec3& p, const glm::dvec3& direction) const;
     /// \param end  in units of the direction.
     [[nodiscard]] bool isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const;
 

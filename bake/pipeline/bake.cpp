@@ -16,6 +16,7 @@
 
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/ray_cost.h"
+#include "bake/patches/patch_planner.h"
 #include "bake/plan/view.h"
 #include "bake/texels/encode.h"
 #include "bake/texels/fitted_map.h"
@@ -98,7 +99,8 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
     bool has_planes = false;
     for (const Job& job : jobs) {
         recorded.push_back({"map", toString(job.spec)});
-        has_planes = has_planes || job.spec.decode == Decode::kPlane;
+        has_planes =
+            has_planes || (job.spec.decode == Decode::kPlane && job.spec.format != MapFormat::kPatches);
     }
     if (has_planes) {
         recorded.push_back({"quality", std::string(wordOf(options.quality))});
@@ -267,7 +269,8 @@ class Bake {
         jobs_ = RELIEF_TRY(planJobs(mesh_, options_));
         for (const Job& job : jobs_) {
             texels_ += job.texels();
-            has_planes_ = has_planes_ || job.spec.decode == Decode::kPlane;
+            const Kind kind = kindOf(job);
+            has_planes_ = has_planes_ || kind == Kind::kPlanes || kind == Kind::kGaps;
         }
         RELIEF_TRY(makeMaps());
         RELIEF_TRY(checkCovered());
@@ -307,6 +310,10 @@ class Bake {
         std::optional<TriangleNormals> unit_normals;
         for (auto job = jobs_.begin(); job != jobs_.end();) {
             const Kind kind = kindOf(*job);
+            if (kind == Kind::kPatches) {
+                RELIEF_TRY(bakeTree(*job++));
+                continue;
+            }
             // A map of gaps looks at all before it.
             const std::ptrdiff_t most = kind == Kind::kGaps ? 1 : std::min(atOnce(), jobs_.end() - job);
             const auto end = std::find_if(job, job + most, [&](const Job& j) { return kindOf(j) != kind; });
@@ -333,11 +340,12 @@ class Bake {
         return {};
     }
 
-    enum class Kind : std::uint8_t { kSurfaces, kPlanes, kGaps };
+    enum class Kind : std::uint8_t { kSurfaces, kPlanes, kGaps, kPatches };
     static Kind kindOf(const Job& job) {
-        return job.spec.decode != Decode::kPlane   ? Kind::kSurfaces
-               : job.view.compare == Compare::kGap ? Kind::kGaps
-                                                   : Kind::kPlanes;
+        return job.spec.format == MapFormat::kPatches ? Kind::kPatches
+               : job.spec.decode != Decode::kPlane    ? Kind::kSurfaces
+               : job.view.compare == Compare::kGap    ? Kind::kGaps
+                                                      : Kind::kPlanes;
     }
 
     /// Maps that are begun at the same time, at most: each takes about eighty bytes a triangle meanwhile.
@@ -399,6 +407,14 @@ class Bake {
         add(std::move(map), std::move(report));
     }
 
+    Result<void> bakeTree(const Job& job) {
+        const TimeAdder watch(baked_.report.fit_ms);
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
+        add(bakePatches(query, job.spec.bytes), MapReport{job.spec, job.texels(), job.texels()});
+        finish(job.texels());
+        return {};
+    }
+
     [[nodiscard]] Result<void> checkCovered() const {
         const std::vector<MapReport>& maps = baked_.report.maps;
         if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
@@ -426,7 +442,10 @@ class Bake {
 
     Result<void> refine() {
         const bool wanted = options_.quality != Quality::kFast || options_.prefer != Prefer::kNeither;
-        if (has_planes_ && wanted) {
+        // Texels are refined where they decide; a tree decides everywhere.
+        const bool has_tree =
+            std::ranges::any_of(jobs_, [](const Job& job) { return kindOf(job) == Kind::kPatches; });
+        if (has_planes_ && wanted && !has_tree) {
             const TimeAdder watch(baked_.report.refine_ms);
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
             refineTexels(baked_.collider, query, refineOptions(*mesh_, options_));

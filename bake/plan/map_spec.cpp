@@ -10,13 +10,14 @@
 
 #include "formats/base/text.h"
 #include "formats/fields/text.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
 
-constexpr std::array<std::string_view, 4> kFormatWords = {"float", "fixed8", "front-back", "cube"};
-constexpr std::array<std::string_view, 8> kKeys = {"dir",    "up",  "size",  "compare",
-                                                   "center", "box", "depth", "decode"};
+constexpr std::array<std::string_view, 5> kFormatWords = {"float", "fixed8", "front-back", "cube", "patches"};
+constexpr std::array<std::string_view, 9> kKeys = {"dir", "up",    "size",   "compare", "center",
+                                                   "box", "depth", "decode", "bytes"};
 
 /// Least sine of the angle between up and dir: below it, rounding would turn the image.
 constexpr double kUpSineMin = 1e-4;
@@ -101,6 +102,11 @@ Result<void> MapSpecBuilder::setFormat(std::string_view word) {
     if (found == kFormatWords.end()) {
         return unknown("format", word, kFormatWords);
     }
+    if (word == mapFormatName(MapFormat::kPatches)) {
+        spec_.format = MapFormat::kPatches;
+        spec_.decode = Decode::kPlane;
+        return {};
+    }
     spec_.format = static_cast<MapFormat>(found - kFormatWords.begin());
     if (isFrontBack(spec_.format)) {
         spec_.format = defaults_.front_back;
@@ -135,13 +141,20 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
         }
         spec_.center = glm::vec3(n[0], n[1], n[2]);
     } else {
-        return key == "size" ? setSize(value) : key == "box" ? setBox(value) : setWord(key, value);
+        return key == "size"    ? setSize(value)
+               : key == "box"   ? setBox(value)
+               : key == "bytes" ? setBytes(value)
+                                : setWord(key, value);
     }
     return {};
 }
 
 /// The reason why a key has no effect for the format, and the cure; empty: it has one.
 std::string MapSpecBuilder::uselessness(std::string_view key) const {
+    if ((key == "bytes") != (spec_.format == MapFormat::kPatches)) {
+        return key == "bytes" ? " does nothing but for patches; set size"
+                              : " does nothing for patches; leave it out";
+    }
     if ((key == "dir" || key == "up") && isCube()) {
         return " does nothing for a cube, which looks all round; leave it out";
     }
@@ -191,6 +204,17 @@ Result<void> MapSpecBuilder::setSize(std::string_view value) {
     }
     spec_.width = RELIEF_TRY(checkMapSize(*width, spec_.format, "size"));
     spec_.height = RELIEF_TRY(checkMapSize(*height, spec_.format, "size"));
+    return {};
+}
+
+Result<void> MapSpecBuilder::setBytes(std::string_view value) {
+    const std::optional<std::uint64_t> bytes = parseByteCount(value);
+    if (!bytes || *bytes < kPatchBytesMin || *bytes > kPatchBytesMax) {
+        return badValue(
+            "bytes", value,
+            std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) + ", or as 1MB");
+    }
+    spec_.bytes = *bytes;
     return {};
 }
 
@@ -261,6 +285,12 @@ std::string toString(const MapSpec& spec) {
         text.append(1, separator).append(key).append("=").append(value);
         separator = ',';
     };
+    if (spec.format == MapFormat::kPatches) {
+        if (spec.bytes > 0) {
+            add("bytes", std::to_string(spec.bytes));
+        }
+        return text;
+    }
     if (!cube) {
         add("dir", directionText(spec.direction));
         if (spec.up) {

@@ -5,9 +5,11 @@
 //     fixed8:dir=-y,size=1024x512               from above, 1024 texels wide
 //     front-back:dir=1/1/1,box=-1/-1/-1/1/1/1   both surfaces along a diagonal, of a part of the object
 //     cube:center=0/0.1/0,compare=less          all round a point in free space
+//     patches:bytes=1MB                         small depth maps in an octree: formats/patch_tree.h
 //
 // clang-format off
 //     key      value               formats             meaning
+//     bytes    1MB, 250000         patches             what the tree may take; patches have no other key
 //     dir      +x -x … -z, a/b/c   all but cube        the direction in which the view looks; -y looks down
 //     up       +x -x … -z, a/b/c   all but cube        the direction that points upwards in the image, as far as
 //                                                      it is square to dir; without it, view.h's rule
@@ -38,6 +40,8 @@
 
 namespace relief {
 
+inline constexpr std::uint64_t kPatchBytesDefault = 1'000'000;
+
 struct MapSpec {
     MapFormat format = MapFormat::kFrontBackFixed;
     /// kPlane: texels hold supporting planes (plane_fit.h); kProjected: the surface at their centre.
@@ -54,6 +58,7 @@ struct MapSpec {
     std::optional<Compare> compare;
     std::optional<glm::vec3> center;  ///< cubes only; nullopt: the middle of the box
     std::optional<Bounds> box;        ///< object space; nullopt: tight round the whole mesh
+    std::uint64_t bytes = 0;          ///< patches only; 0: kPatchBytesDefault
 
     friend bool operator==(const MapSpec&, const MapSpec&) = default;
 };
@@ -89,10 +94,11 @@ class MapSpecBuilder {
     Result<void> setWord(std::string_view key, std::string_view value);
     Result<void> setSize(std::string_view value);
     Result<void> setBox(std::string_view value);
+    Result<void> setBytes(std::string_view value);
 
     MapSpecDefaults defaults_;
     MapSpec spec_;
-    std::array<bool, 8> seen_{};  // by key
+    std::array<bool, 9> seen_{};  // by key
 };
 
 /// Errors: kUsage if up is (nearly) parallel to the direction.

@@ -231,6 +231,10 @@ glm::dvec3 defaultUp(const glm::dvec3& direction) {
 }
 
 Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32_t resolution) {
+    if (spec.format == MapFormat::kPatches) {
+        spec.bytes = spec.bytes > 0 ? spec.bytes : kPatchBytesDefault;
+        return spec;
+    }
     const bool cube = spec.format == MapFormat::kCube8;
     // −0 becomes 0, so that equal settings have one text.
     spec.direction += 0.0F;
@@ -276,6 +280,11 @@ Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh, const Verte
     }
     View view;
     view.format = spec.format;
+    if (spec.format == MapFormat::kPatches) {
+        view.width = static_cast<std::uint32_t>(spec.bytes / texelSize(spec.format));
+        view.height = 1;
+        return view;
+    }
     view.compare = spec.compare.value_or(Compare::kBoth);
     view.width = spec.width;
     view.height = spec.height;

@@ -143,7 +143,7 @@ py::array texelsOf(const py::object& self, std::size_t index) {
     const auto height = static_cast<py::ssize_t>(map.height);
     const auto width = static_cast<py::ssize_t>(map.width);
     const bool floats = map.format == MapFormat::kFloat32;
-    const bool words = isFrontBack(map.format);
+    const bool words = texelSize(map.format) == 4 * sizeof(std::uint16_t);
     const py::dtype type = floats  ? py::dtype::of<float>()
                            : words ? py::dtype::of<std::uint16_t>()
                                    : py::dtype::of<std::uint8_t>();

@@ -84,6 +84,9 @@ std::string mapWords(const Collider& collider, int map) {
         const glm::dvec3 d = row(2) / glm::length(row(2)) + 0.0;
         return name + " along " + roughly(d.x) + "/" + roughly(d.y) + "/" + roughly(d.z) + ")";
     }
+    if (of.projection() == Projection::kLocal) {
+        return name + ")";
+    }
     // Rows of a cube are along the axes.
     glm::vec3 center;
     for (int i = 0; i < 3; ++i) {

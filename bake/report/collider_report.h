@@ -12,7 +12,7 @@
 namespace relief {
 
 inline constexpr std::span<const std::string_view> kMapFormatWords =
-    kWords<"float", "fixed8", "front-back", "cube">;
+    kWords<"float", "fixed8", "front-back", "cube", "patches">;
 inline constexpr std::string_view kHashPattern = "^([0-9a-f]{32})?$";
 
 template <class Visitor, FieldsOf<Bounds> B>
@@ -47,8 +47,8 @@ void fields(Visitor& visit, R& report) {
     }
     visit("index", index, {"Position in the container, from 0"});
     visit("format", mapFormatName(map.format), {.help = "Format of the texels", .words = kMapFormatWords});
-    visit("projection", projectionName(map),
-          {.help = "Projection of the map", .words = kWords<"orthographic", "cube">});
+    visit("projection", projectionName(map.projection()),
+          {.help = "Projection of the map", .words = kWords<"orthographic", "cube", "local">});
     visit("compare", compareName(map.compare),
           {.help = "Surface kept along each ray: the nearest, the farthest, both, or the two ends of a gap",
            .words = kWords<"less", "greater", "both", "gap">});

@@ -95,10 +95,6 @@ std::string sizeText(const DepthMap& map) {
            "x" + std::to_string(map.height);
 }
 
-std::string_view projectionName(const DepthMap& map) {
-    return map.projection() == Projection::kCube ? "cube" : "orthographic";
-}
-
 std::string boxText(const Bounds& bounds, const std::string& unit) {
     return sidesText(bounds.size()) + " " + unitText(unit) + ", from " + cornerText(bounds.min) + " to " +
            cornerText(bounds.max);

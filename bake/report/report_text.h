@@ -34,8 +34,6 @@ namespace relief {
 [[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
 /// "512x256"; of a cube "6x64x64".
 [[nodiscard]] std::string sizeText(const DepthMap& map);
-/// "cube" or "orthographic".
-[[nodiscard]] std::string_view projectionName(const DepthMap& map);
 
 /// Longest sides from here on are rare in metres, and common in centimetres and millimetres.
 inline constexpr float kForgottenUnitFrom = 100.0F;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "formats/nearest_surface.h"
+#include "formats/patch_tree.h"
 #include "formats/polygons/ply_bytes.h"
 #include "runtime/vdb/vdb_writer.h"
 
@@ -33,13 +34,15 @@ constexpr double kCellsMax = 0x1p31;
 /// The box about a map's volume, in object space.
 Bounds volumeBox(const DepthMap& map) {
     const float low = map.projection() == Projection::kCube ? -1.0F : 0.0F;
+    const glm::vec3 high =
+        map.projection() == Projection::kLocal ? glm::vec3(patchTreeSize(map.texels).roots) : glm::vec3(1.0F);
     Bounds box;
     for (int corner = 0; corner < 8; ++corner) {
         glm::vec3 p(0.0F);
         for (int i = 0; i < 3; ++i) {
             const glm::vec4& row = map.object_to_map.row[i];
             const glm::vec3 axis(row);
-            p += axis * (((corner >> i & 1) != 0 ? 1.0F : low) - row.w) / glm::dot(axis, axis);
+            p += axis * (((corner >> i & 1) != 0 ? high[i] : low) - row.w) / glm::dot(axis, axis);
         }
         box.add(p);
     }

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <glm/glm.hpp>
 
+#include "formats/patch_tree.h"
 #include "shaders/collider/constants.h"
 
 namespace relief {
@@ -31,20 +32,30 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     const DepthMap& map = *placed.map;
     BlockMap block{};
     const bool cube = map.projection() == Projection::kCube;
-    const glm::vec3 size = cube ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
+    const bool patches = map.projection() == Projection::kLocal;
+    const PatchTreeSize tree = patches ? patchTreeSize(map.texels) : PatchTreeSize{};
+    const glm::vec3 size = cube || patches ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
     const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
+    const glm::vec3 roots(tree.roots);
+    const float of_patches[3] = {roots.z, roots.x, roots.y};
     const float last[3] = {range * (2.0F / (cube ? kCubeDepthMax : 1.0F)), static_cast<float>(map.width - 1),
                            static_cast<float>(map.height - 1)};
     for (int i = 0; i < 3; ++i) {
         // The rows are orthogonal and as long as the inverse of object_per_map.
         const glm::vec3 row(map.object_to_map.row[i]);
         block.row[i] = map.object_to_map.row[i] * size[i];
-        block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i], last[i]);
+        block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i],
+                                    patches ? of_patches[i] : last[i]);
     }
     block.object_per_map = glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
     const auto width = static_cast<std::int32_t>(map.width);
     const auto height = static_cast<std::int32_t>(map.height);
-    const std::int32_t place[4] = {static_cast<std::int32_t>(at.first), at.pitch, at.pitch * height, width};
+    const auto first = static_cast<std::int32_t>(at.first);
+    const auto along_y = static_cast<std::int32_t>(tree.roots.x);
+    const std::int32_t place[4] = {
+        first, patches ? along_y : at.pitch,
+        patches ? along_y * static_cast<std::int32_t>(tree.roots.y) : at.pitch * height,
+        patches ? static_cast<std::int32_t>(tree.levels) : width};
     const std::int32_t info[4] = {height, static_cast<std::int32_t>(map.format), flagsOf(placed),
                                   static_cast<std::int32_t>(at.motion_first)};
     std::memcpy(block.place, place, sizeof(place));
@@ -116,6 +127,7 @@ std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps)
     defineIf("FRONT_BACK_HALF", [](const DepthMap& map) { return map.format == MapFormat::kFrontBackHalf; });
     defineIf("FRONT_BACK_FIXED",
              [](const DepthMap& map) { return map.format == MapFormat::kFrontBackFixed; });
+    defineIf("PATCHES", [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
     defineIf("GAP", [](const DepthMap& map) { return map.compare == Compare::kGap; });
     defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });

@@ -88,6 +88,7 @@ TexelKind texelKindOf(MapFormat format) {
             return kFloatTexels;
         case MapFormat::kFrontBackHalf:
         case MapFormat::kFrontBackFixed:
+        case MapFormat::kPatches:
             return kFrontBackTexels;
         case MapFormat::kFixed8:
         case MapFormat::kCube8:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/patch_tree.h"
 #include "runtime/gl/gl_functions.h"
 
 namespace relief {
@@ -25,7 +26,9 @@ float finestTexel(const Collider& collider) {
     float finest = longest;
     for (const DepthMap& map : collider.maps) {
         const glm::vec3& unit = map.object_per_map;
-        if (map.projection() == Projection::kCube) {
+        if (map.projection() == Projection::kLocal) {
+            finest = std::min(finest, static_cast<float>(patchSpacing(map.texels)) * unit.x);
+        } else if (map.projection() == Projection::kCube) {
             // A face spans the volume, of half sides `unit`, at its far end.
             finest =
                 std::min(finest, 2.0F * std::min({unit.x, unit.y, unit.z}) / static_cast<float>(map.width));

@@ -50,7 +50,7 @@ Json describe(const DepthMap& map) {
             {"encoding", depthEncodingName(map.format)},
             {"compare", compareName(map.compare)},
             {"decode", decodeName(map.decode)},
-            {"projection", map.projection() == Projection::kCube ? "cube" : "orthographic"},
+            {"projection", projectionName(map.projection())},
             {"width", map.width},
             {"height", map.height},
             {"faces", map.faceCount()},

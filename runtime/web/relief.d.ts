@@ -50,7 +50,7 @@ export interface MapInfo {
     encoding: string;
     compare: string;
     decode: string;
-    projection: "orthographic" | "cube";
+    projection: "orthographic" | "cube" | "local";
     width: number;
     height: number;
     /** 6 of a cube, else 1. */

@@ -21,11 +21,12 @@ struct ReliefMap {
     vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
                            // in texels here
     vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: the shift of a
-                           // standing plane by a unit of depth; width - 1; height - 1
+                           // standing plane by a unit of depth; width - 1; height - 1. Of patches roots along z, x and y
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest product of an orthographic ray and the normal of a plane along it
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. With
-                           // RELIEF_HAS_ROWS a texel for each row comes first, with the range of the row's texels
+                           // RELIEF_HAS_ROWS a texel for each row comes first, with the range of the row's texels. Of patches
+                           // texel 0; from root to root along y and z; levels
     ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
                            // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
 };
@@ -113,6 +114,17 @@ bool reliefIsCube(ivec4 info) {
 #endif
 }
 
+// Asked before the other kinds.
+bool reliefIsPatches(ivec4 info) {
+#if !defined(RELIEF_HAS_PATCHES)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_CUBE) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_MAP_FORMAT_PATCHES;
+#else
+    return true;
+#endif
+}
+
 bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next one
 #if !defined(RELIEF_HAS_FRONT_BACK)
     return false;
@@ -176,15 +188,19 @@ bool reliefReplaces(float vote, float best) {
     return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
 }
 
-// Equation 3: indices 0…254 in each direction to the octahedron, of which the sphere's point is reliefUnit(). In steps
-// of the index, so that all of it is exact. shaderTexels() leaves no index 255.
-vec3 reliefOctahedron(vec2 index) {
-    vec2 st = index - float(RELIEF_NORMAL_HALF_RANGE);
-    float z = float(RELIEF_NORMAL_HALF_RANGE) - abs(st.x) - abs(st.y);
+// Equation 3: indices 0…2 half_range in each direction to the octahedron, of which the sphere's point is reliefUnit(). In
+// steps of the index, so that all of it is exact. shaderTexels() leaves no index 255.
+vec3 reliefFold(vec2 index, float half_range) {
+    vec2 st = index - half_range;
+    float z = half_range - abs(st.x) - abs(st.y);
     // Below the equator both are reflected by their excess.
     uint beyond = floatBitsToUint(max(-z, 0.0));
     return vec3(st.x - uintBitsToFloat(beyond | (floatBitsToUint(st.x) & 0x80000000u)),
                 st.y - uintBitsToFloat(beyond | (floatBitsToUint(st.y) & 0x80000000u)), z);
+}
+
+vec3 reliefOctahedron(vec2 index) {
+    return reliefFold(index, float(RELIEF_NORMAL_HALF_RANGE));
 }
 
 vec3 reliefOctahedron(uint code) {
@@ -324,8 +340,8 @@ int reliefFrontBackIndex(ivec4 place, ivec4 info, ivec2 at) {
     return index;
 }
 
-// A normal as a texel holds it: of all fetched only the deciding one is decoded.
-#if defined(RELIEF_HAS_FLOAT)
+// A normal as a texel holds it: of all fetched only the deciding one is decoded. A patch has none but by its heights.
+#if defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_PATCHES)
 #define RELIEF_CODE vec3
 const vec3 RELIEF_NO_CODE = vec3(0.0);
 vec3 reliefCode(uint code) {
@@ -494,12 +510,22 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
     return vote;
 }
 
+#if defined(RELIEF_HAS_PATCHES)
+//!include collider/patches.glsl
+#else
+ReliefVote reliefVotePatches(int i, vec3 p, bool whole) {
+    return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
+}
+#endif
+
 ReliefVote reliefVote(int i, vec3 p, bool whole) {
     vec3 in_map = reliefInMap(i, p);
     ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
     ReliefVote vote;
-    if (reliefIsCube(info)) {
+    if (reliefIsPatches(info)) {
+        vote = reliefVotePatches(i, in_map, whole);
+    } else if (reliefIsCube(info)) {
         vote = reliefVoteCube(i, in_map, place, info);
     } else {
         vote = reliefVoteOrthographic(i, in_map, place, info, whole);
@@ -542,7 +568,10 @@ vec3 reliefToVolume(int i, vec3 p) {
     vec3 in_map = reliefInMap(i, p);
     vec3 low = vec3(-1.0);
     vec3 high = vec3(1.0);
-    if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
+    if (reliefIsPatches(u_relief_maps[i].info)) {
+        low = vec3(0.0);
+        high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
+    } else if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
         low = vec3(1.0, 1.0, 0.0);
         high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 1.0);
     }

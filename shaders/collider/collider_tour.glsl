@@ -46,6 +46,10 @@ bool reliefMayHold(int body, vec3 q) {
     int i = u_relief_bodies[body].maps.x;
     ivec4 info = u_relief_maps[i].info;
     vec3 p = reliefInMap(i, q);
+    if (reliefIsPatches(info)) {
+        vec3 roots = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
+        return !reliefHas(info, RELIEF_ENCLOSES) || all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, roots));
+    }
     bool looks = reliefInWindow(i, p) && (reliefInDepth(p) || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     return reliefIsCube(info) || !reliefHas(info, RELIEF_ENCLOSES) || looks;
 }

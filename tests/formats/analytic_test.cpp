@@ -44,6 +44,8 @@ double depthQuantum(MapFormat format, double depth) {
             return 0.5 / 65534.0 + 0x1p-22;
         case MapFormat::kCube8:
             return 0.5 * kCubeDepthMax / 65534.0 + 0x1p-22;
+        case MapFormat::kPatches:
+            break;
     }
     return 0.0;
 }

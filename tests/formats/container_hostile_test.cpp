@@ -245,7 +245,7 @@ TEST(Crafted, Versions) {
                       r.header = [](ContainerHeader& h) { h.major = 256; };
                       r.bytes = [](std::vector<std::byte>& b) { b[60] ^= std::byte{1}; };
                   }),
-                  "container version 256.3", ErrorCode::kUnsupported);
+                  "container version 256.4", ErrorCode::kUnsupported);
 }
 
 TEST(Crafted, HeaderFields) {
@@ -307,7 +307,7 @@ TEST(Crafted, Description) {
 }
 
 TEST(Crafted, Frames) {
-    expectRefused(with([](Recipe& r) { r.maps[1].format = 5; }), "map 1: its format 5 is unknown");
+    expectRefused(with([](Recipe& r) { r.maps[1].format = 6; }), "map 1: its format 6 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[1].format = 255; }), "map 1: its format 255 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[1].decode = 2; }), "map 1: its decode 2 is unknown");
     expectRefused(with([](Recipe& r) { r.maps[0].decode = 255; }), "map 0: its decode 255 is unknown");

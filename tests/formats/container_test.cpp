@@ -72,6 +72,7 @@ TEST(Container, SameColliderSameBytes) {
 TEST(Container, MapsOfGapsAreReadAndNeedVersion12) {
     Collider collider = oneMapOfEveryFormat();
     collider.provenance.options.clear();
+    collider.maps.pop_back();  // of patches
     DepthMap& map = collider.maps[4];
     map.compare = Compare::kGap;
     map.encloses = map.empty_is_outside = false;
@@ -87,6 +88,8 @@ TEST(Container, MapsOfGapsAreReadAndNeedVersion12) {
 TEST(Container, LayoutIsTheOneOfTheReadme) {
     for (const int level : {0, 19}) {
         Collider collider = oneMapOfEveryFormat();
+        EXPECT_EQ(readContainerInfo(written(collider, level))->minor, 4) << "patches need version 1.4";
+        collider.maps.pop_back();
         EXPECT_EQ(readContainerInfo(written(collider, level))->minor, 3) << "options need version 1.3";
         collider.provenance.options.clear();
         const std::vector<std::byte> bytes = written(collider, level);
@@ -246,7 +249,7 @@ const std::vector<Refusal>& refusals() {
          [](Collider& c) {
              c.provenance.options = {{"map", std::string(1 << 20, 'a')}};
          }},
-        {"map 0: its format 5 is unknown", [](Collider& c) { c.maps[0].format = static_cast<MapFormat>(5); }},
+        {"map 0: its format 6 is unknown", [](Collider& c) { c.maps[0].format = static_cast<MapFormat>(6); }},
         {"map 2: its decode 2 is unknown", [](Collider& c) { c.maps[2].decode = static_cast<Decode>(2); }},
         {"map 0: its compare 4 is unknown", [](Collider& c) { c.maps[0].compare = static_cast<Compare>(4); }},
         {"does not go with its format", [](Collider& c) { c.maps[1].compare = Compare::kBoth; }},

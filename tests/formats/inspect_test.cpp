@@ -153,7 +153,8 @@ std::vector<Case> casesOfEveryCode() {
              put(bytes, bytes.size() - 16, 7.0F);  // the last texel, empty, gets a normal
              return bytes;
          }()},
-        {IssueCode::kLaterMinor, patched([](Bytes& bytes) { put<std::uint16_t>(bytes, 14, 4); })},
+        {IssueCode::kLaterMinor,
+         patched([](Bytes& bytes) { put<std::uint16_t>(bytes, 14, kContainerMinor + 1); })},
         {IssueCode::kNoMeshHash, changed([](Collider& c) { c.provenance.mesh_hash.clear(); })},
         {IssueCode::kNoToolVersion, changed([](Collider& c) { c.provenance.options.clear(); })},
         {IssueCode::kNoTriangles, changed([](Collider& c) { c.provenance.triangles = 0; })},

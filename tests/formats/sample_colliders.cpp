@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <random>
 
 #include "formats/base/hash.h"
 #include "formats/container.h"
 #include "formats/container_reader.h"
 #include "tests/formats/analytic_shapes.h"
+#include "tests/formats/random_patches.h"
 
 namespace relief::test {
 
@@ -30,6 +32,8 @@ Collider oneMapOfEveryFormat() {
                                     CubeFrame{{0.5, 0.25, -0.5}, rotation({1, 0, 0}, 10.0), {1.0, 1.1, 1.2}},
                                     Compare::kLess, 4));
     collider.maps.push_back(makeMap(*sphere, frame, MapFormat::kFrontBackFixed, Compare::kBoth, 8, 8));
+    std::mt19937 random(17);
+    collider.maps.push_back(randomPatches(random));
     collider.maps[1].encloses = false;
     collider.maps[3].empty_is_outside = false;
     collider.maps[1].decode = Decode::kPlane;

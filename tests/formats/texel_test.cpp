@@ -45,7 +45,11 @@ TEST(Texel, SizesAndNames) {
     EXPECT_STREQ(depthEncodingName(MapFormat::kFrontBackHalf), "half");
     EXPECT_STREQ(depthEncodingName(MapFormat::kCube8), "unorm16");
     EXPECT_STREQ(depthEncodingName(MapFormat::kFrontBackFixed), "unorm16");
-    EXPECT_EQ(std::size(kFormats), static_cast<std::size_t>(kMapFormatCount));
+    EXPECT_EQ(texelSize(MapFormat::kPatches), 8U);
+    EXPECT_STREQ(mapFormatName(MapFormat::kPatches), "patches");
+    EXPECT_STREQ(depthEncodingName(MapFormat::kPatches), "unorm8");
+    // Patches have no texels of this kind.
+    EXPECT_EQ(std::size(kFormats) + 1, static_cast<std::size_t>(kMapFormatCount));
     for (const MapFormat format : kFormats) {
         EXPECT_EQ(isFrontBack(format), texelSize(format) == 8U) << mapFormatName(format);
     }

@@ -25,6 +25,8 @@ double depthTolerance(MapFormat format, double depth) {
             return 0.5 * 1.7320509 / 65534.0 + kFloats;
         case MapFormat::kFrontBackHalf:
             return std::ldexp(depth, -11) + kFloats;  // half a unit in the last of 11 bits, at most
+        case MapFormat::kPatches:
+            break;
     }
     return 0.0;
 }

@@ -34,6 +34,8 @@ double unitsOf(MapFormat format, std::span<const std::byte> texel, int end) {
         case MapFormat::kFrontBackHalf:
         case MapFormat::kFrontBackFixed:
             return word(static_cast<std::size_t>(2 + end));
+        case MapFormat::kPatches:
+            break;
     }
     return 0.0;
 }

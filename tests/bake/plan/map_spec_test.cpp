@@ -5,6 +5,24 @@
 namespace relief {
 namespace {
 
+TEST(MapSpec, PatchesHaveBytesAndNothingElse) {
+    const Result<MapSpec> spec = parseMapSpec("patches:bytes=250kB", kPaperDefaults);
+    ASSERT_TRUE(spec) << spec.error().message;
+    EXPECT_EQ(spec->format, MapFormat::kPatches);
+    EXPECT_EQ(spec->bytes, 250'000U);
+    EXPECT_EQ(spec->decode, Decode::kPlane);
+    EXPECT_EQ(toString(*spec), "patches:bytes=250000");
+    EXPECT_EQ(*parseMapSpec(toString(*spec)), *spec);
+    EXPECT_EQ(toString(*parseMapSpec("patches")), "patches");
+    for (const char* wrong : {"patches:size=64", "patches:dir=+x", "patches:decode=plane",
+                              "patches:box=tight", "patches:bytes=1023", "patches:bytes=1GB",
+                              "patches:bytes=many", "cube:bytes=1MB", "front-back:bytes=1MB"}) {
+        const Result<MapSpec> refused = parseMapSpec(wrong);
+        ASSERT_FALSE(refused) << wrong;
+        EXPECT_EQ(refused.error().code, ErrorCode::kUsage) << wrong;
+    }
+}
+
 TEST(MapSpecParser, ReadsEveryKey) {
     const Result<MapSpec> spec =
         parseMapSpec("fixed8:dir=-y,size=640x480,compare=greater,box=-1/-2/-3/1/2.5/3e1");

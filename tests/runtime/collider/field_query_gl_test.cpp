@@ -18,6 +18,7 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "tests/formats/analytic_shapes.h"
+#include "tests/formats/random_patches.h"
 #include "tests/runtime/collider/field_query.h"
 #include "tests/runtime/gl/gl_test.h"
 
@@ -217,6 +218,37 @@ TEST_P(FieldQueryGlTest, AnyMixtureOfMapsAgreesWithTheCpu) {
         }
         // Forty maps have forty times the borders.
         expectAgreement(collider, randomPoints(20'000, random), 1.0F / 60.0F, 5e-3);
+    }
+}
+
+TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpu) {
+    std::mt19937 random(29);
+    std::uniform_real_distribution<float> angle(0.0F, 360.0F);
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        Collider collider;
+        collider.maps.push_back(test::randomPatches(random));
+        DepthMap& map = collider.maps[0];
+        // A turned frame of 2.5 units a root, round the origin.
+        const glm::dmat3 turn = test::rotation({1, 2, 3}, double{angle(random)});
+        map.object_per_map = glm::vec3(2.5F);
+        map.encloses = repeat % 2 == 0;
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec3 row = glm::vec3(turn[i]) / 2.5F;
+            map.object_to_map.row[i] =
+                glm::vec4(row, std::array{1.5F, 1.0F, 2.0F}[static_cast<std::size_t>(i)]);
+        }
+        std::uniform_real_distribution<float> inside(-5.0F, 5.0F);
+        std::vector<glm::vec3> points(20'000);
+        for (glm::vec3& p : points) {
+            p = {inside(random), inside(random), inside(random)};
+        }
+        if (repeat % 4 == 3) {  // beside maps of other formats
+            for (const Kind& kind : {kKinds[2], kKinds[4], kKinds[5], kKinds[0]}) {
+                collider.maps.push_back(
+                    randomMap(kind.format, kind.compare, kind.width, kind.height, random));
+            }
+        }
+        expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
     }
 }
 

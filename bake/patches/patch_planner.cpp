@@ -1,0 +1,396 @@
+#include "bake/patches/patch_planner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "bake/mesh/loops.h"
+#include "bake/patches/cell_columns.h"
+#include "bake/patches/patch_fit.h"
+#include "formats/patch_tree.h"
+
+namespace relief {
+namespace {
+
+constexpr double kTexelBytes = 8.0;
+/// A root for each so many bytes.
+constexpr double kBytesPerRoot = 160.0;
+/// Lines along each side of a cell: to choose by, and for the heights that are kept.
+constexpr unsigned kLines = 12;
+constexpr unsigned kFinalLines = 20;
+constexpr int kRounds = 3;
+constexpr int kFinalRounds = 6;
+/// A leaf is split on trial where it has more mistakes than so many bytes are worth.
+constexpr double kTrialBytes = 50.0;
+constexpr std::uint32_t kLevels = 10;
+constexpr int kSteps = 60;
+constexpr int kHalvings = 12;
+constexpr std::array<std::uint32_t, 3> kSides = {2, 3, 5};
+
+/// Cells do not end in the planes of even numbers, in which models have walls.
+constexpr double kBesideRoots = 1.00137;
+constexpr glm::dvec3 kOriginShift{0.4171, 0.5337,
+                                  0.4623};  // of the room that whole roots leave, on the low side
+
+struct Candidate {
+    std::uint32_t side = 0;  // 0: no patch, but a sign
+    bool inside = false;     // the sign
+    double wrong = 0.0;      // volume, object units
+    double bytes = 0.0;      // beyond a record's bit in its parent
+
+    [[nodiscard]] double cost(double byte) const { return wrong + byte * bytes; }
+};
+
+struct Node {
+    MeshCell cell;
+    PatchFrame frame;
+    std::vector<Candidate> candidates;
+    std::unique_ptr<std::array<Node, 8>> children;
+    bool made = false;
+    bool split = false;
+    std::size_t chosen = 0;
+    double bytes = 0.0;
+    double wrong = 0.0;
+
+    [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
+    [[nodiscard]] const Candidate& leaf() const { return candidates[chosen]; }
+};
+
+/// The frame that sees most of the surface in a cell from above, or from below.
+PatchFrame bestFrame(const std::vector<ClippedTriangle>& pieces) {
+    PatchFrame best;
+    double best_score = -std::numeric_limits<double>::infinity();
+    for (const PatchFrame& frame : patchFrames()) {
+        const glm::dvec3 along = unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
+        for (const double sign : {1.0, -1.0}) {
+            double score = 0.0;
+            for (const ClippedTriangle& piece : pieces) {
+                const double cosine = sign * dot(piece.normal, along);
+                // A steep piece costs much, one that faces away everything.
+                score += piece.area * (cosine > 0.2 ? cosine : 5.0 * cosine - 0.8);
+            }
+            if (score > best_score + 1e-9) {
+                best_score = score;
+                best = frame;
+            }
+        }
+    }
+    return best;
+}
+
+class Planner {
+  public:
+    Planner(const MeshQuery& query, std::uint64_t bytes, const std::function<void(double)>& progress)
+        : query_(query), bytes_(static_cast<double>(bytes)), progress_(progress) {}
+
+    DepthMap run() {
+        makeRoots();
+        searchByte();
+        return encode();
+    }
+
+  private:
+    void makeRoots() {
+        const Bounds& bounds = query_.mesh().bounds;
+        const glm::dvec3 size = bounds.size();
+        const auto countOf = [&](double root) {
+            return glm::max(glm::ceil(size / root * kBesideRoots), glm::dvec3(1.0));
+        };
+        root_ = 1.01 * static_cast<double>(bounds.longestSide());
+        const auto product = [](const glm::dvec3& n) { return n.x * n.y * n.z; };
+        while (product(countOf(0.95 * root_)) * kBytesPerRoot <= bytes_) {
+            root_ *= 0.95;
+        }
+        roots_ = glm::uvec3(countOf(root_));
+        origin_ = glm::dvec3(bounds.min) - kOriginShift * (glm::dvec3(roots_) * root_ - size);
+        nodes_.resize(std::size_t{roots_.x} * roots_.y * roots_.z);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const glm::dvec3 at(i % roots_.x, i / roots_.x % roots_.y, i / roots_.x / roots_.y);
+            nodes_[i].cell.size = root_;
+            nodes_[i].cell.low = origin_ + root_ * at;
+        }
+        const TriangleMesh& mesh = query_.mesh();
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+            Bounds box;
+            addTriangle(box, mesh, t);
+            const auto cellAt = [&](const glm::vec3& p) {
+                return glm::ivec3(glm::clamp(glm::floor((glm::dvec3(p) - origin_) / root_), glm::dvec3(0.0),
+                                             glm::dvec3(roots_) - 1.0));
+            };
+            const glm::ivec3 low = cellAt(box.min);
+            const glm::ivec3 high = cellAt(box.max);
+            for (int z = low.z; z <= high.z; ++z) {
+                for (int y = low.y; y <= high.y; ++y) {
+                    for (int x = low.x; x <= high.x; ++x) {
+                        MeshCell& cell =
+                            nodes_[(std::size_t(z) * roots_.y + std::size_t(y)) * roots_.x + std::size_t(x)]
+                                .cell;
+                        std::array<glm::dvec3, 3> p;
+                        const auto corners = cornersOf(mesh, t);
+                        for (std::size_t i = 0; i < 3; ++i) {
+                            p[i] = cell.inUnit(corners[i]);
+                        }
+                        if (meetsUnitCube(p)) {
+                            cell.triangles.push_back(t);
+                        }
+                    }
+                }
+            }
+        }
+        forEachIndex(0, nodes_.size(), 16, [&](std::size_t i) {
+            MeshCell& cell = nodes_[i].cell;
+            cell.bodies = query_.bodiesAt(glm::vec3(cell.low + cell.size * cell.known));
+        });
+    }
+
+    [[nodiscard]] std::vector<ClippedTriangle> piecesOf(const MeshCell& cell) const {
+        std::vector<ClippedTriangle> pieces;
+        for (const std::uint32_t triangle : cell.triangles) {
+            std::array<glm::dvec3, 3> p;
+            const auto corners = cornersOf(query_.mesh(), triangle);
+            for (std::size_t i = 0; i < 3; ++i) {
+                p[i] = cell.inUnit(corners[i]);
+            }
+            pieces.push_back(clipToUnitCube(p));
+        }
+        return pieces;
+    }
+
+    void make(Node& node) const {
+        node.made = true;
+        if (node.empty()) {
+            node.candidates = {{.inside = node.cell.bodies.inside()}};
+            return;
+        }
+        node.frame = bestFrame(piecesOf(node.cell));
+        const CellColumns columns(query_, node.cell, node.frame, kLines);
+        const PatchFitter fitter(columns);
+        const double volume = node.cell.size * node.cell.size * node.cell.size;
+        const double inside = fitter.insideVolume();
+        node.candidates.push_back({.inside = false, .wrong = volume * inside});
+        node.candidates.push_back({.inside = true, .wrong = volume * (fitter.volume() - inside)});
+        for (const std::uint32_t side : kSides) {
+            const FittedPatch fitted = fitter.fit(side, kRounds);
+            node.candidates.push_back({.side = side,
+                                       .wrong = volume * fitted.wrong,
+                                       .bytes = kTexelBytes * (1.0 + fitted.heights.texels())});
+        }
+    }
+
+    /// The cheapest tree below a node where a byte is worth so much wrong volume.
+    void choose(Node& node, double byte, std::uint32_t level) const {
+        if (!node.made) {
+            make(node);
+        }
+        node.split = false;
+        node.chosen = 0;
+        for (std::size_t i = 1; i < node.candidates.size(); ++i) {
+            node.chosen = node.candidates[i].cost(byte) < node.leaf().cost(byte) ? i : node.chosen;
+        }
+        node.bytes = node.leaf().bytes;
+        node.wrong = node.leaf().wrong;
+        if (node.empty() || level == kLevels || node.wrong < kTrialBytes * byte) {
+            return;
+        }
+        if (!node.children) {
+            node.children = std::make_unique<std::array<Node, 8>>();
+            for (unsigned i = 0; i < 8; ++i) {
+                (*node.children)[i].cell = childOf(query_, node.cell, i);
+            }
+        }
+        const double cost = node.wrong + byte * node.bytes;
+        double bytes = kTexelBytes;
+        double wrong = 0.0;
+        for (Node& child : *node.children) {
+            choose(child, byte, level + 1);
+            bytes += child.bytes;
+            wrong += child.wrong;
+        }
+        if (wrong + byte * bytes < cost) {
+            node.split = true;
+            node.bytes = bytes;
+            node.wrong = wrong;
+        }
+    }
+
+    /// \return the bytes of the whole tree.
+    double chooseAll(double byte) {
+        forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) { choose(nodes_[i], byte, 0); });
+        double texels = 1.0 + static_cast<double>(nodes_.size());
+        wrong_ = 0.0;
+        for (const Node& node : nodes_) {
+            // A root has a record in any case.
+            texels += std::max(0.0, node.bytes / kTexelBytes - 1.0);
+            wrong_ += node.wrong;
+        }
+        const PatchMapSize size = patchMapSize(static_cast<std::size_t>(texels));
+        return kTexelBytes * size.width * size.height;
+    }
+
+    /// The least worth of a byte at which the tree fits.
+    void searchByte() {
+        double byte = 1e-3 * static_cast<double>(root_ * root_ * root_);
+        double dear = byte;
+        double taken = chooseAll(byte);
+        for (int i = 0; i < kSteps && taken <= bytes_; ++i) {
+            dear = byte;
+            if (!(wrong_ > 0.0)) {
+                return;
+            }
+            tell(taken / bytes_);
+            // Bytes go by about the square root of their worth.
+            const double share = taken / bytes_;
+            byte *= std::clamp(share * share, 1.0 / 16.0, 0.8);
+            taken = chooseAll(byte);
+        }
+        double cheap = byte;
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = std::sqrt(cheap * dear);
+            (chooseAll(middle) > bytes_ ? cheap : dear) = middle;
+        }
+        chooseAll(dear);
+    }
+
+    void tell(double share) const {
+        if (progress_) {
+            progress_(std::min(share, 1.0));
+        }
+    }
+
+    /// A cell without a patch: the nearest surface.
+    [[nodiscard]] PatchRecord flat(const Node& node) const {
+        const glm::dvec3 middle = node.cell.middle();
+        const ClosestPoint closest = query_.closest(glm::vec3(middle));
+        const bool inside = node.leaf().inside;
+        glm::dvec3 away = middle - closest.point;
+        away = length(away) > 0.0 ? (inside ? -away : away) : unitNormal(query_.mesh(), closest.triangle);
+        const double distance = closest.distance / root_;
+        return PatchRecord::flat(inside, glm::vec3(unit(away)),
+                                 static_cast<float>(inside ? -distance : distance));
+    }
+
+    [[nodiscard]] PatchRecord splitOf(const Node& node, std::uint32_t first) const {
+        std::uint32_t children = 0;
+        std::uint32_t inside = 0;
+        glm::dvec3 normal(0.0);
+        glm::dvec3 center(0.0);
+        double area = 0.0;
+        for (const ClippedTriangle& piece : piecesOf(node.cell)) {
+            normal += piece.area * piece.normal;
+            center += piece.area * piece.center;
+            area += piece.area;
+        }
+        normal = length(normal) > 1e-9 * area ? unit(normal) : glm::dvec3(0.0, 1.0, 0.0);
+        center /= area;
+        int agree = 0;
+        for (unsigned i = 0; i < 8; ++i) {
+            const Node& child = (*node.children)[i];
+            if (hasRecord(child)) {
+                children |= 1U << i;
+                continue;
+            }
+            const glm::dvec3 middle = 0.5 * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U) + 0.25;
+            inside |= child.leaf().inside ? 1U << i : 0U;
+            agree += (dot(normal, middle - center) < 0.0) == child.leaf().inside ? 1 : -1;
+        }
+        normal = agree < 0 ? -normal : normal;  // of meshes that are not wound
+        return PatchRecord::split(children, inside, first, glm::vec3(normal),
+                                  static_cast<float>(dot(normal, glm::dvec3(0.5) - center)));
+    }
+
+    [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.leaf().side > 0; }
+
+    [[nodiscard]] DepthMap encode() const {
+        // Records level by level, and where the children of each begin.
+        std::vector<const Node*> records;
+        for (const Node& node : nodes_) {
+            records.push_back(&node);
+        }
+        std::vector<std::uint32_t> first(records.size(), 0);
+        std::uint32_t levels = 0;
+        for (std::size_t at = 0, end = records.size(); at < records.size(); end = records.size()) {
+            bool any = false;
+            for (; at < end; ++at) {
+                first[at] = 1 + static_cast<std::uint32_t>(records.size());
+                if (records[at]->split) {
+                    any = true;
+                    for (const Node& child : *records[at]->children) {
+                        if (hasRecord(child)) {
+                            records.push_back(&child);
+                        }
+                    }
+                    first.resize(records.size(), 0);
+                }
+            }
+            levels += any ? 1 : 0;
+        }
+        std::uint32_t next = 1 + static_cast<std::uint32_t>(records.size());
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            const Node& node = *records[i];
+            if (!node.split && node.leaf().side > 0) {
+                first[i] = next;
+                next += node.leaf().side == 2 ? 0 : (node.leaf().side * node.leaf().side - 1) / 8;
+            }
+        }
+        std::vector<PatchRecord> texels(next);
+        texels[0] = {roots_.x | roots_.y << 16U, roots_.z | levels << 16U};
+        forEachIndex(0, records.size(), 16, [&](std::size_t i) {
+            const Node& node = *records[i];
+            if (node.split) {
+                texels[1 + i] = splitOf(node, first[i]);
+            } else if (node.leaf().side == 0) {
+                texels[1 + i] = flat(node);
+            } else {
+                const CellColumns columns(query_, node.cell, node.frame, kFinalLines);
+                const PatchFitter fitter(columns);
+                const PatchHeights heights = fitter.fit(node.leaf().side, kFinalRounds).heights;
+                texels[1 + i] = PatchRecord::patch(node.frame, fitter.outsideBelow(), heights, first[i]);
+                for (std::uint32_t k = 0; k < 8 * heights.texels(); ++k) {
+                    PatchRecord& texel = texels[first[i] + k / 8];
+                    (k % 8 < 4 ? texel.low : texel.high) |= static_cast<std::uint32_t>(heights.codes[k])
+                                                            << 8U * (k % 4);
+                }
+            }
+        });
+        std::vector<std::byte> bytes;
+        for (const PatchRecord& texel : texels) {
+            appendPatchTexel(bytes, texel);
+        }
+        DepthMap map;
+        map.format = MapFormat::kPatches;
+        map.decode = Decode::kPlane;
+        map.object_per_map = glm::vec3(static_cast<float>(root_));
+        for (int axis = 0; axis < 3; ++axis) {
+            map.object_to_map.row[axis] = glm::vec4(0.0F);
+            map.object_to_map.row[axis][axis] = static_cast<float>(1.0 / root_);
+            map.object_to_map.row[axis].w = static_cast<float>(-origin_[axis] / root_);
+        }
+        const PatchMapSize size = patchMapSize(texels.size());
+        map.width = size.width;
+        map.height = size.height;
+        bytes.resize(map.texelBytes());
+        map.texels = std::move(bytes);
+        return map;
+    }
+
+    const MeshQuery& query_;
+    double bytes_;
+    const std::function<void(double)>& progress_;
+    double root_ = 0.0;  // object units
+    glm::uvec3 roots_{1};
+    glm::dvec3 origin_{0.0};
+    std::vector<Node> nodes_;
+    double wrong_ = 0.0;
+};
+
+}  // namespace
+
+DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes,
+                     const std::function<void(double)>& progress) {
+    return Planner(query, bytes, progress).run();
+}
+
+}  // namespace relief

@@ -1,0 +1,19 @@
+// A tree of patches within a number of bytes: which cells are split, and how many heights each leaf has, by what a byte more
+// would mend there.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "bake/mesh/mesh_query.h"
+#include "formats/depth_map.h"
+
+namespace relief {
+
+/// A map of MapFormat::kPatches of at most `bytes`. The same for any number of threads.
+/// \param progress  called with shares of the work from 0 to 1; may be empty.
+/// \pre kPatchBytesMin ≤ bytes ≤ kPatchBytesMax
+[[nodiscard]] DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes,
+                                   const std::function<void(double)>& progress = {});
+
+}  // namespace relief

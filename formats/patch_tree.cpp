@@ -1,0 +1,378 @@
+#include "formats/patch_tree.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "formats/normal_index.h"
+#include "formats/texel.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kTexel = 8;
+constexpr int kBaseZero = 2048;
+constexpr int kOffsetZero =
+    128;  // the code of a coarse plane through the cell's middle, and a cell in its steps
+constexpr int kCoarseHalfRange = 63;
+
+std::uint32_t bitsOf(float value) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return bits;
+}
+
+float floatOf(std::uint32_t bits) {
+    float value = 0.0F;
+    std::memcpy(&value, &bits, sizeof(value));
+    return value;
+}
+
+float dot(const glm::vec3& a, const glm::vec3& b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+
+glm::vec3 unit(const glm::vec3& v) {
+    return v / std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+/// Equation 3 of the paper for indices of any number of steps; exact but for the unit length.
+glm::vec3 octahedron(std::uint32_t s, std::uint32_t t, int half_range) {
+    const auto half = static_cast<float>(half_range);
+    const float x = static_cast<float>(s) - half;
+    const float y = static_cast<float>(t) - half;
+    const float z = half - std::abs(x) - std::abs(y);
+    const float beyond = std::max(-z, 0.0F);
+    return unit({x - std::copysign(beyond, x), y - std::copysign(beyond, y), z});
+}
+
+/// The coarse index whose vector is nearest by the rounded place in the square.
+std::array<std::uint32_t, 2> coarseIndex(const glm::vec3& normal) {
+    const NormalIndex fine = encodeNormal(normal);
+    const auto coarse = [](int index) {
+        return static_cast<std::uint32_t>(
+            std::lround(static_cast<double>(index) * kCoarseHalfRange / kNormalHalfRange));
+    };
+    return {coarse(fine.s), coarse(fine.t)};
+}
+
+std::uint32_t sideOf(const PatchRecord& patch) {
+    return std::array{2U, 3U, 5U, 0U}[patch.low >> 2U & 3U];
+}
+
+PatchFrame frameOf(const PatchRecord& patch) {
+    return {static_cast<std::uint8_t>(patch.low >> 5U & 3U), static_cast<std::uint8_t>(patch.low >> 7U & 3U),
+            static_cast<std::uint8_t>(patch.low >> 9U & 3U)};
+}
+
+/// A distance of the given side of the surface, no nearer than that is known.
+float onSide(bool inside, float distance, float nearest) {
+    return inside ? std::min(distance, -nearest) : std::max(distance, nearest);
+}
+
+/// Cells without a patch are at least so far from the surface, in cells: what is left after rounding.
+constexpr float kNearest = 1.0F / 1024.0F;
+
+PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
+    const PatchFrame frame = frameOf(patch);
+    const std::uint32_t side = sideOf(patch);
+    const glm::vec3 at = frame.across(in_cell);
+    const auto last = static_cast<float>(side - 1);
+    const float x = at.x * last;
+    const float y = at.y * last;
+    const float column = std::clamp(std::floor(x), 0.0F, last - 1.0F);
+    const float row = std::clamp(std::floor(y), 0.0F, last - 1.0F);
+    const float s = x - column;
+    const float t = y - row;
+    const std::uint32_t corner = static_cast<std::uint32_t>(row) * side + static_cast<std::uint32_t>(column);
+    const auto code = [&](std::uint32_t i) {
+        std::uint32_t byte = patch.low >> 23U & 0xffU;
+        if (i != side * side - 1) {
+            const PatchRecord texel = side == 2 ? patch : patchTexel(texels, patch.first() + i / 8);
+            byte = (side == 2 || (i & 4U) != 0 ? texel.high : texel.low) >> 8U * (i & 3U) & 0xffU;
+        }
+        return static_cast<float>(byte);
+    };
+    const float c00 = code(corner);
+    const float c10 = code(corner + 1);
+    const float c01 = code(corner + side);
+    const float c11 = code(corner + side + 1);
+    PatchHeights heights;
+    heights.base = static_cast<int>(patch.low >> 11U & 0xfffU) - kBaseZero;
+    heights.scale = static_cast<std::uint8_t>(patch.high >> 24U);
+    const float step = heights.step();
+    const float lower = c00 + s * (c10 - c00);
+    const float upper = c01 + s * (c11 - c01);
+    const float height = heights.low() + step * (lower + t * (upper - lower));
+    const float by_u = (step * last) * ((c10 - c00) + t * ((c11 - c01) - (c10 - c00)));
+    const float by_v = (step * last) * (upper - lower);
+    glm::vec3 gradient = frame.gradient(by_u, by_v);
+    const float per_length = 1.0F / std::sqrt(dot(gradient, gradient));
+    const float sign = (patch.low & 16U) != 0 ? -1.0F : 1.0F;
+    return {sign * ((at.z - height) * per_length), (sign * per_length) * gradient};
+}
+
+tl::unexpected<Error> invalid(std::uint32_t texel, const std::string& text) {
+    return invalidInput("texel " + std::to_string(texel) + " " + text);
+}
+
+}  // namespace
+
+glm::vec3 PatchFrame::across(const glm::vec3& in_cell) const {
+    float a = in_cell[first];
+    float b = in_cell[first == 2 ? 0 : first + 1];
+    const float c = in_cell[first == 0 ? 2 : first - 1];
+    a = (mirrored & 1U) != 0 ? 1.0F - a : a;
+    b = (mirrored & 2U) != 0 ? 1.0F - b : b;
+    if (diagonal == 0) {
+        return {b, c, a};
+    }
+    const float u = 0.5F * (a - b + 1.0F);
+    return diagonal == 1 ? glm::vec3(u, c, a + b)
+                         : glm::vec3(u, 0.25F * (a + b - 2.0F * c + 2.0F), a + b + c);
+}
+
+glm::dvec3 PatchFrame::across(const glm::dvec3& in_cell) const {
+    double a = in_cell[first];
+    double b = in_cell[first == 2 ? 0 : first + 1];
+    const double c = in_cell[first == 0 ? 2 : first - 1];
+    a = (mirrored & 1U) != 0 ? 1.0 - a : a;
+    b = (mirrored & 2U) != 0 ? 1.0 - b : b;
+    if (diagonal == 0) {
+        return {b, c, a};
+    }
+    const double u = 0.5 * (a - b + 1.0);
+    return diagonal == 1 ? glm::dvec3(u, c, a + b) : glm::dvec3(u, 0.25 * (a + b - 2.0 * c + 2.0), a + b + c);
+}
+
+glm::vec3 PatchFrame::gradient(float by_u, float by_v) const {
+    glm::vec3 by(1.0F, -by_u, -by_v);  // by a, b and c of across()
+    if (diagonal == 1) {
+        by = {1.0F - 0.5F * by_u, 1.0F + 0.5F * by_u, -by_v};
+    } else if (diagonal == 2) {
+        by = {1.0F - 0.5F * by_u - 0.25F * by_v, 1.0F + 0.5F * by_u - 0.25F * by_v, 1.0F + 0.5F * by_v};
+    }
+    by.x = (mirrored & 1U) != 0 ? -by.x : by.x;
+    by.y = (mirrored & 2U) != 0 ? -by.y : by.y;
+    return first == 0 ? by : first == 1 ? glm::vec3(by.z, by.x, by.y) : glm::vec3(by.y, by.z, by.x);
+}
+
+const std::array<PatchFrame, 13>& patchFrames() {
+    static constexpr std::array<PatchFrame, 13> kFrames = {{{0, 0, 0},
+                                                            {0, 1, 0},
+                                                            {0, 2, 0},
+                                                            {1, 0, 0},
+                                                            {1, 1, 0},
+                                                            {1, 2, 0},
+                                                            {1, 0, 1},
+                                                            {1, 1, 1},
+                                                            {1, 2, 1},
+                                                            {2, 0, 0},
+                                                            {2, 0, 1},
+                                                            {2, 0, 2},
+                                                            {2, 0, 3}}};
+    return kFrames;
+}
+
+float PatchHeights::step() const {
+    const float mantissa = 1.0F + static_cast<float>(scale & 15) * (1.0F / 16.0F);
+    return mantissa * std::ldexp(1.0F, (scale >> 4) - 12) * (1.0F / 255.0F);
+}
+
+PatchHeights PatchHeights::of(std::span<const double> heights, std::uint32_t side) {
+    PatchHeights result;
+    result.side = side;
+    const auto held = [](double height) { return std::clamp(height, -3.99, 3.99); };
+    double lowest = held(heights.front());
+    double highest = lowest;
+    for (const double height : heights) {
+        lowest = std::min(lowest, held(height));
+        highest = std::max(highest, held(height));
+    }
+    result.base = static_cast<int>(std::floor(lowest * 512.0));
+    while (result.scale < 255 && 255.0 * double{result.step()} < highest - double{result.low()}) {
+        ++result.scale;
+    }
+    for (std::size_t i = 0; i < std::size_t{side} * side; ++i) {
+        const double code = (held(heights[i]) - double{result.low()}) / double{result.step()};
+        result.codes[i] = static_cast<std::uint8_t>(std::clamp(std::lround(code), 0L, 255L));
+    }
+    return result;
+}
+
+void PatchHeights::decode(std::span<double> out) const {
+    for (std::size_t i = 0; i < std::size_t{side} * side; ++i) {
+        out[i] = double{low()} + double{step()} * codes[i];
+    }
+}
+
+PatchRecord PatchRecord::flat(bool inside, const glm::vec3& normal, float distance) {
+    return {(inside ? 1U : 0U) | static_cast<std::uint32_t>(packNormal(encodeNormal(normal))) << 16U,
+            bitsOf(distance)};
+}
+
+PatchRecord PatchRecord::split(std::uint32_t children, std::uint32_t inside, std::uint32_t first,
+                               const glm::vec3& normal, float offset) {
+    const auto [s, t] = coarseIndex(normal);
+    const auto code = static_cast<std::uint32_t>(
+        std::clamp(std::lround(double{offset} * kOffsetZero) + kOffsetZero, 0L, 255L));
+    return {2U | children << 2U | inside << 10U | s << 18U | t << 25U, first | code << 24U};
+}
+
+PatchRecord PatchRecord::patch(const PatchFrame& frame, bool outside_below, const PatchHeights& heights,
+                               std::uint32_t first) {
+    const std::uint32_t count = heights.side * heights.side;
+    PatchRecord record;
+    record.low = 3U |
+                 (heights.side == 2   ? 0U
+                  : heights.side == 3 ? 1U
+                                      : 2U)
+                     << 2U |
+                 (outside_below ? 16U : 0U) | static_cast<std::uint32_t>(frame.diagonal) << 5U |
+                 static_cast<std::uint32_t>(frame.first) << 7U |
+                 static_cast<std::uint32_t>(frame.mirrored) << 9U |
+                 static_cast<std::uint32_t>(heights.base + kBaseZero) << 11U |
+                 static_cast<std::uint32_t>(heights.codes[count - 1]) << 23U;
+    record.high = static_cast<std::uint32_t>(heights.scale) << 24U;
+    if (heights.side == 2) {
+        record.high |= heights.codes[0] | static_cast<std::uint32_t>(heights.codes[1]) << 8U |
+                       static_cast<std::uint32_t>(heights.codes[2]) << 16U;
+    } else {
+        record.high |= first;
+    }
+    return record;
+}
+
+PatchRecord patchTexel(PatchTexels texels, std::uint32_t index) {
+    PatchRecord record;
+    std::memcpy(&record, texels.data() + std::size_t{index} * kTexel, kTexel);
+    return record;
+}
+
+void appendPatchTexel(std::vector<std::byte>& texels, const PatchRecord& record) {
+    const auto bytes = std::as_bytes(std::span(&record, 1));
+    texels.insert(texels.end(), bytes.begin(), bytes.end());
+}
+
+PatchTreeSize patchTreeSize(PatchTexels texels) {
+    const PatchRecord head = patchTexel(texels, 0);
+    return {{head.low & 0xffffU, head.low >> 16U, head.high & 0xffffU}, head.high >> 16U};
+}
+
+double patchSpacing(PatchTexels texels) {
+    return std::ldexp(1.0 / (kPatchSideMax - 1), -static_cast<int>(patchTreeSize(texels).levels));
+}
+
+PatchMapSize patchMapSize(std::size_t texels) {
+    std::uint32_t width = 16;
+    while (std::size_t{width} * kMapSizeMax < texels) {
+        width *= 2;
+    }
+    return {width, static_cast<std::uint32_t>((texels + width - 1) / width)};
+}
+
+std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
+    const auto [roots, levels] = patchTreeSize(texels);
+    const glm::vec3 size(roots);
+    // Written so that NaN is outside.
+    if (!(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z)) {
+        return std::nullopt;
+    }
+    const glm::vec3 root(std::floor(p.x), std::floor(p.y), std::floor(p.z));
+    glm::vec3 in_cell = p - root;
+    const glm::uvec3 at(root);
+    PatchRecord record = patchTexel(texels, 1 + (at.z * roots.y + at.y) * roots.x + at.x);
+    float cell = 1.0F;    // its size, in root cells
+    bool beside = false;  // a child without a record
+    bool inside = record.kind() == PatchRecord::Kind::kInside;
+    for (std::uint32_t level = 0; level < levels && record.kind() == PatchRecord::Kind::kSplit && !beside;
+         ++level) {
+        glm::vec3 child = 2.0F * in_cell;
+        const std::uint32_t x = child.x >= 1.0F ? 1 : 0;
+        const std::uint32_t y = child.y >= 1.0F ? 1 : 0;
+        const std::uint32_t z = child.z >= 1.0F ? 1 : 0;
+        const std::uint32_t octant = x + 2 * y + 4 * z;
+        beside = (record.children() >> octant & 1U) == 0;
+        if (beside) {
+            inside = (record.low >> (10U + octant) & 1U) != 0;
+        } else {
+            in_cell = {child.x - static_cast<float>(x), child.y - static_cast<float>(y),
+                       child.z - static_cast<float>(z)};
+            cell *= 0.5F;
+            const auto before =
+                static_cast<std::uint32_t>(std::popcount(record.children() & ((1U << octant) - 1U)));
+            record = patchTexel(texels, record.first() + before);
+            inside = record.kind() == PatchRecord::Kind::kInside;
+        }
+    }
+    PatchVote vote;
+    if (record.kind() == PatchRecord::Kind::kPatch) {
+        vote = votePatch(texels, record, in_cell);
+        vote.distance *= cell;
+    } else if (record.kind() == PatchRecord::Kind::kSplit) {
+        vote.normal = octahedron(record.low >> 18U & 127U, record.low >> 25U, kCoarseHalfRange);
+        const float offset =
+            (static_cast<float>(record.high >> 24U) - float{kOffsetZero}) * (1.0F / float{kOffsetZero});
+        vote.distance = cell * onSide(inside, dot(vote.normal, in_cell - 0.5F) + offset, kNearest);
+    } else {
+        vote.normal = decodeNormal(unpackNormal(static_cast<std::uint16_t>(record.low >> 16U)));
+        const float distance = floatOf(record.high) + cell * dot(vote.normal, in_cell - 0.5F);
+        vote.distance = onSide(inside, distance, cell * kNearest);
+    }
+    return vote;
+}
+
+Result<void> validatePatches(PatchTexels texels) {
+    const std::size_t count = texels.size() / kTexel;
+    if (count == 0 || count > kPatchTexelsMax) {
+        return invalidInput("its tree of patches has " + std::to_string(count) + " texels, 1 to " +
+                            std::to_string(kPatchTexelsMax) + " are allowed");
+    }
+    const auto [roots, levels] = patchTreeSize(texels);
+    const std::uint64_t root_count = std::uint64_t{roots.x} * roots.y * roots.z;
+    if (root_count == 0 || levels > kPatchLevelsMax || 1 + root_count > count) {
+        return invalid(0, "of its tree of patches has no valid size");
+    }
+    // Level by level: [at, end) are the records of one level, and the next begins at `end`.
+    std::uint64_t at = 1;
+    std::uint64_t end = 1 + root_count;
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t level = 0; at < end; ++level) {
+        std::uint64_t next = end;
+        for (; at < end; ++at) {
+            const auto index = static_cast<std::uint32_t>(at);
+            const PatchRecord record = patchTexel(texels, index);
+            if (record.kind() == PatchRecord::Kind::kSplit) {
+                const auto children = static_cast<std::uint64_t>(std::popcount(record.children()));
+                if (level == levels || record.first() != next || next + children > count) {
+                    return invalid(index, "splits a cell whose children are not the next texels");
+                }
+                next += children;
+            } else if (record.kind() == PatchRecord::Kind::kPatch) {
+                const PatchFrame frame = frameOf(record);
+                if (sideOf(record) == 0 || frame.diagonal > 2 || frame.first > 2) {
+                    return invalid(index, "is a patch of no known kind");
+                }
+                patches.push_back(index);
+            } else if ((record.low >> 16U & 0xffU) == 0xffU || record.low >> 24U == 0xffU) {
+                return invalid(index, "has the index 255 of a normal, which none has");
+            } else if (!std::isfinite(floatOf(record.high))) {
+                return invalid(index, "holds a number that is not finite");
+            }
+        }
+        end = next;
+    }
+    for (const std::uint32_t index : patches) {
+        const PatchRecord record = patchTexel(texels, index);
+        const std::uint32_t side = sideOf(record);
+        if (side > 2 &&
+            (record.first() < end || std::uint64_t{record.first()} + (side * side - 1) / 8 > count)) {
+            return invalid(index, "is a patch whose heights lie elsewhere");
+        }
+    }
+    return {};
+}
+
+}  // namespace relief

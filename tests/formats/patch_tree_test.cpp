@@ -1,0 +1,218 @@
+// Trees of patches: records against the points that they were made for, and every way in which a tree can be broken.
+#include "formats/patch_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+
+#include "formats/depth_map.h"
+#include "formats/validate.h"
+#include "tests/formats/random_patches.h"
+
+namespace relief {
+namespace {
+
+using test::patchesOf;
+using test::randomPatches;
+
+TEST(PatchFrame, CoversTheCubeAndHasTheGradientOfItsDepth) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (const PatchFrame& frame : patchFrames()) {
+        for (int i = 0; i < 200; ++i) {
+            const glm::dvec3 p(unit(random), unit(random), unit(random));
+            const glm::dvec3 at = frame.across(p);
+            EXPECT_GE(std::min(at.x, at.y), 0.0);
+            EXPECT_LE(std::max(at.x, at.y), 1.0);
+            EXPECT_GE(at.z, 0.0);
+            EXPECT_LE(at.z, 1.0 + frame.diagonal);
+            EXPECT_LT(glm::distance(glm::dvec3(frame.across(glm::vec3(p))), at), 1e-6);
+            // Of w − H with H = 0.3 u − 0.7 v, by differences.
+            const auto value = [&](const glm::dvec3& q) {
+                const glm::dvec3 there = frame.across(q);
+                return there.z - 0.3 * there.x + 0.7 * there.y;
+            };
+            const glm::vec3 gradient = frame.gradient(0.3F, -0.7F);
+            for (int axis = 0; axis < 3; ++axis) {
+                glm::dvec3 step(0.0);
+                step[axis] = 1e-4;
+                EXPECT_NEAR((value(p + step) - value(p - step)) / 2e-4, gradient[axis], 1e-6);
+            }
+        }
+    }
+    // No two look along one line.
+    for (const PatchFrame& a : patchFrames()) {
+        for (const PatchFrame& b : patchFrames()) {
+            const float cosine =
+                std::abs(glm::dot(glm::normalize(a.gradient(0, 0)), glm::normalize(b.gradient(0, 0))));
+            EXPECT_TRUE(a == b || cosine < 0.9F);
+        }
+    }
+}
+
+TEST(PatchHeights, AreWithinHalfAStepOfTheirRange) {
+    std::mt19937 random(2);
+    for (const double range : {1e-5, 0.01, 0.3, 1.0, 3.5}) {
+        std::uniform_real_distribution<double> unit(0.4 - range, 0.4 + range);
+        for (const std::uint32_t side : {2U, 3U, 5U}) {
+            std::vector<double> heights(side * side);
+            for (double& height : heights) {
+                height = unit(random);
+            }
+            const PatchHeights codes = PatchHeights::of(heights, side);
+            std::vector<double> back(heights.size());
+            codes.decode(back);
+            // The range, that the base is below the lowest by up to 1/512, and a sixteenth for the mantissa; no less than the
+            // finest scale.
+            const double step =
+                std::max((2.0 * range + 1.0 / 512.0) * 17.0 / 16.0, std::ldexp(1.0, -12)) / 255.0;
+            for (std::size_t i = 0; i < heights.size(); ++i) {
+                EXPECT_NEAR(back[i], heights[i], 0.5001 * step) << range << " " << side;
+            }
+        }
+    }
+}
+
+TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
+    // Every frame and size holds the plane n·p = 0.5·(n.x + n.y + n.z) through the cell's middle, seen from above.
+    for (const PatchFrame& frame : patchFrames()) {
+        const glm::dvec3 along = glm::normalize(glm::dvec3(frame.gradient(0.0F, 0.0F)));
+        const glm::dvec3 n = glm::normalize(along + glm::dvec3(0.21, -0.17, 0.11));
+        for (const std::uint32_t side : {2U, 3U, 5U}) {
+            std::vector<double> heights;
+            for (std::uint32_t k = 0; k < side * side; ++k) {
+                // By bisection along w: across() has no inverse to ask.
+                const double u = (k % side) / (side - 1.0);
+                const double v = (k / side) / (side - 1.0);
+                const auto [origin, way] = [&] {
+                    const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
+                    const glm::dmat3 m(frame.across(glm::dvec3(1, 0, 0)) - zero,
+                                       frame.across(glm::dvec3(0, 1, 0)) - zero,
+                                       frame.across(glm::dvec3(0, 0, 1)) - zero);
+                    const glm::dmat3 back = glm::inverse(m);
+                    return std::pair(back * (glm::dvec3(u, v, 0.0) - zero), back[2]);
+                }();
+                heights.push_back(glm::dot(n, glm::dvec3(0.5) - origin) / glm::dot(n, way));
+            }
+            for (const bool outside_below : {false, true}) {
+                const PatchHeights codes = PatchHeights::of(heights, side);
+                std::vector<PatchRecord> texels = {PatchRecord::patch(frame, outside_below, codes, 2)};
+                for (std::uint32_t k = 0; k < codes.texels(); ++k) {
+                    PatchRecord texel;
+                    for (std::uint32_t b = 0; b < 8; ++b) {
+                        (b < 4 ? texel.low : texel.high) |= std::uint32_t{codes.codes[8 * k + b]}
+                                                            << 8U * (b % 4);
+                    }
+                    texels.push_back(texel);
+                }
+                const DepthMap map = patchesOf({{1, 1, 1}, 0}, texels);
+                ASSERT_TRUE(validatePatches(map.texels)) << validatePatches(map.texels).error().message;
+                std::mt19937 random(3);
+                std::uniform_real_distribution<double> unit(0.0, 1.0);
+                for (int i = 0; i < 100; ++i) {
+                    const glm::dvec3 p(unit(random), unit(random), unit(random));
+                    const Vote said = *vote(map, glm::vec3(p));
+                    const double sign = outside_below ? -1.0 : 1.0;
+                    EXPECT_NEAR(said.distance, sign * glm::dot(n, p - 0.5), 1.5 * double{codes.step()});
+                    EXPECT_GT(glm::dot(glm::dvec3(said.normal), sign * n),
+                              std::cos(4.0 * side * codes.step()));
+                    EXPECT_NEAR(glm::length(said.normal), 1.0F, 1e-6F);
+                }
+            }
+        }
+    }
+}
+
+TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
+    // Two roots: one flat and outside, one split with no records but for one child, which is flat and inside.
+    const glm::vec3 up(0, 1, 0);
+    const DepthMap map = patchesOf(
+        {{2, 1, 1}, 1}, {PatchRecord::flat(false, up, 0.25F), PatchRecord::split(0x80, 0x0f, 3, up, 0.1F),
+                         PatchRecord::flat(true, up, -0.25F)});
+    ASSERT_TRUE(validatePatches(map.texels)) << validatePatches(map.texels).error().message;
+    const auto at = [&](float x, float y, float z) { return *vote(map, {x, y, z}); };
+    EXPECT_NEAR(at(0.5F, 0.5F, 0.5F).distance, 0.25F, 1e-6F);
+    EXPECT_NEAR(at(0.5F, 0.9F, 0.5F).distance, 0.65F, 1e-6F);
+    EXPECT_GT(at(0.5F, 0.1F, 0.5F).distance, 0.0F) << "outside, though the plane has −0.15";
+    EXPECT_LT(at(0.5F, 0.1F, 0.5F).distance, 0.01F);
+    EXPECT_LT(at(1.25F, 0.9F, 0.25F).distance, 0.0F) << "inside, though the plane has 0.5";
+    // An offset is a 128th; the normal is exact.
+    EXPECT_NEAR(at(1.25F, 0.1F, 0.25F).distance, -0.3F, 4e-3F);
+    EXPECT_NEAR(at(1.25F, 0.9F, 0.75F).distance, 0.5F, 4e-3F);
+    EXPECT_NEAR(at(1.75F, 0.75F, 0.75F).distance, -0.25F, 1e-6F);
+    EXPECT_EQ(at(-0.1F, 0.5F, 0.5F).distance, kFarOutside);
+    EXPECT_EQ(at(2.0F, 0.5F, 0.5F).distance, kFarOutside);
+    EXPECT_EQ(at(std::nanf(""), 0.5F, 0.5F).distance, kFarOutside);
+    DepthMap part = map;
+    part.encloses = false;
+    EXPECT_FALSE(vote(part, {-0.1F, 0.5F, 0.5F}));
+    EXPECT_TRUE(vote(part, {0.5F, 0.5F, 0.5F}));
+}
+
+TEST(PatchTree, RandomTreesAreValidAndVoteFinitely) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-0.2F, 4.2F);
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        const DepthMap map = randomPatches(random);
+        const Result<void> valid = validatePatches(map.texels);
+        ASSERT_TRUE(valid) << valid.error().message;
+        for (int i = 0; i < 5000; ++i) {
+            const Vote said = *vote(map, {unit(random), unit(random), unit(random)});
+            EXPECT_TRUE(std::isfinite(said.distance));
+            EXPECT_TRUE(said.distance == kFarOutside || std::abs(glm::length(said.normal) - 1.0F) < 1e-5F);
+        }
+    }
+}
+
+TEST(PatchTree, BrokenTreesAreRefused) {
+    const glm::vec3 up(0, 1, 0);
+    const PatchRecord leaf = PatchRecord::flat(true, up, -1.0F);
+    const std::vector<double> heights(25, 0.5);
+    const PatchHeights codes = PatchHeights::of(heights, 5);
+    const PatchFrame frame = patchFrames()[0];
+    const auto refused = [](const PatchTreeSize& size, const std::vector<PatchRecord>& records,
+                            const char* text) {
+        const Result<void> valid = validatePatches(patchesOf(size, records).texels);
+        ASSERT_FALSE(valid) << text;
+        EXPECT_NE(valid.error().message.find(text), std::string::npos) << valid.error().message;
+    };
+    refused({{0, 1, 1}, 0}, {leaf}, "no valid size");
+    refused({{65535, 65535, 65535}, 0}, {leaf}, "no valid size");
+    refused({{1, 1, 1}, kPatchLevelsMax + 1}, {leaf}, "no valid size");
+    // To itself, past the next texel, beyond the map, and deeper than the header says.
+    refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 1, up, 0)}, "not the next texels");
+    refused({{1, 1, 1}, 3}, {PatchRecord::split(1, 0, 3, up, 0), leaf, leaf}, "not the next texels");
+    refused({{4, 4, 1}, 0}, std::vector<PatchRecord>(16, PatchRecord::split(1, 0, 17, up, 0)),
+            "not the next texels");
+    refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 1)}, "heights lie elsewhere");
+    refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 14)}, "heights lie elsewhere");
+    PatchRecord odd = PatchRecord::patch(frame, false, codes, 2);
+    odd.low |= 3U << 2U;
+    refused({{1, 1, 1}, 0}, {odd}, "no known kind");
+    odd = PatchRecord::patch(frame, false, codes, 2);
+    odd.low |= 3U << 5U;
+    refused({{1, 1, 1}, 0}, {odd}, "no known kind");
+    odd = PatchRecord::flat(true, up, std::nanf(""));
+    refused({{1, 1, 1}, 0}, {odd}, "not finite");
+    odd = leaf;
+    odd.low |= 0xff000000U;
+    refused({{1, 1, 1}, 0}, {odd}, "index 255");
+    DepthMap none;
+    none.format = MapFormat::kPatches;
+    EXPECT_FALSE(validatePatches(none.texels));
+}
+
+TEST(PatchTree, FramesOfSeveralLengthsAreRefused) {
+    std::mt19937 random(6);
+    DepthMap map = randomPatches(random);
+    EXPECT_TRUE(validateFrame(map)) << validateFrame(map).error().message;
+    map.object_per_map.y = 2.0F;
+    map.object_to_map.row[1] *= 0.5F;
+    EXPECT_FALSE(validateFrame(map));
+}
+
+}  // namespace
+}  // namespace relief
