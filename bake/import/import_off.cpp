@@ -13,9 +13,16 @@
 namespace relief {
 namespace {
 
+/// The elements that each end with a line, which may hold colours and the like behind them, as the format has it. The others
+/// follow each other over any lines.
+struct EndsWithLine {
+    bool vertex = true;
+    bool face = true;
+};
+
 class OffReader {
   public:
-    explicit OffReader(std::string_view text) : text_(text, {'#', false}) {}
+    OffReader(std::string_view text, EndsWithLine ends) : text_(text, {'#', false}), ends_(ends) {}
 
     Result<PolygonMesh> read() {
         RELIEF_TRY(readHeader());
@@ -34,6 +41,9 @@ class OffReader {
         return std::move(mesh_);
     }
 
+    /// A vertex or a face does.
+    [[nodiscard]] bool spansLines() const { return spans_lines_; }
+
   private:
     Result<void> readHeader() {
         std::string_view word = text_.anyWord();
@@ -44,6 +54,9 @@ class OffReader {
                 return wrongLine(text_.line(),
                                  quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
             }
+            behind_ = (name.find("st") != std::string::npos ? 2 : 0) +
+                      (name.find('c') != std::string::npos ? 4 : 0) +
+                      (name.find('n') != std::string::npos ? 3 : 0);
             word = text_.anyWord();
             if (lowerCase(word) == "binary") {
                 return wrongLine(text_.line(), "a binary OFF is not read; save it as text, or as PLY");
@@ -93,10 +106,17 @@ class OffReader {
     Result<void> readVertex(std::uint64_t index) {
         glm::vec3 position(0.0F);
         for (int i = 0; i < 3; ++i) {
+            spans_lines_ = spans_lines_ || (i > 0 && text_.atLineEnd());
             position[i] = RELIEF_TRY(number(text_.anyWord(), "vertex", index));
         }
         mesh_.positions.push_back(position);
-        return passLine("vertex", index);
+        if (ends_.vertex) {
+            return passLine("vertex", index);
+        }
+        for (int i = 0; i < behind_; ++i) {
+            (void)RELIEF_TRY(number(text_.anyWord(), "vertex", index));
+        }
+        return {};
     }
 
     /// \return the number of its triangles.
@@ -112,6 +132,7 @@ class OffReader {
                                                "it again");
         }
         for (std::uint64_t i = 0; i < *corners; ++i) {
+            spans_lines_ = spans_lines_ || text_.atLineEnd();
             const std::string_view corner = text_.anyWord();
             const std::optional<std::uint64_t> vertex = parseUnsigned(corner);
             if (corner.empty()) {
@@ -126,7 +147,9 @@ class OffReader {
             mesh_.corners.push_back(static_cast<std::uint32_t>(*vertex));
         }
         mesh_.sizes.push_back(static_cast<std::uint32_t>(*corners));
-        RELIEF_TRY(passLine("face", index));
+        if (ends_.face) {
+            RELIEF_TRY(passLine("face", index));
+        }
         return *corners < 3 ? 0 : *corners - 2;
     }
 
@@ -139,6 +162,9 @@ class OffReader {
     }
 
     TextScanner text_;
+    EndsWithLine ends_;
+    bool spans_lines_ = false;
+    int behind_ = 0;  ///< numbers behind a vertex's coordinates, by the header
     std::uint64_t vertices_ = 0;
     std::uint64_t faces_ = 0;
     PolygonMesh mesh_;
@@ -147,7 +173,20 @@ class OffReader {
 }  // namespace
 
 Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
-    return OffReader({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).read();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    OffReader reader(text, {});
+    Result<PolygonMesh> mesh = reader.read();
+    // A further element on a line looks like colours. It is missing at the end, unless it goes on below and its rest there
+    // looks like one more.
+    for (const EndsWithLine ends : {EndsWithLine{false, false}, {true, false}, {false, true}}) {
+        if (mesh && !reader.spansLines()) {
+            break;
+        }
+        if (Result<PolygonMesh> again = OffReader(text, ends).read()) {
+            return again;
+        }
+    }
+    return mesh;
 }
 
 }  // namespace relief

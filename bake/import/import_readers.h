@@ -15,8 +15,9 @@ namespace relief {
 /// OFF, the Object File Format of Geomview, as text.
 ///
 /// Reads the header OFF, with the prefixes ST, C and N or without it, and the counts of vertices, faces and, if it is there,
-/// edges. Each vertex and each face begins a line; a face may span several. The rest of their last line, mostly colours, is
-/// skipped.
+/// edges. Vertices and faces may span several lines. The rest of their last line, mostly colours, is skipped. Several may share
+/// a line if that gives the announced counts: faces without colours, and vertices with as many numbers behind their
+/// coordinates as the header has letters for.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 
 /// STL, as text and binary.

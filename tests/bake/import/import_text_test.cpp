@@ -140,6 +140,42 @@ TEST(ImportText, Off) {
     expectRefused("a.off", replaced(kOff, "OFF", "nOFF"), "three dimensions");
 }
 
+TEST(ImportText, OffOverAnyLines) {
+    const std::string head = kOff.substr(0, 10);
+    const std::string vertices = kOff.substr(10, 24);
+    const std::string faces = kOff.substr(34);
+    const auto oneLine = [](const std::string& text) { return replaced(text, "\n", " "); };
+    expectTetrahedron("a.off", head + vertices + oneLine(faces));
+    expectTetrahedron("a.off", head + oneLine(vertices) + "\n" + faces);
+    expectTetrahedron("a.off", oneLine(kOff));
+    // A colour ends with the line that the last index stands in.
+    expectTetrahedron("a.off",
+                      head + vertices + "3 0 2\n1 255 0 0\n3 0\n1\n3 .5 .5 .5 1\n3 1 2 3 7\n3 0 3 2 9 9 9");
+    // This many words on a line, wherever a record ends.
+    const auto wrapped = [&](const std::string& lines, std::size_t words) {
+        std::string text = oneLine(lines);
+        std::size_t count = 0;
+        for (char& c : text) {
+            c = c == ' ' && ++count % words == 0 ? '\n' : c;
+        }
+        return text;
+    };
+    for (std::size_t words = 1; words <= 12; ++words) {
+        expectTetrahedron("a.off", head + wrapped(vertices + faces, words));
+        expectTetrahedron("a.off", head + replaced(vertices, "\n", " 9 9 9\n") + wrapped(faces, words));
+    }
+    expectTetrahedron("a.off", oneLine("C" + head + replaced(vertices, "\n", " 1 .5 0 1\n") + faces));
+    expectTetrahedron("a.off",
+                      oneLine("STCN" + head + replaced(vertices, "\n", " 0 0 1 9 9 9 9 .5 0\n") + faces));
+    // Colours cannot be told from further faces.
+    expectRefused("a.off", head + vertices + oneLine(replaced(faces, "\n", " 255 0 0\n")),
+                  "line 7: it ends after face 1 of 4");
+    const std::string whole = oneLine(kOff);
+    for (std::size_t end = head.size(); end + 2 < whole.size(); ++end) {
+        expectRefused("a.off", whole.substr(0, end), "cut off");
+    }
+}
+
 TEST(ImportText, Stl) {
     std::string stl = "solid t\n";
     for (const char* corners :
