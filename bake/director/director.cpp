@@ -347,6 +347,11 @@ class Director {
             result_.notices.push_back(mesh.name + ": closed " + countText(mesh.closed_holes, "hole") +
                                       " for baking: the mesh is nearly closed");
         }
+        if (const std::uint64_t sheets = result_.shape.closable_sheets; sheets > 0) {
+            result_.notices.push_back(
+                mesh.name + ": " + countText(sheets, "sheet") +
+                " would be solid with closed holes: if no vessel should stay open, bake with --as solid");
+        }
     }
 
     const BakeWatcher& watcher_;

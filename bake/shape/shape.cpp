@@ -36,6 +36,16 @@ constexpr std::size_t kPartProbesMin = 64;
 constexpr double kSheetSight = 0.1;
 /// A visible part: more than this share of the rays from its lighter side lead out.
 constexpr double kSeen = 0.02;
+/// A sheet that may be a solid with larger holes: it has at least this share of the mesh's extent, and its shadows at most
+/// this share left without their opposites.
+constexpr double kBodyExtent = 0.25;
+constexpr double kMouthMax = 0.5;
+/// A body cut off at its foot: the hole is flat by this length of its triangles' mean normal, faces down by this cosine, and
+/// this share of the surface has no sight of it from behind, at this many points of it.
+constexpr double kFootFlat = 0.9;
+constexpr double kFootDown = 0.5;
+constexpr double kFootHidden = 0.05;
+constexpr int kFootPoints = 16;
 /// A two-sided sheet: this share of a closed part's triangles coincide in pairs.
 constexpr double kTwice = 0.9;
 /// A terrain covers this share of its rectangle, and has this many triangles and this share of the mesh's extent.
@@ -78,6 +88,41 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const Mes
         }
     }
     return {out[0] / rays, out[1] / rays};
+}
+
+/// A part with holes, closed, is a body cut off at its foot, such as a statue open below, and no vessel: a vessel's mouth
+/// faces up, or all of its inside has sight of it.
+Result<bool> isCutOffBelow(const PreparedMesh& closed, bool z_is_up) {
+    glm::dvec3 mouth(0.0);
+    double area = 0.0;
+    const auto caps = static_cast<std::uint32_t>(closed->surfaceTriangles());
+    for (std::uint32_t i = caps; i < closed->triangles.size(); ++i) {
+        const glm::dvec3 normal = planeOf(*closed, i).normal;
+        mouth += normal;
+        area += length(normal);
+    }
+    const double down = std::max(-mouth.y, z_is_up ? -mouth.z : -mouth.y);
+    if (closed->closed_holes != 1 || length(mouth) < kFootFlat * area || down < kFootDown * length(mouth)) {
+        return false;
+    }
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(closed));
+    const double step = kSurfaceStep * double{closed->bounds.longestSide()};
+    MersenneRandom random(1);
+    std::size_t hidden = 0;
+    for (std::size_t k = 0; k < kEnclosureProbes; ++k) {
+        const double at = (static_cast<double>(k) + random.uniform()) / kEnclosureProbes;
+        const auto [on, normal] = drawOnSurface(*closed, closed.areas(), at, random);
+        bool seen = false;
+        for (int i = 0; i < kFootPoints && !seen; ++i) {
+            const auto cap = static_cast<std::uint32_t>(random.below(closed->cap_triangles));
+            const glm::dvec3 from = on - step * normal;
+            const glm::dvec3 to = drawOnTriangle(*closed, caps + cap, random).position;
+            const std::optional<FirstHit> hit = query.firstHit(from, to - from);
+            seen = hit && hit->triangle >= caps;
+        }
+        hidden += seen ? 0 : 1;
+    }
+    return static_cast<double>(hidden) > kFootHidden * kEnclosureProbes;
 }
 
 class Shaper {
@@ -140,7 +185,7 @@ class Shaper {
     }
 
   private:
-    enum class Kind : std::uint8_t { kHoled, kSheet, kTerrain };
+    enum class Kind : std::uint8_t { kHoled, kPerhapsHoled, kSheet, kTerrain };
     struct Role {
         Kind kind = Kind::kSheet;
         int axis = 1;  ///< of a terrain's heights
@@ -274,6 +319,10 @@ class Shaper {
                 part.role.kind = Kind::kHoled;
             } else if (const std::optional<int> axis = terrainAxis(part.sheet)) {
                 part.role = {Kind::kTerrain, *axis};
+            } else if (const Shadow shadow = shadowOf(part.sheet);
+                       sizeOf(part.sheet) >= kBodyExtent * mesh_.bounds.longestSide() &&
+                       length(shadow.signed_area) <= kMouthMax * length(shadow.area)) {
+                part.role.kind = Kind::kPerhapsHoled;
             }
         });
         return {};
@@ -345,10 +394,12 @@ class Shaper {
     struct Closed {
         std::optional<PreparedMesh> mesh;
         bool balanced = true;
+        bool is_body = true;  ///< and no vessel
     };
 
     /// Without a mesh if the holes cannot be closed, or the result encloses nothing.
-    [[nodiscard]] Result<Closed> close(const TriangleMesh& open) const {
+    /// \param is_body  as is known without a look at it.
+    [[nodiscard]] Result<Closed> close(const TriangleMesh& open, bool is_body) const {
         const std::size_t probes = std::clamp(open.triangles.size() / 8, kPartProbesMin, kEnclosureProbes);
         const PreparedMesh closed = RELIEF_TRY(closeHoles(open, probes));
         if (!closed.closed()) {
@@ -365,7 +416,8 @@ class Shaper {
         }
         closed.freeEdges();
         const std::vector<bool> turn(closed->triangles.size(), *volume < 0.0);
-        return Closed{PreparedMesh(closed).woundOutwards(turn), balanced};
+        const PreparedMesh wound = PreparedMesh(closed).woundOutwards(turn);
+        return Closed{wound, balanced, is_body || RELIEF_TRY(isCutOffBelow(wound, mesh_.unit.empty()))};
     }
 
     void add(const Closed& closed) {
@@ -379,7 +431,7 @@ class Shaper {
     Result<void> closeParts() {
         std::vector<Open*> holed;
         for (Open& part : open_) {
-            if (part.role.kind == Kind::kHoled) {
+            if (part.role.kind == Kind::kHoled || part.role.kind == Kind::kPerhapsHoled) {
                 holed.push_back(&part);
             }
         }
@@ -387,15 +439,18 @@ class Shaper {
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
             const Result<TriangleMesh> mesh = finishMesh(meshOf(holed[i]->sheet, mesh_.name));
             if (mesh) {  // else too small for a mesh
-                closed[i] = close(*mesh);
+                closed[i] = close(*mesh, holed[i]->role.kind == Kind::kHoled);
             }
         });
         std::array<std::vector<Open*>, kWordsOf<ShapeAs>.size()> left;  // by kind
         for (std::size_t i = 0; i < holed.size(); ++i) {
             const Closed part = RELIEF_TRY(std::move(closed[i]));
-            if (part.mesh) {
+            if (part.mesh && part.is_body) {
                 add(part);
                 ++report_.solids_with_holes;
+            } else if (holed[i]->role.kind == Kind::kPerhapsHoled) {
+                holed[i]->role.kind = Kind::kSheet;
+                report_.closable_sheets += part.mesh ? 1 : 0;
             } else {
                 left[static_cast<std::size_t>(holed[i]->as)].push_back(holed[i]);
             }
@@ -422,7 +477,7 @@ class Shaper {
             rest.labels.insert(rest.labels.end(), part->sheet.sources.begin(), part->sheet.sources.end());
         }
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
-        const Closed closed = RELIEF_TRY(close(rest));
+        const Closed closed = RELIEF_TRY(close(rest, true));
         if (closed.mesh) {
             add(closed);
             ++report_.solids_with_holes;

@@ -2,7 +2,7 @@
 // vertex) between triangles of one kind:
 //
 //   solid             closed
-//   solid with holes  open, but hardly any ray leads out from behind its surface: the holes are closed
+//   solid with holes  open, but hardly any ray leads out from behind its surface, or cut off below: the holes are closed
 //   sheet             both sides are seen from outside: becomes a shell (sheet.h)
 //   terrain           a height field that covers its rectangle: becomes the ground below it
 //
@@ -42,6 +42,7 @@ struct ShapeReport {
     std::uint64_t solids = 0;
     std::uint64_t solids_with_holes = 0;
     std::uint64_t sheets = 0;
+    std::uint64_t closable_sheets = 0;  ///< large ones that closed holes would make solids
     std::uint64_t terrains = 0;
     std::uint64_t coincident_triangles = 0;  ///< dropped from sheets, and from solids closed without them
     std::uint64_t near_copies = 0;           ///< closed parts dropped for a larger one (near_copies.h)
@@ -63,6 +64,9 @@ void fields(Visitor& visit, R& report) {
     visit("solids_with_holes", report.solids_with_holes,
           {"Open parts whose inside is mostly hidden; their holes are closed"});
     visit("sheets", report.sheets, {"Parts that are visible from both sides; they become shells"});
+    visit("closable_sheets", report.closable_sheets,
+          {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
+           "vessels, or bodies for --as solid"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
     visit("coincident_triangles", report.coincident_triangles,
           {"Triangles left out because they coincide with another one"});

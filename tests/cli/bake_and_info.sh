@@ -51,7 +51,9 @@ expect_error 1 'holes.*close or keep' "$relief" bake open.obj -o bad.relief --ho
 # A box without a bottom is walls with two sides, unless --as says otherwise; the container remembers how thick they are.
 grep -v '^f 4 3 2 1' box.obj >walls.obj
 expect 0 "$relief" bake walls.obj -o walls.relief --budget 100kB --thickness 0.2 --json
+grep -q 'walls.obj: 1 sheet would be solid .* --as solid' stderr || die "--as solid is not recommended: $(cat stderr)"
 cp stdout report.json
+json report.json "d['shape']['closable_sheets'] == 1"
 json report.json "d['shape']['sheets'] == 1 and abs(d['shape']['thickness'] - 0.2) < 1e-6 and d['wrong_percent'] < 5"
 json report.json "d['provenance']['options'].endswith(' --thickness 0.2') and d['provenance']['triangles'] == 10"
 json report.json "len(d['maps']) <= 8"

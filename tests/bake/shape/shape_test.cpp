@@ -83,6 +83,50 @@ TriangleMesh makeCup() {
     return finished(positions, triangles);
 }
 
+/// A profile of radii and heights turned round the y axis, open where it does not begin or end on it.
+TriangleMesh makeTurned(const std::vector<glm::dvec2>& profile) {
+    constexpr std::uint32_t kSides = 64;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (std::uint32_t k = 0; k < profile.size(); ++k) {
+        for (std::uint32_t i = 0; i < kSides; ++i) {
+            const double a = 2.0 * std::numbers::pi * i / kSides;
+            positions.emplace_back(profile[k].x * std::cos(a), profile[k].y, profile[k].x * std::sin(a));
+            const std::uint32_t here = kSides * k + i;
+            const std::uint32_t next = kSides * k + (i + 1) % kSides;
+            if (k + 1 < profile.size()) {
+                triangles.insert(triangles.end(),
+                                 {{here, here + kSides, next}, {next, here + kSides, next + kSides}});
+            }
+        }
+    }
+    return finished(positions, triangles);
+}
+
+/// Open below, at y = −0.3; its brim, from radius 0.7 to 1, has no sight of that hole from within.
+TriangleMesh makeToadstool() {
+    std::vector<glm::dvec2> profile = {{0.7, -0.3}, {0.7, 0.0}};
+    for (int i = 0; i <= 8; ++i) {
+        const double a = std::numbers::pi * i / 16.0;
+        profile.emplace_back(i == 8 ? 0.0 : std::cos(a), 0.5 * std::sin(a));
+    }
+    return makeTurned(profile);
+}
+
+TriangleMesh scaled(TriangleMesh mesh, double scale, const glm::dvec3& offset = glm::dvec3(0.0)) {
+    for (glm::vec3& p : mesh.positions) {
+        p = glm::dvec3(p) * scale + offset;
+    }
+    return finished(mesh.positions, mesh.triangles);
+}
+
+TriangleMesh turned(TriangleMesh mesh, const glm::dvec3& axis, double degrees) {
+    for (glm::vec3& p : mesh.positions) {
+        p = rotation(axis, degrees) * glm::dvec3(p);
+    }
+    return finished(mesh.positions, mesh.triangles);
+}
+
 /// y = height(x, z) over [−1, 1]².
 template <class Height>
 TriangleMesh makeHeights(const Height& height) {
@@ -193,6 +237,43 @@ TEST(Shape, WhatIsSeenFromBothSidesIsASheet) {
     }
 }
 
+// A vessel's mouth faces up, and a bell, a shade or a box turned over shows all of its inside.
+TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
+    const TriangleMesh toadstool = makeToadstool();
+    const ShapedMesh shape = shaped(toadstool);
+    expectKinds(shape.report, 0, 1, 0, 0);
+    EXPECT_EQ(shape.report.closable_sheets, 0U);
+    const MeshQuery query = queryOf(shape.mesh);
+    for (const glm::vec2& at : {glm::vec2(0.0F, 0.2F), {0.65F, -0.29F}, {0.9F, 0.02F}, {0.0F, -0.299F}}) {
+        EXPECT_TRUE(query.inside({at.x, at.y, 0.1F})) << at.x << ' ' << at.y;
+    }
+    EXPECT_FALSE(query.inside({0.0F, -0.301F, 0.0F}) || query.inside({0.8F, -0.01F, 0.0F}));
+    const glm::dvec3 x(1, 0, 0);
+    const TriangleMesh z_up = turned(toadstool, x, 90.0);
+    expectKinds(shaped(z_up).report, 0, 1, 0, 0);
+    TriangleMesh in_metres = z_up;  // y is up
+    in_metres.unit = "m";
+    const std::vector<TriangleMesh> vessels = {in_metres,
+                                               turned(toadstool, x, 180.0),
+                                               turned(toadstool, x, -90.0),
+                                               turned(toadstool, {0, 0, 1}, 90.0),
+                                               makeOpenBox(),
+                                               turned(makeOpenBox(), x, 180.0),
+                                               makeCup(),
+                                               turned(makeCup(), x, 180.0),
+                                               makeTurned({{0.5, -0.6}, {0.4, 0.3}, {0.0, 0.5}}),
+                                               makeTurned({{0.5, -1.5}, {0.3, 0.5}})};
+    for (std::size_t i = 0; i < vessels.size(); ++i) {
+        SCOPED_TRACE(i);
+        const ShapeReport report = shaped(vessels[i]).report;
+        expectKinds(report, 0, 0, 1, 0);
+        EXPECT_EQ(report.closable_sheets, 1U);  // told of --as solid
+        expectKinds(shaped(vessels[i], ShapeAs::kSolid).report, 0, 1, 0, 0);
+    }
+    EXPECT_EQ(shaped(makePlane(0.0F, 1)).report.closable_sheets, 0U);
+    EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
+}
+
 TEST(Shape, AShellIsAllThatIsNearItsSheet) {
     const TriangleMesh box = makeOpenBox();
     expectShell(box, shaped(box), [](const glm::vec3& p) { return p.y > 0.95F; });
@@ -217,13 +298,6 @@ TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
     EXPECT_TRUE(query.inside({0.1F, 0.02F, 0.2F}));
     EXPECT_TRUE(query.inside({0.1F, -0.02F, 0.2F}));
     EXPECT_FALSE(query.inside({0.1F, 0.03F, 0.2F}));
-}
-
-TriangleMesh scaled(TriangleMesh mesh, double scale, const glm::dvec3& offset = glm::dvec3(0.0)) {
-    for (glm::vec3& p : mesh.positions) {
-        p = glm::dvec3(p) * scale + offset;
-    }
-    return finished(mesh.positions, mesh.triangles);
 }
 
 // The gap between them is thinner than any wall: it is no hollow, and a warning says so.
