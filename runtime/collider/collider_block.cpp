@@ -63,6 +63,17 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     return block;
 }
 
+/// The first votes of a step, one after another, with what the compiler must know to leave out the other formats' code.
+std::string unrolledVotes(std::span<const PlacedMap> maps) {
+    std::string votes;
+    for (std::size_t i = 0; i < std::min<std::size_t>(maps.size(), kUnrolledMaps); ++i) {
+        votes += "RELIEF_VOTE_OF(" + std::to_string(i) + "," +
+                 std::to_string(static_cast<int>(maps[i].map->format)) + "," +
+                 std::to_string(flagsOf(maps[i])) + ") ";
+    }
+    return votes;
+}
+
 }  // namespace
 
 std::size_t mapsInBlock(std::size_t block_bytes, std::size_t bodies) {
@@ -98,17 +109,22 @@ std::vector<std::byte> colliderBlock(std::span<const BlockBody> bodies, std::spa
     return block;
 }
 
-std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps) {
+std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps, const MapLayout& layout) {
     std::string defines;
     const auto define = [&](const std::string& name, const std::string& value = {}) {
         defines += "#define RELIEF_" + name + " " + value + "\n";
     };
     define("MAP_CAPACITY", std::to_string(maps.size()));
+    const auto log2Width = [&](TexelKind kind) { return std::to_string(layout.textures[kind].log2Width()); };
+    define("LOG2_WIDTHS", "ivec3(" + log2Width(kFloatTexels) + "," + log2Width(kFixedTexels) + "," +
+                              log2Width(kFrontBackTexels) + ")");
     if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& one) { return one.live; })) {
         define("LIVE", "1");
     }
     if (bodies > 0) {
         define("BODIES", std::to_string(bodies));
+    } else {
+        define("VOTES", unrolledVotes(maps));
     }
     std::int32_t all = ~0;
     for (const PlacedMap& one : maps) {

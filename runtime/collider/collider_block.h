@@ -36,7 +36,8 @@ void writeRows(const Pose& pose, glm::vec4 (&rows)[3]);
                                                    std::span<const PlacedMap> maps, const MapLayout& layout);
 
 /// Lines for makeProgram: RELIEF_MAP_CAPACITY, and what no map needs is left out of the shader, for a GL may run every
-/// branch for every map.
-[[nodiscard]] std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps);
+/// branch for every map. So a program is of one collider alone.
+[[nodiscard]] std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps,
+                                          const MapLayout& layout);
 
 }  // namespace relief

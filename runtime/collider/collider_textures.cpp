@@ -105,7 +105,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     result.places_ = layout.places;
     result.bodies_ = std::move(bodies);
     result.map_count_ = static_cast<int>(maps.size());
-    result.defines_ = colliderDefines(result.bodies_.size(), maps);
+    result.defines_ = colliderDefines(result.bodies_.size(), maps, layout);
 
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     forgetGlErrors();

@@ -51,7 +51,7 @@ struct ReliefBody {
 #endif
 
 layout(std140) uniform ReliefCollider {
-    ivec4 u_relief_count;  // maps in use; log2 of the widths of the textures: float, fixed, front-back
+    ivec4 u_relief_count;  // maps in use; then RELIEF_LOG2_WIDTHS
 #if RELIEF_BODIES > 0
     ReliefBody u_relief_bodies[RELIEF_BODIES];
 #endif
@@ -93,7 +93,7 @@ void reliefShare(int lane, int lanes) {
 #endif
 
 // Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
-// any sizes lie together without a gap.
+// any sizes lie together without a gap. RELIEF_LOG2_WIDTHS: log2 of the widths, which every texel needs.
 uniform highp sampler2D u_relief_float;
 uniform highp sampler2D u_relief_fixed;
 uniform highp usampler2D u_relief_front_back;
@@ -322,20 +322,22 @@ ivec2 reliefTexel(int index, int log2_width) {
 
 // R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty. Of the normal the indices.
 bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 normal) {
-    vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, u_relief_count.z), 0) * 255.0 + 0.5);
+    vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, RELIEF_LOG2_WIDTHS.y), 0) * 255.0 + 0.5);
     float code = bytes.b * 256.0 + bytes.a;
     depth = (code - 1.0) * (depth_max / float(RELIEF_DEPTH_STEPS));
     normal = bytes.rg;
     return code > 0.0;
 }
 
-// The index of a texel of a front-back map, −1 where its row has none: a silhouette leaves the ends of rows empty.
-int reliefFrontBackIndex(ivec4 place, ivec4 info, ivec2 at) {
+// The index of a texel of a front-back map. Where its row has none it is that of another texel: a silhouette leaves the ends
+// of rows empty.
+int reliefFrontBackIndex(ivec4 place, ivec4 info, ivec2 at, out bool exists) {
     int index = place.x + at.y * place.y + at.x;
+    exists = true;
     if (reliefHas(info, RELIEF_HAS_ROWS)) {
-        uvec4 row = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y, u_relief_count.w), 0);
-        bool within = uint(at.x) >= row.r && uint(at.x) < row.g;
-        index = within ? place.x + int(row.b | (row.a << 16)) + at.x : -1;
+        uvec4 row = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y, RELIEF_LOG2_WIDTHS.z), 0);
+        exists = uint(at.x) >= row.r && uint(at.x) < row.g;
+        index = exists ? place.x + int(row.b + (row.a << 16)) + at.x : place.x;
     }
     return index;
 }
@@ -381,10 +383,11 @@ float reliefEmpty(ivec4 info) {
 
 // A point of an orthographic map relative to the ray through its texel's centre.
 struct ReliefSight {
-    int texel;   // its index; −1: it is empty
-    float z;     // depth of the point
-    bool plane;  // the map decodes planes
-    vec3 from;   // as reliefPlane() takes them
+    int texel;    // its index
+    bool exists;  // it is no end of a row that is left out
+    float z;      // depth of the point
+    bool plane;   // the map decodes planes
+    vec3 from;    // as reliefPlane() takes them
     vec3 ray;
     float standing;
     float scale;  // z_scale
@@ -402,8 +405,10 @@ float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
 
 // Outside where either surface votes so; of a gap where both do.
 ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
-    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(max(sight.texel, 0), u_relief_count.w), 0);
-    found = sight.texel >= 0 && (words.b != 0u || words.a != 0u && (!sight.plane || RELIEF_HALF_EMPTY));
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.z), 0);
+    // In integers, which takes fewer instructions than a conjunction of conditions.
+    uint depths = !sight.plane || RELIEF_HALF_EMPTY ? words.b | words.a : words.b;
+    found = (sight.exists ? depths : 0u) != 0u;
     float front = reliefFrontBackDepth(info.y, words.b);
     float back = reliefFrontBackDepth(info.y, words.a);
     if (sight.plane) {
@@ -417,8 +422,11 @@ ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole,
         front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
         back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
     }
-    bool take_back = reliefIsGap(info) ? back < front : whole ? reliefReplaces(back, front) : back > front;
-    return ReliefVote(take_back ? back : front, reliefCode(take_back ? words.g : words.r));
+    float distance = reliefIsGap(info) ? min(front, back) : max(front, back);
+    if (whole && !reliefIsGap(info)) {
+        distance = reliefReplaces(back, front) ? back : front;
+    }
+    return ReliefVote(distance, reliefCode(distance == front ? words.r : words.g));
 }
 
 ReliefVote reliefVoteFixed(int i, ivec4 info, ReliefSight sight, out bool found) {
@@ -433,7 +441,7 @@ ReliefVote reliefVoteFixed(int i, ivec4 info, ReliefSight sight, out bool found)
 #if defined(RELIEF_HAS_FLOAT)
 // A float map's normals count as they are.
 ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
-    vec4 values = texelFetch(u_relief_float, reliefTexel(sight.texel, u_relief_count.y), 0);
+    vec4 values = texelFetch(u_relief_float, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.x), 0);
     found = values.a >= 0.0;
     float distance = sight.plane ? reliefPlane(i, values.rgb, 1.0, values.a, 0.5, sight.from, sight.ray, sight.standing)
                                  : reliefSightProjected(info, values.a, sight);
@@ -457,8 +465,9 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
     bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     if (in_window && (in_depth || sees_beyond)) {
         ivec2 at = ivec2(p.xy);
-        int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at) : place.x + at.y * place.y + at.x;
-        ReliefSight sight = ReliefSight(texel, p.z, reliefIsPlane(info),
+        bool exists = true;
+        int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at, exists) : place.x + at.y * place.y + at.x;
+        ReliefSight sight = ReliefSight(texel, exists, p.z, reliefIsPlane(info),
                                         reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
                                         u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
                                         u_relief_maps[i].object_per_map.z);
@@ -513,24 +522,27 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
 #if defined(RELIEF_HAS_PATCHES)
 //!include collider/patches.glsl
 #else
-ReliefVote reliefVotePatches(int i, vec3 p, bool whole) {
+ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
     return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
 }
 #endif
 
-ReliefVote reliefVote(int i, vec3 p, bool whole) {
+ReliefVote reliefVoteOf(int i, ivec4 info, vec3 p, bool whole) {
     vec3 in_map = reliefInMap(i, p);
     ivec4 place = u_relief_maps[i].place;
-    ivec4 info = u_relief_maps[i].info;
     ReliefVote vote;
     if (reliefIsPatches(info)) {
-        vote = reliefVotePatches(i, in_map, whole);
+        vote = reliefVotePatches(i, info, in_map, whole);
     } else if (reliefIsCube(info)) {
         vote = reliefVoteCube(i, in_map, place, info);
     } else {
         vote = reliefVoteOrthographic(i, in_map, place, info, whole);
     }
     return vote;
+}
+
+ReliefVote reliefVote(int i, vec3 p, bool whole) {
+    return reliefVoteOf(i, u_relief_maps[i].info, p, whole);
 }
 
 // The votes so far: of none the map is -1.
@@ -541,8 +553,8 @@ struct ReliefBest {
 };
 const ReliefBest RELIEF_NO_VOTE = ReliefBest(RELIEF_FAR_INSIDE, RELIEF_NO_CODE, -1);
 
-void reliefJoin(inout ReliefBest best, int i, vec3 p, bool whole) {
-    ReliefVote vote = reliefVote(i, p, whole);
+void reliefJoin(inout ReliefBest best, int i, ivec4 info, vec3 p, bool whole) {
+    ReliefVote vote = reliefVoteOf(i, info, p, whole);
     // Without `whole` the best one is below 0 so far.
     if (whole ? reliefReplaces(vote.distance, best.distance) : vote.distance > best.distance) {
         best = ReliefBest(vote.distance, vote.normal, i);
@@ -558,7 +570,7 @@ ReliefField reliefFieldOf(ReliefBest best) {
 ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
     ReliefBest best = RELIEF_NO_VOTE;
     for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
-        reliefJoin(best, i, p, whole);
+        reliefJoin(best, i, u_relief_maps[i].info, p, whole);
     }
     return reliefFieldOf(best);
 }
@@ -630,9 +642,11 @@ ReliefField reliefEvaluate(vec3 p) {
     return reliefMaps(0, u_relief_count.x, p, true);
 }
 
-#define RELIEF_VOTE_OF(n) \
-    if (n < RELIEF_MAP_CAPACITY && best.distance < 0.0) { \
-        reliefJoin(best, min(n, RELIEF_MAP_CAPACITY - 1), p, false); \
+// Its format and flags are numbers here: a compiler that reads them in the block keeps the code of every format for every
+// map, and a GL may run it.
+#define RELIEF_VOTE_OF(n, format, flags) \
+    if (best.distance < 0.0) { \
+        reliefJoin(best, n, ivec4(u_relief_maps[n].info.x, format, flags, u_relief_maps[n].info.w), p, false); \
     }
 
 // For a step of a simulation: the same as reliefEvaluate where P is inside; where it is not, the first map that sees it
@@ -640,26 +654,19 @@ ReliefField reliefEvaluate(vec3 p) {
 // into one below.) The first maps have constant indices, so that GPUs need not index the block for them.
 ReliefField reliefSolid(vec3 p) {
     ReliefBest best = RELIEF_NO_VOTE;
-    RELIEF_VOTE_OF(0)
-    RELIEF_VOTE_OF(1)
-    RELIEF_VOTE_OF(2)
-    RELIEF_VOTE_OF(3)
-    RELIEF_VOTE_OF(4)
-    RELIEF_VOTE_OF(5)
-    RELIEF_VOTE_OF(6)
-    RELIEF_VOTE_OF(7)
-#if RELIEF_MAP_CAPACITY > 8
-    for (int i = 8; i < u_relief_count.x && best.distance < 0.0; ++i) {
-        reliefJoin(best, i, p, false);
+    RELIEF_VOTES
+#if RELIEF_MAP_CAPACITY > RELIEF_UNROLLED_MAPS
+    for (int i = RELIEF_UNROLLED_MAPS; i < u_relief_count.x && best.distance < 0.0; ++i) {
+        reliefJoin(best, i, u_relief_maps[i].info, p, false);
     }
 #endif
     return reliefFieldOf(best);
 }
 
 // reliefInside(reliefSolid(p)) with map `first` before the others: the map that decides nearby most often knows that p is
-// outside. With two maps the order saves nothing, and constants are cheaper.
+// outside. With a few maps constants are cheaper than what that order saves.
 bool reliefSolidAt(vec3 p, int first) {
-#if RELIEF_MAP_CAPACITY <= 2
+#if RELIEF_MAP_CAPACITY <= 4
     return reliefInside(reliefSolid(p));
 #else
     float best = RELIEF_FAR_INSIDE;
@@ -758,12 +765,12 @@ vec3 reliefMotion(int i, vec3 p, vec3 normal) {
     ivec4 place = u_relief_maps[i].place;
     ivec4 info = u_relief_maps[i].info;
     ivec2 at = ivec2(clamp(in_map.xy, vec2(0.0), vec2(place.w - 1, info.x - 1)));
-    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y * place.y + at.x, u_relief_count.w), 0);
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y * place.y + at.x, RELIEF_LOG2_WIDTHS.z), 0);
     float front = reliefDot(normal, reliefUnit(reliefOctahedron(words.r)));
     float back = reliefDot(normal, reliefUnit(reliefOctahedron(words.g)));
     at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
-    int texel = info.w + (at.y << u_relief_count.y) + at.x;
-    return texelFetch(u_relief_float, reliefTexel(texel, u_relief_count.y), 0).xyz;
+    int texel = info.w + (at.y << RELIEF_LOG2_WIDTHS.x) + at.x;
+    return texelFetch(u_relief_float, reliefTexel(texel, RELIEF_LOG2_WIDTHS.x), 0).xyz;
 }
 
 // The same of a body; zero of one that is not live. q: its object space at the end of the step; normal: in the world.

@@ -15,6 +15,9 @@ enum MapFlag : std::int32_t {
     kIsGap = 32,    ///< front-back: outside only where both ends vote so
 };
 
+/// The first maps of a collider, which a step evaluates one after another, each by code of its own.
+inline constexpr int kUnrolledMaps = 8;
+
 /// The shader storage binding of the collider in a tour (collider_tour.glsl).
 inline constexpr int kTourStorage = 0;
 

@@ -2,7 +2,7 @@
 
 // The two halves of a texel.
 uvec2 reliefPatchTexel(int index) {
-    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(index, u_relief_count.w), 0);
+    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(index, RELIEF_LOG2_WIDTHS.z), 0);
     return uvec2(words.r | (words.g << 16), words.b | (words.a << 16));
 }
 
@@ -76,10 +76,10 @@ float reliefOnSide(bool inside, float distance, float nearest) {
 }
 
 // p: map space. Without `whole` any distance that is not below 0 stands for all of them.
-ReliefVote reliefVotePatches(int i, vec3 p, bool whole) {
+ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
     ivec4 place = u_relief_maps[i].place;
     vec3 roots = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
-    bool encloses = reliefHas(u_relief_maps[i].info, RELIEF_ENCLOSES);
+    bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
     if (all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, roots))) {
         vec3 root = floor(p);
