@@ -14,6 +14,9 @@ export class Body {
     #programs = {};
 
     constructor(gl, collider) {
+        if (collider.info.maps.some(({ projection }) => projection === "local")) {
+            throw new Error("this page cannot draw a map of patches yet; bake planned maps to look at, or use relief slice");
+        }
         Object.assign(this, { gl, collider });
         this.place(identity());
         this.box = boxOf(collider.bounds);

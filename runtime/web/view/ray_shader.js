@@ -30,8 +30,8 @@ bool surfaces(int i, ivec4 info, ReliefSight sight, out vec2 votes) {
     bool found;
     votes = vec2(RELIEF_FAR_INSIDE);
     if (reliefIsFrontBack(info)) {
-        uvec4 words = texelFetch(u_relief_front_back, reliefTexel(max(sight.texel, 0), u_relief_count.w), 0);
-        found = sight.texel >= 0 && (words.b != 0u || (words.a != 0u && !sight.plane));
+        uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.z), 0);
+        found = sight.exists && (words.b != 0u || (words.a != 0u && !sight.plane));
         float front = reliefFrontBackDepth(info.y, words.b);
         float back = reliefFrontBackDepth(info.y, words.a);
         if (sight.plane) {
@@ -120,9 +120,10 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     ends = max(ends, t + u_tiny);
     int border = leastOf(ends);
     float t1 = min(min(ends.x, ends.y), min(ends.z, max(far, t + u_tiny)));
-    int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at) : place.x + at.y * place.y + at.x;
+    bool exists = true;
+    int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at, exists) : place.x + at.y * place.y + at.x;
     vec3 across = vec3(vec2(at) + 0.5, 0.0);
-    ReliefSight sight = ReliefSight(texel, q.z, reliefIsPlane(info), reliefFromMap(i, q - across),
+    ReliefSight sight = ReliefSight(texel, exists, q.z, reliefIsPlane(info), reliefFromMap(i, q - across),
                                     u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
                                     u_relief_maps[i].object_per_map.z);
     vec2 votes, votes_then;
