@@ -114,6 +114,21 @@ PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec
     return {sign * ((at.z - height) * per_length), (sign * per_length) * gradient};
 }
 
+template <class Vec, class Real = typename Vec::value_type>
+Vec acrossOf(const PatchFrame& frame, const Vec& in_cell) {
+    Real a = in_cell[frame.first];
+    Real b = in_cell[frame.first == 2 ? 0 : frame.first + 1];
+    const Real c = in_cell[frame.first == 0 ? 2 : frame.first - 1];
+    a = (frame.mirrored & 1U) != 0 ? Real(1) - a : a;
+    b = (frame.mirrored & 2U) != 0 ? Real(1) - b : b;
+    if (frame.diagonal == 0) {
+        return {b, c, a};
+    }
+    const Real u = Real(0.5) * (a - b + Real(1));
+    return frame.diagonal == 1 ? Vec(u, c, a + b)
+                               : Vec(u, Real(0.25) * (a + b - Real(2) * c + Real(2)), a + b + c);
+}
+
 tl::unexpected<Error> invalid(std::uint32_t texel, const std::string& text) {
     return invalidInput("texel " + std::to_string(texel) + " " + text);
 }
@@ -121,30 +136,11 @@ tl::unexpected<Error> invalid(std::uint32_t texel, const std::string& text) {
 }  // namespace
 
 glm::vec3 PatchFrame::across(const glm::vec3& in_cell) const {
-    float a = in_cell[first];
-    float b = in_cell[first == 2 ? 0 : first + 1];
-    const float c = in_cell[first == 0 ? 2 : first - 1];
-    a = (mirrored & 1U) != 0 ? 1.0F - a : a;
-    b = (mirrored & 2U) != 0 ? 1.0F - b : b;
-    if (diagonal == 0) {
-        return {b, c, a};
-    }
-    const float u = 0.5F * (a - b + 1.0F);
-    return diagonal == 1 ? glm::vec3(u, c, a + b)
-                         : glm::vec3(u, 0.25F * (a + b - 2.0F * c + 2.0F), a + b + c);
+    return acrossOf(*this, in_cell);
 }
 
 glm::dvec3 PatchFrame::across(const glm::dvec3& in_cell) const {
-    double a = in_cell[first];
-    double b = in_cell[first == 2 ? 0 : first + 1];
-    const double c = in_cell[first == 0 ? 2 : first - 1];
-    a = (mirrored & 1U) != 0 ? 1.0 - a : a;
-    b = (mirrored & 2U) != 0 ? 1.0 - b : b;
-    if (diagonal == 0) {
-        return {b, c, a};
-    }
-    const double u = 0.5 * (a - b + 1.0);
-    return diagonal == 1 ? glm::dvec3(u, c, a + b) : glm::dvec3(u, 0.25 * (a + b - 2.0 * c + 2.0), a + b + c);
+    return acrossOf(*this, in_cell);
 }
 
 glm::vec3 PatchFrame::gradient(float by_u, float by_v) const {
@@ -200,6 +196,14 @@ PatchHeights PatchHeights::of(std::span<const double> heights, std::uint32_t sid
         result.codes[i] = static_cast<std::uint8_t>(std::clamp(std::lround(code), 0L, 255L));
     }
     return result;
+}
+
+PatchRecord PatchHeights::texel(std::uint32_t index) const {
+    PatchRecord record;
+    for (std::uint32_t i = 0; i < kTexel; ++i) {
+        (i < 4 ? record.low : record.high) |= std::uint32_t{codes[kTexel * index + i]} << 8U * (i % 4);
+    }
+    return record;
 }
 
 void PatchHeights::decode(std::span<double> out) const {
@@ -368,7 +372,7 @@ Result<void> validatePatches(PatchTexels texels) {
         const PatchRecord record = patchTexel(texels, index);
         const std::uint32_t side = sideOf(record);
         if (side > 2 &&
-            (record.first() < end || std::uint64_t{record.first()} + (side * side - 1) / 8 > count)) {
+            (record.first() < end || std::uint64_t{record.first()} + heightTexels(side) > count)) {
             return invalid(index, "is a patch whose heights lie elsewhere");
         }
     }

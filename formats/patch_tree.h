@@ -59,6 +59,13 @@ struct PatchFrame {
 /// All 13, an axis first.
 [[nodiscard]] const std::array<PatchFrame, 13>& patchFrames();
 
+struct PatchRecord;
+
+/// Texels of a patch of side² heights beside its record.
+[[nodiscard]] constexpr std::uint32_t heightTexels(std::uint32_t side) {
+    return side == 2 ? 0 : (side * side - 1) / 8;
+}
+
 /// Heights of a patch as its record and texels hold them: code c stands for base/512 + c/255 · range.
 struct PatchHeights {
     std::uint32_t side = 2;  ///< 2, 3 or 5
@@ -72,8 +79,8 @@ struct PatchHeights {
     [[nodiscard]] float step() const;  ///< of a code
     /// \param out  side² heights.
     void decode(std::span<double> out) const;
-    /// Texels beside the record.
-    [[nodiscard]] std::uint32_t texels() const { return side == 2 ? 0 : (side * side - 1) / 8; }
+    /// The index-th of the heightTexels(side).
+    [[nodiscard]] PatchRecord texel(std::uint32_t index) const;
 };
 
 /// A texel of a map of patches.

@@ -62,11 +62,7 @@ class Path {
         const glm::dvec3 low = glm::min(from, to);
         const glm::dvec3 high = glm::max(from, to);
         for (const std::uint32_t triangle : cell_.triangles) {
-            std::array<glm::dvec3, 3> p;
-            const auto corners = cornersOf(query_.mesh(), triangle);
-            for (std::size_t i = 0; i < 3; ++i) {
-                p[i] = cell_.inUnit(corners[i]);
-            }
+            const std::array<glm::dvec3, 3> p = cell_.inUnit(query_.mesh(), triangle);
             if (glm::any(glm::greaterThan(low, glm::max(glm::max(p[0], p[1]), p[2]))) ||
                 glm::any(glm::lessThan(high, glm::min(glm::min(p[0], p[1]), p[2])))) {
                 continue;
@@ -219,10 +215,9 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell, const Pat
     };
     std::vector<Hit> hits;
     for (const std::uint32_t triangle : cell.triangles) {
-        std::array<glm::dvec3, 3> p;
-        const auto corners = cornersOf(query.mesh(), triangle);
-        for (std::size_t i = 0; i < 3; ++i) {
-            p[i] = frame.across(cell.inUnit(corners[i]));
+        std::array<glm::dvec3, 3> p = cell.inUnit(query.mesh(), triangle);
+        for (glm::dvec3& corner : p) {
+            corner = frame.across(corner);
         }
         const double area = edge(p[1] - p[0], p[2] - p[0]);
         if (area == 0.0) {
@@ -298,12 +293,7 @@ MeshCell childOf(const MeshQuery& query, const MeshCell& cell, unsigned octant) 
     const glm::dvec3 corner = 0.5 * glm::dvec3(octant & 1U, octant >> 1U & 1U, octant >> 2U);
     child.low = cell.low + cell.size * corner;
     for (const std::uint32_t triangle : cell.triangles) {
-        const auto corners = cornersOf(query.mesh(), triangle);
-        std::array<glm::dvec3, 3> p;
-        for (std::size_t i = 0; i < 3; ++i) {
-            p[i] = child.inUnit(corners[i]);
-        }
-        if (meetsUnitCube(p)) {
+        if (meetsUnitCube(child.inUnit(query.mesh(), triangle))) {
             child.triangles.push_back(triangle);
         }
     }

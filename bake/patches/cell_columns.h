@@ -22,7 +22,15 @@ struct MeshCell {
     BodyCounter bodies;
 
     [[nodiscard]] glm::dvec3 middle() const { return low + 0.5 * size; }
-    [[nodiscard]] glm::dvec3 inUnit(const glm::dvec3& p) const { return (p - low) / size; }
+    /// The corners of a triangle, in the unit cube.
+    [[nodiscard]] std::array<glm::dvec3, 3> inUnit(const TriangleMesh& mesh, std::uint32_t triangle) const {
+        std::array<glm::dvec3, 3> unit;
+        const auto corners = cornersOf(mesh, triangle);
+        for (std::size_t i = 0; i < 3; ++i) {
+            unit[i] = (glm::dvec3(corners[i]) - low) / size;
+        }
+        return unit;
+    }
 };
 
 /// The area of a triangle within the unit cube, and where it lies.

@@ -83,8 +83,8 @@ PatchFrame bestFrame(const std::vector<ClippedTriangle>& pieces) {
 
 class Planner {
   public:
-    Planner(const MeshQuery& query, std::uint64_t bytes, const std::function<void(double)>& progress)
-        : query_(query), bytes_(static_cast<double>(bytes)), progress_(progress) {}
+    Planner(const MeshQuery& query, std::uint64_t bytes)
+        : query_(query), bytes_(static_cast<double>(bytes)) {}
 
     DepthMap run() {
         makeRoots();
@@ -128,12 +128,7 @@ class Planner {
                         MeshCell& cell =
                             nodes_[(std::size_t(z) * roots_.y + std::size_t(y)) * roots_.x + std::size_t(x)]
                                 .cell;
-                        std::array<glm::dvec3, 3> p;
-                        const auto corners = cornersOf(mesh, t);
-                        for (std::size_t i = 0; i < 3; ++i) {
-                            p[i] = cell.inUnit(corners[i]);
-                        }
-                        if (meetsUnitCube(p)) {
+                        if (meetsUnitCube(cell.inUnit(mesh, t))) {
                             cell.triangles.push_back(t);
                         }
                     }
@@ -149,12 +144,7 @@ class Planner {
     [[nodiscard]] std::vector<ClippedTriangle> piecesOf(const MeshCell& cell) const {
         std::vector<ClippedTriangle> pieces;
         for (const std::uint32_t triangle : cell.triangles) {
-            std::array<glm::dvec3, 3> p;
-            const auto corners = cornersOf(query_.mesh(), triangle);
-            for (std::size_t i = 0; i < 3; ++i) {
-                p[i] = cell.inUnit(corners[i]);
-            }
-            pieces.push_back(clipToUnitCube(p));
+            pieces.push_back(clipToUnitCube(cell.inUnit(query_.mesh(), triangle)));
         }
         return pieces;
     }
@@ -176,7 +166,7 @@ class Planner {
             const FittedPatch fitted = fitter.fit(side, kRounds);
             node.candidates.push_back({.side = side,
                                        .wrong = volume * fitted.wrong,
-                                       .bytes = kTexelBytes * (1.0 + fitted.heights.texels())});
+                                       .bytes = kTexelBytes * (1.0 + heightTexels(side))});
         }
     }
 
@@ -240,7 +230,6 @@ class Planner {
             if (!(wrong_ > 0.0)) {
                 return;
             }
-            tell(taken / bytes_);
             // Bytes go by about the square root of their worth.
             const double share = taken / bytes_;
             byte *= std::clamp(share * share, 1.0 / 16.0, 0.8);
@@ -252,12 +241,6 @@ class Planner {
             (chooseAll(middle) > bytes_ ? cheap : dear) = middle;
         }
         chooseAll(dear);
-    }
-
-    void tell(double share) const {
-        if (progress_) {
-            progress_(std::min(share, 1.0));
-        }
     }
 
     /// A cell without a patch: the nearest surface.
@@ -332,7 +315,7 @@ class Planner {
             const Node& node = *records[i];
             if (!node.split && node.leaf().side > 0) {
                 first[i] = next;
-                next += node.leaf().side == 2 ? 0 : (node.leaf().side * node.leaf().side - 1) / 8;
+                next += heightTexels(node.leaf().side);
             }
         }
         std::vector<PatchRecord> texels(next);
@@ -348,10 +331,8 @@ class Planner {
                 const PatchFitter fitter(columns);
                 const PatchHeights heights = fitter.fit(node.leaf().side, kFinalRounds).heights;
                 texels[1 + i] = PatchRecord::patch(node.frame, fitter.outsideBelow(), heights, first[i]);
-                for (std::uint32_t k = 0; k < 8 * heights.texels(); ++k) {
-                    PatchRecord& texel = texels[first[i] + k / 8];
-                    (k % 8 < 4 ? texel.low : texel.high) |= static_cast<std::uint32_t>(heights.codes[k])
-                                                            << 8U * (k % 4);
+                for (std::uint32_t k = 0; k < heightTexels(heights.side); ++k) {
+                    texels[first[i] + k] = heights.texel(k);
                 }
             }
         });
@@ -378,7 +359,6 @@ class Planner {
 
     const MeshQuery& query_;
     double bytes_;
-    const std::function<void(double)>& progress_;
     double root_ = 0.0;  // object units
     glm::uvec3 roots_{1};
     glm::dvec3 origin_{0.0};
@@ -388,9 +368,8 @@ class Planner {
 
 }  // namespace
 
-DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes,
-                     const std::function<void(double)>& progress) {
-    return Planner(query, bytes, progress).run();
+DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes) {
+    return Planner(query, bytes).run();
 }
 
 }  // namespace relief

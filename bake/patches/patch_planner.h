@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 #include "bake/mesh/mesh_query.h"
 #include "formats/depth_map.h"
@@ -11,9 +10,7 @@
 namespace relief {
 
 /// A map of MapFormat::kPatches of at most `bytes`. The same for any number of threads.
-/// \param progress  called with shares of the work from 0 to 1; may be empty.
 /// \pre kPatchBytesMin ≤ bytes ≤ kPatchBytesMax
-[[nodiscard]] DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes,
-                                   const std::function<void(double)>& progress = {});
+[[nodiscard]] DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes);
 
 }  // namespace relief

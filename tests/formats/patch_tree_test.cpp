@@ -100,13 +100,8 @@ TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
             for (const bool outside_below : {false, true}) {
                 const PatchHeights codes = PatchHeights::of(heights, side);
                 std::vector<PatchRecord> texels = {PatchRecord::patch(frame, outside_below, codes, 2)};
-                for (std::uint32_t k = 0; k < codes.texels(); ++k) {
-                    PatchRecord texel;
-                    for (std::uint32_t b = 0; b < 8; ++b) {
-                        (b < 4 ? texel.low : texel.high) |= std::uint32_t{codes.codes[8 * k + b]}
-                                                            << 8U * (b % 4);
-                    }
-                    texels.push_back(texel);
+                for (std::uint32_t k = 0; k < heightTexels(side); ++k) {
+                    texels.push_back(codes.texel(k));
                 }
                 const DepthMap map = patchesOf({{1, 1, 1}, 0}, texels);
                 ASSERT_TRUE(validatePatches(map.texels)) << validatePatches(map.texels).error().message;

@@ -81,12 +81,8 @@ DepthMap randomPatches(std::mt19937& random) {
                 PatchHeights::of(std::span(values).first(node.side * node.side), node.side);
             const auto place = static_cast<std::uint32_t>(1 + nodes.size() + heights.size());
             records.push_back(PatchRecord::patch(patchFrames()[below(13)], below(2) == 0, codes, place));
-            for (std::uint32_t k = 0; k < codes.texels(); ++k) {
-                PatchRecord texel;
-                for (std::uint32_t b = 0; b < 8; ++b) {
-                    (b < 4 ? texel.low : texel.high) |= std::uint32_t{codes.codes[8 * k + b]} << 8U * (b % 4);
-                }
-                heights.push_back(texel);
+            for (std::uint32_t k = 0; k < heightTexels(node.side); ++k) {
+                heights.push_back(codes.texel(k));
             }
         }
     }

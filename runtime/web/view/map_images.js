@@ -37,8 +37,5 @@ export function mapTitle({ width, height, projection, rows }) {
     const l = Math.hypot(...z) || 1;
     const axis = z.findIndex((v) => Math.abs(v) > 0.999 * l);
     const direction = axis >= 0 ? `${z[axis] > 0 ? "+" : "−"}${"xyz"[axis]}` : z.map((v) => (v / l).toFixed(2)).join(" / ");
-    if (projection === "local") {
-        return "patches: no image";
-    }
     return projection === "cube" ? `cube, 6 faces of ${size}` : `looks ${direction}, ${size}`;
 }
