@@ -120,6 +120,18 @@ TriangleMesh makePlane(float height, unsigned n) {
     return finished(positions, triangles);
 }
 
+TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (const TriangleMesh& mesh : meshes) {
+        for (const glm::uvec3& t : mesh.triangles) {
+            triangles.push_back(t + static_cast<std::uint32_t>(positions.size()));
+        }
+        positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+    }
+    return finished(positions, triangles);
+}
+
 TriangleMesh reversed(TriangleMesh mesh) {
     for (glm::uvec3& t : mesh.triangles) {
         std::swap(t.y, t.z);

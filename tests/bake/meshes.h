@@ -29,6 +29,8 @@ namespace relief::test {
 [[nodiscard]] TriangleMesh makePlane(float height, unsigned n);
 
 [[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
+/// All of them as one mesh.
+[[nodiscard]] TriangleMesh joined(const std::vector<TriangleMesh>& meshes);
 
 /// Bakes specs, which must be right. Maps that do not say otherwise are of the paper's texels: projected,
 /// half.

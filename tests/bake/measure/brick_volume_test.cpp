@@ -19,15 +19,6 @@ MeshQuery queryOf(const TriangleMesh& mesh) {
     return std::move(*query);
 }
 
-TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-    for (const glm::uvec3& triangle : other.triangles) {
-        mesh.triangles.push_back(triangle + first);
-    }
-    return finished(std::move(mesh.positions), std::move(mesh.triangles));
-}
-
 std::vector<BrickLayout> layouts() {
     return {{.cells = 3},
             {.cells = 8, .flat_index = true, .band = 4.0},
@@ -60,7 +51,7 @@ TEST(BrickVolume, BallsSignsAreRightBeyondTheBendOfAVoxel) {
     const TriangleMesh other = makeIcosphere({1.25, 0.2, 0}, 0.75, 5);
     for (const bool two : {false, true}) {
         if (two) {
-            mesh = joined(std::move(mesh), other);
+            mesh = joined({mesh, other});
         }
         const MeshQuery query = queryOf(mesh);
         AccuracyOptions options;

@@ -23,15 +23,6 @@ MeshQuery queryOf(PreparedMesh mesh) {
     return std::move(*query);
 }
 
-TriangleMesh joined(TriangleMesh mesh, const TriangleMesh& other) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-    for (const glm::uvec3& triangle : other.triangles) {
-        mesh.triangles.push_back(triangle + first);
-    }
-    return finished(std::move(mesh.positions), std::move(mesh.triangles));
-}
-
 DepthMap checked(const MeshQuery& query, std::uint64_t bytes) {
     DepthMap map = bakePatches(query, bytes);
     const Result<void> valid = validateFrame(map).and_then([&] { return validateTexels(map); });
@@ -103,7 +94,8 @@ TEST(CellColumns, AgreeWithRaysThroughTheMesh) {
     // Even numbers, in whose planes the cells' faces would lie.
     expectColumnsAgree(queryOf(makeBoxMesh({0, 0, 0}, {1, 0.5, 0.25})), 0);
     // Two balls that overlap are one solid by the winding number.
-    TriangleMesh balls = joined(makeIcosphere({-0.3, 0, 0}, 1.0, 3), makeIcosphere({0.6, 0.2, 0.1}, 0.8, 3));
+    TriangleMesh balls =
+        joined({makeIcosphere({-0.3, 0, 0}, 1.0, 3), makeIcosphere({0.6, 0.2, 0.1}, 0.8, 3)});
     const auto wound = windOutwards(std::move(balls));
     ASSERT_TRUE(wound);
     expectColumnsAgree(queryOf(wound->mesh), 0);
@@ -165,8 +157,8 @@ TEST(PatchPlanner, BallsMistakesFallWithTheBytes) {
 TEST(PatchPlanner, InsidesThatNoViewSeesAreThere) {
     // A ball in a hollow ball: no ray from outside meets the inner surfaces.
     const MeshQuery query =
-        queryOf(joined(joined(makeIcosphere({0, 0, 0}, 1.0, 4), reversed(makeIcosphere({0, 0, 0}, 0.8, 4))),
-                       makeIcosphere({0.1, 0, 0}, 0.4, 4)));
+        queryOf(joined({makeIcosphere({0, 0, 0}, 1.0, 4), reversed(makeIcosphere({0, 0, 0}, 0.8, 4)),
+                        makeIcosphere({0.1, 0, 0}, 0.4, 4)}));
     const DepthMap map = checked(query, 250'000);
     EXPECT_LT(wrongPercent(query, map, 40'000), 0.4);
     EXPECT_LT(vote(map, {0.9F, 0, 0})->distance, 0.0F);
@@ -177,8 +169,8 @@ TEST(PatchPlanner, InsidesThatNoViewSeesAreThere) {
 
 TEST(PatchPlanner, OverlappingShellsAreOneSolid) {
     const auto wound =
-        windOutwards(joined(makeIcosphere({-0.5, 0, 0}, 1.0, 4),
-                            makeBoxMesh({0.5, 0, 0}, {0.6, 0.4, 0.4}, rotation({1, 1, 0}, 30.0))));
+        windOutwards(joined({makeIcosphere({-0.5, 0, 0}, 1.0, 4),
+                             makeBoxMesh({0.5, 0, 0}, {0.6, 0.4, 0.4}, rotation({1, 1, 0}, 30.0))}));
     ASSERT_TRUE(wound);
     const MeshQuery query = queryOf(wound->mesh);
     EXPECT_LT(wrongPercent(query, checked(query, 250'000), 40'000), 0.3);

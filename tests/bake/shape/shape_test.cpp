@@ -35,18 +35,6 @@ MeshQuery queryOf(const PreparedMesh& mesh) {
     return std::move(*query);
 }
 
-TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    for (const TriangleMesh& mesh : meshes) {
-        for (const glm::uvec3& t : mesh.triangles) {
-            triangles.push_back(t + static_cast<std::uint32_t>(positions.size()));
-        }
-        positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
-    }
-    return finished(positions, triangles);
-}
-
 /// Without the triangles whose middle `gone` says so of.
 template <class Gone>
 TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
