@@ -114,6 +114,20 @@ PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec
     return {sign * ((at.z - height) * per_length), (sign * per_length) * gradient};
 }
 
+/// Of a code, by PatchHeights::scale; they grow.
+const std::array<float, 256>& stepsOfScales() {
+    static const auto kSteps = [] {
+        std::array<float, 256> steps;
+        for (int scale = 0; scale < 256; ++scale) {
+            const float mantissa = 1.0F + static_cast<float>(scale & 15) * (1.0F / 16.0F);
+            steps[static_cast<std::size_t>(scale)] =
+                mantissa * std::ldexp(1.0F, (scale >> 4) - 12) * (1.0F / 255.0F);
+        }
+        return steps;
+    }();
+    return kSteps;
+}
+
 template <class Vec, class Real = typename Vec::value_type>
 Vec acrossOf(const PatchFrame& frame, const Vec& in_cell) {
     Real a = in_cell[frame.first];
@@ -173,8 +187,7 @@ const std::array<PatchFrame, 13>& patchFrames() {
 }
 
 float PatchHeights::step() const {
-    const float mantissa = 1.0F + static_cast<float>(scale & 15) * (1.0F / 16.0F);
-    return mantissa * std::ldexp(1.0F, (scale >> 4) - 12) * (1.0F / 255.0F);
+    return stepsOfScales()[scale];
 }
 
 PatchHeights PatchHeights::of(std::span<const double> heights, std::uint32_t side) {
@@ -188,9 +201,11 @@ PatchHeights PatchHeights::of(std::span<const double> heights, std::uint32_t sid
         highest = std::max(highest, held(height));
     }
     result.base = static_cast<int>(std::floor(lowest * 512.0));
-    while (result.scale < 255 && 255.0 * double{result.step()} < highest - double{result.low()}) {
-        ++result.scale;
-    }
+    const double range = highest - double{result.low()};
+    const auto& steps = stepsOfScales();
+    const auto enough = std::partition_point(steps.begin(), steps.end(),
+                                             [&](float step) { return 255.0 * double{step} < range; });
+    result.scale = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(enough - steps.begin(), 255));
     for (std::size_t i = 0; i < std::size_t{side} * side; ++i) {
         const double code = (held(heights[i]) - double{result.low()}) / double{result.step()};
         result.codes[i] = static_cast<std::uint8_t>(std::clamp(std::lround(code), 0L, 255L));

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <glm/vec2.hpp>
 #include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace relief {
@@ -18,6 +22,13 @@ using Polygon = std::array<glm::dvec3, 9>;
 
 /// Keeps the part of a polygon with sign · p[axis] ≤ sign · limit.
 unsigned clip(Polygon& polygon, unsigned count, int axis, double sign, double limit) {
+    bool all = true;
+    for (unsigned i = 0; i < count; ++i) {
+        all = all && sign * (polygon[i][axis] - limit) <= 0.0;
+    }
+    if (all) {
+        return count;
+    }
     Polygon kept;
     unsigned kept_count = 0;
     for (unsigned i = 0; i < count; ++i) {
@@ -36,57 +47,62 @@ unsigned clip(Polygon& polygon, unsigned count, int axis, double sign, double li
     return kept_count;
 }
 
-/// Twice the area of (p, a, b), where a and b are relative to p: exactly negative when they are swapped, so that two triangles
-/// agree about the edge that they share.
-double edge(const glm::dvec3& a, const glm::dvec3& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-/// Of the two triangles at an edge through p, one owns p.
-bool owns(const glm::dvec3& a, const glm::dvec3& b) {
-    const double e = edge(a, b);
-    return e > 0.0 || (e == 0.0 && (b.y > a.y || (b.y == a.y && b.x < a.x)));
-}
-
-/// Counts the triangles that a segment crosses.
+/// Counts the triangles of a cell that a segment in its unit cube crosses.
 class Path {
   public:
-    Path(const MeshQuery& query, const MeshCell& cell) : query_(query), cell_(cell) {}
+    Path(const MeshQuery& query, const MeshCell& cell, std::span<const UnitTriangle> triangles)
+        : query_(query), cell_(cell), triangles_(triangles) {}
+
+    /// One of the cell's triangles, and its box.
+    struct Crossed {
+        std::uint32_t index;
+        glm::dvec3 low;
+        glm::dvec3 high;
+    };
+    [[nodiscard]] Crossed crossed(std::uint32_t index) const {
+        const auto& [a, b, c] = triangles_[index];
+        return {index, glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
+    }
 
     void go(const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
-        if (cell_.triangles.size() > kManyTriangles &&
+        if (triangles_.size() > kManyTriangles &&
             query_.segmentIsFree(cell_.low + cell_.size * from, cell_.low + cell_.size * to)) {
             return;
         }
+        for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+            cross(crossed(i), from, to, counter);
+        }
+    }
+
+    void cross(const Crossed& one, const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            if ((from[axis] < one.low[axis] && to[axis] < one.low[axis]) ||
+                (from[axis] > one.high[axis] && to[axis] > one.high[axis])) {
+                return;
+            }
+        }
+        const UnitTriangle& p = triangles_[one.index];
+        const glm::dvec3 normal = relief::cross(p[1] - p[0], p[2] - p[0]);
+        const double before = dot(normal, from - p[0]);
+        const double after = dot(normal, to - p[0]);
+        if ((before < 0.0) == (after < 0.0)) {
+            return;
+        }
+        // Within the triangle: the line passes all edges on one side.
         const glm::dvec3 way = to - from;
-        const glm::dvec3 low = glm::min(from, to);
-        const glm::dvec3 high = glm::max(from, to);
-        for (const std::uint32_t triangle : cell_.triangles) {
-            const std::array<glm::dvec3, 3> p = cell_.inUnit(query_.mesh(), triangle);
-            if (glm::any(glm::greaterThan(low, glm::max(glm::max(p[0], p[1]), p[2]))) ||
-                glm::any(glm::lessThan(high, glm::min(glm::min(p[0], p[1]), p[2])))) {
-                continue;
-            }
-            const glm::dvec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-            const double before = dot(normal, from - p[0]);
-            const double after = dot(normal, to - p[0]);
-            if ((before < 0.0) == (after < 0.0)) {
-                continue;
-            }
-            // Within the triangle: the line passes all edges on one side.
-            const auto past = [&](const glm::dvec3& a, const glm::dvec3& b) {
-                return dot(way, cross(a - from, b - from));
-            };
-            const double e[3] = {past(p[0], p[1]), past(p[1], p[2]), past(p[2], p[0])};
-            if ((e[0] >= 0.0 && e[1] >= 0.0 && e[2] >= 0.0) || (e[0] <= 0.0 && e[1] <= 0.0 && e[2] <= 0.0)) {
-                counter.cross(query_.bodyOf(triangle), before < 0.0 ? 1 : -1);
-            }
+        const auto past = [&](const glm::dvec3& a, const glm::dvec3& b) {
+            return dot(way, relief::cross(a - from, b - from));
+        };
+        const double e[3] = {past(p[0], p[1]), past(p[1], p[2]), past(p[2], p[0])};
+        if ((e[0] >= 0.0 && e[1] >= 0.0 && e[2] >= 0.0) || (e[0] <= 0.0 && e[1] <= 0.0 && e[2] <= 0.0)) {
+            counter.cross(query_.bodyOf(cell_.triangles[one.index]), before < 0.0 ? 1 : -1);
         }
     }
 
   private:
     const MeshQuery& query_;
     const MeshCell& cell_;
+    std::span<const UnitTriangle> triangles_;
 };
 
 /// The point of the cube at (u, v, w), and how it moves with each.
@@ -109,20 +125,112 @@ struct CubeAxes {
         origin = -(back * zero);
     }
     [[nodiscard]] glm::dvec3 at(double a, double b, double c) const { return origin + a * u + b * v + c * w; }
-    [[nodiscard]] double handedness() const { return dot(cross(u, v), w) < 0.0 ? -1.0 : 1.0; }
 };
+
+/// A line meets a triangle.
+struct Hit {
+    std::uint32_t line;
+    std::uint32_t triangle;
+    double w;
+    int side;  // of BodyCounter::cross
+
+    [[nodiscard]] bool operator<(const Hit& other) const {
+        return std::tie(w, triangle, side) < std::tie(other.w, other.triangle, other.side);
+    }
+};
+
+/// An edge of a triangle over the lines' grid, upwards, so that the two triangles at it agree which lines it passes.
+struct GridEdge {
+    double begin;  // rows from here on
+    double end;    // to before here
+    double x;
+    double x_by_row;
+
+    GridEdge(glm::dvec3 a, glm::dvec3 b) {
+        if (std::tie(b.y, b.x) < std::tie(a.y, a.x)) {
+            std::swap(a, b);
+        }
+        begin = a.y;
+        end = b.y;
+        x = a.x;
+        x_by_row = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
+    }
+    [[nodiscard]] bool meets(double row) const { return begin <= row && row < end; }
+    [[nodiscard]] double at(double row) const { return x + (row - begin) * x_by_row; }
+};
+
+/// The first whole number from `at` on, of those up to `size`.
+int firstFrom(double at, int size) {
+    if (!(at > 0.0)) {
+        return 0;
+    }
+    const int whole = static_cast<int>(std::min<double>(at, size));
+    return whole + (whole < size && whole < at ? 1 : 0);
+}
+
+/// \param triangle  over the grid: lines at whole numbers of x and y, z their w.
+void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& grid,
+             std::vector<Hit>& hits) {
+    const auto& [a, b, c] = triangle;
+    const glm::dvec3 normal = cross(b - a, c - a);
+    if (normal.z == 0.0) {
+        return;
+    }
+    const auto [lowest, highest] = std::minmax({a.z, b.z, c.z});
+    const auto [first, last] = std::minmax({a.y, b.y, c.y});
+    const GridEdge edges[3] = {{a, b}, {b, c}, {c, a}};
+    const auto size = static_cast<int>(grid.across());
+    const int side = (normal.z > 0.0) == (grid.handedness() > 0) ? 1 : -1;
+    const glm::dvec2 slope = glm::dvec2(normal) / -normal.z;
+    for (int row = firstFrom(first, size); row < firstFrom(last, size); ++row) {
+        double left = std::numeric_limits<double>::infinity();
+        double right = -left;
+        for (const GridEdge& edge : edges) {
+            if (edge.meets(row)) {
+                left = std::min(left, edge.at(row));
+                right = std::max(right, edge.at(row));
+            }
+        }
+        const int end = firstFrom(right, size);
+        for (int x = firstFrom(left, size); x < end; ++x) {
+            const double w = std::clamp(a.z + slope.x * (x - a.x) + slope.y * (row - a.y), lowest, highest);
+            const auto line = static_cast<std::uint32_t>(row * size + x);
+            if (w > grid.lines()[line].enters && w < grid.lines()[line].leaves) {
+                hits.push_back({line, index, w, side});
+            }
+        }
+    }
+}
 
 }  // namespace
 
-ClippedTriangle clipToUnitCube(const std::array<glm::dvec3, 3>& corners) {
+UnitTriangle MeshCell::inUnit(const TriangleMesh& mesh, std::uint32_t triangle) const {
+    UnitTriangle unit;
+    const auto corners = cornersOf(mesh, triangle);
+    for (std::size_t i = 0; i < 3; ++i) {
+        unit[i] = (glm::dvec3(corners[i]) - low) / size;
+    }
+    return unit;
+}
+
+std::vector<UnitTriangle> unitTriangles(const TriangleMesh& mesh, const MeshCell& cell) {
+    std::vector<UnitTriangle> unit;
+    unit.reserve(cell.triangles.size());
+    for (const std::uint32_t triangle : cell.triangles) {
+        unit.push_back(cell.inUnit(mesh, triangle));
+    }
+    return unit;
+}
+
+ClippedTriangle clipToUnitCube(const UnitTriangle& triangle) {
     ClippedTriangle clipped;
-    const glm::dvec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const glm::dvec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     if (normal == glm::dvec3(0.0)) {
         return clipped;
     }
     clipped.normal = unit(normal);
     Polygon polygon;
-    std::copy(corners.begin(), corners.end(), polygon.begin());
+    std::copy(triangle.begin(), triangle.end(), polygon.begin());
     unsigned count = 3;
     for (int axis = 0; axis < 3 && count > 2; ++axis) {
         count = clip(polygon, count, axis, 1.0, 1.0);
@@ -141,177 +249,198 @@ ClippedTriangle clipToUnitCube(const std::array<glm::dvec3, 3>& corners) {
     return clipped;
 }
 
-double CellColumn::insideLength() const {
+bool meetsUnitCube(const UnitTriangle& triangle) {
+    bool contained = true;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+        if (low >= 1.0 || high <= 0.0) {
+            return false;
+        }
+        contained = contained && low >= 0.0 && high <= 1.0;
+    }
+    return contained || clipToUnitCube(triangle).area > 0.0;
+}
+
+std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
+                                   std::span<const UnitTriangle> triangles) {
+    std::array<MeshCell, 8> children;
+    const Path path(query, cell, triangles);
+    for (unsigned octant = 0; octant < 8; ++octant) {
+        MeshCell& child = children[octant];
+        const glm::dvec3 corner = 0.5 * glm::dvec3(octant & 1U, octant >> 1U & 1U, octant >> 2U);
+        child.size = 0.5 * cell.size;
+        child.low = cell.low + cell.size * corner;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const UnitTriangle& p = triangles[i];
+            if (meetsUnitCube({2.0 * (p[0] - corner), 2.0 * (p[1] - corner), 2.0 * (p[2] - corner)})) {
+                child.triangles.push_back(cell.triangles[i]);
+            }
+        }
+        child.bodies = cell.bodies;
+        path.go(cell.known, corner + 0.5 * child.known, child.bodies);
+    }
+    return children;
+}
+
+double LineGrid::place(unsigned i) const {
+    return (i + 0.5 + kBeside) / across_;
+}
+
+LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
+    : frame_(frame), across_(across), lines_(std::size_t{across} * across) {
+    const CubeAxes axes(frame);
+    along_ = axes.w;
+    const double volume = dot(cross(axes.u, axes.v), axes.w);
+    volume_per_length_ = std::abs(volume) / (static_cast<double>(across) * across);
+    handedness_ = volume < 0.0 ? -1 : 1;
+    const auto span = [&](const glm::dvec3& start) {
+        Line line{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (std::abs(axes.w[axis]) < 1e-9) {
+                if (start[axis] <= 0.0 || start[axis] >= 1.0) {
+                    return Line();
+                }
+                continue;
+            }
+            const double a = -start[axis] / axes.w[axis];
+            const double b = (1.0 - start[axis]) / axes.w[axis];
+            line.enters = std::max(line.enters, std::min(a, b));
+            line.leaves = std::min(line.leaves, std::max(a, b));
+        }
+        return line.leaves - line.enters > 1e-6 ? line : Line();
+    };
+    for (unsigned row = 0; row < across; ++row) {
+        row_starts_.push_back(starts_.size());
+        for (unsigned step = 0; step < across; ++step) {
+            const unsigned column = row % 2 == 0 ? step : across - 1 - step;
+            const std::uint32_t index = row * across + column;
+            Line& line = lines_[index];
+            line = span(axes.at(place(column), place(row), 0.0));
+            if (!line.misses()) {
+                const double within = line.enters + 1e-9 * (line.leaves - line.enters);
+                starts_.push_back({index, axes.at(place(column), place(row), within)});
+            }
+        }
+    }
+    row_starts_.push_back(starts_.size());
+    start_reach_ = 1e-6;
+    if (frame.diagonal != 0) {  // where the way from side to side leaves both
+        for (std::size_t i = 1; i < starts_.size(); ++i) {
+            start_reach_ = std::max(start_reach_, length(starts_[i].point - starts_[i - 1].point));
+        }
+    }
+}
+
+std::size_t LineGrid::startOfRow(double row) const {
+    return row_starts_[static_cast<std::size_t>(firstFrom(row, static_cast<int>(across_)))];
+}
+
+bool LineGrid::nearStarts(const UnitTriangle& triangle) const {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+        if ((along_[axis] > 1e-9 && low <= start_reach_) ||
+            (along_[axis] < -1e-9 && 1.0 - high <= start_reach_)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+double CellColumn::insideTo(double w) const {
     double length = 0.0;
     double from = enters;
     bool in = inside;
     for (const double turn : turns) {
+        if (turn >= w) {
+            break;
+        }
         length += in ? turn - from : 0.0;
         from = turn;
         in = !in;
     }
-    return length + (in ? leaves - from : 0.0);
+    return length + (in ? std::max(0.0, w - from) : 0.0);
 }
 
 double CellColumn::wrongAt(double height, bool outside_below) const {
     const double middle = std::clamp(height, enters, leaves);
-    double wrong = 0.0;
-    double from = enters;
-    bool in = inside;
-    const auto add = [&](double to) {
-        const double below = std::max(0.0, std::min(to, middle) - from);
-        const double above = std::max(0.0, to - std::max(from, middle));
-        // Below should be inside, above outside, or the other way round.
-        wrong += in != outside_below ? above : below;
-        from = to;
-        in = !in;
-    };
-    for (const double turn : turns) {
-        add(turn);
-    }
-    add(leaves);
-    return wrong;
+    const double below = insideTo(middle);
+    const double above = insideTo(leaves) - below;
+    return outside_below ? below + (leaves - middle - above) : middle - enters - below + above;
 }
 
-CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell, const PatchFrame& frame,
-                         unsigned across) {
-    const CubeAxes axes(frame);
-    volume_per_length_ =
-        std::abs(dot(cross(axes.u, axes.v), axes.w)) / (static_cast<double>(across) * across);
-    std::vector<std::uint32_t> column_of(std::size_t{across} * across, UINT32_MAX);
-    const auto lineAt = [&](unsigned i) { return (i + 0.5 + kBeside) / across; };
-    for (unsigned j = 0; j < across; ++j) {
-        for (unsigned i = 0; i < across; ++i) {
-            CellColumn column;
-            column.u = lineAt(i);
-            column.v = lineAt(j);
-            column.enters = -std::numeric_limits<double>::infinity();
-            column.leaves = std::numeric_limits<double>::infinity();
-            const glm::dvec3 start = axes.at(column.u, column.v, 0.0);
-            bool misses = false;
-            for (int axis = 0; axis < 3; ++axis) {
-                if (std::abs(axes.w[axis]) < 1e-9) {
-                    misses = misses || start[axis] <= 0.0 || start[axis] >= 1.0;
-                    continue;
-                }
-                const double a = -start[axis] / axes.w[axis];
-                const double b = (1.0 - start[axis]) / axes.w[axis];
-                column.enters = std::max(column.enters, std::min(a, b));
-                column.leaves = std::min(column.leaves, std::max(a, b));
-            }
-            if (!misses && column.leaves - column.enters > 1e-6) {
-                column_of[std::size_t{j} * across + i] = static_cast<std::uint32_t>(columns_.size());
-                columns_.push_back(column);
-            }
-        }
-    }
-
-    struct Hit {
-        std::uint32_t column;
-        double w;
-        std::uint32_t triangle;
-        int side;
-        auto operator<=>(const Hit&) const = default;
+CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
+                         std::span<const UnitTriangle> triangles, const LineGrid& grid)
+    : grid_(grid), columns_(grid.lines().size()) {
+    std::vector<Hit> unordered;
+    struct Near {
+        Path::Crossed crossed;
+        std::size_t first;  // start to which the way may cross it
+        std::size_t last;
     };
-    std::vector<Hit> hits;
-    for (const std::uint32_t triangle : cell.triangles) {
-        std::array<glm::dvec3, 3> p = cell.inUnit(query.mesh(), triangle);
-        for (glm::dvec3& corner : p) {
-            corner = frame.across(corner);
+    const Path path(query, cell, triangles);
+    std::vector<Near> near;
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+        UnitTriangle over = triangles[i];
+        for (glm::dvec3& corner : over) {
+            corner = grid.frame().across(corner);
+            corner.x = corner.x * grid.across() - (0.5 + kBeside);
+            corner.y = corner.y * grid.across() - (0.5 + kBeside);
         }
-        const double area = edge(p[1] - p[0], p[2] - p[0]);
-        if (area == 0.0) {
-            continue;
+        if (grid.nearStarts(triangles[i])) {
+            const auto [low, high] = std::minmax({over[0].y, over[1].y, over[2].y});
+            near.push_back({path.crossed(i), grid.startOfRow(low), grid.startOfRow(std::floor(high) + 1.0)});
         }
-        const int side = (area > 0.0) == (axes.handedness() > 0.0) ? 1 : -1;
-        if (area < 0.0) {
-            std::swap(p[1], p[2]);
-        }
-        const glm::dvec3 low = glm::min(glm::min(p[0], p[1]), p[2]);
-        const glm::dvec3 high = glm::max(glm::max(p[0], p[1]), p[2]);
-        const auto first = [&](double at) {
-            return static_cast<unsigned>(
-                std::clamp(std::floor(at * across - 0.5 - kBeside), 0.0, across - 1.0));
-        };
-        for (unsigned j = first(low.y); j <= first(high.y + 1.0 / across); ++j) {
-            for (unsigned i = first(low.x); i <= first(high.x + 1.0 / across); ++i) {
-                const std::uint32_t column = column_of[std::size_t{j} * across + i];
-                if (column == UINT32_MAX) {
-                    continue;
-                }
-                const glm::dvec3 at(columns_[column].u, columns_[column].v, 0.0);
-                const glm::dvec3 a = p[0] - at;
-                const glm::dvec3 b = p[1] - at;
-                const glm::dvec3 c = p[2] - at;
-                if (!owns(a, b) || !owns(b, c) || !owns(c, a)) {
-                    continue;
-                }
-                const double shares[3] = {edge(b, c), edge(c, a), edge(a, b)};
-                const double w = (shares[0] * a.z + shares[1] * b.z + shares[2] * c.z) /
-                                 (shares[0] + shares[1] + shares[2]);
-                if (w > columns_[column].enters && w < columns_[column].leaves) {
-                    hits.push_back({column, w, triangle, side});
-                }
-            }
-        }
+        addHits(over, cell.triangles[i], grid, unordered);
     }
-    std::ranges::sort(hits);
+    // By line, and along each.
+    std::vector<std::uint32_t> end(columns_.size() + 1, 0);
+    for (const Hit& hit : unordered) {
+        ++end[hit.line + 1];
+    }
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Hit> hits(unordered.size());
+    for (const Hit& hit : unordered) {
+        hits[end[hit.line]++] = hit;
+    }
 
     turns_.reserve(hits.size());
-    const Path path(query, cell);
     BodyCounter counter = cell.bodies;
-    glm::dvec3 before = cell.known;
-    std::size_t next = 0;
-    std::vector<std::size_t> first_turn;
-    for (std::uint32_t i = 0; i < columns_.size(); ++i) {
-        CellColumn& column = columns_[i];
-        const glm::dvec3 start =
-            axes.at(column.u, column.v, column.enters + 1e-9 * (column.leaves - column.enters));
-        path.go(before, start, counter);
-        before = start;
-        column.inside = counter.inside();
-        first_turn.push_back(turns_.size());
-        BodyCounter along = counter;
-        bool in = column.inside;
-        for (; next < hits.size() && hits[next].column == i; ++next) {
-            along.cross(query.bodyOf(hits[next].triangle), hits[next].side);
-            if (along.inside() != in) {
-                in = !in;
-                turns_.push_back(hits[next].w);
+    for (std::size_t i = 0; i < grid.starts().size(); ++i) {
+        const LineGrid::Start& start = grid.starts()[i];
+        if (i == 0) {
+            path.go(cell.known, start.point, counter);
+        } else {
+            for (const Near& one : near) {
+                if (one.first <= i && i <= one.last) {
+                    path.cross(one.crossed, grid.starts()[i - 1].point, start.point, counter);
+                }
             }
         }
-    }
-    first_turn.push_back(turns_.size());
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-        columns_[i].turns = std::span(turns_).subspan(first_turn[i], first_turn[i + 1] - first_turn[i]);
-    }
-}
-
-MeshCell childOf(const MeshQuery& query, const MeshCell& cell, unsigned octant) {
-    MeshCell child;
-    child.size = 0.5 * cell.size;
-    const glm::dvec3 corner = 0.5 * glm::dvec3(octant & 1U, octant >> 1U & 1U, octant >> 2U);
-    child.low = cell.low + cell.size * corner;
-    for (const std::uint32_t triangle : cell.triangles) {
-        if (meetsUnitCube(child.inUnit(query.mesh(), triangle))) {
-            child.triangles.push_back(triangle);
+        const std::span along(hits.begin() + (start.line == 0 ? 0 : end[start.line - 1]),
+                              hits.begin() + end[start.line]);
+        Turns& column = columns_[start.line];
+        column = {static_cast<std::uint32_t>(turns_.size()), 0, counter.inside()};
+        if (along.empty()) {
+            continue;
         }
+        std::ranges::sort(along, std::less());
+        BodyCounter bodies = counter;
+        bool in = column.inside;
+        for (const Hit& hit : along) {
+            bodies.cross(query.bodyOf(hit.triangle), hit.side);
+            if (bodies.inside() != in) {
+                in = !in;
+                turns_.push_back(hit.w);
+            }
+        }
+        column.count = static_cast<std::uint32_t>(turns_.size()) - column.first;
     }
-    child.bodies = cell.bodies;
-    Path(query, cell).go(cell.known, corner + 0.5 * child.known, child.bodies);
-    return child;
 }
 
-bool meetsUnitCube(const std::array<glm::dvec3, 3>& corners) {
-    const glm::dvec3 low = glm::min(glm::min(corners[0], corners[1]), corners[2]);
-    const glm::dvec3 high = glm::max(glm::max(corners[0], corners[1]), corners[2]);
-    if (glm::any(glm::greaterThanEqual(low, glm::dvec3(1.0))) ||
-        glm::any(glm::lessThanEqual(high, glm::dvec3(0.0)))) {
-        return false;
-    }
-    return (glm::all(glm::greaterThanEqual(low, glm::dvec3(0.0))) &&
-            glm::all(glm::lessThanEqual(high, glm::dvec3(1.0)))) ||
-           clipToUnitCube(corners).area > 0.0;
+CellColumn CellColumns::operator[](std::size_t line) const {
+    const Turns& turns = columns_[line];
+    return {grid_.lines()[line].enters, grid_.lines()[line].leaves, turns.inside,
+            std::span(turns_).subspan(turns.first, turns.count)};
 }
 
 }  // namespace relief

@@ -12,6 +12,9 @@
 
 namespace relief {
 
+/// The corners of a triangle in the unit cube of a cell.
+using UnitTriangle = std::array<glm::dvec3, 3>;
+
 /// A cube in object space, and the part of the surface in it.
 struct MeshCell {
     glm::dvec3 low{0.0};
@@ -22,16 +25,11 @@ struct MeshCell {
     BodyCounter bodies;
 
     [[nodiscard]] glm::dvec3 middle() const { return low + 0.5 * size; }
-    /// The corners of a triangle, in the unit cube.
-    [[nodiscard]] std::array<glm::dvec3, 3> inUnit(const TriangleMesh& mesh, std::uint32_t triangle) const {
-        std::array<glm::dvec3, 3> unit;
-        const auto corners = cornersOf(mesh, triangle);
-        for (std::size_t i = 0; i < 3; ++i) {
-            unit[i] = (glm::dvec3(corners[i]) - low) / size;
-        }
-        return unit;
-    }
+    [[nodiscard]] UnitTriangle inUnit(const TriangleMesh& mesh, std::uint32_t triangle) const;
 };
+
+/// All triangles of a cell, by their index there.
+[[nodiscard]] std::vector<UnitTriangle> unitTriangles(const TriangleMesh& mesh, const MeshCell& cell);
 
 /// The area of a triangle within the unit cube, and where it lies.
 struct ClippedTriangle {
@@ -39,44 +37,95 @@ struct ClippedTriangle {
     glm::dvec3 center{0.0};
     glm::dvec3 normal{0.0};  ///< of unit length, by the winding
 };
-/// \param corners  in the cell's unit cube.
-[[nodiscard]] ClippedTriangle clipToUnitCube(const std::array<glm::dvec3, 3>& corners);
+[[nodiscard]] ClippedTriangle clipToUnitCube(const UnitTriangle& triangle);
+[[nodiscard]] bool meetsUnitCube(const UnitTriangle& triangle);
 
-/// \param corners  of a triangle, in the cell's unit cube.
-[[nodiscard]] bool meetsUnitCube(const std::array<glm::dvec3, 3>& corners);
+/// The eighths of a cell, x fastest.
+/// \param triangles  of unitTriangles().
+[[nodiscard]] std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
+                                                 std::span<const UnitTriangle> triangles);
 
-/// One eighth of a cell, x fastest.
-[[nodiscard]] MeshCell childOf(const MeshQuery& query, const MeshCell& cell, unsigned octant);
+/// The lines through the unit cube along one frame, in a square of `across` lines by as many, u fastest: what they have in
+/// common for all cells.
+class LineGrid {
+  public:
+    LineGrid(const PatchFrame& frame, unsigned across);
 
-/// One line of a cell, from where it enters the cube to where it leaves it; w of PatchFrame.
+    /// From where a line enters the cube to where it leaves it, w of PatchFrame. Both 0 if it misses the cube.
+    struct Line {
+        double enters = 0.0;
+        double leaves = 0.0;
+        [[nodiscard]] bool misses() const { return leaves == 0.0 && enters == 0.0; }
+    };
+    /// Where a line enters the cube.
+    struct Start {
+        std::uint32_t line;
+        glm::dvec3 point;  ///< in the cube, next to its side
+    };
+
+    [[nodiscard]] const PatchFrame& frame() const { return frame_; }
+    [[nodiscard]] unsigned across() const { return across_; }
+    /// u of the i-th line of a row, and v of the i-th row.
+    [[nodiscard]] double place(unsigned i) const;
+    [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
+    /// One for each line that does not miss, along a path in short steps.
+    [[nodiscard]] const std::vector<Start>& starts() const { return starts_; }
+    /// The first of a row that is not below `row`, or the number of all.
+    [[nodiscard]] std::size_t startOfRow(double row) const;
+    /// Whether the way from one start to the next may cross the triangle: that it may be near a side by which lines enter.
+    [[nodiscard]] bool nearStarts(const UnitTriangle& triangle) const;
+    /// The volume of a column for a unit of its w, in cells.
+    [[nodiscard]] double volumePerLength() const { return volume_per_length_; }
+    /// −1 if (u, v, w) is left-handed, else 1.
+    [[nodiscard]] int handedness() const { return handedness_; }
+
+  private:
+    PatchFrame frame_;
+    unsigned across_;
+    std::vector<Line> lines_;
+    std::vector<Start> starts_;
+    std::vector<std::size_t> row_starts_;
+    glm::dvec3 along_{0.0};   // of w, in the cube
+    double start_reach_ = 0;  // how far from such a side the way gets
+    double volume_per_length_ = 0.0;
+    int handedness_ = 1;
+};
+
+/// One line of a cell.
 struct CellColumn {
-    double u = 0.0;
-    double v = 0.0;
     double enters = 0.0;
     double leaves = 0.0;
     bool inside = false;            ///< where it enters
     std::span<const double> turns;  ///< where it goes from outside to inside or back, in order
 
+    /// The length from where it enters to `w` that is inside.
+    [[nodiscard]] double insideTo(double w) const;
     /// The length on which "inside where w < height" is wrong, or with outside_below "w ≥ height".
     [[nodiscard]] double wrongAt(double height, bool outside_below) const;
-    /// The length that is inside.
-    [[nodiscard]] double insideLength() const;
 };
 
-/// All lines of a cell along one frame.
+/// All lines of a cell.
 class CellColumns {
   public:
-    /// \param across  lines along each side of the square that u and v span; those that miss the cube are left out.
-    CellColumns(const MeshQuery& query, const MeshCell& cell, const PatchFrame& frame, unsigned across);
+    /// \param triangles  of unitTriangles().
+    /// \param grid  borrowed.
+    CellColumns(const MeshQuery& query, const MeshCell& cell, std::span<const UnitTriangle> triangles,
+                const LineGrid& grid);
 
-    [[nodiscard]] const std::vector<CellColumn>& columns() const { return columns_; }
-    /// The volume of a column for a unit of its w, in cells: wrongAt() times this is a volume.
-    [[nodiscard]] double volumePerLength() const { return volume_per_length_; }
+    [[nodiscard]] const LineGrid& grid() const { return grid_; }
+    /// \param line  an index of LineGrid::lines(), of one that does not miss.
+    [[nodiscard]] CellColumn operator[](std::size_t line) const;
 
   private:
-    std::vector<CellColumn> columns_;
+    struct Turns {
+        std::uint32_t first = 0;
+        std::uint32_t count = 0;
+        bool inside = false;
+    };
+
+    const LineGrid& grid_;
+    std::vector<Turns> columns_;
     std::vector<double> turns_;
-    double volume_per_length_ = 0.0;
 };
 
 }  // namespace relief

@@ -3,183 +3,266 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace relief {
 namespace {
 
-constexpr std::size_t kNodesMax = std::size_t{kPatchSideMax} * kPatchSideMax;
-/// The bilinear basis couples a node with those up to one row and one column on, second differences with those two rows on.
-constexpr std::size_t kBandMax = 2 * kPatchSideMax + 1;
 /// Weight of second differences against a column's: where no column tells, the patch goes on straight.
 constexpr double kSmooth = 3e-4;
 constexpr double kAnchor = 1e-7;
 /// An error below which all errors weigh the same, in units of w.
 constexpr double kSmallError = 4e-3;
 
-/// A symmetric system of at most kNodesMax unknowns whose entries lie within a band.
-class BandSystem {
+/// A symmetric system for kSide² heights. The bilinear basis couples a node with those up to one row and one column on, second
+/// differences with those two rows on.
+template <std::size_t kSide>
+class HeightSystem {
   public:
-    BandSystem(std::size_t unknowns, std::size_t band) : unknowns_(unknowns), band_(band) {}
+    static constexpr std::size_t kNodes = kSide * kSide;
+    static constexpr std::size_t kBand = kSide == 2 ? 3 : 2 * kSide;
+
+    HeightSystem() {
+        const auto smooth = [&](std::size_t first, std::size_t step) {
+            constexpr std::array<double, 3> kSecond = {1.0, -2.0, 1.0};
+            for (std::size_t a = 0; a < 3; ++a) {
+                for (std::size_t b = 0; b <= a; ++b) {
+                    add(first + a * step, first + b * step, kSmooth * kSecond[a] * kSecond[b]);
+                }
+            }
+        };
+        for (std::size_t j = 0; j < kSide; ++j) {
+            for (std::size_t i = 0; i + 2 < kSide; ++i) {
+                smooth(j * kSide + i, 1);
+                smooth(i * kSide + j, kSide);
+            }
+        }
+        for (std::size_t i = 0; i < kNodes; ++i) {
+            add(i, i, kAnchor);
+        }
+    }
 
     void add(std::size_t i, std::size_t j, double value) {  // i >= j
-        rows_[i][i - j] += value;
+        rows_[i][kBand + j - i] += value;
     }
     void addRight(std::size_t i, double value) { right_[i] += value; }
 
     /// By LDLᵀ, which keeps the band.
-    void solve(std::span<double> x) {
-        std::array<double, kNodesMax> diagonal;
-        for (std::size_t i = 0; i < unknowns_; ++i) {
-            const std::size_t first = i > band_ ? i - band_ : 0;
+    void solve(std::array<double, kNodes>& x) {
+        std::array<double, kNodes> pivots;
+        std::array<double, kBand> scaled;  // a row of LD
+        for (std::size_t i = 0; i < kNodes; ++i) {
+            const std::size_t first = i > kBand ? i - kBand : 0;
+            double* const row = &rows_[i][kBand - (i - first)];  // [j − first]
+            double pivot = rows_[i][kBand];
+            double right = right_[i];
             for (std::size_t j = first; j < i; ++j) {
-                double sum = rows_[i][i - j];
-                for (std::size_t k = std::max(first, j > band_ ? j - band_ : 0); k < j; ++k) {
-                    sum -= rows_[i][i - k] * rows_[j][j - k] * diagonal[k];
+                const std::size_t from = std::max(first, j > kBand ? j - kBand : 0);
+                double sum = row[j - first];
+                for (std::size_t k = from; k < j; ++k) {
+                    sum -= scaled[k - first] * rows_[j][kBand + k - j];
                 }
-                rows_[i][i - j] = sum / diagonal[j];
+                scaled[j - first] = sum;
+                row[j - first] = sum * pivots[j];
+                pivot -= sum * row[j - first];
+                right -= row[j - first] * x[j];
             }
-            double pivot = rows_[i][0];
-            for (std::size_t k = first; k < i; ++k) {
-                pivot -= rows_[i][i - k] * rows_[i][i - k] * diagonal[k];
-            }
-            diagonal[i] = pivot;
+            pivots[i] = 1.0 / pivot;
+            x[i] = right;
         }
-        for (std::size_t i = 0; i < unknowns_; ++i) {
-            x[i] = right_[i];
-            for (std::size_t k = i > band_ ? i - band_ : 0; k < i; ++k) {
-                x[i] -= rows_[i][i - k] * x[k];
-            }
+        for (std::size_t i = 0; i < kNodes; ++i) {
+            x[i] *= pivots[i];
         }
-        for (std::size_t i = 0; i < unknowns_; ++i) {
-            x[i] /= diagonal[i];
-        }
-        for (std::size_t i = unknowns_; i-- > 0;) {
-            for (std::size_t k = i > band_ ? i - band_ : 0; k < i; ++k) {
-                x[k] -= rows_[i][i - k] * x[i];
+        for (std::size_t i = kNodes; i-- > 0;) {
+            for (std::size_t k = i > kBand ? i - kBand : 0; k < i; ++k) {
+                x[k] -= rows_[i][kBand + k - i] * x[i];
             }
         }
     }
 
   private:
-    std::size_t unknowns_;
-    std::size_t band_;
-    std::array<std::array<double, kBandMax + 1>, kNodesMax> rows_{};  // by distance from the diagonal
-    std::array<double, kNodesMax> right_{};
+    std::array<std::array<double, kBand + 1>, kNodes> rows_{};  // the diagonal last
+    std::array<double, kNodes> right_{};
 };
 
-/// The four nodes around a place and their shares.
-struct Bilinear {
-    std::array<std::size_t, 4> node;
-    std::array<double, 4> share;
+/// A line's place among the heights of a row, or a row's.
+struct Between {
+    std::size_t first;
+    double share;  // of the next one
 
-    Bilinear(double u, double v, std::uint32_t side) {
-        const double last = side - 1.0;
-        const double x = std::clamp(u, 0.0, 1.0) * last;
-        const double y = std::clamp(v, 0.0, 1.0) * last;
-        const double column = std::min(std::floor(x), last - 1.0);
-        const double row = std::min(std::floor(y), last - 1.0);
-        const double s = x - column;
-        const double t = y - row;
-        const auto first = static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column);
-        node = {first, first + 1, first + side, first + side + 1};
-        share = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+    Between(double place, std::size_t side) {
+        const double last = static_cast<double>(side) - 1.0;
+        const double at = std::clamp(place, 0.0, 1.0) * last;
+        first = std::min(static_cast<std::size_t>(at), side - 2);
+        share = at - static_cast<double>(first);
     }
-    [[nodiscard]] double of(std::span<const double> heights) const {
-        return share[0] * heights[node[0]] + share[1] * heights[node[1]] +
-               (share[2] * heights[node[2]] + share[3] * heights[node[3]]);
+};
+
+/// The lines of a grid in the squares between kSide² heights.
+template <std::size_t kSide>
+std::vector<Between> betweenOf(const LineGrid& grid) {
+    std::vector<Between> between;
+    for (unsigned i = 0; i < grid.across(); ++i) {
+        between.emplace_back(grid.place(i), kSide);
     }
+    return between;
+}
+
+/// Heights across a row of lines.
+template <std::size_t kSide>
+std::array<double, kSide> rowOf(const std::array<double, kSide * kSide>& heights, const Between& row) {
+    std::array<double, kSide> across;
+    for (std::size_t i = 0; i < kSide; ++i) {
+        const double* const lower = &heights[row.first * kSide + i];
+        across[i] = lower[0] + row.share * (lower[kSide] - lower[0]);
+    }
+    return across;
+}
+
+/// Sums over the lines of a row between two heights, weighted by their shares.
+struct RowSums {
+    double square[3] = {};  // both the first's share, one each, both the second's
+    double right[2] = {};
 };
 
 }  // namespace
 
-PatchFitter::PatchFitter(const CellColumns& columns) : columns_(columns) {
+PatchFitter::PatchFitter(const CellColumns& columns, std::optional<bool> outside_below) : columns_(columns) {
+    const std::vector<LineGrid::Line>& lines = columns.grid().lines();
     double lower = 0.0;  // inside in the lower half of a column more than in the upper one
-    for (const CellColumn& column : columns.columns()) {
-        const double middle = 0.5 * (column.enters + column.leaves);
-        lower += column.wrongAt(middle, true) - column.wrongAt(middle, false);
-        inside_volume_ += column.insideLength() * columns.volumePerLength();
-        volume_ += (column.leaves - column.enters) * columns.volumePerLength();
+    double length = 0.0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const CellColumn column = columns[i];
+        const double half = 0.5 * (column.leaves - column.enters);
+        length += 2.0 * half;
+        if (column.turns.empty()) {
+            inside_volume_ += column.inside ? 2.0 * half : 0.0;
+            continue;
+        }
+        const double inside = column.insideTo(column.leaves);
+        lower += 2.0 * column.insideTo(column.enters + half) - inside;
+        inside_volume_ += inside;
     }
-    outside_below_ = lower < 0.0;
-    targets_.reserve(columns.columns().size());
-    for (const CellColumn& column : columns.columns()) {
-        targets_.push_back(targetOf(column));
+    inside_volume_ *= columns.grid().volumePerLength();
+    volume_ = length * columns.grid().volumePerLength();
+    outside_below_ = outside_below.value_or(lower < 0.0);
+    targets_.resize(lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!lines[i].misses()) {
+            targets_[i] = targetOf(columns[i]);
+        }
     }
 }
 
 PatchFitter::Target PatchFitter::targetOf(const CellColumn& column) const {
-    Target best{column.enters, Bound::kAtMost};
+    const Target enters{.height = column.enters, .above = 1.0};
+    const Target leaves{.height = column.leaves, .below = 1.0};
+    if (column.turns.empty()) {
+        return column.inside == outside_below_ ? enters : leaves;
+    }
+    if (column.turns.size() == 1 && column.inside != outside_below_) {
+        return {column.turns[0], 1.0, 1.0};
+    }
+    Target best = enters;
     double least = column.wrongAt(column.enters, outside_below_);
     if (const double wrong = column.wrongAt(column.leaves, outside_below_); wrong < least) {
-        best = {column.leaves, Bound::kAtLeast};
+        best = leaves;
         least = wrong;
     }
     for (const double turn : column.turns) {
         if (const double wrong = column.wrongAt(turn, outside_below_); wrong < least - 1e-12) {
-            best = {turn, Bound::kExact};
+            best = {turn, 1.0, 1.0};
             least = wrong;
         }
     }
+    best.by_error = false;
     return best;
 }
 
-FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
-    const std::size_t nodes = std::size_t{side} * side;
-    const std::vector<CellColumn>& columns = columns_.columns();
-    std::array<double, kNodesMax> store{};
-    const std::span<double> heights(store.data(), nodes);
+template <std::size_t kSide>
+double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) const {
+    const LineGrid& grid = columns_.grid();
+    const std::vector<Between> between = betweenOf<kSide>(grid);
+    double wrong = 0.0;
+    for (std::size_t j = 0; j < grid.across(); ++j) {
+        const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
+        for (std::size_t i = 0; i < grid.across(); ++i) {
+            const std::size_t index = j * grid.across() + i;
+            const double* const first = &row[between[i].first];
+            const double height = first[0] + between[i].share * (first[1] - first[0]);
+            if (targets_[index].by_error) {
+                const LineGrid::Line& line = grid.lines()[index];
+                wrong += std::abs(std::clamp(height, line.enters, line.leaves) - targets_[index].height);
+            } else {
+                wrong += columns_[index].wrongAt(height, outside_below_);
+            }
+        }
+    }
+    return wrong * grid.volumePerLength();
+}
+
+template <std::size_t kSide>
+FittedPatch PatchFitter::fitOf(int rounds) const {
+    static const HeightSystem<kSide> kEmpty;
+    const std::size_t across = columns_.grid().across();
+    const std::vector<Between> between = betweenOf<kSide>(columns_.grid());
+    std::array<double, kSide * kSide> heights{};
     for (int round = 0; round < rounds; ++round) {
-        BandSystem system(nodes, side == 2 ? 3 : 2 * std::size_t{side});
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            const Target& target = targets_[c];
-            if (round == 0 && target.bound != Bound::kExact) {
-                continue;
-            }
-            const Bilinear at(columns[c].u, columns[c].v, side);
-            double weight = 1.0;
-            if (round > 0) {
-                const double off = at.of(heights) - target.height;
-                if ((target.bound == Bound::kAtLeast && off >= 0.0) ||
-                    (target.bound == Bound::kAtMost && off <= 0.0)) {
-                    continue;
+        HeightSystem<kSide> system = kEmpty;
+        for (std::size_t j = 0; j < across; ++j) {
+            const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
+            std::array<RowSums, kSide - 1> sums;
+            for (std::size_t i = 0; i < across; ++i) {
+                const Target& target = targets_[j * across + i];
+                const std::size_t first = between[i].first;
+                const double s = between[i].share;
+                double weight = target.above * target.below;
+                if (round > 0) {
+                    const double off = row[first] + s * (row[first + 1] - row[first]) - target.height;
+                    weight = (off > 0.0 ? target.above : target.below) * kSmallError /
+                             (kSmallError + std::abs(off));
                 }
-                weight = kSmallError / (kSmallError + std::abs(off));
+                RowSums& sum = sums[first];
+                const double second = weight * s;
+                sum.square[0] += (weight - second) * (1.0 - s);
+                sum.square[1] += second * (1.0 - s);
+                sum.square[2] += second * s;
+                sum.right[0] += (weight - second) * target.height;
+                sum.right[1] += second * target.height;
             }
-            for (std::size_t a = 0; a < 4; ++a) {
-                system.addRight(at.node[a], weight * at.share[a] * target.height);
-                for (std::size_t b = 0; b <= a; ++b) {
-                    system.add(at.node[a], at.node[b], weight * at.share[a] * at.share[b]);
-                }
+            const double t = between[j].share;
+            for (std::size_t i = 0; i + 1 < kSide; ++i) {
+                const auto& [square, right] = sums[i];
+                const std::size_t node = between[j].first * kSide + i;
+                const auto addPair = [&](std::size_t a, std::size_t b,
+                                         double share) {  // of nodes in two rows
+                    system.add(a, b, share * square[0]);
+                    system.add(a, b + 1, share * square[1]);
+                    system.add(a + 1, b, share * square[1]);
+                    system.add(a + 1, b + 1, share * square[2]);
+                };
+                const auto addOne = [&](std::size_t a, double share, double share_right) {
+                    system.add(a, a, share * square[0]);
+                    system.add(a + 1, a, share * square[1]);
+                    system.add(a + 1, a + 1, share * square[2]);
+                    system.addRight(a, share_right * right[0]);
+                    system.addRight(a + 1, share_right * right[1]);
+                };
+                addOne(node, (1.0 - t) * (1.0 - t), 1.0 - t);
+                addOne(node + kSide, t * t, t);
+                addPair(node + kSide, node, t * (1.0 - t));
             }
-        }
-        const auto smooth = [&](std::size_t first, std::size_t step) {
-            constexpr std::array<double, 3> kSecond = {1.0, -2.0, 1.0};
-            for (std::size_t a = 0; a < 3; ++a) {
-                for (std::size_t b = 0; b <= a; ++b) {
-                    system.add(first + a * step, first + b * step, kSmooth * kSecond[a] * kSecond[b]);
-                }
-            }
-        };
-        for (std::size_t j = 0; j < side; ++j) {
-            for (std::size_t i = 0; i + 2 < side; ++i) {
-                smooth(j * side + i, 1);
-                smooth(i * side + j, side);
-            }
-        }
-        for (std::size_t i = 0; i < nodes; ++i) {
-            system.add(i, i, kAnchor);
         }
         system.solve(heights);
     }
     FittedPatch fitted;
-    fitted.heights = PatchHeights::of(heights, side);
+    fitted.heights = PatchHeights::of(heights, kSide);
     fitted.heights.decode(heights);
-    for (const CellColumn& column : columns) {
-        fitted.wrong += column.wrongAt(Bilinear(column.u, column.v, side).of(heights), outside_below_);
-    }
-    fitted.wrong *= columns_.volumePerLength();
+    fitted.wrong = wrongOf<kSide>(heights);
     return fitted;
+}
+
+FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
+    return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
 }
 
 }  // namespace relief

@@ -1,7 +1,10 @@
 // The heights of one patch, fitted to the inside of its cell.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "bake/patches/cell_columns.h"
@@ -18,7 +21,8 @@ struct FittedPatch {
 class PatchFitter {
   public:
     /// \param columns  borrowed.
-    explicit PatchFitter(const CellColumns& columns);
+    /// \param outside_below  by the columns where it is not given.
+    explicit PatchFitter(const CellColumns& columns, std::optional<bool> outside_below = {});
 
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
     /// \param side  2, 3 or 5 heights.
@@ -29,13 +33,22 @@ class PatchFitter {
     [[nodiscard]] double volume() const { return volume_; }
 
   private:
-    /// The best height of a column: any at least, or at most, as high will do where a column has no surface.
-    enum class Bound : std::uint8_t { kExact, kAtLeast, kAtMost };
+    /// The best height of a line.
     struct Target {
-        double height;
-        Bound bound;
+        double height = 0.0;
+        /// Weights of errors above and below it: none where a line has no surface, and any height at least, or at most, as high
+        /// will do. None for lines that miss the cube.
+        double above = 0.0;
+        double below = 0.0;
+        /// The length on the wrong side grows by the error, which ends with the cube.
+        bool by_error = true;
     };
     [[nodiscard]] Target targetOf(const CellColumn& column) const;
+    template <std::size_t kSide>
+    [[nodiscard]] FittedPatch fitOf(int rounds) const;
+    /// The volume on the wrong side among some heights.
+    template <std::size_t kSide>
+    [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;
 
     const CellColumns& columns_;
     bool outside_below_ = false;

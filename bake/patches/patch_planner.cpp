@@ -21,10 +21,13 @@ constexpr double kBytesPerRoot = 160.0;
 /// Lines along each side of a cell: to choose by, and for the heights that are kept.
 constexpr unsigned kLines = 12;
 constexpr unsigned kFinalLines = 20;
-constexpr int kRounds = 3;
-constexpr int kFinalRounds = 6;
-/// A leaf is split on trial where it has more mistakes than so many bytes are worth.
-constexpr double kTrialBytes = 50.0;
+constexpr int kRounds = 2;
+constexpr int kFinalRounds = 4;
+/// A leaf is split on trial where it has more mistakes than so many bytes are worth, times how much 5² heights mend 3²: where
+/// the surface is smooth, patches alone get far, and eight of them cost more.
+constexpr double kTrialBytes = 45.0;
+constexpr double kMendedLeast = 1.2;
+constexpr double kMendedMost = 2.5;
 constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
 constexpr int kHalvings = 12;
@@ -46,25 +49,39 @@ struct Candidate {
 
 struct Node {
     MeshCell cell;
-    PatchFrame frame;
-    std::vector<Candidate> candidates;
-    std::unique_ptr<std::array<Node, 8>> children;
-    bool made = false;
+    std::uint8_t frame = 0;  // of patchFrames()
+    std::uint8_t tried = 0;  // candidates
+    std::uint8_t chosen = 0;
     bool split = false;
-    std::size_t chosen = 0;
+    bool outside_below = false;
+    std::array<Candidate, 2 + kSides.size()> candidates;
+    std::array<PatchHeights, 2> heights;  // of 2² and 3²
+    std::unique_ptr<std::array<Node, 8>> children;
     double bytes = 0.0;
     double wrong = 0.0;
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
     [[nodiscard]] const Candidate& leaf() const { return candidates[chosen]; }
+    void add(const Candidate& candidate) { candidates[tried++] = candidate; }
 };
 
+double bytesOf(std::uint32_t side) {
+    return kTexelBytes * (1.0 + heightTexels(side));
+}
+
 /// The frame that sees most of the surface in a cell from above, or from below.
-PatchFrame bestFrame(const std::vector<ClippedTriangle>& pieces) {
-    PatchFrame best;
+std::uint8_t bestFrame(const std::vector<ClippedTriangle>& pieces) {
+    static const auto kAlong = [] {
+        std::array<glm::dvec3, 13> along;
+        std::ranges::transform(patchFrames(), along.begin(), [](const PatchFrame& frame) {
+            return unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
+        });
+        return along;
+    }();
+    std::uint8_t best = 0;
     double best_score = -std::numeric_limits<double>::infinity();
-    for (const PatchFrame& frame : patchFrames()) {
-        const glm::dvec3 along = unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
+    for (std::uint8_t frame = 0; frame < kAlong.size(); ++frame) {
+        const glm::dvec3& along = kAlong[frame];
         for (const double sign : {1.0, -1.0}) {
             double score = 0.0;
             for (const ClippedTriangle& piece : pieces) {
@@ -83,8 +100,12 @@ PatchFrame bestFrame(const std::vector<ClippedTriangle>& pieces) {
 
 class Planner {
   public:
-    Planner(const MeshQuery& query, std::uint64_t bytes)
-        : query_(query), bytes_(static_cast<double>(bytes)) {}
+    Planner(const MeshQuery& query, std::uint64_t bytes) : query_(query), bytes_(static_cast<double>(bytes)) {
+        for (const PatchFrame& frame : patchFrames()) {
+            grids_.emplace_back(frame, kLines);
+            final_grids_.emplace_back(frame, kFinalLines);
+        }
+    }
 
     DepthMap run() {
         makeRoots();
@@ -141,54 +162,87 @@ class Planner {
         });
     }
 
-    [[nodiscard]] std::vector<ClippedTriangle> piecesOf(const MeshCell& cell) const {
+    [[nodiscard]] static std::vector<ClippedTriangle> piecesOf(std::span<const UnitTriangle> triangles) {
         std::vector<ClippedTriangle> pieces;
-        for (const std::uint32_t triangle : cell.triangles) {
-            pieces.push_back(clipToUnitCube(cell.inUnit(query_.mesh(), triangle)));
+        pieces.reserve(triangles.size());
+        for (const UnitTriangle& triangle : triangles) {
+            pieces.push_back(clipToUnitCube(triangle));
         }
         return pieces;
     }
 
-    void make(Node& node) const {
-        node.made = true;
+    /// Tries what may pay where a byte is worth so much wrong volume.
+    void tryLeaves(Node& node, double byte) const {
         if (node.empty()) {
-            node.candidates = {{.inside = node.cell.bodies.inside()}};
+            if (node.tried == 0) {
+                node.add({.inside = node.cell.bodies.inside()});
+            }
             return;
         }
-        node.frame = bestFrame(piecesOf(node.cell));
-        const CellColumns columns(query_, node.cell, node.frame, kLines);
+        const auto least = [&] {
+            double cost = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i < node.tried; ++i) {
+                cost = std::min(cost, node.candidates[i].cost(byte));
+            }
+            return cost;
+        };
+        const auto pays = [&] {
+            return node.tried < node.candidates.size() &&
+                   (node.tried < 2 || byte * bytesOf(kSides[node.tried - 2]) < least());
+        };
+        if (!pays()) {
+            return;
+        }
+        const std::vector<UnitTriangle> triangles = unitTriangles(query_.mesh(), node.cell);
+        if (node.tried == 0) {
+            node.frame = bestFrame(piecesOf(triangles));
+        }
+        const CellColumns columns(query_, node.cell, triangles, grids_[node.frame]);
         const PatchFitter fitter(columns);
         const double volume = node.cell.size * node.cell.size * node.cell.size;
-        const double inside = fitter.insideVolume();
-        node.candidates.push_back({.inside = false, .wrong = volume * inside});
-        node.candidates.push_back({.inside = true, .wrong = volume * (fitter.volume() - inside)});
-        for (const std::uint32_t side : kSides) {
-            const FittedPatch fitted = fitter.fit(side, kRounds);
-            node.candidates.push_back({.side = side,
-                                       .wrong = volume * fitted.wrong,
-                                       .bytes = kTexelBytes * (1.0 + heightTexels(side))});
+        if (node.tried == 0) {
+            const double inside = fitter.insideVolume();
+            node.add({.inside = false, .wrong = volume * inside});
+            node.add({.inside = true, .wrong = volume * (fitter.volume() - inside)});
+            node.outside_below = fitter.outsideBelow();
         }
+        while (pays()) {
+            const std::uint32_t side = kSides[node.tried - 2];
+            const FittedPatch fitted = fitter.fit(side, kRounds);
+            if (side < kPatchSideMax) {
+                node.heights[node.tried - 2] = fitted.heights;
+            }
+            node.add({.side = side, .wrong = volume * fitted.wrong, .bytes = bytesOf(side)});
+        }
+    }
+
+    [[nodiscard]] static double trialBytes(const Node& node) {
+        if (node.tried < node.candidates.size()) {
+            return kTrialBytes;
+        }
+        const double mended = node.candidates[3].wrong / node.candidates[4].wrong;
+        return kTrialBytes * std::clamp(mended, kMendedLeast, kMendedMost);
     }
 
     /// The cheapest tree below a node where a byte is worth so much wrong volume.
     void choose(Node& node, double byte, std::uint32_t level) const {
-        if (!node.made) {
-            make(node);
-        }
+        tryLeaves(node, byte);
         node.split = false;
         node.chosen = 0;
-        for (std::size_t i = 1; i < node.candidates.size(); ++i) {
+        for (std::uint8_t i = 1; i < node.tried; ++i) {
             node.chosen = node.candidates[i].cost(byte) < node.leaf().cost(byte) ? i : node.chosen;
         }
         node.bytes = node.leaf().bytes;
         node.wrong = node.leaf().wrong;
-        if (node.empty() || level == kLevels || node.wrong < kTrialBytes * byte) {
+        if (node.empty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
             return;
         }
         if (!node.children) {
             node.children = std::make_unique<std::array<Node, 8>>();
-            for (unsigned i = 0; i < 8; ++i) {
-                (*node.children)[i].cell = childOf(query_, node.cell, i);
+            std::array<MeshCell, 8> cells =
+                childrenOf(query_, node.cell, unitTriangles(query_.mesh(), node.cell));
+            for (std::size_t i = 0; i < 8; ++i) {
+                (*node.children)[i].cell = std::move(cells[i]);
             }
         }
         const double cost = node.wrong + byte * node.bytes;
@@ -261,7 +315,7 @@ class Planner {
         glm::dvec3 normal(0.0);
         glm::dvec3 center(0.0);
         double area = 0.0;
-        for (const ClippedTriangle& piece : piecesOf(node.cell)) {
+        for (const ClippedTriangle& piece : piecesOf(unitTriangles(query_.mesh(), node.cell))) {
             normal += piece.area * piece.normal;
             center += piece.area * piece.center;
             area += piece.area;
@@ -282,6 +336,16 @@ class Planner {
         normal = agree < 0 ? -normal : normal;  // of meshes that are not wound
         return PatchRecord::split(children, inside, first, glm::vec3(normal),
                                   static_cast<float>(dot(normal, glm::dvec3(0.5) - center)));
+    }
+
+    /// Of 12 lines there are nine for each square of 5² heights, too few to tell all their places; of fewer heights enough.
+    [[nodiscard]] PatchHeights finalHeights(const Node& node) const {
+        if (node.leaf().side < kPatchSideMax) {
+            return node.heights[node.chosen - 2];
+        }
+        const CellColumns columns(query_, node.cell, unitTriangles(query_.mesh(), node.cell),
+                                  final_grids_[node.frame]);
+        return PatchFitter(columns, node.outside_below).fit(kPatchSideMax, kFinalRounds).heights;
     }
 
     [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.leaf().side > 0; }
@@ -327,10 +391,9 @@ class Planner {
             } else if (node.leaf().side == 0) {
                 texels[1 + i] = flat(node);
             } else {
-                const CellColumns columns(query_, node.cell, node.frame, kFinalLines);
-                const PatchFitter fitter(columns);
-                const PatchHeights heights = fitter.fit(node.leaf().side, kFinalRounds).heights;
-                texels[1 + i] = PatchRecord::patch(node.frame, fitter.outsideBelow(), heights, first[i]);
+                const PatchHeights heights = finalHeights(node);
+                texels[1 + i] =
+                    PatchRecord::patch(patchFrames()[node.frame], node.outside_below, heights, first[i]);
                 for (std::uint32_t k = 0; k < heightTexels(heights.side); ++k) {
                     texels[first[i] + k] = heights.texel(k);
                 }
@@ -359,6 +422,8 @@ class Planner {
 
     const MeshQuery& query_;
     double bytes_;
+    std::vector<LineGrid> grids_;  // by frame
+    std::vector<LineGrid> final_grids_;
     double root_ = 0.0;  // object units
     glm::uvec3 roots_{1};
     glm::dvec3 origin_{0.0};

@@ -54,15 +54,23 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     cell.bodies = query.bodiesAt(glm::vec3(cell.low + cell.size * cell.known));
     std::vector<MeshCell> cells = {cell};
     for (unsigned i = 0; i < 8; ++i) {
-        cells.push_back(childOf(query, cell, i));
-        cells.push_back(childOf(query, cells.back(), 7 - i));
+        const auto child = [&](const MeshCell& of, unsigned octant) {
+            return childrenOf(query, of, unitTriangles(query.mesh(), of))[octant];
+        };
+        cells.push_back(child(cell, i));
+        cells.push_back(child(cells.back(), 7 - i));
     }
     int wrong = 0;
     for (const MeshCell& one : cells) {
         EXPECT_EQ(one.bodies.inside(), query.inside(glm::vec3(one.low + one.size * one.known)));
         for (const PatchFrame& frame : patchFrames()) {
-            const CellColumns columns(query, one, frame, 9);
-            for (const CellColumn& column : columns.columns()) {
+            const LineGrid grid(frame, 9);
+            const CellColumns columns(query, one, unitTriangles(query.mesh(), one), grid);
+            for (unsigned line = 0; line < 81; ++line) {
+                if (grid.lines()[line].misses()) {
+                    continue;
+                }
+                const CellColumn column = columns[line];
                 bool inside = column.inside;
                 double from = column.enters;
                 const auto check = [&](double to) {
@@ -72,7 +80,8 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
                                             frame.across(glm::dvec3(0, 1, 0)) - zero,
                                             frame.across(glm::dvec3(0, 0, 1)) - zero);
                     const glm::dvec3 p =
-                        glm::inverse(across) * (glm::dvec3(column.u, column.v, 0.5 * (from + to)) - zero);
+                        glm::inverse(across) *
+                        (glm::dvec3(grid.place(line % 9), grid.place(line / 9), 0.5 * (from + to)) - zero);
                     if (to - from > 1e-4) {
                         wrong += query.inside(glm::vec3(one.low + one.size * p)) != inside ? 1 : 0;
                     }
