@@ -14,7 +14,6 @@
 #include "bake/director/director.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
-#include "bake/patches/patch_planner.h"
 #include "bake/plan/view.h"
 #include "bake/repair/winding.h"
 #include "bake/report/bake_report.h"
@@ -26,7 +25,6 @@
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/fields/json.h"
-#include "formats/validate.h"
 
 namespace relief {
 namespace {
@@ -110,10 +108,11 @@ Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
     return bake(mesh, options);
 }
 
-/// As `relief bake --budget`.
-Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes) {
+/// As `relief bake --budget --layout`.
+Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes, Layout layout) {
     BakeRequest request;
     request.budget = bytes;
+    request.layout = layout;
     return bakeSolid(request, mesh);
 }
 
@@ -198,7 +197,10 @@ AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, c
 Result<AccuracyEntry> bakeAndMeasure(const MeshQuery& query, const TruthSamples& samples,
                                      const std::string& method, std::uint64_t budget) {
     const Stopwatch watch;
-    const Baked baked = RELIEF_TRY((method == "paper" ? bakePaper : bakeOurs)(query.prepared(), budget));
+    const Baked baked =
+        RELIEF_TRY(method == "paper" ? bakePaper(query.prepared(), budget)
+                                     : bakeOurs(query.prepared(), budget,
+                                                method == "views" ? Layout::kViews : Layout::kPatches));
     const double seconds = watch.seconds();
     AccuracyEntry entry = measureMaps(query, samples, method, baked.collider);
     entry.build_seconds = seconds;
@@ -223,7 +225,7 @@ struct Arguments {
     std::vector<std::string> budgets = {"0.25MB", "1MB", "4MB"};
     std::uint32_t samples = AccuracyOptions{}.samples;
     std::uint64_t seed = AccuracyOptions{}.seed;
-    std::vector<std::string> methods = {"volume", "unreal", "bricks", "fitted", "paper", "ours"};
+    std::vector<std::string> methods = {"volume", "unreal", "bricks", "fitted", "paper", "views", "ours"};
     std::string collider;
 };
 
@@ -280,16 +282,7 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
             entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
         } else if (method == "volume") {
             entry = measureVolume(query, samples, budget);
-        } else if (method == "patches") {
-            const Stopwatch watch;
-            Collider collider;
-            collider.bounds = query.mesh().bounds;
-            collider.maps.push_back(bakePatches(query, budget));
-            const double seconds = watch.seconds();
-            RELIEF_TRY(validate(collider));
-            entry = measureMaps(query, samples, method, collider);
-            entry.build_seconds = seconds;
-        } else if (method != "paper" && method != "ours") {
+        } else if (method != "paper" && method != "views" && method != "ours") {
             entry = measureBricks(query, samples, method, budget);
         } else {
             entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
@@ -343,9 +336,9 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Of the points; default 1");
     app.add_option("--methods", arguments.methods,
-                   "volume, unreal, bricks, fitted, paper, ours or patches; default: all but patches")
+                   "volume, unreal, bricks, fitted, paper, views or ours; default: all")
         ->delimiter(',')
-        ->check(CLI::IsMember({"volume", "unreal", "bricks", "fitted", "paper", "ours", "patches"}));
+        ->check(CLI::IsMember({"volume", "unreal", "bricks", "fitted", "paper", "views", "ours"}));
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");

@@ -52,6 +52,12 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
         return "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
                "out, set --budget, or choose --map or --paper";
     }
+    if (request.layout && settings.source != MapSource::kPlanner) {
+        return "--layout is of what is planned, but the maps were named; leave it out";
+    }
+    if (request.max_maps != kPlannedMapsMax && settings.layout == Layout::kPatches) {
+        return "--max-maps does nothing with patches, which are one map; leave it out, or add --layout views";
+    }
     // Names need the file's own triangles and separate parts.
     const char* const against = !request.repair.method.empty() ? "--repair, which makes another surface"
                                 : request.holes == Holes::kKeep
@@ -108,6 +114,7 @@ bool take(std::string_view name, std::string_view value, BakeRequest& request) {
 Result<BakeSettings> settingsOf(const BakeRequest& request) {
     BakeSettings settings;
     settings.source = RELIEF_TRY(sourceOf(request));
+    settings.layout = request.layout.value_or(Layout::kViews);
     settings.shape = RELIEF_TRY(parseShapeOptions(request.as));
     const std::string conflict = conflictOf(request, settings);
     if (!conflict.empty()) {

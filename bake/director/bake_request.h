@@ -41,6 +41,7 @@ struct BakeRequest {
     std::optional<std::uint64_t> resolution;
     std::optional<std::uint64_t> budget;
     std::optional<float> max_error;
+    std::optional<Layout> layout;
     std::uint32_t max_maps = kPlannedMapsMax;
     std::string plan_out;
     std::string plan;
@@ -101,22 +102,29 @@ void fields(Visitor& visit, Request& request) {
                  "Exit with 7, and write nothing, if none do",
          .unit = "%",
          .range = {0.0}});
+    visit(
+        "layout", request.layout,
+        {.help =
+             "What to plan. patches: small depth maps in an octree, by far the fewest mistakes. views: depth "
+             "maps of the whole mesh, to look at and to edit",
+         .fallback = "views"});
     visit("max_maps", request.max_maps,
-          {.help = "Plan at most this many maps, each of which every step of a simulation looks at",
+          {.help = "Plan at most this many views, each of which every step of a simulation looks at",
            .range = {1.0, double{ContainerLimits{}.maps}}});
     visit(
         "plan_out", request.plan_out,
         {.help = "Also write what was planned, as TOML, to be changed and given to --plan", .value = "FILE"});
     visit("plan", request.plan, {.help = "Bake the maps of such a file", .value = "FILE"});
     visit("quality", request.quality,
-          {.help = "Of planes: fast (one ray a texel), normal (16 rays) or best (36)",
+          {.help = "The work on planes (one ray a texel, 16 or 36) and on patches: fast, normal or best",
            .fallback = "normal; with --plan, the file's",
            .recorded = true});
-    visit("prefer", request.prefer,
-          {.help = "Where planes must err: inside keeps particles out of walls, outside keeps free "
-                   "space free, neither errs least",
-           .fallback = "neither; with --plan, the file's",
-           .recorded = true});
+    visit(
+        "prefer", request.prefer,
+        {.help = "Where planes and patches must err: inside keeps particles out of walls, outside keeps free "
+                 "space free, neither errs least",
+         .fallback = "neither; with --plan, the file's",
+         .recorded = true});
     visit("threads", request.threads,
           {.help = "Threads to use. The result is the same. With --recipe: assets at once",
            .range = {1.0, 1024.0},
@@ -162,6 +170,7 @@ enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
 /// A request, read and found consistent.
 struct BakeSettings {
     MapSource source = MapSource::kPlanner;
+    Layout layout = Layout::kViews;
     BakeOptions bake;
     ShapeOptions shape;  ///< without a thickness: it depends on the mesh
 };

@@ -140,6 +140,7 @@ class Advisor {
             return;
         }
         BakeRequest request = planned_;
+        request.layout = Layout::kViews;
         request.max_maps = 2 * kPlannedMapsMax;
         attempt(request, "more maps of as many bytes, which make each step slower", *request.budget, true);
     }

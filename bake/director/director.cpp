@@ -45,10 +45,13 @@ class MapMaker {
     /// Chooses the views, and bakes them for the budget.
     Result<Baked> forBudget(const MeshQuery& query, PlanReport& report, double* plan_ms = nullptr) const {
         const Stopwatch watch;
-        ViewOptions options;
-        options.prefer = settings_.bake.prefer;
-        options.max_maps = request_.max_maps;
-        const ViewChoice views = RELIEF_TRY(chooseViews(query, options));
+        std::optional<ViewChoice> views;
+        if (settings_.layout == Layout::kViews) {
+            ViewOptions options;
+            options.prefer = settings_.bake.prefer;
+            options.max_maps = request_.max_maps;
+            views = RELIEF_TRY(chooseViews(query, options));
+        }
         if (plan_ms != nullptr) {
             *plan_ms += watch.ms();
         }
@@ -67,6 +70,7 @@ class MapMaker {
         options.budget_max = request_.budget.value_or(options.budget_max);
         options.bake = settings_.bake;
         options.bake.progress = [this](double) { tell(watcher_.checkpoint); };
+        options.layout = settings_.layout;
         options.max_maps = request_.max_maps;
         options.tried = watcher_.tried;
         BudgetSearchResult found = RELIEF_TRY(bakeForError(query, truth, options));

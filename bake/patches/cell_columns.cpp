@@ -361,11 +361,12 @@ double CellColumn::insideTo(double w) const {
     return length + (in ? std::max(0.0, w - from) : 0.0);
 }
 
-double CellColumn::wrongAt(double height, bool outside_below) const {
+double CellColumn::wrongAt(double height, bool outside_below, const MistakeCosts& costs) const {
     const double middle = std::clamp(height, enters, leaves);
     const double below = insideTo(middle);
     const double above = insideTo(leaves) - below;
-    return outside_below ? below + (leaves - middle - above) : middle - enters - below + above;
+    return outside_below ? costs.false_outside * below + costs.false_inside * (leaves - middle - above)
+                         : costs.false_inside * (middle - enters - below) + costs.false_outside * above;
 }
 
 CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,

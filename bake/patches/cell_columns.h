@@ -91,6 +91,12 @@ class LineGrid {
     int handedness_ = 1;
 };
 
+/// The costs of volume on the wrong side.
+struct MistakeCosts {
+    double false_inside = 1.0;
+    double false_outside = 1.0;
+};
+
 /// One line of a cell.
 struct CellColumn {
     double enters = 0.0;
@@ -100,8 +106,8 @@ struct CellColumn {
 
     /// The length from where it enters to `w` that is inside.
     [[nodiscard]] double insideTo(double w) const;
-    /// The length on which "inside where w < height" is wrong, or with outside_below "w ≥ height".
-    [[nodiscard]] double wrongAt(double height, bool outside_below) const;
+    /// The length on which "inside where w < height" is wrong, or with outside_below "w ≥ height", times its costs.
+    [[nodiscard]] double wrongAt(double height, bool outside_below, const MistakeCosts& costs) const;
 };
 
 /// All lines of a cell.

@@ -126,7 +126,9 @@ struct RowSums {
 
 }  // namespace
 
-PatchFitter::PatchFitter(const CellColumns& columns, std::optional<bool> outside_below) : columns_(columns) {
+PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
+                         std::optional<bool> outside_below)
+    : columns_(columns), costs_(costs) {
     const std::vector<LineGrid::Line>& lines = columns.grid().lines();
     double lower = 0.0;  // inside in the lower half of a column more than in the upper one
     double length = 0.0;
@@ -154,23 +156,25 @@ PatchFitter::PatchFitter(const CellColumns& columns, std::optional<bool> outside
 }
 
 PatchFitter::Target PatchFitter::targetOf(const CellColumn& column) const {
-    const Target enters{.height = column.enters, .above = 1.0};
-    const Target leaves{.height = column.leaves, .below = 1.0};
+    const double above = outside_below_ ? costs_.false_outside : costs_.false_inside;
+    const double below = outside_below_ ? costs_.false_inside : costs_.false_outside;
+    const Target enters{.height = column.enters, .above = above};
+    const Target leaves{.height = column.leaves, .below = below};
     if (column.turns.empty()) {
         return column.inside == outside_below_ ? enters : leaves;
     }
     if (column.turns.size() == 1 && column.inside != outside_below_) {
-        return {column.turns[0], 1.0, 1.0};
+        return {column.turns[0], above, below};
     }
     Target best = enters;
-    double least = column.wrongAt(column.enters, outside_below_);
-    if (const double wrong = column.wrongAt(column.leaves, outside_below_); wrong < least) {
+    double least = column.wrongAt(column.enters, outside_below_, costs_);
+    if (const double wrong = column.wrongAt(column.leaves, outside_below_, costs_); wrong < least) {
         best = leaves;
         least = wrong;
     }
     for (const double turn : column.turns) {
-        if (const double wrong = column.wrongAt(turn, outside_below_); wrong < least - 1e-12) {
-            best = {turn, 1.0, 1.0};
+        if (const double wrong = column.wrongAt(turn, outside_below_, costs_); wrong < least - 1e-12) {
+            best = {turn, above, below};
             least = wrong;
         }
     }
@@ -191,9 +195,10 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
             const double height = first[0] + between[i].share * (first[1] - first[0]);
             if (targets_[index].by_error) {
                 const LineGrid::Line& line = grid.lines()[index];
-                wrong += std::abs(std::clamp(height, line.enters, line.leaves) - targets_[index].height);
+                const double off = std::clamp(height, line.enters, line.leaves) - targets_[index].height;
+                wrong += (off > 0.0 ? targets_[index].above : targets_[index].below) * std::abs(off);
             } else {
-                wrong += columns_[index].wrongAt(height, outside_below_);
+                wrong += columns_[index].wrongAt(height, outside_below_, costs_);
             }
         }
     }

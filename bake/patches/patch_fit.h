@@ -14,7 +14,7 @@ namespace relief {
 
 struct FittedPatch {
     PatchHeights heights;
-    double wrong = 0.0;  ///< volume on the wrong side, in cells
+    double wrong = 0.0;  ///< volume on the wrong side, in cells, times its costs
 };
 
 /// Fits patches of several sizes to the same columns.
@@ -22,7 +22,8 @@ class PatchFitter {
   public:
     /// \param columns  borrowed.
     /// \param outside_below  by the columns where it is not given.
-    explicit PatchFitter(const CellColumns& columns, std::optional<bool> outside_below = {});
+    PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
+                std::optional<bool> outside_below = {});
 
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
     /// \param side  2, 3 or 5 heights.
@@ -36,11 +37,11 @@ class PatchFitter {
     /// The best height of a line.
     struct Target {
         double height = 0.0;
-        /// Weights of errors above and below it: none where a line has no surface, and any height at least, or at most, as high
+        /// Costs of errors above and below it: none where a line has no surface, and any height at least, or at most, as high
         /// will do. None for lines that miss the cube.
         double above = 0.0;
         double below = 0.0;
-        /// The length on the wrong side grows by the error, which ends with the cube.
+        /// The length on the wrong side is the error, as far as that is in the cube.
         bool by_error = true;
     };
     [[nodiscard]] Target targetOf(const CellColumn& column) const;
@@ -51,6 +52,7 @@ class PatchFitter {
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;
 
     const CellColumns& columns_;
+    MistakeCosts costs_;
     bool outside_below_ = false;
     std::vector<Target> targets_;
     double inside_volume_ = 0.0;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "bake/mesh/loops.h"
@@ -18,18 +20,16 @@ namespace {
 constexpr double kTexelBytes = 8.0;
 /// A root for each so many bytes.
 constexpr double kBytesPerRoot = 160.0;
-/// Lines along each side of a cell: to choose by, and for the heights that are kept.
-constexpr unsigned kLines = 12;
-constexpr unsigned kFinalLines = 20;
 constexpr int kRounds = 2;
 constexpr int kFinalRounds = 4;
-/// A leaf is split on trial where it has more mistakes than so many bytes are worth, times how much 5² heights mend 3²: where
-/// the surface is smooth, patches alone get far, and eight of them cost more.
-constexpr double kTrialBytes = 45.0;
+/// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
+/// alone gets far, and eight of them cost more.
 constexpr double kMendedLeast = 1.2;
 constexpr double kMendedMost = 2.5;
 constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
+/// Of the time.
+constexpr double kSearchShare = 0.7;
 constexpr int kHalvings = 12;
 constexpr std::array<std::uint32_t, 3> kSides = {2, 3, 5};
 
@@ -41,7 +41,7 @@ constexpr glm::dvec3 kOriginShift{0.4171, 0.5337,
 struct Candidate {
     std::uint32_t side = 0;  // 0: no patch, but a sign
     bool inside = false;     // the sign
-    double wrong = 0.0;      // volume, object units
+    double wrong = 0.0;      // volume, object units, times its costs
     double bytes = 0.0;      // beyond a record's bit in its parent
 
     [[nodiscard]] double cost(double byte) const { return wrong + byte * bytes; }
@@ -100,10 +100,11 @@ std::uint8_t bestFrame(const std::vector<ClippedTriangle>& pieces) {
 
 class Planner {
   public:
-    Planner(const MeshQuery& query, std::uint64_t bytes) : query_(query), bytes_(static_cast<double>(bytes)) {
+    Planner(const MeshQuery& query, const PatchOptions& options)
+        : query_(query), options_(options), bytes_(static_cast<double>(options.bytes)) {
         for (const PatchFrame& frame : patchFrames()) {
-            grids_.emplace_back(frame, kLines);
-            final_grids_.emplace_back(frame, kFinalLines);
+            grids_.emplace_back(frame, options.lines);
+            final_grids_.emplace_back(frame, options.final_lines);
         }
     }
 
@@ -114,6 +115,13 @@ class Planner {
     }
 
   private:
+    void report(double share) const {
+        if (options_.progress) {
+            const std::lock_guard lock(report_);
+            options_.progress(share);
+        }
+    }
+
     void makeRoots() {
         const Bounds& bounds = query_.mesh().bounds;
         const glm::dvec3 size = bounds.size();
@@ -198,12 +206,13 @@ class Planner {
             node.frame = bestFrame(piecesOf(triangles));
         }
         const CellColumns columns(query_, node.cell, triangles, grids_[node.frame]);
-        const PatchFitter fitter(columns);
+        const PatchFitter fitter(columns, options_.costs);
         const double volume = node.cell.size * node.cell.size * node.cell.size;
         if (node.tried == 0) {
             const double inside = fitter.insideVolume();
-            node.add({.inside = false, .wrong = volume * inside});
-            node.add({.inside = true, .wrong = volume * (fitter.volume() - inside)});
+            node.add({.inside = false, .wrong = options_.costs.false_outside * volume * inside});
+            node.add(
+                {.inside = true, .wrong = options_.costs.false_inside * volume * (fitter.volume() - inside)});
             node.outside_below = fitter.outsideBelow();
         }
         while (pays()) {
@@ -216,12 +225,12 @@ class Planner {
         }
     }
 
-    [[nodiscard]] static double trialBytes(const Node& node) {
+    [[nodiscard]] double trialBytes(const Node& node) const {
         if (node.tried < node.candidates.size()) {
-            return kTrialBytes;
+            return options_.trial_bytes;
         }
         const double mended = node.candidates[3].wrong / node.candidates[4].wrong;
-        return kTrialBytes * std::clamp(mended, kMendedLeast, kMendedMost);
+        return options_.trial_bytes * std::clamp(mended, kMendedLeast, kMendedMost);
     }
 
     /// The cheapest tree below a node where a byte is worth so much wrong volume.
@@ -262,7 +271,10 @@ class Planner {
 
     /// \return the bytes of the whole tree.
     double chooseAll(double byte) {
-        forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) { choose(nodes_[i], byte, 0); });
+        forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
+            choose(nodes_[i], byte, 0);
+            report(kSearchShare * std::min(1.0, taken_ / bytes_));
+        });
         double texels = 1.0 + static_cast<double>(nodes_.size());
         wrong_ = 0.0;
         for (const Node& node : nodes_) {
@@ -271,7 +283,8 @@ class Planner {
             wrong_ += node.wrong;
         }
         const PatchMapSize size = patchMapSize(static_cast<std::size_t>(texels));
-        return kTexelBytes * size.width * size.height;
+        taken_ = kTexelBytes * size.width * size.height;
+        return taken_;
     }
 
     /// The least worth of a byte at which the tree fits.
@@ -338,14 +351,16 @@ class Planner {
                                   static_cast<float>(dot(normal, glm::dvec3(0.5) - center)));
     }
 
-    /// Of 12 lines there are nine for each square of 5² heights, too few to tell all their places; of fewer heights enough.
+    /// The lines to choose by are few for each square of 5² heights, and enough for larger ones.
     [[nodiscard]] PatchHeights finalHeights(const Node& node) const {
         if (node.leaf().side < kPatchSideMax) {
             return node.heights[node.chosen - 2];
         }
         const CellColumns columns(query_, node.cell, unitTriangles(query_.mesh(), node.cell),
                                   final_grids_[node.frame]);
-        return PatchFitter(columns, node.outside_below).fit(kPatchSideMax, kFinalRounds).heights;
+        return PatchFitter(columns, options_.costs, node.outside_below)
+            .fit(kPatchSideMax, kFinalRounds)
+            .heights;
     }
 
     [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.leaf().side > 0; }
@@ -384,8 +399,11 @@ class Planner {
         }
         std::vector<PatchRecord> texels(next);
         texels[0] = {roots_.x | roots_.y << 16U, roots_.z | levels << 16U};
+        std::atomic<std::size_t> done = 0;
         forEachIndex(0, records.size(), 16, [&](std::size_t i) {
             const Node& node = *records[i];
+            report(kSearchShare +
+                   (1.0 - kSearchShare) * static_cast<double>(++done) / static_cast<double>(records.size()));
             if (node.split) {
                 texels[1 + i] = splitOf(node, first[i]);
             } else if (node.leaf().side == 0) {
@@ -421,6 +439,7 @@ class Planner {
     }
 
     const MeshQuery& query_;
+    const PatchOptions& options_;
     double bytes_;
     std::vector<LineGrid> grids_;  // by frame
     std::vector<LineGrid> final_grids_;
@@ -429,12 +448,14 @@ class Planner {
     glm::dvec3 origin_{0.0};
     std::vector<Node> nodes_;
     double wrong_ = 0.0;
+    double taken_ = 0.0;  // bytes of the tree tried last
+    mutable std::mutex report_;
 };
 
 }  // namespace
 
-DepthMap bakePatches(const MeshQuery& query, std::uint64_t bytes) {
-    return Planner(query, bytes).run();
+DepthMap bakePatches(const MeshQuery& query, const PatchOptions& options) {
+    return Planner(query, options).run();
 }
 
 }  // namespace relief

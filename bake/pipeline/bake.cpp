@@ -96,13 +96,12 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
 std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options,
                                              const Collider& collider) {
     std::vector<RecordedOption> recorded;
-    bool has_planes = false;
+    bool fitted = false;
     for (const Job& job : jobs) {
         recorded.push_back({"map", toString(job.spec)});
-        has_planes =
-            has_planes || (job.spec.decode == Decode::kPlane && job.spec.format != MapFormat::kPatches);
+        fitted = fitted || job.spec.decode == Decode::kPlane;
     }
-    if (has_planes) {
+    if (fitted) {
         recorded.push_back({"quality", std::string(wordOf(options.quality))});
         if (options.prefer != Prefer::kNeither) {
             recorded.push_back({"prefer", std::string(wordOf(options.prefer))});
@@ -144,6 +143,8 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
 
 /// What a mistake costs where there are shells: a few points in a row called outside, and a particle is through.
 constexpr double kShellFalseOutside = 8.0;
+/// Of a tree of patches, the cost of the mistake that --prefer is against.
+constexpr double kPreferredCost = 8.0;
 
 FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
     const Quality quality = bake.quality;
@@ -179,6 +180,22 @@ RefineOptions refineOptions(const TriangleMesh& mesh, const BakeOptions& bake) {
         options.sweeps = 2;
         options.points_per_texel = 12.0;
         options.worth_mending = options.worth_all = 0.0;
+    }
+    return options;
+}
+
+PatchOptions patchOptions(const BakeOptions& bake, std::uint64_t bytes) {
+    PatchOptions options;
+    options.bytes = bytes;
+    options.costs.false_inside = bake.prefer == Prefer::kOutside ? kPreferredCost : 1.0;
+    options.costs.false_outside = bake.prefer == Prefer::kInside ? kPreferredCost : 1.0;
+    if (bake.quality == Quality::kFast) {
+        options.final_lines = options.lines;
+        options.trial_bytes *= 2.0;
+    } else if (bake.quality == Quality::kBest) {
+        options.lines = 16;
+        options.final_lines = 28;
+        options.trial_bytes *= 0.6;
     }
     return options;
 }
@@ -410,7 +427,14 @@ class Bake {
     Result<void> bakeTree(const Job& job) {
         const TimeAdder watch(baked_.report.fit_ms);
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
-        add(bakePatches(query, job.spec.bytes), MapReport{job.spec, job.texels(), job.texels()});
+        PatchOptions options = patchOptions(options_, job.spec.bytes);
+        if (options_.progress) {
+            options.progress = [&, before = static_cast<double>(done_)](double share) {
+                options_.progress((before + share * static_cast<double>(job.texels())) /
+                                  static_cast<double>(texels_));
+            };
+        }
+        add(bakePatches(query, options), MapReport{job.spec, job.texels(), job.texels()});
         finish(job.texels());
         return {};
     }

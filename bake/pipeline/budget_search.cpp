@@ -8,6 +8,7 @@
 
 #include "bake/measure/sight.h"
 #include "bake/measure/truth.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -33,7 +34,7 @@ std::string percentText(double percent) {
 
 class Search {
   public:
-    Search(const MeshQuery& query, const MeshQuery& truth, ViewChoice views,
+    Search(const MeshQuery& query, const MeshQuery& truth, std::optional<ViewChoice> views,
            const BudgetSearchOptions& options)
         : query_(query),
           options_(options),
@@ -104,18 +105,37 @@ class Search {
 
     const MeshQuery& query_;
     const BudgetSearchOptions& options_;
-    ViewChoice views_;
+    std::optional<ViewChoice> views_;
     TruthSamples truth_;
     std::vector<BudgetTry> tries_;
     std::optional<BudgetSearchResult> best_;
 };
 
+Result<PlannedBake> bakeTreePlanned(const MeshQuery& query, std::uint64_t budget_bytes, BakeOptions options) {
+    RELIEF_TRY(checkPlanBudget(budget_bytes));
+    MapSpec spec;
+    spec.format = MapFormat::kPatches;
+    spec.bytes = std::min(budget_bytes, kPatchBytesMax);
+    options.maps = {spec};
+    Baked baked = RELIEF_TRY(bake(query.prepared(), options));
+    const DepthMap& tree = baked.collider.maps.front();
+    Plan plan;
+    plan.maps = {{spec, 1.0, "depth maps in an octree, each along the axis that sees its piece best"}};
+    plan.texel = patchSpacing(tree.texels) * double{tree.object_per_map.x};
+    plan.bytes = baked.collider.gpuBytes();
+    return PlannedBake{std::move(plan), std::move(baked)};
+}
+
 }  // namespace
 
-Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views, std::uint64_t budget_bytes,
-                                BakeOptions options) {
-    Plan plan = RELIEF_TRY(planSizes(views, budget_bytes));
+Result<PlannedBake> bakePlanned(const MeshQuery& query, const std::optional<ViewChoice>& choice,
+                                std::uint64_t budget_bytes, BakeOptions options) {
     options.planned_budget = budget_bytes;
+    if (!choice) {
+        return bakeTreePlanned(query, budget_bytes, std::move(options));
+    }
+    const ViewChoice& views = *choice;
+    Plan plan = RELIEF_TRY(planSizes(views, budget_bytes));
     for (auto aim = static_cast<double>(budget_bytes);;) {
         options.maps = specsOf(plan);
         Baked baked = RELIEF_TRY(bake(query.prepared(), options));
@@ -136,10 +156,13 @@ Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views,
 
 Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
                                         const BudgetSearchOptions& options) {
-    ViewOptions view_options;
-    view_options.prefer = options.bake.prefer;
-    view_options.max_maps = options.max_maps;
-    ViewChoice views = RELIEF_TRY(chooseViews(query, view_options));
+    std::optional<ViewChoice> views;
+    if (options.layout == Layout::kViews) {
+        ViewOptions view_options;
+        view_options.prefer = options.bake.prefer;
+        view_options.max_maps = options.max_maps;
+        views = RELIEF_TRY(chooseViews(query, view_options));
+    }
     return Search(query, truth, std::move(views), options).run();
 }
 

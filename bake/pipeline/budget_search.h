@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "bake/measure/accuracy.h"
@@ -22,9 +23,10 @@ struct PlannedBake {
 /// The size of a map of gaps is known to some per cent before it is baked: where all maps together take more
 /// than the budget, they are baked again with larger texels.
 /// \param query    of the mesh that the views were chosen for
+/// \param views    nullopt: a tree of patches
 /// \param options  its maps and planned_budget do not count
 /// Errors: those of planSizes and bake.
-[[nodiscard]] Result<PlannedBake> bakePlanned(const MeshQuery& query, const ViewChoice& views,
+[[nodiscard]] Result<PlannedBake> bakePlanned(const MeshQuery& query, const std::optional<ViewChoice>& views,
                                               std::uint64_t budget_bytes, BakeOptions options);
 
 struct BudgetTry {
@@ -46,7 +48,8 @@ struct BudgetSearchOptions {
     std::uint64_t budget_min = 32'000;      ///< bytes; lowered to budget_max
     std::uint64_t budget_max = 64'000'000;  ///< bytes
     BakeOptions bake;                       ///< its maps do not count
-    std::uint32_t max_maps = kPlannedMapsMax;
+    Layout layout = Layout::kViews;
+    std::uint32_t max_maps = kPlannedMapsMax;  ///< of views
     /// Fewer samples than `relief check` takes, whose noise (0.04 percent of deviation where 1 % is wrong) is
     /// below what one more step would tell apart.
     AccuracyOptions accuracy{.samples = 50'000};

@@ -49,11 +49,12 @@ void fields(Visitor& visit, T& top) {
 
 MapSpec readSpec(const TomlValue& map, ErrorCode& code) {
     MapSpecBuilder builder;
-    for (const char* needed : {"format", "size"}) {
-        if (!map.find(needed)) {
-            map.fail(std::string("a map needs ") + needed);
+    const auto need_key = [&](const char* key) {
+        if (!map.find(key)) {
+            map.fail(std::string("a map needs ") + key);
         }
-    }
+    };
+    need_key("format");
     const auto need = [&](const Result<void>& set, const toml::source_region& at) {
         if (!set) {
             refuse(set.error(), map.file(), at.begin, code);
@@ -61,6 +62,7 @@ MapSpec readSpec(const TomlValue& map, ErrorCode& code) {
     };
     const TomlValue format = *map.find("format");
     need(builder.setFormat(format.text()), format.node().source());
+    need_key(format.text() == mapFormatName(MapFormat::kPatches) ? "bytes" : "size");
     for (const toml::key* key : keysInOrder(*map.node().as_table())) {
         if (!MapSpecBuilder::knows(key->str()) && key->str() != "format") {
             need(builder.set(key->str(), ""), key->source());
@@ -68,7 +70,7 @@ MapSpec readSpec(const TomlValue& map, ErrorCode& code) {
         const TomlValue value = *map.find(key->str());
         if (key->str() != "format") {
             const auto number = value.node().value_exact<std::int64_t>();
-            const bool whole = key->str() == "size" && number;
+            const bool whole = (key->str() == "size" || key->str() == "bytes") && number;
             need(builder.set(key->str(), whole ? std::to_string(*number) : value.text()),
                  value.node().source());
         }

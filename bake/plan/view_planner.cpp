@@ -497,11 +497,16 @@ Error budgetTooSmall(const ViewChoice& choice, std::uint64_t budget_bytes) {
                                    " maps that " + choice.mesh_name + " needs; raise --budget"};
 }
 
-Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
+Result<void> checkPlanBudget(std::uint64_t budget_bytes) {
     if (budget_bytes < kPlanBudgetMin) {
         return fail(ErrorCode::kUsage, "a budget of " + std::to_string(budget_bytes) +
                                            " bytes is below the least of " + std::to_string(kPlanBudgetMin));
     }
+    return {};
+}
+
+Result<Plan> planSizes(const ViewChoice& choice, std::uint64_t budget_bytes) {
+    RELIEF_TRY(checkPlanBudget(budget_bytes));
     std::optional<Plan> plan = sizesWithin(choice, budget_bytes);
     if (!plan) {
         return tl::unexpected<Error>(budgetTooSmall(choice, budget_bytes));

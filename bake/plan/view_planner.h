@@ -62,6 +62,8 @@ struct ViewChoice {
 [[nodiscard]] Result<ViewChoice> chooseViews(const MeshQuery& query, const ViewOptions& options);
 
 inline constexpr std::uint64_t kPlanBudgetMin = 4096;
+/// Errors: kUsage (below that).
+[[nodiscard]] Result<void> checkPlanBudget(std::uint64_t budget_bytes);
 
 struct Plan {
     std::vector<PlannedMap> maps;

@@ -76,12 +76,17 @@ std::string careText(const RepairReport& care, bool verbose) {
 
 std::string planLine(const PlanReport& report, const std::string& unit) {
     const Plan& plan = report.plan;
-    std::string line = "planned for " + bytesText(report.budget) + " on the GPU, where the maps take " +
-                       bytesText(plan.bytes) + ": texels of " + shortNumber(plan.texel) + " " +
-                       unitText(unit) + "; " + shortNumber(plan.unseen_percent) +
-                       " % of the surface is seen by no map; one more map would have "
-                       "served " +
-                       shortNumber(100.0 * plan.next_gain) + " % more";
+    const bool patches = plan.maps.front().spec.format == MapFormat::kPatches;
+    std::string line = "planned for " + bytesText(report.budget) + " on the GPU, where the " +
+                       (patches ? "patches" : "maps") + " take " + bytesText(plan.bytes);
+    if (patches) {
+        line += ": heights of " + shortNumber(plan.texel) + " " + unitText(unit) + " and more apart";
+    } else {
+        line += ": texels of " + shortNumber(plan.texel) + " " + unitText(unit) + "; " +
+                shortNumber(plan.unseen_percent) +
+                " % of the surface is seen by no map; one more map would have served " +
+                shortNumber(100.0 * plan.next_gain) + " % more";
+    }
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
                 " % of the points near the surface are on the wrong side, found by " +

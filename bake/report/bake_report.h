@@ -83,7 +83,8 @@ void fields(Visitor& visit, R& report) {
     const Plan& plan = report.plan;
     visit("budget", report.budget, {"Budget of the plan", "bytes of texels"});
     visit("bytes", plan.bytes, {"Size of the plan", "bytes of texels"});
-    visit("texel", plan.texel, {"Side of a texel", "object units", kFromZero});
+    visit("texel", plan.texel,
+          {"Side of a texel; of patches, the least distance of two heights", "object units", kFromZero});
     visit("unseen_percent", plan.unseen_percent,
           {"Share of the surface that no map sees", "%", kPercentRange});
     visit("next_map_serves", plan.next_gain,

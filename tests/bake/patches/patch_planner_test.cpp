@@ -24,7 +24,7 @@ MeshQuery queryOf(PreparedMesh mesh) {
 }
 
 DepthMap checked(const MeshQuery& query, std::uint64_t bytes) {
-    DepthMap map = bakePatches(query, bytes);
+    DepthMap map = bakePatches(query, {.bytes = bytes});
     const Result<void> valid = validateFrame(map).and_then([&] { return validateTexels(map); });
     EXPECT_TRUE(valid) << valid.error().message;
     EXPECT_LE(map.texels.size(), bytes);
@@ -201,7 +201,7 @@ TEST(PatchPlanner, SameOnAnyNumberOfThreads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
         tbb::task_arena arena(threads);
-        arena.execute([&] { maps.push_back(bakePatches(query, 60'000)); });
+        arena.execute([&] { maps.push_back(bakePatches(query, {.bytes = 60'000})); });
     }
     EXPECT_EQ(maps[0], maps[1]);
     EXPECT_EQ(maps[0], maps[2]);
