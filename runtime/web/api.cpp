@@ -295,6 +295,16 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_texels(const relief_collider* collider,
     });
 }
 
+/// The texels of a map of patches as they are: two numbers of 32 bits each, low and high.
+EMSCRIPTEN_KEEPALIVE int relief_collider_tree(const relief_collider* collider, int map, std::uint32_t* out) {
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        const Collider& of = *RELIEF_TRY(call.object(collider, "collider"));
+        const std::vector<std::byte>& texels = of.maps[static_cast<std::size_t>(map)].texels;
+        std::memcpy(out, texels.data(), texels.size());
+        return 0;
+    });
+}
+
 // --- particles
 
 /// \param text    a scene file, or an object with its keys in JSON.

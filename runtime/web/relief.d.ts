@@ -46,11 +46,14 @@ export interface Answers {
 }
 
 export interface MapInfo {
+    /** float, fixed8, front-back, cube or patches. */
     format: string;
     encoding: string;
     compare: string;
     decode: string;
+    /** local: of patches, each with an axis of its own. */
     projection: "orthographic" | "cube" | "local";
+    /** Texels; those of patches only lie in rows, and have no place. */
     width: number;
     height: number;
     /** 6 of a cube, else 1. */
@@ -87,9 +90,11 @@ export class Collider {
     query(points: Numbers): Answers;
     /**
      * The texels of a map, 8 numbers each: depth and normal of the front, then of the back; a depth of NaN where nothing
-     * is. Row y = 0 comes first, the faces of a cube one after the other.
+     * is. Row y = 0 comes first, the faces of a cube one after the other. A map of patches has a tree instead.
      */
     texels(map: number): Float32Array;
+    /** The tree of a map of patches: two words a texel, low and high, as "Patches" of the container's description has them. */
+    tree(map: number): Uint32Array;
     dispose(): void;
 }
 

@@ -299,10 +299,23 @@ export class Collider {
     }
 
     texels(map) {
-        const { width, height, faces } = this.info.maps[index("map", map, this.info.maps.length)];
+        const { width, height, faces, format } = this.info.maps[index("map", map, this.info.maps.length)];
+        if (format === "patches") {
+            throw new ReliefError(`map ${map} is of patches, which lie in no image; tree(${map}) has them`);
+        }
         const texels = new Float32Array(8 * width * height * faces);
         done("relief_collider_texels", this.handle, map, texels);
         return texels;
+    }
+
+    tree(map) {
+        const { bytes, format } = this.info.maps[index("map", map, this.info.maps.length)];
+        if (format !== "patches") {
+            throw new ReliefError(`map ${map} has no tree, as its format is ${format}; texels(${map}) has what it holds`);
+        }
+        const words = new Uint32Array(bytes / 4);
+        done("relief_collider_tree", this.handle, map, words);
+        return words;
     }
 
     dispose() {

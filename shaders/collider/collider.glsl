@@ -522,6 +522,9 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
 #if defined(RELIEF_HAS_PATCHES)
 //!include collider/patches.glsl
 #else
+vec3 reliefPatchRoots(int i) {
+    return vec3(0.0);
+}
 ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
     return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
 }
@@ -582,7 +585,7 @@ vec3 reliefToVolume(int i, vec3 p) {
     vec3 high = vec3(1.0);
     if (reliefIsPatches(u_relief_maps[i].info)) {
         low = vec3(0.0);
-        high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
+        high = reliefPatchRoots(i);
     } else if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
         low = vec3(1.0, 1.0, 0.0);
         high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 1.0);

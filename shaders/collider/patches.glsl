@@ -23,41 +23,64 @@ float reliefPatchCode(int first, uvec2 record, int i, int last) {
     return float(i == last ? (record.x >> 23) & 0xffu : (four >> (8 * (i & 3))) & 0xffu);
 }
 
-// xyz: the gradient in the cell, of length 1 and outwards; w: the distance, in cells.
-vec4 reliefPatch(int first, uvec2 record, vec3 q) {
-    uint size = (record.x >> 2) & 3u;
-    int side = size == 0u ? 2 : size == 1u ? 3 : 5;
+// The place of q across the frame of a patch: u, v and the depth w.
+vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     uint diagonal = (record.x >> 5) & 3u;
     uint axis = (record.x >> 7) & 3u;
     vec3 abc = axis == 0u ? q : axis == 1u ? q.yzx : q.zxy;
     vec2 mirrored = vec2(float((record.x >> 9) & 1u), float((record.x >> 10) & 1u));
-    vec2 way = 1.0 - 2.0 * mirrored;
-    abc.xy = mirrored + way * abc.xy;
+    abc.xy = mirrored + (1.0 - 2.0 * mirrored) * abc.xy;
     vec3 at = vec3(abc.y, abc.z, abc.x);
     if (diagonal != 0u) {
         at.x = 0.5 * (abc.x - abc.y + 1.0);
         at.y = diagonal == 1u ? abc.z : 0.25 * (abc.x + abc.y - 2.0 * abc.z + 2.0);
         at.z = diagonal == 1u ? abc.x + abc.y : abc.x + abc.y + abc.z;
     }
-    float last = float(side - 1);
-    vec2 place = at.xy * last;
-    vec2 corner = clamp(floor(place), 0.0, last - 1.0);
-    vec2 t = place - corner;
+    return at;
+}
+
+// Squares between heights along a side.
+float reliefPatchSquares(uvec2 record) {
+    uint size = (record.x >> 2) & 3u;
+    return size == 0u ? 1.0 : size == 1u ? 2.0 : 4.0;
+}
+
+// The codes at the corners of a square, whose lowest is that corner: 00, 10, 01 and 11.
+vec4 reliefPatchCodes(int first, uvec2 record, vec2 corner, float squares) {
+    int side = int(squares) + 1;
     int i = int(corner.y) * side + int(corner.x);
     int end = side * side - 1;
-    float c00 = reliefPatchCode(first, record, i, end);
-    float c10 = reliefPatchCode(first, record, i + 1, end);
-    float c01 = reliefPatchCode(first, record, i + side, end);
-    float c11 = reliefPatchCode(first, record, i + side + 1, end);
+    return vec4(reliefPatchCode(first, record, i, end), reliefPatchCode(first, record, i + 1, end),
+                reliefPatchCode(first, record, i + side, end), reliefPatchCode(first, record, i + side + 1, end));
+}
+
+// The height of code 0, and of a step.
+float reliefPatchBase(uvec2 record) {
+    return (float((record.x >> 11) & 0xfffu) - 2048.0) * (1.0 / 512.0);
+}
+float reliefPatchStep(uvec2 record) {
     uint scale = record.y >> 24;
     // 2^((scale >> 4) - 12) by its bits: exp2() may round.
     float range = (1.0 + float(scale & 15u) * (1.0 / 16.0)) * uintBitsToFloat(((scale >> 4) + 115u) << 23);
-    float unit = range * (1.0 / 255.0);
-    float lower = c00 + t.x * (c10 - c00);
-    float upper = c01 + t.x * (c11 - c01);
-    float base = (float((record.x >> 11) & 0xfffu) - 2048.0) * (1.0 / 512.0);
-    float height = base + unit * (lower + t.y * (upper - lower));
-    vec2 by = (unit * last) * vec2((c10 - c00) + t.y * ((c11 - c01) - (c10 - c00)), upper - lower);
+    return range * (1.0 / 255.0);
+}
+
+// xyz: the gradient in the cell, of length 1 and outwards; w: the distance, in cells.
+vec4 reliefPatch(int first, uvec2 record, vec3 q) {
+    uint diagonal = (record.x >> 5) & 3u;
+    uint axis = (record.x >> 7) & 3u;
+    vec2 way = 1.0 - 2.0 * vec2(float((record.x >> 9) & 1u), float((record.x >> 10) & 1u));
+    vec3 at = reliefPatchAcross(record, q);
+    float last = reliefPatchSquares(record);
+    vec2 place = at.xy * last;
+    vec2 corner = clamp(floor(place), 0.0, last - 1.0);
+    vec2 t = place - corner;
+    vec4 c = reliefPatchCodes(first, record, corner, last);
+    float unit = reliefPatchStep(record);
+    float lower = c.x + t.x * (c.y - c.x);
+    float upper = c.z + t.x * (c.w - c.z);
+    float height = reliefPatchBase(record) + unit * (lower + t.y * (upper - lower));
+    vec2 by = (unit * last) * vec2((c.y - c.x) + t.y * ((c.w - c.z) - (c.y - c.x)), upper - lower);
     vec3 gradient = vec3(1.0, -by.x, -by.y);
     if (diagonal != 0u) {
         float v = diagonal == 1u ? 0.0 : 0.25 * by.y;
@@ -70,6 +93,48 @@ vec4 reliefPatch(int first, uvec2 record, vec3 q) {
     return vec4(per_length * gradient, (at.z - height) * per_length);
 }
 
+// Where a point ends up in a tree.
+struct ReliefLeaf {
+    uvec2 record;  // its own, or where it has none that of the split cell above it
+    vec3 q;        // the place of the point in the unit cube of the record's cell
+    float cell;    // that cell's size, in roots
+    bool inside;   // of a leaf without a patch
+    bool beside;   // it has no record
+};
+
+// p: map space, in the roots.
+ReliefLeaf reliefPatchLeaf(ivec4 place, vec3 p) {
+    vec3 root = floor(p);
+    vec3 q = p - root;
+    ivec3 at = ivec3(root);
+    uvec2 record = reliefPatchTexel(place.x + 1 + at.z * place.z + at.y * place.y + at.x);
+    float cell = 1.0;
+    bool inside = (record.x & 3u) == 1u;
+    bool beside = false;
+    for (int level = 0; level < place.w && (record.x & 3u) == 2u && !beside; ++level) {
+        vec3 child = 2.0 * q;
+        vec3 upper = step(vec3(1.0), child);
+        int octant = int(upper.x) + 2 * int(upper.y) + 4 * int(upper.z);
+        uint children = (record.x >> 2) & 0xffu;
+        beside = ((children >> octant) & 1u) == 0u;
+        if (beside) {
+            inside = ((record.x >> (10 + octant)) & 1u) != 0u;
+        } else {
+            q = child - upper;
+            cell *= 0.5;
+            int before = reliefBitCount(children & ((1u << octant) - 1u));
+            record = reliefPatchTexel(place.x + int(record.y & 0xffffffu) + before);
+            inside = (record.x & 3u) == 1u;
+        }
+    }
+    return ReliefLeaf(record, q, cell, inside, beside);
+}
+
+// Roots along x, y and z.
+vec3 reliefPatchRoots(int i) {
+    return vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
+}
+
 // A distance of the side that a cell without a patch lies on.
 float reliefOnSide(bool inside, float distance, float nearest) {
     return inside ? min(distance, -nearest) : max(distance, nearest);
@@ -77,49 +142,28 @@ float reliefOnSide(bool inside, float distance, float nearest) {
 
 // p: map space. Without `whole` any distance that is not below 0 stands for all of them.
 ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
-    ivec4 place = u_relief_maps[i].place;
-    vec3 roots = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
-    if (all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, roots))) {
-        vec3 root = floor(p);
-        vec3 q = p - root;
-        ivec3 at = ivec3(root);
-        uvec2 record = reliefPatchTexel(place.x + 1 + at.z * place.z + at.y * place.y + at.x);
-        float cell = 1.0;
-        bool inside = (record.x & 3u) == 1u;
-        bool beside = false;  // a child without a record
-        for (int level = 0; level < place.w && (record.x & 3u) == 2u && !beside; ++level) {
-            vec3 child = 2.0 * q;
-            vec3 upper = step(vec3(1.0), child);
-            int octant = int(upper.x) + 2 * int(upper.y) + 4 * int(upper.z);
-            uint children = (record.x >> 2) & 0xffu;
-            beside = ((children >> octant) & 1u) == 0u;
-            if (beside) {
-                inside = ((record.x >> (10 + octant)) & 1u) != 0u;
-            } else {
-                q = child - upper;
-                cell *= 0.5;
-                int before = reliefBitCount(children & ((1u << octant) - 1u));
-                record = reliefPatchTexel(place.x + int(record.y & 0xffffffu) + before);
-                inside = (record.x & 3u) == 1u;
-            }
-        }
+    if (all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, reliefPatchRoots(i)))) {
+        ivec4 place = u_relief_maps[i].place;
+        ReliefLeaf leaf = reliefPatchLeaf(place, p);
+        uvec2 record = leaf.record;
+        float cell = leaf.cell;
         vec3 normal = vec3(0.0);
         float distance = RELIEF_FAR_OUTSIDE;
         if ((record.x & 3u) == 3u) {
-            vec4 piece = reliefPatch(place.x, record, q);
+            vec4 piece = reliefPatch(place.x, record, leaf.q);
             normal = piece.xyz;
             distance = cell * piece.w;
-        } else if (inside || whole) {
+        } else if (leaf.inside || whole) {
             bool coarse = (record.x & 3u) == 2u;
             normal = reliefUnit(coarse ? reliefFold(vec2(float((record.x >> 18) & 127u), float(record.x >> 25)), 63.0)
                                        : reliefOctahedron(record.x >> 16));
-            float along = reliefDot(normal, q - 0.5);
+            float along = reliefDot(normal, leaf.q - 0.5);
             float offset = (float(record.y >> 24) - 128.0) * (1.0 / 128.0);
             float nearest = cell * (1.0 / 1024.0);
             distance = coarse ? cell * (along + offset) : uintBitsToFloat(record.y) + cell * along;
-            distance = reliefOnSide(inside, distance, nearest);
+            distance = reliefOnSide(leaf.inside, distance, nearest);
         }
         float root_size = u_relief_maps[i].object_per_map.x;
         bool known = distance < RELIEF_FAR_OUTSIDE;

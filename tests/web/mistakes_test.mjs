@@ -6,7 +6,7 @@ import test from "node:test";
 
 import { bakeCube } from "./lib/cube.mjs";
 import { libraryPage } from "./lib/library.mjs";
-import { scratch } from "./lib/native.mjs";
+import { run, scratch } from "./lib/native.mjs";
 
 // What is done (with collider, gpu, system, made for each), and what the sentence says.
 const kMistakes = {
@@ -72,6 +72,8 @@ const kMistakes = {
     "collider.query([1, 2, Infinity])": /points: number 2 is Infinity/,
     "collider.texels(99)": /no map 99/,
     "collider.texels('0')": /no map 0/,
+    "relief.load('/files/patches.relief').then((one) => one.texels(0))": /map 0 is of patches/,
+    "collider.tree(0)": /map 0 has no tree, as its format is front-back/,
     "gpu.attach(null)": /WebGLProgram that is linked/,
     "gpu.bind(1000)": /no texture unit 1000/,
     "gpu.bind(0, -1)": /no uniform block binding -1/,
@@ -90,6 +92,7 @@ const kMistakes = {
 test("each mistake has its sentence", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
+    run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", path.join(folder, "patches.relief"), "--map", "patches:bytes=4kB");
     const whole = readFileSync(path.join(folder, "cube.relief"));
     writeFileSync(path.join(folder, "cut.relief"), whole.subarray(0, 9000));
     writeFileSync(path.join(folder, "noise.relief"), whole.map((byte, i) => (byte * 31 + i) & 255));

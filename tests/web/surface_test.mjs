@@ -133,6 +133,11 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
         "struts, planned": ["struts.obj", "--budget", "400kB", "--as", "solid"],
         "an open sheet": ["square.obj", "--budget", "60kB", "--thickness", "0.003"],
         "bunny, cubes": [bunny, "--map", "cube:size=96"],
+        "plates, patches": ["plates.obj", "--map", "patches:bytes=200kB", "--as", "solid"],
+        "struts, patches": ["struts.obj", "--map", "patches:bytes=400kB", "--as", "solid"],
+        "an open sheet, patches": ["square.obj", "--map", "patches:bytes=60kB", "--thickness", "0.02"],
+        "bunny, few patches": [bunny, "--map", "patches:bytes=20kB"],
+        "bunny, patches among maps": [bunny, "--map", "patches:bytes=40kB", "--map", "cube:size=48", "--map", "front-back:dir=+x,size=64"],
     };
     const open = await viewer(t, folder);
     for (const [name, [mesh, ...options]] of Object.entries(cases)) {

@@ -7,7 +7,7 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     const collider: Collider = await Relief.load("bunny.relief");
     const dropped = await load(file);
     const { distance, normal, map }: Answers = collider.query([0, 1, 2]);
-    const sum: number = distance[0] + normal[0] + map[0] + dropped.texels(0)[0] + collider.bounds.min[1];
+    const sum: number = distance[0] + normal[0] + map[0] + dropped.texels(0)[0] + dropped.tree(0)[0] + collider.bounds.min[1];
 
     const gpu = new GpuCollider(gl, collider);
     gpu.attach(program, 4, 1);

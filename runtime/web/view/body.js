@@ -10,13 +10,15 @@ const kDeep = 0.014;
 const kClearUnit = 3; // behind those of the collider
 const kBoxSides = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
 
+/** Of a ray: it crosses each row and each column of a map once. finest: texels along the box's longest side. */
+function stepsAcross({ projection, width, height }, finest) {
+    return projection === "local" ? 6 * finest : 2 * (width + height);
+}
+
 export class Body {
     #programs = {};
 
     constructor(gl, collider) {
-        if (collider.info.maps.some(({ projection }) => projection === "local")) {
-            throw new Error("this page cannot draw a map of patches yet; bake planned maps to look at, or use relief slice");
-        }
         Object.assign(this, { gl, collider });
         this.place(identity());
         this.box = boxOf(collider.bounds);
@@ -55,8 +57,7 @@ export class Body {
             ...values, u_model: this.model, u_box_min: drawn.min, u_box_max: drawn.max,
             u_deep: kDeep * box.longest, u_tiny: Math.max(1e-3 * texel, 1e-6 * box.longest),
             u_clear: { int: kClearUnit }, u_cells_from: this.cells.from, u_cell: this.cells.side,
-            // A ray crosses each row and each column of a map once.
-            u_steps: { int: Math.min(maps.reduce((sum, map) => sum + 2 * (map.width + map.height), 256), 60000) },
+            u_steps: { int: Math.min(maps.reduce((sum, map) => sum + stepsAcross(map, box.longest / texel), 256), 60000) },
         });
         bindTexture(gl, kClearUnit, this.clear, gl.TEXTURE_3D);
         gl.enable(gl.CULL_FACE);

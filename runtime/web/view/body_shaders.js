@@ -68,6 +68,19 @@ uniform vec3 u_box_min;
 uniform vec3 u_box_max;
 uniform float u_deep;   // a vote deeper than this is of no surface nearby: a map's box ends, and its side is flat
 uniform int u_map;      // whose texels are coloured; -1: none, -2: all, each its own colour
+// Of what map i decides at p: of patches by the size of their cells.
+vec3 colorOf(int i, vec3 p) {
+#if defined(RELIEF_HAS_PATCHES)
+    if (reliefIsPatches(u_relief_maps[i].info)) {
+        ivec4 place = u_relief_maps[i].place;
+        vec3 q = clamp(reliefInMap(i, p), vec3(0.0), reliefPatchRoots(i) * (1.0 - 1e-6));
+        ReliefLeaf leaf = reliefPatchLeaf(place, q);
+        float level = -log2(leaf.beside ? 0.5 * leaf.cell : leaf.cell);
+        return levelColor(i, level / max(float(place.w), 1.0));
+    }
+#endif
+    return mapColor(i);
+}
 void main() {
     vec3 eye = (inverse(u_model) * vec4(u_eye, 1.0)).xyz;
     vec3 d = normalize(v_object - eye);
@@ -112,7 +125,8 @@ void main() {
         discard;
     }
     float inwards = within ? -u_tiny : min(0.5 * (hit.ends - hit.t), 20.0 * u_tiny);
-    ReliefField field = reliefSolid(origin + (hit.t + inwards) * d);
+    vec3 within_it = origin + (hit.t + inwards) * d;
+    ReliefField field = reliefSolid(within_it);
     bool known = field.map >= 0 && abs(field.distance) < u_deep;
     if (!begins || within) {
         n = known && dot(field.normal, field.normal) > 0.0 ? field.normal : -d;
@@ -125,9 +139,9 @@ void main() {
     n = normalize(n);
     vec3 base = u_base;
     if (u_map == -2) {
-        base = field.map < 0 ? base : mapColor(field.map);
+        base = field.map < 0 ? base : colorOf(field.map, within_it);
     } else if (u_map >= 0) {
-        base = field.map == u_map ? mapColor(u_map) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
+        base = field.map == u_map ? colorOf(u_map, within_it) : mix(base, vec3(dot(base, vec3(0.333))), 0.7) * 0.75;
     }
     o_color = vec4(shade(base, n), 1.0);
     // The cut surface lies behind the picture of the slice.

@@ -1,5 +1,6 @@
 // Free space that a ray through a collider may skip: a grid of cells, 255 where a map sees all of the cell outside, else 0.
-import { dot, scale } from "./math.js";
+import { add, dot, scale } from "./math.js";
+import { treeOf, visitLeaves } from "./patches.js";
 
 const kCells = 24; // along the longest side
 const kStanding = 0.033; // cosine with a map's rays below which a plane bounds nothing along them
@@ -69,6 +70,30 @@ function mark(cells, { from, side, n }, collider, index) {
     }
 }
 
+/** The same of a map of patches: those that no patch and no leaf inside reaches into. */
+function markPatches(cells, { from, side, n }, collider, index) {
+    const { rows, object_per_map: [size] } = collider.info.maps[index];
+    const axes = rows.map((row) => scale(row.slice(0, 3), size * size)); // of map space, in object space
+    const reached = new Uint8Array(cells.length);
+    visitLeaves(treeOf(collider, index), (kind, corner, leaf) => {
+        if (kind === "outside") {
+            return;
+        }
+        const middle = axes.map((axis, k) => scale(axis, corner[k] + leaf / 2 - rows[k][3])).reduce(add);
+        const [low, high] = [-1, 1].map((way) => middle.map((v, k) => {
+            const half = leaf / 2 * axes.reduce((sum, axis) => sum + Math.abs(axis[k]), 0) + (kHalf - 0.5) * side;
+            return Math.min(Math.max(Math.floor((v + way * half - from[k]) / side), way < 0 ? 0 : -1), way < 0 ? n[k] : n[k] - 1);
+        }));
+        for (let z = low[2]; z <= high[2]; ++z) {
+            for (let y = low[1]; y <= high[1]; ++y) {
+                const row = (z * n[1] + y) * n[0];
+                reached.fill(1, row + low[0], Math.max(row + high[0] + 1, row + low[0]));
+            }
+        }
+    });
+    reached.forEach((one, i) => (cells[i] = one ? cells[i] : 255));
+}
+
 /**
  * @param bounds  of what is drawn
  * @returns { n, from, side, clear }: cells along each axis, the corner of the first one, their side, and the cells, x fastest
@@ -79,7 +104,9 @@ export function cellsOf(collider, { min, max }) {
     const grid = { from: min, side, n: size.map((one) => Math.max(Math.ceil(one / side - 1e-6), 1)) };
     const clear = new Uint8Array(grid.n[0] * grid.n[1] * grid.n[2]);
     collider.info.maps.forEach((map, i) => {
-        if (map.projection === "orthographic" && map.encloses && map.compare !== "gap") {
+        if (map.projection === "local" && map.encloses) {
+            markPatches(clear, grid, collider, i);
+        } else if (map.projection === "orthographic" && map.encloses && map.compare !== "gap") {
             mark(clear, grid, collider, i);
         }
     });

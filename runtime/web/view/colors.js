@@ -3,6 +3,9 @@
 /** Of map i, for the page: mapColor() below. */
 export const mapCss = (i) => `oklch(0.74 0.13 ${25 + 137.508 * i})`;
 
+/** Of a cell of map i's patches, for the page: levelColor() below. light: 0 to 1. */
+export const levelCss = (i, level, light) => `oklch(${light * (0.9 - 0.36 * level)} ${0.05 + 0.11 * level} ${25 + 137.508 * i})`;
+
 /** Of distances from inside to outside, for the page: distanceColor() below. */
 export const kLegend = `linear-gradient(to right, ${Array.from({ length: 33 }, (_, i) => {
     const amount = Math.abs(i / 16 - 1);
@@ -31,6 +34,10 @@ vec3 distanceColor(float u) {
 // Neighbours in the list look unlike.
 vec3 mapColor(int i) {
     return oklch(0.74, 0.13, 25.0 + mod(137.508 * float(i), 360.0));
+}
+// Of a cell of map i's patches. level: 0 of a root, 1 of the smallest.
+vec3 levelColor(int i, float level) {
+    return oklch(0.9 - 0.36 * level, 0.05 + 0.11 * level, 25.0 + mod(137.508 * float(i), 360.0));
 }
 // The colour of a point in a slice.
 vec3 fieldColor(float f, int map, float range) {

@@ -1,9 +1,61 @@
 // The maps as pictures, and where each looks in space.
+import { levelCss } from "./colors.js";
+import { treeOf, visitLeaves } from "./patches.js";
 
 const kSide = 144; // pixels of a picture's longer side
+const kShades = 64; // of a colour, by depth
+
+/** The colours of leaves: a row for each level, from far to near. */
+function leafColors(index, levels) {
+    const canvas = new OffscreenCanvas(kShades, levels + 1);
+    const context = canvas.getContext("2d");
+    for (let level = 0; level <= levels; ++level) {
+        for (let shade = 0; shade < kShades; ++shade) {
+            context.fillStyle = levelCss(index, level / Math.max(levels, 1), 0.45 + 0.55 * shade / (kShades - 1));
+            context.fillRect(shade, level, 1, 1);
+        }
+    }
+    return context.getImageData(0, 0, kShades, levels + 1).data;
+}
+
+/** The cells of a map's patches as one sees them along its −z axis; top up. */
+function drawPatches(canvas, collider, index) {
+    const tree = treeOf(collider, index);
+    const { roots, levels } = tree;
+    const per_root = kSide / Math.max(roots[0], roots[1]);
+    canvas.width = Math.max(1, Math.round(roots[0] * per_root));
+    canvas.height = Math.max(1, Math.round(roots[1] * per_root));
+    const nearest = new Float32Array(canvas.width * canvas.height).fill(-1);
+    const level_of = new Uint8Array(nearest.length);
+    visitLeaves(tree, (kind, [x, y, z], size, level) => {
+        const [left, right, low, high] = [x, x + size, y, y + size].map((v) => v * per_root);
+        for (let row = Math.floor(low); kind === "patch" && row < Math.min(high, canvas.height); ++row) {
+            for (let column = Math.floor(left); column < Math.min(right, canvas.width); ++column) {
+                const at = (canvas.height - 1 - row) * canvas.width + column;
+                if (z + size > nearest[at]) {
+                    nearest[at] = z + size;
+                    level_of[at] = level;
+                }
+            }
+        }
+    });
+    const colors = leafColors(index, levels);
+    const context = canvas.getContext("2d");
+    const image = context.createImageData(canvas.width, canvas.height);
+    nearest.forEach((z, at) => {
+        const shade = Math.round((kShades - 1) * Math.max(z, 0) / roots[2]);
+        const from = 4 * (kShades * level_of[at] + shade);
+        image.data.set(z < 0 ? [0, 0, 0, 0] : colors.subarray(from, from + 4), 4 * at);
+    });
+    context.putImageData(image, 0, 0);
+}
 
 /** The depths of a map, drawn to a canvas; top up. */
 export function drawMap(canvas, collider, index) {
+    if (collider.info.maps[index].projection === "local") {
+        drawPatches(canvas, collider, index);
+        return;
+    }
     const { width, height, faces } = collider.info.maps[index];
     const texels = collider.texels(index);
     const [columns, rows] = faces === 6 ? [3, 2] : [1, 1];
@@ -31,11 +83,16 @@ export function drawMap(canvas, collider, index) {
     context.putImageData(image, 0, 0);
 }
 
-export function mapTitle({ width, height, projection, rows }) {
+export function mapTitle(collider, index) {
+    const { width, height, projection, rows, format } = collider.info.maps[index];
+    if (projection === "local") {
+        const { roots, levels } = treeOf(collider, index);
+        return `patches in ${roots.join(" × ")} cubes, halved up to ${levels} times`;
+    }
     const size = `${width} × ${height}`;
     const z = rows[2].slice(0, 3);
     const l = Math.hypot(...z) || 1;
     const axis = z.findIndex((v) => Math.abs(v) > 0.999 * l);
     const direction = axis >= 0 ? `${z[axis] > 0 ? "+" : "−"}${"xyz"[axis]}` : z.map((v) => (v / l).toFixed(2)).join(" / ");
-    return projection === "cube" ? `cube, 6 faces of ${size}` : `looks ${direction}, ${size}`;
+    return projection === "cube" ? `cube, 6 faces of ${size}, ${format}` : `looks ${direction}, ${size}, ${format}`;
 }

@@ -123,11 +123,14 @@ export class Panel {
     // --- maps
 
     #fillMaps() {
-        $("maps").replaceChildren(...this.app.body.collider.info.maps.map((map, i) => element("button", {
+        const { collider } = this.app.body;
+        const { maps } = collider.info;
+        $("patches-note").hidden = !maps.some(({ projection }) => projection === "local");
+        $("maps").replaceChildren(...maps.map((_, i) => element("button", {
             "aria-pressed": false, onclick: () => this.selectMap(this.#map === i ? -1 : i),
         }, element("span", { class: "frame" }, element("canvas", { role: "img", "aria-label": `Map ${i}` })),
            element("span", { class: "what" }, element("i", { style: `background:${mapCss(i)}` }),
-                   element("b", {}, `${i}`), ` ${mapTitle(map)}, ${map.format}`))));
+                   element("b", {}, `${i}`), ` ${mapTitle(collider, i)}`))));
         this.#pictures();
     }
 

@@ -1,6 +1,6 @@
 // A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel the side that a map sees
-// changes only where the ray meets the texel's planes or its border, and those are found in closed form. While one map sees
-// outside, the ray is outside; so it goes on to where that map's stretch ends, and evaluates the maps again.
+// changes only where the ray meets the texel's planes or its border, and those are found in closed form; so it is within a square
+// between four heights of a patch. While one map sees outside, the ray is outside; so it goes on to where that map's stretch ends, and evaluates the maps again.
 //
 //     map 0   ····o───────────────┐                 o: evaluates; each stretch of a map that sees outside is one step
 //     map 1                       o─────┐
@@ -217,10 +217,116 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
     return partAt(reach < 0.0 ? vec2(NEVER, t) : span, !farthest, t, t1, -1);
 }
 
+#if defined(RELIEF_HAS_PATCHES)
+// Over a square of a patch, r after a place x of it: the depth less the height of the bilinear surface is f.x r^2 + f.y r + f.z.
+// dx: change of x with r; z, dz: the depth above the height of code 0; codes: of the corners; unit: the height of a step.
+vec3 overSquare(vec2 x, vec2 dx, float z, float dz, vec4 codes, float unit) {
+    vec2 by = codes.yz - codes.x;
+    float twist = codes.w - codes.z - by.x;
+    return vec3(-unit * twist * dx.x * dx.y, dz - unit * (by.x * dx.x + by.y * dx.y + twist * (x.x * dx.y + x.y * dx.x)),
+                z - unit * (codes.x + by.x * x.x + by.y * x.y + twist * x.x * x.y));
+}
+
+// The first zero of f.x r^2 + f.y r + f.z behind 0; NEVER: none.
+float firstZero(vec3 f) {
+    float root = f.y * f.y - 4.0 * f.x * f.z;
+    float sum = -0.5 * (f.y + (f.y < 0.0 ? -1.0 : 1.0) * sqrt(max(root, 0.0)));
+    float one = sum != 0.0 ? f.z / sum : NEVER;
+    float other = f.x != 0.0 ? sum / f.x : NEVER;
+    float least = min(one > 0.0 ? one : NEVER, other > 0.0 ? other : NEVER);
+    return root >= 0.0 ? least : NEVER;
+}
+
+const int SQUARES_MAX = 10;  // that a ray crosses in a patch: 4 + 3, and what rounding adds
+
+// The stretch in a patch. The ray: q + s way in its cell's unit cube, from s = tiny / 2 to ends at most; the stretch ends at an
+// s. border: of the cell.
+Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
+    vec3 from = reliefPatchAcross(record, q);
+    vec3 across = reliefPatchAcross(record, way) - reliefPatchAcross(record, vec3(0.0));
+    from.z -= reliefPatchBase(record);
+    float unit = reliefPatchStep(record);
+    int above = (record.x & 16u) != 0u ? -1 : 1;
+    float here = 0.5 * tiny;
+    // Above and below all heights there is nothing to look for.
+    float inverse = 1.0 / (across.z + (abs(across.z) < 1e-20 ? 1e-20 : 0.0));
+    vec2 range = (vec2(-1.0, 256.0) * unit - from.z) * inverse;
+    range = vec2(min(range.x, range.y), max(range.x, range.y));
+    bool upper = from.z + here * across.z > 128.0 * unit;
+    if (here < range.x || here >= range.y) {
+        bool comes = here < range.x && range.x < ends;
+        return Stretch(upper ? above : -above, comes ? range.x : ends, comes ? -1 : border);
+    }
+    float squares = reliefPatchSquares(record);
+    vec2 x = squares * from.xy;
+    vec2 dx = squares * across.xy;
+    vec2 per_square = 1.0 / (dx + 1e-20 * (vec2(1.0) - abs(sign(dx))));
+    float last = min(range.y, ends);
+    bool over = false;
+    for (int k = 0; k < SQUARES_MAX && here < last; ++k) {
+        vec2 corner = clamp(floor(x + here * dx), 0.0, squares - 1.0);
+        vec2 leaves = max((corner - x) * per_square, (corner + 1.0 - x) * per_square);
+        float next = min(max(min(leaves.x, leaves.y), here + 0.5 * tiny), last);
+        vec3 f = overSquare(x + here * dx - corner, dx, from.z + here * across.z, across.z,
+                            reliefPatchCodes(first, record, corner, squares), unit);
+        over = k == 0 ? f.z >= 0.0 : over;
+        float zero = here + (over == (f.z >= 0.0) ? firstZero(f) : 0.0);  // else rounding hid it behind the square before
+        if (zero <= next) {
+            return Stretch(over ? above : -above, max(zero, tiny), -1);
+        }
+        here = next;
+    }
+    return Stretch(over ? above : -above, here < last ? here : ends, here < last ? -1 : border);
+}
+
+// Leaf by leaf of a tree, and in a patch from one crossing of its surface to the next.
+Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
+    int beyond = reliefHas(u_relief_maps[i].info, RELIEF_ENCLOSES) ? 1 : 0;
+    ivec4 place = u_relief_maps[i].place;
+    vec3 roots = reliefPatchRoots(i);
+    vec3 enters, leaves;
+    slabs(o, d, vec3(0.0), roots, enters, leaves);
+    float volume = max(max(enters.x, enters.y), enters.z);
+    float volume_ends = min(min(leaves.x, leaves.y), leaves.z);
+    float next = t + 0.5 * u_tiny;  // a little ahead, so that a border belongs to the next cell
+    if (next < volume || next >= volume_ends) {
+        bool comes = next < volume && volume < volume_ends;
+        return Stretch(beyond, comes ? max(volume, t + u_tiny) : NEVER, comes ? leastOf(-enters) : -1);
+    }
+    vec3 p = clamp(o + next * d, vec3(0.0), roots * (1.0 - 1e-6));
+    ReliefLeaf leaf = reliefPatchLeaf(place, p);
+    vec3 low = p - leaf.cell * leaf.q;
+    float cell = leaf.cell;
+    if (leaf.beside) {
+        cell *= 0.5;
+        low += cell * step(vec3(0.5), leaf.q);
+    }
+    slabs(o, d, low, low + cell, enters, leaves);
+    int border = leastOf(leaves);
+    float ends = max(min(min(leaves.x, leaves.y), leaves.z), t + u_tiny);
+    if ((leaf.record.x & 3u) != 3u) {
+        return Stretch(leaf.inside ? -1 : 1, ends, border);
+    }
+    float size = reliefLength(d);
+    float rate = size / cell;
+    Stretch stretch = aheadInPatch(place.x, leaf.record, (o + t * d - low) / cell, d / size, u_tiny * rate,
+                                   (min(ends, max(far, t + u_tiny)) - t) * rate, border);
+    stretch.end = t + stretch.end / rate;
+    return stretch;
+}
+#else
+Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
+    return Stretch(0, NEVER, -1);
+}
+#endif
+
 Stretch ahead(int i, vec3 origin, vec3 d, float t, float far) {
     vec3 o = reliefInMap(i, origin);
     vec3 way = vec3(reliefDot(u_relief_maps[i].row[0].xyz, d), reliefDot(u_relief_maps[i].row[1].xyz, d),
                     reliefDot(u_relief_maps[i].row[2].xyz, d));
+    if (reliefIsPatches(u_relief_maps[i].info)) {
+        return aheadPatches(i, o, way, t, far);
+    }
     if (reliefIsCube(u_relief_maps[i].info)) {
         return aheadCube(i, o, way, t, far);
     }
