@@ -8,9 +8,9 @@ import test from "node:test";
 import { bunny, run, scratch } from "./lib/native.mjs";
 import { dataOf, pageData, viewer } from "./lib/view.mjs";
 
-function bake(folder) {
+function bake(folder, budget = "60kB") {
     const file = path.join(folder, "bunny.relief");
-    run("relief", "bake", bunny, "-q", "-o", file, "--budget", "60kB");
+    run("relief", "bake", bunny, "-q", "-o", file, "--budget", budget);
     return file;
 }
 
@@ -86,6 +86,63 @@ test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
     }
     assert.equal(await message(), "");
     assert.deepEqual(said, []);
+});
+
+test("patches look as planned maps do, and show their cells", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const patches = path.join(folder, "patches.relief");
+    run("relief", "bake", bunny, "-q", "-o", patches, "--map", "patches:bytes=200kB");
+    run("relief", "view", patches, "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
+    const open = await viewer(t, folder);
+    const shown = async (data) => {
+        const { page, said } = await open(data, { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+        await page.evaluate(() => {
+            reliefView.panel.setShow("surface");
+            reliefView.look.floor = null;
+            reliefView.panel.frame();
+        });
+        return { page, said, pixels: await page.evaluate("[...reliefView.pixelsNow().data]") };
+    };
+    const planned = await shown(pageData("bunny.relief", readFileSync(bake(folder, "200kB"))));
+    const { page, said, pixels } = await shown(dataOf(path.join(folder, "made.html")));
+    let [body, unlike] = [0, 0];
+    for (let i = 0; i < pixels.length; i += 4) {
+        const difference = [0, 1, 2].reduce((sum, k) => sum + Math.abs(pixels[i + k] - planned.pixels[i + k]), 0);
+        body += pixels[i] > 70; // the background is darker
+        unlike += difference > 90;
+    }
+    t.diagnostic(`${body} pixels of the body, ${unlike} unlike those of planned maps`);
+    assert.ok(body > 20_000 && unlike < 0.04 * body, `${unlike} of ${body} pixels`);
+
+    await page.evaluate(kChange);
+    const change = async (least, action) => {
+        await page.evaluate(action);
+        const share = await page.evaluate(kChange);
+        assert.ok(share >= least, `${action}: ${(100 * share).toFixed(2)} % of the picture changed`);
+    };
+    await change(0.05, "document.getElementById('tint').click()");
+    await change(0.05, "document.getElementById('tint').click()");
+    await change(0.02, "document.getElementById('slice-on').click()");
+    await change(0.02, "document.getElementById('slice-on').click()");
+    await change(0.05, "document.getElementById('tab-errors').querySelector('input').click(), reliefView.panel.setShow('mesh')");
+
+    await page.click("#tab-maps");
+    await page.waitForFunction("reliefView.panel.picturesDone");
+    assert.match(await page.locator("#maps button").textContent(), /0 patches in \d+ × \d+ × \d+ cubes, halved up to [1-9]\d* times/);
+    assert.ok(await page.locator("#patches-note").isVisible());
+    // The smallest cells are the darkest, and all levels show.
+    const colors = await page.evaluate(() => {
+        const canvas = document.querySelector("#maps canvas");
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        const chroma = new Set();
+        for (let i = 0; i < data.length; i += 4) {
+            if (data[i + 3] > 0) chroma.add(Math.round(8 * data[i] / data[i + 2]));
+        }
+        return chroma.size;
+    });
+    assert.ok(colors >= 3, `${colors} colours`);
+    assert.equal(await page.locator("#message p").textContent(), "");
+    assert.deepEqual([...said, ...planned.said], []);
 });
 
 test("particles meet the body and begin anew; nothing leaves a small window", { timeout: 300_000 }, async (t) => {

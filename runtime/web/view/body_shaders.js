@@ -130,6 +130,14 @@ void main() {
     bool known = field.map >= 0 && abs(field.distance) < u_deep;
     if (!begins || within) {
         n = known && dot(field.normal, field.normal) > 0.0 ? field.normal : -d;
+#if defined(RELIEF_HAS_PATCHES)
+        // Nothing that is seen faces away: the ray came through the side of a cell whose patch is of another surface, as in a thin
+        // wall. The surface there is that of the cell before.
+        if (!within && dot(n, d) > 0.0) {
+            ReliefField before = reliefEvaluate(origin + (hit.t - u_tiny) * d);
+            n = before.distance < u_deep && dot(before.normal, d) < 0.0 ? before.normal : -d;
+        }
+#endif
         if (!known && hit.map >= 0 && hit.border >= 0) {
             n = u_relief_maps[hit.map].row[hit.border].xyz;
             n *= -sign(dot(n, d));
