@@ -112,13 +112,6 @@ std::vector<std::string> mapFileNames(const Collider& collider) {
 
 Result<void> exportMaps(const Collider& collider, const std::filesystem::path& folder) {
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
-        if (collider.maps[i].projection() == Projection::kLocal) {
-            return fail(
-                ErrorCode::kUnsupported,
-                "map " + std::to_string(i) + " is of patches, which are no image; export it by --gpu");
-        }
-    }
-    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
         for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
             const std::filesystem::path path = folder / mapImageName(map, i, face);
@@ -220,7 +213,8 @@ void addExport(CLI::App& app, Action& action) {
         "map3_cube_-z.exr for the "
         "six faces\nof a cube. Channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z of "
         "front-back maps;\nZ is in object units from the near plane or the cube's centre, +inf where "
-        "there is no surface.\nWith --gpu it writes what a program without "
+        "there is no surface.\nOf a map of patches the texels themselves, as whole numbers in the channels "
+        "low and high:\nmap0_patches.exr.\nWith --gpu it writes what a program without "
         "Relief uploads: raw textures, the uniform block, GLSL, and\nthe sizes of all as JSON "
         "(runtime/collider/LAYOUT.md).\nWith --vdb it writes signed distances as a level set of OpenVDB, "
         "and with --mesh the surface of that as PLY",

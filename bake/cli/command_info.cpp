@@ -57,7 +57,7 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
         rows.push_back({std::to_string(i), mapFormatName(map.format), projectionName(map.projection()),
-                        compareName(map.compare), sizeText(map), bytesText(info.payloads[i].raw_size),
+                        keepsText(map), sizeText(map), bytesText(info.payloads[i].raw_size),
                         bytesText(info.payloads[i].stored_size) +
                             (info.payloads[i].packing == Packing::kNone
                                  ? ""

@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <exception>
+#include <type_traits>
 
 namespace relief {
 namespace {
@@ -25,7 +26,17 @@ Imath::M44f rowVectorMatrix(const glm::dmat4& m) {
     return out;
 }
 
-std::vector<std::byte> encode(const FloatImage& image) {
+/// Adds a channel. OpenEXR's interface takes non-const memory for reading and writing alike; it only reads here.
+template <class Value>
+void insert(const ExrImage& image, const ExrImage::ChannelOf<Value>& channel, Imf::Header& header,
+            Imf::FrameBuffer& frame_buffer) {
+    const Imf::PixelType type = std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT;
+    header.channels().insert(channel.name, Imf::Channel(type));
+    auto* base = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
+    frame_buffer.insert(channel.name, Imf::Slice(type, base, sizeof(Value), sizeof(Value) * image.width));
+}
+
+std::vector<std::byte> encode(const ExrImage& image) {
     const auto width = static_cast<int>(image.width);
     const auto height = static_cast<int>(image.height);
     Imf::Header header(width, height);
@@ -40,12 +51,11 @@ std::vector<std::byte> encode(const FloatImage& image) {
         header.insert(name, Imf::StringAttribute(text));
     }
     Imf::FrameBuffer frame_buffer;
-    for (const FloatImage::Channel& channel : image.channels) {
-        header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
-        // OpenEXR's interface takes non-const memory for reading and writing alike; it only reads here.
-        auto* base = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
-        frame_buffer.insert(channel.name,
-                            Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * image.width));
+    for (const auto& channel : image.channels) {
+        insert(image, channel, header, frame_buffer);
+    }
+    for (const auto& channel : image.words) {
+        insert(image, channel, header, frame_buffer);
     }
     Imf::StdOSStream stream;
     {
@@ -60,7 +70,7 @@ std::vector<std::byte> encode(const FloatImage& image) {
 
 }  // namespace
 
-Result<std::vector<std::byte>> encodeExr(const FloatImage& image) {
+Result<std::vector<std::byte>> encodeExr(const ExrImage& image) {
     try {
         return encode(image);
     } catch (const std::bad_alloc&) {

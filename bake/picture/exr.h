@@ -1,4 +1,4 @@
-// Float images as OpenEXR files; the only user of OpenEXR.
+// Images of floats and of words as OpenEXR files; the only user of OpenEXR.
 #pragma once
 
 #include <cstddef>
@@ -13,22 +13,25 @@
 
 namespace relief {
 
-struct FloatImage {
-    struct Channel {
+struct ExrImage {
+    template <class Value>
+    struct ChannelOf {
         std::string name;           ///< "Z", "N.X", …
-        std::vector<float> values;  ///< width · height, row by row from the image's top
+        std::vector<Value> values;  ///< width · height, row by row from the image's top
     };
+    using Channel = ChannelOf<float>;
     std::uint32_t width = 0;  ///< pixels
     std::uint32_t height = 0;
     std::vector<Channel> channels;
+    std::vector<ChannelOf<std::uint32_t>> words;                  ///< channels of whole numbers
     std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes: name and text
     /// For column vectors, as in glm: camera = world_to_camera · (p, 1). Written transposed, as in OpenEXR.
     std::optional<glm::dmat4> world_to_camera;
     std::optional<glm::dmat4> world_to_ndc;
 };
 
-/// A ZIP-compressed scanline file of 32-bit float channels, without a date. Errors: kFailure with OpenEXR's message, kLimit
+/// A ZIP-compressed scanline file of channels of 32 bits, without a date. Errors: kFailure with OpenEXR's message, kLimit
 /// (out of memory).
-[[nodiscard]] Result<std::vector<std::byte>> encodeExr(const FloatImage& image);
+[[nodiscard]] Result<std::vector<std::byte>> encodeExr(const ExrImage& image);
 
 }  // namespace relief

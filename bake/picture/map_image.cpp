@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "bake/mesh/cube_faces.h"
+#include "formats/base/text.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -22,7 +24,7 @@ glm::dmat4 fromRows(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& 
 
 /// Camera space of OpenEXR and RenderMan: left-handed, x right, y up, z into the picture, object units. NDC has (0, 0) and
 /// (1, 1) at the picture's upper left and lower right corners.
-void setOrthographicCamera(const DepthMap& map, FloatImage& image) {
+void setOrthographicCamera(const DepthMap& map, ExrImage& image) {
     const glm::dvec4 x = row(map.object_to_map, 0);
     const glm::dvec4 y = row(map.object_to_map, 1);
     const glm::dvec4 z = row(map.object_to_map, 2);
@@ -33,7 +35,7 @@ void setOrthographicCamera(const DepthMap& map, FloatImage& image) {
 }
 
 /// The axes of a face as rows that act on map coordinates.
-void setFaceCamera(const DepthMap& map, std::uint32_t face, FloatImage& image) {
+void setFaceCamera(const DepthMap& map, std::uint32_t face, ExrImage& image) {
     const auto in_map = [&](const CubeFaceAxes::Axis& axis) {
         return axis.sign * row(map.object_to_map, axis.component);
     };
@@ -59,6 +61,44 @@ float objectPerDepth(const DepthMap& map, std::uint32_t face, std::uint32_t x, s
     return glm::length(map.object_per_map * direction);
 }
 
+/// The numbers of T's rows, one after the other.
+std::string placeText(const Affine& object_to_map) {
+    std::string text;
+    for (const glm::vec4& row : object_to_map.row) {
+        for (int i = 0; i < 4; ++i) {
+            text += (text.empty() ? "" : " ") + shortest(row[i]);
+        }
+    }
+    return text;
+}
+
+/// The texels of a tree, which no view orders: their words, from the top left on.
+ExrImage patchesImage(const DepthMap& map, const std::string& unit) {
+    ExrImage image;
+    image.width = map.width;
+    image.height = map.height;
+    image.words = {{"low", {}}, {"high", {}}};
+    const std::uint32_t texels = map.width * map.height;
+    for (std::uint32_t i = 0; i < texels; ++i) {
+        const PatchRecord texel = patchTexel(map.texels, i);
+        image.words[0].values.push_back(texel.low);
+        image.words[1].values.push_back(texel.high);
+    }
+    const auto [roots, levels] = patchTreeSize(map.texels);
+    image.attributes = {
+        {"relief.format", mapFormatName(map.format)},
+        {"relief.projection", projectionName(map.projection())},
+        {"relief.unit", unit},
+        {"relief.roots",
+         std::to_string(roots.x) + " " + std::to_string(roots.y) + " " + std::to_string(roots.z)},
+        {"relief.levels", std::to_string(levels)},
+        {"relief.object_to_map", placeText(map.object_to_map)},
+        {"relief.texels", "low and high of a texel, see Patches in formats/README.md"},
+        {"relief.rows", "texel i is in column i mod width and row i / width, from the top"},
+    };
+    return image;
+}
+
 }  // namespace
 
 std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t face) {
@@ -66,10 +106,13 @@ std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t f
     return map.faceCount() == 1 ? base + ".exr" : base + "_" + kFaceNames[face] + ".exr";
 }
 
-FloatImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit) {
+ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit) {
+    if (map.projection() == Projection::kLocal) {
+        return patchesImage(map, unit);
+    }
     const bool cube = map.projection() == Projection::kCube;
     const bool two_sided = keepsTwo(map.compare);
-    FloatImage image;
+    ExrImage image;
     image.width = map.width;
     image.height = map.height;
     const std::size_t pixels = std::size_t{map.width} * map.height;
@@ -105,7 +148,7 @@ FloatImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& 
     }
     image.attributes = {
         {"relief.format", mapFormatName(map.format)},
-        {"relief.projection", cube ? "cube" : "orthographic"},
+        {"relief.projection", projectionName(map.projection())},
         {"relief.compare", compareName(map.compare)},
         {"relief.unit", unit},
         {"relief.Z", cube ? "object units along the ray from the centre of the cube; +inf: no surface"

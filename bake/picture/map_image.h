@@ -1,9 +1,11 @@
-// Depth maps as float images, for `relief export`.
+// Maps as images, for `relief export`.
 //
 // Channels Z and N.X N.Y N.Z: the surface of the map, or the front one of a front-back map, with the back one in ZBack and
 // NBack.X NBack.Y NBack.Z. Z is in object units along the ray, from the near plane of an orthographic map or the centre of a
 // cube; +inf, with a zero normal, without a surface. The top row of an orthographic image is the highest y of the map, that
 // of a cube's face is t = 0, as in OpenGL and KTX2. String attributes repeat this, with format, projection, compare and face.
+//
+// A map of patches has the channels low and high, its texels as they are, and its place and the size of its tree as attributes.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +21,6 @@ namespace relief {
 
 /// \param face  < map.faceCount()
 /// \param unit  of lengths, for an attribute; "" if not known.
-[[nodiscard]] FloatImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit);
+[[nodiscard]] ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit);
 
 }  // namespace relief

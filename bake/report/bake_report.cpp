@@ -142,7 +142,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
         const DepthMap& map = baked.collider.maps[i];
         const MapReport& report = baked.report.maps[i];
         rows.push_back({std::to_string(i), mapFormatName(map.format), projectionName(map.projection()),
-                        compareName(map.compare), sizeText(map), bytesText(gpuBytes(map)),
+                        keepsText(map), sizeText(map), bytesText(gpuBytes(map)),
                         shareText(BakedMapReport{.baked = report}.coverage()),
                         summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
     }

@@ -90,6 +90,10 @@ std::uint64_t roundBudget(std::uint64_t bytes) {
     return std::max((bytes + unit - 1) / unit * unit, kPlanBudgetMin);
 }
 
+std::string keepsText(const DepthMap& map) {
+    return map.projection() == Projection::kLocal ? "-" : compareName(map.compare);
+}
+
 std::string sizeText(const DepthMap& map) {
     return (map.faceCount() == 1 ? "" : std::to_string(map.faceCount()) + "x") + std::to_string(map.width) +
            "x" + std::to_string(map.height);

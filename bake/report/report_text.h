@@ -32,6 +32,8 @@ namespace relief {
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
 /// The next number of bytes with two digits, at least kPlanBudgetMin, for --budget.
 [[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
+/// The surface that a map keeps along each ray; "-" of patches, which keep all.
+[[nodiscard]] std::string keepsText(const DepthMap& map);
 /// "512x256"; of a cube "6x64x64".
 [[nodiscard]] std::string sizeText(const DepthMap& map);
 

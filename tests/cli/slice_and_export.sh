@@ -13,6 +13,16 @@ for word in 'Z,' ZBack N.X N.Y N.Z worldToCamera worldToNDC; do
     grep -q "$word" header || die "$front_back lacks $word: $(cat header)"
 done
 
+# A map of patches has no view: its words are exported, beside the images of other maps.
+"$relief" bake "$bunny" -o p.relief --map patches:bytes=20kB --map cube:size=16 -q
+"$relief" info p.relief | grep -q 'patches *local *- ' || die "info names a surface that patches keep: $("$relief" info p.relief)"
+"$relief" export p.relief -o patches
+[ "$(find patches -name '*.exr' | wc -l)" -eq 7 ] || die "a tree and six faces, not $(ls patches)"
+exrheader patches/map0_patches.exr >header
+for word in 'low, 32-bit unsigned' 'high, 32-bit unsigned' relief.roots relief.object_to_map; do
+    grep -q "$word" header || die "map0_patches.exr lacks $word: $(cat header)"
+done
+
 # Every run gives the same bytes.
 "$relief" slice b.relief --axis z --at center --size 200 -o again.png
 cmp s.png again.png || die "two pictures differ"

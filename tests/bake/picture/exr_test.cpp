@@ -9,19 +9,24 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <cmath>
+#include <sstream>
+#include <type_traits>
 
 #include "bake/picture/map_image.h"
 #include "formats/base/file_io.h"
+#include "formats/patch_tree.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
 namespace {
 
-std::vector<float> readChannel(Imf::InputFile& file, const char* name, int width, int height) {
-    std::vector<float> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+template <class Value = float>
+std::vector<Value> readChannel(Imf::InputFile& file, const char* name, int width, int height) {
+    std::vector<Value> values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     Imf::FrameBuffer buffer;
-    buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
-                                   sizeof(float) * static_cast<std::size_t>(width)));
+    buffer.insert(name, Imf::Slice(std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT,
+                                   reinterpret_cast<char*>(values.data()), sizeof(Value),
+                                   sizeof(Value) * static_cast<std::size_t>(width)));
     file.setFrameBuffer(buffer);
     file.readPixels(0, height - 1);
     return values;
@@ -35,7 +40,7 @@ TEST(ExrExport, HoldsTheMapAndItsCamera) {
         const DepthMap& map = collider.maps[i];
         for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
             SCOPED_TRACE(mapImageName(map, i, face));
-            const FloatImage image = mapImage(map, face, "m");
+            const ExrImage image = mapImage(map, face, "m");
             const Result<std::vector<std::byte>> bytes = encodeExr(image);
             ASSERT_TRUE(bytes);
             EXPECT_EQ(*bytes, *encodeExr(image)) << "the same bytes each time";
@@ -105,6 +110,53 @@ TEST(ExrExport, HoldsTheMapAndItsCamera) {
                 }
             }
             EXPECT_GT(hits, 50);
+        }
+    }
+}
+
+// The words come back as they were: an image of floats, or rows from below, would change the tree.
+TEST(ExrExport, HoldsTheTreeOfPatches) {
+    const Collider collider = bakeSpecs(makeIcosphere({0.2, 0.1, -0.3}, 0.9, 3), {"patches:bytes=4kB"});
+    const DepthMap& map = collider.maps.front();
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder.path() / mapImageName(map, 0, 0);
+    EXPECT_EQ(path.filename(), "map0_patches.exr");
+    const Result<std::vector<std::byte>> bytes = encodeExr(mapImage(map, 0, "m"));
+    ASSERT_TRUE(bytes && writeFile(path, *bytes));
+
+    Imf::InputFile file(path.c_str());
+    const auto width = static_cast<int>(map.width);
+    const auto height = static_cast<int>(map.height);
+    ASSERT_EQ(file.header().dataWindow().max.x + 1, width);
+    ASSERT_EQ(file.header().dataWindow().max.y + 1, height);
+    ASSERT_EQ(file.header().channels().findChannel("low")->type, Imf::UINT);
+    const auto low = readChannel<std::uint32_t>(file, "low", width, height);
+    const auto high = readChannel<std::uint32_t>(file, "high", width, height);
+    std::vector<std::byte> texels;
+    for (std::size_t i = 0; i < low.size(); ++i) {
+        appendPatchTexel(texels, {low[i], high[i]});
+    }
+    EXPECT_GT(texels.size(), 1000U);
+    EXPECT_EQ(texels, map.texels);
+
+    const auto text = [&](const char* name) {
+        return file.header().typedAttribute<Imf::StringAttribute>(name).value();
+    };
+    EXPECT_EQ(text("relief.format"), "patches");
+    EXPECT_EQ(text("relief.projection"), "local");
+    EXPECT_EQ(text("relief.unit"), "m");
+    const PatchTreeSize size = patchTreeSize(map.texels);
+    EXPECT_EQ(text("relief.levels"), std::to_string(size.levels));
+    std::istringstream roots(text("relief.roots"));
+    std::istringstream place(text("relief.object_to_map"));
+    for (int k = 0; k < 3; ++k) {
+        std::uint32_t count = 0;
+        roots >> count;
+        EXPECT_EQ(count, size.roots[k]);
+        for (int i = 0; i < 4; ++i) {
+            float value = 0.0F;
+            place >> value;
+            EXPECT_EQ(value, map.object_to_map.row[k][i]);
         }
     }
 }
