@@ -34,9 +34,10 @@ axes.set(title="Signed distance, half way through", xlabel="x", ylabel="y")
 figure.colorbar(picture, label="distance, mesh units", extend="both")
 figure.savefig("slice.png", dpi=120)
 
-# %% Its maps
-figure, axes = plt.subplots(1, len(collider.maps), figsize=(3.2 * len(collider.maps), 3.6), layout="constrained", squeeze=False)
-for one, axis in zip(collider.maps, axes[0]):
+# %% Its maps, but for patches, which lie in no image
+views = [one for one in collider.maps if one.format != "patches"]
+figure, axes = plt.subplots(1, max(len(views), 1), figsize=(3.2 * max(len(views), 1), 3.6), layout="constrained", squeeze=False)
+for one, axis in zip(views, axes[0]):
     axis.imshow(one.depth[0], origin="lower", cmap="viridis")
     axis.set(title=f"map {one.index}: {one.format}\n{one.width} x {one.height}", xticks=[], yticks=[])
 figure.suptitle("Depth of the near surface")

@@ -85,19 +85,24 @@ class DepthMap:
     @property
     def texels(self) -> np.ndarray:
         """(faces, height, width, 4), read-only and without a copy: uint8, uint16 or float32 as the format stores them
-        (formats/README.md)."""
+        (formats/README.md). Of a map of patches they are the words of its tree, and have no place in an image."""
         return self._collider._handle.map_texels(self.index)
 
     @property
     def depth(self) -> np.ndarray:
         """(faces, height, width) float32: 0 at the near plane, 1 at the far one, of a cube the distance from its centre;
-        NaN where there is no surface. Row 0 is y = 0."""
-        return self._collider._handle.map_depth(self.index, False)
+        NaN where there is no surface. Row 0 is y = 0. A map of patches has none."""
+        return self._depth(False)
 
     @property
     def back_depth(self) -> np.ndarray:
         """The same of the far surface, of a front-back map."""
-        return self._collider._handle.map_depth(self.index, True)
+        return self._depth(True)
+
+    def _depth(self, back: bool) -> np.ndarray:
+        if self.format == "patches":
+            raise UsageError(f"map {self.index} is of patches, which lie in no image; texels has the words of its tree")
+        return self._collider._handle.map_depth(self.index, back)
 
     def __repr__(self) -> str:
         return f"<DepthMap {self.index}: {self.format}, {self.width} x {self.height}>"

@@ -113,6 +113,18 @@ def test_maps_are_arrays(bunny):
     assert np.array_equal(texels, before)  # the array keeps the collider
 
 
+def test_patches_have_a_tree_and_no_depths(tmp_path):
+    one = relief.bake(*sphere(24, 24), maps="patches:bytes=8kB").maps[0]
+    assert one.format == "patches" and one.texels.dtype == np.uint16 and one.texels.shape == (1, one.height, one.width, 4)
+    roots = one.texels[0, 0, 0, :3].astype(int)
+    # Its first texels are the header and the records of the roots, and some root holds a piece of the sphere.
+    kinds = one.texels[0].reshape(-1, 4)[1:1 + roots.prod(), 0] & 3
+    assert roots.min() >= 1 and (kinds >= 2).any()
+    for name in ("depth", "back_depth"):
+        with pytest.raises(relief.UsageError, match="map 0 is of patches"):
+            getattr(one, name)
+
+
 def sphere_of(path):
     with open(path) as file:
         return np.array([line.split()[1:4] for line in file if line.startswith("v ")], dtype=np.float64)
