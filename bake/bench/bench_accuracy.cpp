@@ -119,7 +119,9 @@ Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes, Layout lay
 // --- measuring ---
 
 /// The best of all ways to place and to quantise the volume.
-AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget) {
+/// \param atlas  becomes that one's; null: not wanted. So below.
+AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget,
+                            BrickAtlas* atlas) {
     AccuracyEntry entry;
     entry.method = "volume";
     // Four standard deviations hold all but 6 in 100 000 of the points near the surface.
@@ -144,6 +146,9 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
                              (band ? ", band" : "");
                 entry.bytes = volume.bytes();
                 entry.build_seconds = seconds;
+                if (atlas != nullptr) {
+                    *atlas = volume.atlas();
+                }
             }
         }
     }
@@ -153,7 +158,7 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
 
 /// The best of several layouts.
 AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
-                            std::uint64_t budget) {
+                            std::uint64_t budget, BrickAtlas* atlas) {
     AccuracyEntry entry;
     entry.method = method;
     // Unreal's band is 2 to 4 voxels; 2 has the finest codes. Bricks of 3³ and an octree of 2³ were the best of 2³ to 8³.
@@ -161,6 +166,9 @@ AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples,
     if (method != "unreal") {
         const bool fitted = method == "fitted";
         layouts = {{.cells = 3, .fitted = fitted}, {.cells = 2, .octree = true, .fitted = fitted}};
+    }
+    if (atlas != nullptr) {
+        std::erase_if(layouts, [](const BrickLayout& layout) { return layout.octree; });
     }
     std::optional<FieldAccuracy> best;
     for (const BrickLayout& layout : layouts) {
@@ -173,6 +181,9 @@ AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples,
             entry.what = volume.text();
             entry.bytes = volume.bytes();
             entry.build_seconds = seconds;
+            if (atlas != nullptr) {
+                *atlas = volume.atlas();
+            }
         }
     }
     entry.accuracy = jsonOf(FieldAccuracyReport{*best, samples.longest_side});
@@ -227,6 +238,7 @@ struct Arguments {
     std::uint64_t seed = AccuracyOptions{}.seed;
     std::vector<std::string> methods = {"volume", "unreal", "bricks", "fitted", "paper", "views", "ours"};
     std::string collider;
+    std::string atlas;
 };
 
 Result<std::vector<std::uint64_t>> parseBudgets(const std::vector<std::string>& texts) {
@@ -276,14 +288,16 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     mesh_report["triangles"] = imported->triangles.size();
     mesh_report["shape"] = jsonOf(madeShapes(shaped.report));
     measured.meshes.push_back(std::move(mesh_report));
+    BrickAtlas atlas;
+    BrickAtlas* const wanted = arguments.atlas.empty() ? nullptr : &atlas;
     for (const std::string& method : arguments.methods) {
         AccuracyEntry entry;
         if (method == "ours" && !arguments.collider.empty()) {
             entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
         } else if (method == "volume") {
-            entry = measureVolume(query, samples, budget);
+            entry = measureVolume(query, samples, budget, wanted);
         } else if (method != "paper" && method != "views" && method != "ours") {
-            entry = measureBricks(query, samples, method, budget);
+            entry = measureBricks(query, samples, method, budget, wanted);
         } else {
             entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
         }
@@ -292,11 +306,27 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
         entry.budget = budget;
         measured.results.push_back(toJson(entry));
     }
+    if (wanted != nullptr) {
+        RELIEF_TRY(saveBrickAtlas(atlas, arguments.atlas));
+    }
     return {};
+}
+
+bool isVolume(const std::string& method) {
+    return method == "volume" || method == "unreal" || method == "bricks" || method == "fitted";
 }
 
 Result<void> run(const Arguments& arguments) {
     const std::vector<std::uint64_t> budgets = RELIEF_TRY(parseBudgets(arguments.budgets));
+    if (!arguments.atlas.empty()) {
+        if (arguments.meshes.size() != 1 || budgets.size() != 1 || arguments.methods.size() != 1 ||
+            !isVolume(arguments.methods[0])) {
+            return fail(ErrorCode::kUsage,
+                        "--atlas is of one volume; give one MESH, one --budget, and as --methods volume, "
+                        "unreal, bricks or fitted");
+        }
+        RELIEF_TRY(preflightFile(arguments.atlas, "--atlas"));
+    }
     if (!arguments.collider.empty() && (arguments.meshes.size() != 1 || budgets.size() != 1)) {
         return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
     }
@@ -342,6 +372,9 @@ int main(int argc, char** argv) {
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");
+    app.add_option("--atlas", arguments.atlas,
+                   "Write the volume there, for relief-bench step --bricks: without an octree; for one mesh, "
+                   "budget and method");
     CLI11_PARSE(app, argc, argv);
     try {
         const Result<void> done = run(arguments);

@@ -604,6 +604,32 @@ FieldValue BrickVolume::at(const glm::vec3& p) const {
     return value;
 }
 
+BrickAtlas BrickVolume::atlas() const {
+    BrickAtlas atlas;
+    atlas.box = query_->mesh().bounds;
+    atlas.origin = origin_;
+    atlas.cube_size = glm::vec3(static_cast<float>(root_size_));
+    atlas.cubes = roots_count_;
+    atlas.cells = glm::uvec3(layout_.cells);
+    atlas.range = static_cast<float>(layout_.band * root_size_ / layout_.cells);
+    atlas.bytes = bytes();
+    atlas.codes.assign(codes_.begin(), codes_.end());
+    atlas.index.resize(std::size_t{roots_count_.x} * roots_count_.y * roots_count_.z);
+    forEachIndex(0, atlas.index.size(), 256, [&](std::size_t cell) {
+        const glm::dvec3 cube(cell % roots_count_.x, cell / roots_count_.x % roots_count_.y,
+                              cell / roots_count_.x / roots_count_.y);
+        const auto found = std::ranges::lower_bound(roots_, cell, {}, &Root::cell);
+        const Cube held = found != roots_.end() && found->cell == cell ? found->cube : Cube{};
+        const bool inside = held.kind == Kind::kTruth
+                                ? query_->inside(glm::vec3(origin_ + root_size_ * (cube + 0.5)))
+                                : held.kind == Kind::kInside;
+        atlas.index[cell] = held.kind == Kind::kBrick ? BrickAtlas::kFirstBrick + held.first
+                            : inside                  ? BrickAtlas::kInside
+                                                      : BrickAtlas::kOutside;
+    });
+    return atlas;
+}
+
 std::string BrickVolume::text() const {
     const std::string n = std::to_string(layout_.cells);
     return std::to_string(bricks()) + " bricks of " + n + "x" + n + "x" + n +

@@ -20,6 +20,7 @@
 
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/mesh_query.h"
+#include "formats/bricks/brick_atlas.h"
 
 namespace relief {
 
@@ -48,6 +49,8 @@ class BrickVolume {
     [[nodiscard]] std::size_t bricks() const { return codes_.size() / nodesOfBrick(); }
     /// The smallest voxel, object units.
     [[nodiscard]] double voxel() const;
+    /// For a GPU, with a dense index whatever indexBytes() counts. Of no octree.
+    [[nodiscard]] BrickAtlas atlas() const;
     /// "12345 bricks of 3x3x3 in an octree, fitted"
     [[nodiscard]] std::string text() const;
 

@@ -143,6 +143,20 @@ FieldValue DistanceVolume::at(const glm::vec3& p) const {
     return result;
 }
 
+BrickAtlas DistanceVolume::atlas() const {
+    BrickAtlas atlas;
+    atlas.box = lattice_.box;
+    atlas.origin = lattice_.origin;
+    atlas.cells = lattice_.nodes - 1U;
+    atlas.cube_size = lattice_.spacing * glm::dvec3(atlas.cells);
+    atlas.range = static_cast<float>(range_);
+    atlas.bits = 16;
+    atlas.bytes = bytes();
+    atlas.index = {BrickAtlas::kFirstBrick};
+    atlas.codes = codes_;
+    return atlas;
+}
+
 Field fieldOf(const DistanceVolume& volume) {
     return [&volume](const glm::vec3& p) -> std::optional<FieldValue> { return volume.at(p); };
 }

@@ -22,6 +22,7 @@
 
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/mesh_query.h"
+#include "formats/bricks/brick_atlas.h"
 
 namespace relief {
 
@@ -67,6 +68,8 @@ class DistanceVolume {
 
     [[nodiscard]] FieldValue at(const glm::vec3& p) const;
     [[nodiscard]] std::uint64_t bytes() const { return codes_.size() * sizeof(std::int16_t); }
+    /// For a GPU: one brick.
+    [[nodiscard]] BrickAtlas atlas() const;
     [[nodiscard]] const Lattice& lattice() const { return lattice_; }
     [[nodiscard]] double range() const { return range_; }
 

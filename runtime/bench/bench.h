@@ -19,10 +19,11 @@ struct Bench {
     std::string file;             ///< the collider or the mesh
     std::uint32_t particles = 0;  ///< 0: the case's own number
     StepPath path = StepPath::kFragment;
-    std::string only;       ///< a variant of the step; empty: all
-    int rounds = 0;         ///< 0: the case's own number
-    bool large = false;     ///< sizes for a GPU
-    bool software = false;  ///< the processor plays the GPU
+    std::string only;                 ///< a variant of the step; empty: all
+    std::vector<std::string> bricks;  ///< files of relief-accuracy --atlas, for the step
+    int rounds = 0;                   ///< 0: the case's own number
+    bool large = false;               ///< sizes for a GPU
+    bool software = false;            ///< the processor plays the GPU
 
     [[nodiscard]] std::uint32_t particlesOr(std::uint32_t on_gpu, std::uint32_t on_cpu) const {
         return particles != 0 ? particles : large || !software ? on_gpu : on_cpu;

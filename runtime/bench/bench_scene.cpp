@@ -35,15 +35,8 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
     return ColliderTextures::create(bodies);
 }
 
-ParticleType snowType() {
-    ParticleType type;
-    type.restitution = kSnow.restitution;
-    type.friction = kSnow.friction;
-    return type;
-}
-
 Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scene*/) {
-    std::vector<ParticleType> types(kParticleTypesMax, snowType());
+    std::vector<ParticleType> types(kParticleTypesMax, benchParticleType());
     for (std::size_t i = 0; i < types.size(); ++i) {
         const float share = static_cast<float>(i) / static_cast<float>(types.size());
         types[i].mass = 1.0F + share;
@@ -53,7 +46,7 @@ Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scen
 }
 
 Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
-    ParticleType type = snowType();
+    ParticleType type = benchParticleType();
     type.radius = 0.005F * scene.side;
     return particles.setTypes({&type, 1});
 }
@@ -112,6 +105,13 @@ std::function<void()> turning(ColliderTextures* textures, std::vector<Pose> pose
 }
 
 }  // namespace
+
+ParticleType benchParticleType() {
+    ParticleType type;
+    type.restitution = kSnow.restitution;
+    type.friction = kSnow.friction;
+    return type;
+}
 
 BenchScene makeBenchScene(Collider collider, std::uint32_t particles, float lifetime) {
     BenchScene scene;

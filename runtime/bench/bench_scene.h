@@ -33,6 +33,9 @@ struct BenchScene {
 [[nodiscard]] BenchScene makeBenchScene(Collider collider, std::uint32_t particles,
                                         float lifetime = kBenchForever);
 
+/// Of the snow, without a radius.
+[[nodiscard]] ParticleType benchParticleType();
+
 /// A particle system with what it collides with.
 struct BenchSystem {
     std::unique_ptr<ColliderTextures> textures;  // stays where it is: the particles point at it

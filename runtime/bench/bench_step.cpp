@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "runtime/bench/bench.h"
 #include "runtime/bench/bench_scene.h"
+#include "runtime/bench/brick_step.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/particles/random.h"
@@ -74,11 +76,32 @@ class Copy {
     GlProgram program_;
 };
 
+/// A rival of the collider.
+struct Rival {
+    std::string name;  // the file's
+    BrickStep step;
+};
+
+Result<std::vector<Rival>> rivalsFor(const Bench& bench, const BenchScene& scene) {
+    std::vector<Rival> rivals;
+    for (const std::string& file : bench.bricks) {
+        const BrickAtlas atlas = RELIEF_TRY(loadBrickAtlas(file));
+        const glm::vec3 apart = glm::abs(atlas.box.center() - scene.collider.bounds.center());
+        if (glm::any(glm::greaterThan(apart, glm::vec3(0.05F * scene.side)))) {
+            return fail(ErrorCode::kUsage,
+                        quotedPath(file) + " is of another mesh than the collider; make both of one");
+        }
+        rivals.push_back({std::filesystem::path(file).stem().string(),
+                          RELIEF_TRY(BrickStep::create(atlas, scene, bench.path))});
+    }
+    return rivals;
+}
+
 /// The variant that is called for, beside those that it is compared with.
-Result<std::vector<BenchVariant>> variantsFor(const std::string& only) {
+Result<std::vector<BenchVariant>> variantsFor(const std::string& only, const std::vector<Rival>& rivals) {
     std::vector<BenchVariant> variants = benchVariants();
-    const auto named = [&](const BenchVariant& variant) { return variant.name == only; };
-    if (!only.empty() && std::ranges::none_of(variants, named)) {
+    const auto named = [&](const auto& variant) { return variant.name == only; };
+    if (!only.empty() && std::ranges::none_of(variants, named) && std::ranges::none_of(rivals, named)) {
         return fail(ErrorCode::kUsage, "--only " + only + ": no such variant; without it all are named");
     }
     std::erase_if(variants, [&](const BenchVariant& variant) {
@@ -102,7 +125,8 @@ Result<Json> benchStep(const Bench& bench) {
                                            std::to_string(ParticleSystem::kStateWidth) + " for step");
     }
     const BenchScene scene = makeBenchScene(RELIEF_TRY(loadCollider(bench.file)), count, kBenchLifetime);
-    const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.only));
+    std::vector<Rival> rivals = RELIEF_TRY(rivalsFor(bench, scene));
+    const std::vector<BenchVariant> variants = RELIEF_TRY(variantsFor(bench.only, rivals));
     const int steps = bench.software ? 4 : kBenchStepsMost;
     auto copy = RELIEF_TRY(Copy::create(count, bench.path));
     const auto copies = [&] {
@@ -133,10 +157,25 @@ Result<Json> benchStep(const Bench& bench) {
              },
              [&system] { system.particles->step(2.0F * kBenchLifetime); }});  // no particle survives it
     }
+    Json bytes = Json::object();
+    for (Rival& rival : rivals) {
+        bytes[rival.name] = rival.step.bytes();
+        works.push_back({rival.name,
+                         [&rival]() -> Result<void> {
+                             rival.step.step();
+                             return {};
+                         },
+                         "collider",
+                         [&] {
+                             warm();
+                             rival.step.begin(scene);
+                         }});
+    }
     const int rounds = bench.software ? 5 : count > (1U << 20) ? 3 : 11;
     return Json{{{"particles", count},
                  {"maps", scene.collider.maps.size()},
                  {"steps", steps},
+                 {"brick_bytes", std::move(bytes)},
                  {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = rounds, .calls = steps}))}}};
 }
 

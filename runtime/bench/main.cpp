@@ -36,6 +36,10 @@ Result<void> run(int argc, char** argv) {
              WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
              "Of the particles");
     app.add_option("--only", bench.only, "One variant of step, beside those it is compared with");
+    app.add_option("--bricks", bench.bricks,
+                   "Files of relief-accuracy --atlas, made of the collider's mesh: variants of step, named "
+                   "as they are")
+        ->option_text("FILE...");
     app.add_flag("--large", bench.large, "Sizes for a GPU, even where there is none");
     if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
         return {};

@@ -29,8 +29,8 @@ float dragRate(const Forces& forces, const ParticleType& type) {
                                    : forces.drag / type.mass;
 }
 
-Result<StepPass> StepPass::create(const StepFeatures& features) {
-    std::string defines = "#define RELIEF_TYPES " + std::to_string(features.types) + "\n";
+Result<StepPass> StepPass::create(const StepFeatures& features, const StepShader& shader) {
+    std::string defines = shader.defines + "#define RELIEF_TYPES " + std::to_string(features.types) + "\n";
     const auto defineIf = [&](bool wanted, const std::string& what) {
         defines += wanted ? "#define " + what + "\n" : "";
     };
@@ -50,8 +50,8 @@ Result<StepPass> StepPass::create(const StepFeatures& features) {
     }
     pass.tours_ = toursMaps(features);
     defineIf(pass.tours_, "RELIEF_TOUR");
-    pass.program_ = RELIEF_TRY(features.compute ? makeComputeProgram("particles/step.frag", defines)
-                                                : makeScreenProgram("particles/step.frag", defines));
+    pass.program_ = RELIEF_TRY(features.compute ? makeComputeProgram(shader.file, defines)
+                                                : makeScreenProgram(shader.file, defines));
     pass.program_.use();
     pass.program_.set("u_position", kPositionUnit);
     pass.program_.set("u_velocity", kVelocityUnit);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "formats/base/result.h"
 #include "runtime/air/air_block.h"
@@ -36,6 +37,12 @@ struct StepFeatures {
     friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
 };
 
+/// A file of shaders/ with the program of a step, and lines for it.
+struct StepShader {
+    const char* file = "particles/step.frag";
+    std::string defines;
+};
+
 class StepPass {
   public:
     /// The pieces of way that a swept step is tested at, at most.
@@ -59,8 +66,9 @@ class StepPass {
     };
 
     StepPass() = default;
+    /// \param shader  with solids of its own it includes particles/step.glsl, and `features` has no collider.
     /// Errors: kFailure (the driver's compiler).
-    [[nodiscard]] static Result<StepPass> create(const StepFeatures& features);
+    [[nodiscard]] static Result<StepPass> create(const StepFeatures& features, const StepShader& shader = {});
 
     /// Makes the program current and sets its uniforms; binds the collider's textures, and where usesStorage() shader storage
     /// binding kTourStorage.
@@ -71,6 +79,7 @@ class StepPass {
     /// units 0 (positions) and 1 (velocities), and with events the next two.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
     [[nodiscard]] const StepFeatures& features() const { return features_; }
+    [[nodiscard]] const GlProgram& program() const { return program_; }
     [[nodiscard]] bool usesStorage() const { return tours_; }
 
   private:

@@ -1,0 +1,109 @@
+// The file between the two benchmarks: it comes back as it was, and nothing else is taken for one.
+#include "formats/bricks/brick_atlas.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <functional>
+#include <limits>
+#include <span>
+
+#include "formats/base/file_io.h"
+
+namespace relief {
+namespace {
+
+BrickAtlas smallAtlas() {
+    BrickAtlas atlas;
+    atlas.box = {{-1, -2, -3}, {4, 5, 6}};
+    atlas.origin = {-1.5F, -2.5F, -3.5F};
+    atlas.cube_size = {2, 3, 4};
+    atlas.cubes = {2, 1, 2};
+    atlas.cells = {1, 2, 1};
+    atlas.range = 0.25F;
+    atlas.bytes = 77;
+    atlas.index = {BrickAtlas::kOutside, BrickAtlas::kFirstBrick + 1, BrickAtlas::kInside,
+                   BrickAtlas::kFirstBrick};
+    for (std::int16_t i = 0; i < 24; ++i) {
+        atlas.codes.push_back(static_cast<std::int16_t>(11 * i - 127));
+    }
+    return atlas;
+}
+
+class BrickAtlasTest : public testing::Test {
+  protected:
+    void TearDown() override { std::filesystem::remove(path_); }
+
+    [[nodiscard]] Result<BrickAtlas> saved(const BrickAtlas& atlas) const {
+        const Result<void> done = saveBrickAtlas(atlas, path_);
+        EXPECT_TRUE(done) << done.error().message;
+        return loadBrickAtlas(path_);
+    }
+    [[nodiscard]] Result<BrickAtlas> written(std::span<const std::byte> bytes) const {
+        const Result<void> done = writeFile(path_, bytes);
+        EXPECT_TRUE(done) << done.error().message;
+        return loadBrickAtlas(path_);
+    }
+
+    std::filesystem::path path_ =
+        std::filesystem::temp_directory_path() / ("brick_atlas_" + std::to_string(getpid()));
+};
+
+TEST_F(BrickAtlasTest, ComesBackAsItWas) {
+    const BrickAtlas atlas = smallAtlas();
+    const Result<BrickAtlas> read = saved(atlas);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->box, atlas.box);
+    EXPECT_EQ(read->origin, atlas.origin);
+    EXPECT_EQ(read->cube_size, atlas.cube_size);
+    EXPECT_EQ(read->cubes, atlas.cubes);
+    EXPECT_EQ(read->cells, atlas.cells);
+    EXPECT_EQ(read->range, atlas.range);
+    EXPECT_EQ(read->bits, atlas.bits);
+    EXPECT_EQ(read->bytes, atlas.bytes);
+    EXPECT_EQ(read->index, atlas.index);
+    EXPECT_EQ(read->codes, atlas.codes);
+    EXPECT_EQ(read->bricks(), 2U);
+}
+
+TEST_F(BrickAtlasTest, LiesAreRefused) {
+    const std::vector<std::function<void(BrickAtlas&)>> lies = {
+        [](BrickAtlas& atlas) { atlas.index[0] = BrickAtlas::kFirstBrick + 2; },
+        [](BrickAtlas& atlas) { atlas.index.pop_back(); },
+        [](BrickAtlas& atlas) {
+            atlas.cubes = {65536, 65536, 65536};
+        },
+        [](BrickAtlas& atlas) { atlas.cubes.x = 0; },
+        [](BrickAtlas& atlas) { atlas.cells.y = 3; },
+        [](BrickAtlas& atlas) { atlas.codes.pop_back(); },
+        [](BrickAtlas& atlas) { atlas.codes[3] = 128; },
+        [](BrickAtlas& atlas) { atlas.bits = 12; },
+        [](BrickAtlas& atlas) { atlas.range = std::numeric_limits<float>::quiet_NaN(); },
+        [](BrickAtlas& atlas) { atlas.cube_size.z = 0.0F; },
+        [](BrickAtlas& atlas) { atlas.origin.x = std::numeric_limits<float>::infinity(); },
+        [](BrickAtlas& atlas) { std::swap(atlas.box.min, atlas.box.max); },
+    };
+    for (std::size_t i = 0; i < lies.size(); ++i) {
+        BrickAtlas atlas = smallAtlas();
+        lies[i](atlas);
+        const Result<BrickAtlas> read = saved(atlas);
+        ASSERT_FALSE(read) << i;
+        EXPECT_EQ(read.error().code, ErrorCode::kInvalidInput) << i;
+    }
+}
+
+TEST_F(BrickAtlasTest, EveryShorterAndLongerFileIsRefused) {
+    ASSERT_TRUE(saved(smallAtlas()));
+    std::vector<std::byte> whole = readFile(path_).value();
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        ASSERT_FALSE(written(std::span(whole).first(size))) << size;
+    }
+    whole.push_back(std::byte{0});
+    EXPECT_FALSE(written(whole));
+    whole.pop_back();
+    whole[7] = std::byte{'9'};
+    EXPECT_FALSE(written(whole));
+}
+
+}  // namespace
+}  // namespace relief

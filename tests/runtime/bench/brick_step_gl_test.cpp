@@ -1,0 +1,202 @@
+// The rival of relief-bench on the GPU against the volume on the CPU: would it be wrong, a comparison with it would be worth
+// nothing.
+#include "runtime/bench/brick_step.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "bake/bench/brick_volume.h"
+#include "bake/bench/distance_volume.h"
+#include "bake/mesh/mesh_query.h"
+#include "runtime/gl/pass_state.h"
+#include "tests/bake/meshes.h"
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint32_t kParticles = 64 * 1024;
+
+/// A volume as both sides have it.
+struct Rival {
+    BrickAtlas atlas;
+    Field cpu;
+    float voxel;
+};
+
+float distanceAt(const Rival& rival, const glm::vec3& p) {
+    return rival.cpu(p)->distance;
+}
+
+/// The particles' textures, a texel a particle.
+struct State {
+    std::vector<float> position;
+    std::vector<float> velocity;
+
+    explicit State(const BrickStep& step) {
+        const PassState restored;
+        constexpr auto kWidth = static_cast<GLsizei>(ParticleSystem::kStateWidth);
+        const auto read = [](const GlTexture& texture) {
+            Result<std::vector<float>> texels = readTextureFloats(texture, kWidth, kParticles / kWidth);
+            EXPECT_TRUE(texels) << texels.error().message;
+            return texels.value_or(std::vector<float>(std::size_t{4} * kParticles));
+        };
+        position = read(step.positions());
+        velocity = read(step.velocities());
+    }
+    [[nodiscard]] glm::vec3 p(std::size_t i) const {
+        return {position[4 * i], position[4 * i + 1], position[4 * i + 2]};
+    }
+    [[nodiscard]] glm::vec3 v(std::size_t i) const {
+        return {velocity[4 * i], velocity[4 * i + 1], velocity[4 * i + 2]};
+    }
+    [[nodiscard]] Contact contact(std::size_t i) const {
+        return static_cast<Contact>(static_cast<int>(velocity[4 * i + 3]));
+    }
+};
+
+class BrickStepGlTest : public testing::TestWithParam<StepPath> {
+  protected:
+    void SetUp() override {
+        Result<std::unique_ptr<GlContext>> context = GlContext::create(GlApi::kGl33Core);
+        ASSERT_TRUE(context) << context.error().message;
+        context_ = std::move(*context);
+        // Slanted, so that the axes of grid, texture and box are not alike.
+        const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
+        TriangleMesh mesh = test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48),
+                                          test::makeBoxMesh({0.1, 0.2, 0.9}, {0.9, 0.3, 0.2}, turn)});
+        Result<MeshQuery> query = MeshQuery::build(std::move(mesh));
+        ASSERT_TRUE(query) << query.error().message;
+        query_ = std::make_unique<MeshQuery>(std::move(*query));
+        Collider box;  // a scene is a box for it alone
+        box.bounds = query_->mesh().bounds;
+        scene_ = makeBenchScene(std::move(box), kParticles, kBenchLifetime);
+    }
+
+    [[nodiscard]] Rival bricks(unsigned cells) {
+        bricks_ = std::make_unique<BrickVolume>(
+            BrickVolume::build(*query_, {.cells = cells, .flat_index = true}, 200'000));
+        return {bricks_->atlas(), fieldOf(*bricks_), static_cast<float>(bricks_->voxel())};
+    }
+    [[nodiscard]] Rival dense() {
+        const DistanceGrid grid =
+            sampleDistances(*query_, makeLattice(query_->mesh().bounds, 100'000, LatticeFit::kCorner));
+        dense_ = std::make_unique<DistanceVolume>(grid, DistanceVolume::bandRange(grid, 0.02));
+        return {dense_->atlas(), fieldOf(*dense_), static_cast<float>(grid.lattice.spacing.x)};
+    }
+
+    /// A first step of all, then fifteen more.
+    void expectTheCpusSides(const Rival& rival) {
+        auto step = BrickStep::create(rival.atlas, scene_, GetParam());
+        ASSERT_TRUE(step) << step.error().message;
+        step->begin(scene_);
+        expectTheCpusReactions(rival, State(*step));
+        for (int i = 0; i < 15; ++i) {
+            step->step();
+        }
+        const State after(*step);
+        std::size_t outside = 0, inside = 0;
+        for (std::size_t i = 0; i < kParticles; ++i) {
+            if (after.contact(i) == Contact::kCaught) {
+                ++inside;
+                continue;
+            }
+            ++outside;
+            ASSERT_GT(distanceAt(rival, after.p(i)), -margin(rival)) << i;
+        }
+        EXPECT_GT(outside, kParticles / 2);
+        EXPECT_GT(inside, 100U);
+    }
+
+    /// The weights of a texture unit may have 8 bits: an error of as much of a voxel along each axis.
+    static float margin(const Rival& rival) { return 0.012F * rival.voxel; }
+
+    void expectTheCpusReactions(const Rival& rival, const State& after) {
+        const Forces& forces = scene_.forces;
+        std::size_t free = 0, hit = 0, caught = 0, pushed = 0, off = 0;
+        for (std::size_t i = 0; i < kParticles; ++i) {
+            const Birth& birth = scene_.births[i];
+            const glm::vec3 v = (birth.velocity + kBenchDt * (forces.gravity + forces.drag * forces.wind)) /
+                                (1.0F + kBenchDt * forces.drag);
+            const glm::vec3 to = birth.position + kBenchDt * v;
+            const FieldValue end = *rival.cpu(to);
+            const float before = distanceAt(rival, birth.position);
+            if (std::abs(end.distance) < margin(rival) || std::abs(before) < margin(rival)) {
+                continue;
+            }
+            const glm::vec3 at = after.p(i);
+            if (end.distance > 0.0F) {
+                ++free;
+                ASSERT_EQ(after.contact(i), Contact::kNone) << i << ": " << end.distance;
+                ASSERT_LT(glm::distance(at, to), 1e-5F) << i;
+            } else if (before > 0.0F) {
+                ++hit;
+                ASSERT_EQ(after.contact(i), Contact::kCollided) << i << ": " << end.distance;
+                ASSERT_LT(glm::distance(at, birth.position), 1e-5F) << i;
+            } else {
+                ++caught;
+                ASSERT_EQ(after.contact(i), Contact::kCaught) << i << ": " << end.distance;
+                // Without a brick, and where all codes are clamped, there is no normal.
+                const float vn = glm::dot(v, end.normal);
+                if (end.distance > -0.6F * rival.atlas.range && std::abs(vn) > 0.05F * glm::length(v)) {
+                    ++pushed;
+                    const glm::vec3 turned = vn < 0.0F ? v - 2.0F * vn * end.normal : v;
+                    off += glm::distance(after.v(i), turned) > 0.05F * glm::length(v) ? 1 : 0;
+                }
+            }
+        }
+        EXPECT_GT(free, 20'000U);
+        EXPECT_GT(hit, 500U);
+        EXPECT_GT(caught, 1'000U);
+        EXPECT_GT(pushed, 300U);
+        // At the borders of voxels slopes leap.
+        EXPECT_LE(off, pushed / 50);
+    }
+
+    std::unique_ptr<GlContext> context_;  // outlives what it made
+    std::unique_ptr<MeshQuery> query_;
+    std::unique_ptr<BrickVolume> bricks_;
+    std::unique_ptr<DistanceVolume> dense_;
+    BenchScene scene_;
+};
+
+TEST_P(BrickStepGlTest, ParticlesAmongUnrealsBricksEndOnTheCpusSide) {
+    expectTheCpusSides(bricks(8));
+}
+
+TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpusSide) {
+    expectTheCpusSides(bricks(3));
+}
+
+TEST_P(BrickStepGlTest, ParticlesInADenseVolumeEndOnTheCpusSide) {
+    expectTheCpusSides(dense());
+}
+
+TEST_P(BrickStepGlTest, MoreBricksThanSixteenBitsNameEndOnTheCpusSide) {
+    Rival rival = bricks(3);
+    constexpr std::uint32_t kIdle = 66'000;  // ahead of those in use
+    BrickAtlas& atlas = rival.atlas;
+    atlas.codes.insert(atlas.codes.begin(), kIdle * atlas.nodesOfBrick(), std::int16_t{0});
+    for (std::uint32_t& cube : atlas.index) {
+        cube += cube >= BrickAtlas::kFirstBrick ? kIdle : 0;
+    }
+    expectTheCpusSides(rival);
+}
+
+TEST_P(BrickStepGlTest, BytesAreThoseOfTheBudget) {
+    const Rival rival = bricks(8);
+    const auto step = BrickStep::create(rival.atlas, scene_, GetParam());
+    ASSERT_TRUE(step) << step.error().message;
+    EXPECT_GE(step->bytes(), rival.atlas.bytes);
+    // But for places of the atlas that no brick takes.
+    EXPECT_LE(step->bytes(), rival.atlas.bytes + rival.atlas.bytes / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, BrickStepGlTest, testing::Values(StepPath::kFragment, StepPath::kCompute),
+                         [](const testing::TestParamInfo<StepPath>& path) {
+                             return path.param == StepPath::kCompute ? "Compute" : "Fragment";
+                         });
+
+}  // namespace
+}  // namespace relief
