@@ -1,12 +1,5 @@
 // shaders/collider/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
 // frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
-//
-// Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
-// are in texels, and it divides by a normal's length last), and a GL may fuse or reorder operations and be
-// off by some units in the last place in its square roots and divisions. So distances may differ by kRelative
-// of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
-// texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
-// answer at one of the surrounding points kBorder texels away, and such points are counted.
 
 #include <array>
 #include <cmath>
@@ -19,15 +12,12 @@
 #include "runtime/gl/pass_state.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/random_patches.h"
-#include "tests/runtime/collider/field_query.h"
+#include "tests/runtime/collider/field_agreement.h"
 #include "tests/runtime/gl/gl_test.h"
+#include "tests/seeds.h"
 
 namespace relief {
 namespace {
-
-constexpr float kRelative = 2e-6F;
-constexpr float kNormal = 2e-6F;
-constexpr float kBorder = 2e-3F;
 
 /// What validateFrame() asks of a map of gaps.
 void asOneOfGaps(DepthMap& map) {
@@ -96,8 +86,8 @@ DepthMap randomMap(MapFormat format, Compare compare, std::uint32_t width, std::
     return map;
 }
 
-std::vector<glm::vec3> randomPoints(std::size_t count, std::mt19937& random) {
-    std::uniform_real_distribution<float> inside(-0.8F, 0.8F);
+std::vector<glm::vec3> randomPoints(std::size_t count, std::mt19937& random, float half = 0.8F) {
+    std::uniform_real_distribution<float> inside(-half, half);
     std::vector<glm::vec3> points(count);
     for (glm::vec3& p : points) {
         p = {inside(random), inside(random), inside(random)};
@@ -105,70 +95,9 @@ std::vector<glm::vec3> randomPoints(std::size_t count, std::mt19937& random) {
     return points;
 }
 
-bool agrees(const FieldSample& a, const FieldSample& b) {
-    if (a.map != b.map) {
-        return false;
-    }
-    return a.map < 0 ||
-           (std::abs(a.distance - b.distance) <= kRelative * std::max(2.0F, std::abs(b.distance)) &&
-            glm::length(a.normal - b.normal) <= kNormal);
-}
-
 std::string nameOf(const DepthMap& map) {
     return std::string(mapFormatName(map.format)) + " " + depthEncodingName(map.format) + " " +
            compareName(map.compare) + " " + decodeName(map.decode);
-}
-
-/// Agreement with the CPU's answer at p, or at one of the 26 neighbours `step` away.
-enum class Agreement { kExact, kAtBorder, kNone };
-Agreement compareAt(const Collider& collider, const glm::vec3& p, const FieldSample& gpu, float step) {
-    if (agrees(gpu, evaluate(collider, p))) {
-        return Agreement::kExact;
-    }
-    for (int k = 0; k < 27; ++k) {
-        const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
-                               static_cast<float>(k / 9 - 1));
-        const FieldSample near = evaluate(collider, p + step * offset);
-        // The distance has moved with the point, too.
-        if (near.map == gpu.map && std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
-            glm::length(near.normal - gpu.normal) <= kNormal) {
-            return Agreement::kAtBorder;
-        }
-    }
-    return Agreement::kNone;
-}
-
-void expectAgreement(const Collider& collider, std::span<const glm::vec3> points, float texel,
-                     double border_share_max) {
-    Result<FieldQuery> query = FieldQuery::create(collider);
-    ASSERT_TRUE(query) << query.error().message;
-    const Result<std::vector<FieldSample>> samples = query->evaluate(points);
-    ASSERT_TRUE(samples) << samples.error().message;
-    ASSERT_EQ(samples->size(), points.size());
-    std::size_t at_border = 0;
-    std::size_t none = 0;
-    std::size_t votes = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        votes += (*samples)[i].map >= 0 ? 1U : 0U;
-        switch (compareAt(collider, points[i], (*samples)[i], kBorder * texel)) {
-            case Agreement::kExact:
-                break;
-            case Agreement::kAtBorder:
-                ++at_border;
-                break;
-            case Agreement::kNone:
-                if (none++ < 5) {
-                    const FieldSample cpu = evaluate(collider, points[i]);
-                    ADD_FAILURE() << "point " << i << ": GPU " << (*samples)[i].distance << " map "
-                                  << (*samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map;
-                }
-                break;
-        }
-    }
-    EXPECT_EQ(none, 0U);
-    EXPECT_GT(votes, points.size() / 8) << "the points hardly meet the maps: this would prove nothing";
-    EXPECT_LE(static_cast<double>(at_border), border_share_max * static_cast<double>(points.size()));
-    testing::Test::RecordProperty("at_border", static_cast<int>(at_border));
 }
 
 struct Kind {
@@ -221,35 +150,65 @@ TEST_P(FieldQueryGlTest, AnyMixtureOfMapsAgreesWithTheCpu) {
     }
 }
 
+/// A random tree in a turned frame of 2.5 units a root, round the origin.
+DepthMap turnedPatches(std::mt19937& random) {
+    std::uniform_real_distribution<double> angle(0.0, 360.0);
+    DepthMap map = test::randomPatches(random);
+    const glm::dmat3 turn = test::rotation({1, 2, 3}, angle(random));
+    map.object_per_map = glm::vec3(2.5F);
+    map.encloses = random() % 2 == 0;
+    for (int i = 0; i < 3; ++i) {
+        const glm::vec3 row = glm::vec3(turn[i]) / 2.5F;
+        map.object_to_map.row[i] = glm::vec4(row, std::array{1.5F, 1.0F, 2.0F}[static_cast<std::size_t>(i)]);
+    }
+    return map;
+}
+
 TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpu) {
     std::mt19937 random(29);
-    std::uniform_real_distribution<float> angle(0.0F, 360.0F);
     for (int repeat = 0; repeat < 20; ++repeat) {
         Collider collider;
-        collider.maps.push_back(test::randomPatches(random));
-        DepthMap& map = collider.maps[0];
-        // A turned frame of 2.5 units a root, round the origin.
-        const glm::dmat3 turn = test::rotation({1, 2, 3}, double{angle(random)});
-        map.object_per_map = glm::vec3(2.5F);
-        map.encloses = repeat % 2 == 0;
-        for (int i = 0; i < 3; ++i) {
-            const glm::vec3 row = glm::vec3(turn[i]) / 2.5F;
-            map.object_to_map.row[i] =
-                glm::vec4(row, std::array{1.5F, 1.0F, 2.0F}[static_cast<std::size_t>(i)]);
-        }
-        std::uniform_real_distribution<float> inside(-5.0F, 5.0F);
-        std::vector<glm::vec3> points(20'000);
-        for (glm::vec3& p : points) {
-            p = {inside(random), inside(random), inside(random)};
-        }
-        if (repeat % 4 == 3) {  // beside maps of other formats
-            for (const Kind& kind : {kKinds[2], kKinds[4], kKinds[5], kKinds[0]}) {
-                collider.maps.push_back(
-                    randomMap(kind.format, kind.compare, kind.width, kind.height, random));
-            }
-        }
-        expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
+        collider.maps.push_back(turnedPatches(random));
+        expectAgreement(collider, randomPoints(20'000, random, 5.0F), 1.0F / 60.0F, 5e-3);
     }
+}
+
+// Twenty kinds of company: planar maps alone, a cube alone, both; the patches first, last or between.
+TEST_P(FieldQueryGlTest, PatchesAmongOtherMapsAgreeWithTheCpu) {
+    std::mt19937 random(test::seedFrom(31));
+    int asked = 0, by_patches = 0;
+    for (unsigned repeat = 0; repeat < 20; ++repeat) {
+        Collider collider;
+        const unsigned company = 1 + repeat % 4;
+        for (unsigned i = 0; i < company; ++i) {
+            // Every format of the ten in turn; a cube alone where company is one.
+            const Kind& kind =
+                kKinds[company == 1 ? 5 + repeat / 4 % 2 : (3 * repeat + i) % std::size(kKinds)];
+            DepthMap map = randomMap(kind.format, kind.compare, kind.width, kind.height, random);
+            if (repeat % 2 == 0) {  // as large as the tree
+                map.object_per_map *= 5.0F;
+                for (glm::vec4& row : map.object_to_map.row) {
+                    row = glm::vec4(glm::vec3(row) / 5.0F, row.w);
+                }
+            }
+            collider.maps.push_back(std::move(map));
+        }
+        const auto place = static_cast<std::ptrdiff_t>(repeat / 2 % (company + 1));
+        collider.maps.insert(collider.maps.begin() + place, turnedPatches(random));
+        std::vector<glm::vec3> points = randomPoints(50'000, random, 5.0F);
+        const std::vector<glm::vec3> near = randomPoints(50'000, random, repeat % 2 == 0 ? 4.0F : 0.8F);
+        points.insert(points.end(), near.begin(), near.end());
+        SCOPED_TRACE(repeat);
+        expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
+        for (std::size_t i = 0; i < points.size(); i += 100) {
+            const int map = evaluate(collider, points[i]).map;
+            asked += map >= 0 ? 1 : 0;
+            by_patches += map == place ? 1 : 0;
+        }
+    }
+    // Both decide often.
+    EXPECT_GT(by_patches, asked / 5);
+    EXPECT_LT(by_patches, asked - asked / 5);
 }
 
 TEST_P(FieldQueryGlTest, TexelBordersFallToEitherSideAndCornersOfCubesToo) {

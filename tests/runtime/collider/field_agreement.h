@@ -1,0 +1,105 @@
+// What the GPU answers at many points against what the CPU does.
+//
+// Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
+// are in texels, and it divides by a normal's length last), and a GL may fuse or reorder operations and be
+// off by some units in the last place in its square roots and divisions. So distances may differ by kRelative
+// of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
+// texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
+// answer at one of the surrounding points kBorder texels away, and such points are counted.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <span>
+
+#include "formats/collider.h"
+#include "tests/runtime/collider/field_query.h"
+
+namespace relief {
+
+inline constexpr float kRelative = 2e-6F;
+inline constexpr float kNormal = 2e-6F;
+inline constexpr float kBorder = 2e-3F;
+
+inline bool agrees(const FieldSample& a, const FieldSample& b) {
+    if (a.map != b.map) {
+        return false;
+    }
+    return a.map < 0 ||
+           (std::abs(a.distance - b.distance) <= kRelative * std::max(2.0F, std::abs(b.distance)) &&
+            glm::length(a.normal - b.normal) <= kNormal);
+}
+
+/// True if two maps vote alike at p, but for rounding, and the GPU chose the other: its answer is that map's own.
+inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample& gpu) {
+    const FieldSample cpu = evaluate(collider, p);
+    if (cpu.map < 0 || gpu.map < 0 || std::abs(cpu.distance - gpu.distance) > kRelative * 2.0F) {
+        return false;
+    }
+    Collider alone;
+    alone.bounds = collider.bounds;
+    alone.maps.push_back(collider.maps[static_cast<std::size_t>(gpu.map)]);
+    FieldSample own = evaluate(alone, p);
+    own.map = gpu.map;
+    return agrees(gpu, own);
+}
+
+/// Agreement with the CPU's answer at p, or at one of the 26 neighbours `step` away; there a tie counts, too.
+enum class Agreement { kExact, kAtBorder, kNone };
+inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const FieldSample& gpu, float step) {
+    if (agrees(gpu, evaluate(collider, p))) {
+        return Agreement::kExact;
+    }
+    if (tied(collider, p, gpu)) {
+        return Agreement::kAtBorder;
+    }
+    for (int k = 0; k < 27; ++k) {
+        const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
+                               static_cast<float>(k / 9 - 1));
+        const FieldSample near = evaluate(collider, p + step * offset);
+        // The distance has moved with the point, too.
+        if (near.map == gpu.map && std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
+            glm::length(near.normal - gpu.normal) <= kNormal) {
+            return Agreement::kAtBorder;
+        }
+    }
+    return Agreement::kNone;
+}
+
+inline void expectAgreement(const Collider& collider, std::span<const glm::vec3> points, float texel,
+                            double border_share_max) {
+    Result<FieldQuery> query = FieldQuery::create(collider);
+    ASSERT_TRUE(query) << query.error().message;
+    const Result<std::vector<FieldSample>> samples = query->evaluate(points);
+    ASSERT_TRUE(samples) << samples.error().message;
+    ASSERT_EQ(samples->size(), points.size());
+    std::size_t at_border = 0;
+    std::size_t none = 0;
+    std::size_t votes = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        votes += (*samples)[i].map >= 0 ? 1U : 0U;
+        switch (compareAt(collider, points[i], (*samples)[i], kBorder * texel)) {
+            case Agreement::kExact:
+                break;
+            case Agreement::kAtBorder:
+                ++at_border;
+                break;
+            case Agreement::kNone:
+                if (none++ < 5) {
+                    const FieldSample cpu = evaluate(collider, points[i]);
+                    ADD_FAILURE() << "point " << i << ": GPU " << (*samples)[i].distance << " map "
+                                  << (*samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map;
+                }
+                break;
+        }
+    }
+    EXPECT_EQ(none, 0U);
+    EXPECT_GT(votes, points.size() / 8) << "the points hardly meet the maps: this would prove nothing";
+    EXPECT_LE(static_cast<double>(at_border), border_share_max * static_cast<double>(points.size()));
+    testing::Test::RecordProperty("at_border", static_cast<int>(at_border));
+}
+
+}  // namespace relief
