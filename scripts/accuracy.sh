@@ -33,7 +33,7 @@ meshes+=("$models/Collada/duck.dae" "$models/BLEND/HUMAN.blend")
 
 if [ "${1:-}" = --corpus ]; then
     shift
-    python3 scripts/corpus.py "$bin" "$folder" "${meshes[@]}" -- "$@"
+    PYTHONDONTWRITEBYTECODE=1 python3 scripts/corpus.py "$bin" "$folder" "${meshes[@]}" -- "$@"
     exit 0
 fi
 if [ "${1:-}" = --page ]; then

@@ -4,8 +4,8 @@
 corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...
 
 BIN has relief, relief-accuracy and relief-bench; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
-One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against a
-distance volume of as many bytes, with the same truth.
+One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against distance
+volumes of as many bytes, dense and sparse, with the same truth: for sheets the same shell.
 """
 import argparse
 import csv
@@ -19,10 +19,11 @@ import sys
 import time
 import zipfile
 
+from accuracy_table import RIVALS
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 FURNITURE = '/usr/share/sweethome3d/furniture'
 ASSIMP = '/usr/share/assimp/models'
-COLUMNS = ['model', 'triangles', 'kind', 'volume', 'ours', 'ratio', 'maps', 'bake_s', 'step', 'cpu_s']
 LEAST = 0.01  # percent: what a share of no wrong points counts as in a ratio
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
 PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
@@ -92,16 +93,19 @@ def measure(name, path, bin, folder, options):
     baked = json.loads(checked([f'{bin}/relief', 'bake', path, '-o', ours, '--budget', '1MB', '--threads', '2',
                                 '--json', '-q']))
     seconds, cpu = time.perf_counter() - start, processor_seconds() - cpu_start
-    command = [f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods', 'volume,ours', '--collider', ours,
-               '--samples', str(options.samples)]
-    report = json.loads(checked(command))
+    start = time.perf_counter()
+    report = json.loads(checked([f'{bin}/relief-accuracy', path, '--budget', '1MB', '--methods',
+                                 ','.join([*options.rivals, 'ours']), '--collider', ours,
+                                 '--samples', str(options.samples)]))
     mesh = report['meshes'][0]
     wrong = {entry['method']: entry['accuracy']['near']['wrong_percent'] for entry in report['results']}
-    row = {'model': name, 'triangles': mesh['triangles'], 'kind': kind_of(mesh['shape']),
-           'volume': f"{wrong['volume']:.4g}", 'ours': f"{wrong['ours']:.4g}",
-           'ratio': f"{max(wrong['ours'], LEAST) / max(wrong['volume'], LEAST):.3f}",
+    row = {'model': name, 'triangles': mesh['triangles'], 'kind': kind_of(mesh['shape']), 'ours': f"{wrong['ours']:.4g}",
            'maps': len(baked['maps']), 'bake_s': f'{seconds:.2f}', 'step': '', 'cpu_s': f'{cpu:.2f}',
+           'rivals_s': f'{time.perf_counter() - start:.1f}',
            'warned': any('wrong near the surface' in warning for warning in baked['warnings'])}
+    for rival in options.rivals:
+        row[rival] = f'{wrong[rival]:.4g}'
+        row[f'ours/{rival}'] = f"{max(wrong['ours'], LEAST) / max(wrong[rival], LEAST):.3f}"
     if options.steps:
         checked([f'{bin}/relief', 'bake', path, '-o', f'{folder}/paper.relief', '-q', *PAPER])
         row['step'] = f"{step_ratio(bin, folder):.2f}"
@@ -112,18 +116,28 @@ def percent(part, whole):
     return f'{100 * part / whole:.0f} %'
 
 
-def summary(rows):
-    """What the models come to, line by line, with what is aimed at."""
+def columns_of(rivals):
+    return ['model', 'triangles', 'kind', *rivals, 'ours', *(f'ours/{rival}' for rival in rivals), 'maps', 'bake_s', 'step', 'cpu_s',
+            'rivals_s']
+
+
+def against(rows, rival):
+    """Ours over one rival, with what is aimed at."""
+    ratios = [float(row[f'ours/{rival}']) for row in rows]
+    mean, above = math.exp(statistics.fmean(map(math.log, ratios))), sum(ratio > 1 for ratio in ratios)
+    aims = (' (at most 0.333)', ' (at most 5 %)') if rival == 'volume' else ('', '')
+    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, above it {percent(above, len(rows))}{aims[1]}'
+
+
+def summary(rows, rivals):
+    """The models together, line by line, with what is aimed at."""
     lines = []
     for kind in ['all', *sorted({row['kind'] for row in rows})]:
         of = [row for row in rows if kind in ('all', row['kind'])]
-        mean = math.exp(statistics.fmean(math.log(float(row['ratio'])) for row in of))
-        above = sum(float(row['ratio']) > 1 for row in of)
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
-        lines.append(f'{kind}, {len(of)}: ours/volume {mean:.3f} in the geometric mean (at most 0.333), above the '
-                     f'volume {percent(above, len(of))} (at most 5 %), above 10 % wrong {percent(len(bad), len(of))}, '
-                     f'without a warning {percent(silent, len(of))} (none)')
+        lines.append(f'{kind}, {len(of)}: mistakes of ours in geometric means: {"; ".join(against(of, rival) for rival in rivals)}; '
+                     f'above 10 % wrong {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
     for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
                                    ('step', "step over one with the paper's maps", rows, (1.5, 3))):
@@ -136,18 +150,22 @@ def summary(rows):
     return lines
 
 
-def page(rows, lines, command):
+def page(rows, lines, rivals, command):
     """bake/measure/accuracy_corpus.md"""
-    headings = ['model', 'triangles', 'kind', 'volume %', 'ours %', 'ours/volume', 'maps', 'bake s', 'step', 'CPU s']
-    table = [headings, ['---' if h in ('model', 'kind') else '---:' for h in headings],
-             *[[str(row[column]) or '-' for column in COLUMNS] for row in rows]]
+    headings = {'bake_s': 'bake s', 'cpu_s': 'CPU s', 'rivals_s': 'rivals s', 'ours': 'ours %',
+                **{rival: f'{RIVALS[rival]} %' for rival in rivals},
+                **{f'ours/{rival}': f'ours / {RIVALS[rival]}' for rival in rivals}}
+    columns = columns_of(rivals)
+    table = [[headings.get(column, column) for column in columns],
+             ['---' if column in ('model', 'kind') else '---:' for column in columns],
+             *[[str(row[column]) or '-' for column in columns] for row in rows]]
     return f"""# Meshes as artists make them
 
 Written by `{command}`. At 1 MB, for each model: the share of the points near the
-surface on whose side a distance volume and what `relief bake` writes are wrong; the maps; the seconds of the whole
-`relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's two maps; and the
-processor's seconds of the bake, both threads together. Other work on the machine makes single times rough.
-In ratios less than {LEAST} % counts as {LEAST} %.
+surface on whose side distance volumes, dense and sparse ([README.md](README.md)), and what `relief bake` writes are wrong; the
+maps; the seconds of the whole `relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's
+two maps; the processor's seconds of the bake, both threads together; and the seconds of all the measuring. Other work on the
+machine makes single times rough. In ratios less than {LEAST} % counts as {LEAST} %.
 
 """ + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
 
@@ -169,12 +187,17 @@ def chosen(paths, options):
 def arguments(words):
     parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
     parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
+    parser.add_argument('--rivals', type=lambda text: text.split(','), default=list(RIVALS), metavar='A,B',
+                        help=f'distance volumes to measure against; default {",".join(RIVALS)}. Fitted bricks take most of the time')
     parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
     parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
     parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
     options = parser.parse_args(words)
-    if options.markdown and options.only:
-        parser.error('--markdown is for the sixty; leave out --only')
+    unknown = [rival for rival in options.rivals if rival not in RIVALS]
+    if unknown:
+        parser.error(f"--rivals has '{unknown[0]}'; known: {', '.join(RIVALS)}")
+    if options.markdown and (options.only or options.rivals != list(RIVALS)):
+        parser.error('--markdown is for the sixty and all rivals; leave out --only and --rivals')
     return options
 
 
@@ -185,17 +208,17 @@ def main():
     options = arguments(words)
     paths = unpack(folder, thirteen)
     rows = []
-    writer = csv.DictWriter(sys.stdout, COLUMNS, extrasaction='ignore')
+    writer = csv.DictWriter(sys.stdout, columns_of(options.rivals), extrasaction='ignore')
     writer.writeheader()
     for name in chosen(paths, options):
         rows.append(measure(name, paths[name], bin, folder, options))
         writer.writerow(rows[-1])
         sys.stdout.flush()
-    lines = summary(rows)
+    lines = summary(rows, options.rivals)
     print(*lines, sep='\n')
     if options.markdown:
         with open(os.path.join(HERE, '../bake/measure/accuracy_corpus.md'), 'w', encoding='utf-8') as file:
-            file.write(page(rows, lines, ' '.join(['scripts/accuracy.sh --corpus', *words])))
+            file.write(page(rows, lines, options.rivals, ' '.join(['scripts/accuracy.sh --corpus', *words])))
 
 
 main()
