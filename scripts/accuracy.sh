@@ -9,6 +9,7 @@
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
 #   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each;
 #                                        --help has --only, --steps, --markdown and others
+#   scripts/accuracy.sh --lot            ten meshes by lot (lot.txt), with patches in the place of ours; --draw draws them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -31,6 +32,16 @@ done
 models=/usr/share/assimp/models
 meshes+=("$models/Collada/duck.dae" "$models/BLEND/HUMAN.blend")
 
+if [ "${1:-}" = --draw ]; then
+    python3 scripts/lot.py "$folder/lot" --draw "$bin"
+    exit 0
+fi
+if [ "${1:-}" = --lot ]; then
+    python3 scripts/lot.py "$folder/lot" >"$folder/lot.paths"
+    mapfile -t meshes <"$folder/lot.paths"
+    "$bin/relief-accuracy" "${meshes[@]}" --methods volume,unreal,bricks,fitted,patches "${@:2}" | python3 scripts/accuracy_table.py patches
+    exit 0
+fi
 if [ "${1:-}" = --corpus ]; then
     shift
     PYTHONDONTWRITEBYTECODE=1 python3 scripts/corpus.py "$bin" "$folder" "${meshes[@]}" -- "$@"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py <REPORT.json
+"""What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
 
 A row for each mesh and budget; then, for each budget, ratios, geometric means over meshes, and the verdict on the claims of
 bake/measure/README.md.
@@ -29,14 +29,14 @@ def geometric_mean(values):
     return math.exp(math.fsum(map(math.log, values)) / len(values)) if values else None
 
 
-def contests(report):
-    """For each mesh and budget the results by method, with the ratios over the volume."""
+def contests(report, ours="ours"):
+    """For each mesh and budget the results by method, of which one is ours, with the ratios over the volumes."""
     samples = report["meshes"][0]["samples"]
     found = {}
     for result in report["results"]:
         key = (result["mesh"], result["budget"])
         found.setdefault(key, {"mesh": result["mesh"], "budget": result["budget"], "closed": result["closed"]})[
-            result["method"]] = result
+            "ours" if result["method"] == ours else result["method"]] = result
     def wrong(contest, method):
         return contest[method]["accuracy"]["near"]["wrong_percent"]
 
@@ -158,7 +158,7 @@ def markdown(rows):
 
 def main():
     report = json.load(sys.stdin)
-    found = contests(report)
+    found = contests(report, *sys.argv[1:])
     print(markdown(sides(found)), "<br>\n".join(legend(report["meshes"][0])) + "\n", markdown(errors(found)),
           f"```text\n{summary_text(found)}```", sep="\n")
 

@@ -10,6 +10,7 @@ import unittest
 SOURCE = sys.argv.pop(1)
 sys.path.insert(0, os.path.join(SOURCE, "scripts"))
 import accuracy_table  # noqa: E402
+import lot  # noqa: E402
 import bench  # noqa: E402
 
 
@@ -96,6 +97,21 @@ def contest(mesh, closed, budget, ours, took=1.0):
             "ours": {"build_seconds": took}}
 
 
+class Lot(unittest.TestCase):
+    def test_the_order_is_that_of_the_names_hashes(self):
+        names = {"cura": ["a/x.stl", "a/y.OBJ", "readme.txt"], "geomview": ["a/x.stl"]}
+        with tempfile.TemporaryDirectory() as folder:
+            for package, files in names.items():
+                os.makedirs(f"{folder}/{package}/a")
+                for name in files:
+                    with open(f"{folder}/{package}/{name}", "w", encoding="utf-8"):
+                        pass
+            os.symlink("x.stl", f"{folder}/cura/a/z.stl")
+            found = lot.candidates(folder)
+        # Of "relief:cura:a/x.stl" and so on, by sha256sum.
+        self.assertEqual(found, [("cura", "a/y.OBJ"), ("cura", "a/x.stl"), ("geomview", "a/x.stl")])
+
+
 class Accuracy(unittest.TestCase):
     def test_the_mean_of_reciprocals_is_one(self):
         # The arithmetic mean would be 1.75.
@@ -109,6 +125,15 @@ class Accuracy(unittest.TestCase):
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0005, 200000), 0.5)
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0005, 0.0, 200000), 2.0)
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0, 200000), 1.0)
+
+    def test_another_method_may_take_the_part_of_ours(self):
+        def result(method, wrong):
+            return {"mesh": "a", "budget": 1000000, "closed": True, "method": method,
+                    "accuracy": {"near": {"wrong_percent": wrong}}}
+        report = {"meshes": [{"samples": 1000}], "results": [result("patches", 0.5), result("bricks", 2.0)]}
+        found, = accuracy_table.contests(report, "patches")
+        self.assertEqual(found["ours/bricks"], 0.25)
+        self.assertNotIn("ours/bricks", accuracy_table.contests(report)[0])
 
     def test_targets_that_are_met(self):
         found = [contest("a", True, 250000, 0.1, 9.0), contest("b", True, 250000, 0.225),

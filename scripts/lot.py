@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Ten meshes by lot, which nobody has tuned anything for: scripts/accuracy.sh --lot and --draw run this.
+
+lot.py FOLDER             unpacks the meshes of lot.txt into FOLDER, and prints their paths
+lot.py FOLDER --draw BIN  draws them, and writes lot.txt; BIN has relief-accuracy
+
+Packages come by `apt-get download`: nothing is installed, and nothing in them is run.
+"""
+import collections
+import glob
+import gzip
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+LIST = os.path.join(HERE, 'lot.txt')
+# Debian's, with files of formats that the import reads; none of them was used for anything in Relief before the lot.
+PACKAGES = ('cura', 'geomview', 'libirrlicht-doc', 'libsimbody-dev', 'morse-simulator-data', 'pink-pony-data', 'prusa-slicer',
+            'trigger-rally-data')
+FORMATS = ('.obj', '.stl', '.ply', '.off', '.gltf', '.glb', '.fbx', '.dae', '.3ds', '.blend', '.x', '.lwo', '.b3d', '.lxo', '.ms3d',
+           '.smd')
+SEED = 'relief'
+MESHES, OF_A_PACKAGE = 10, 2
+TRIANGLES = range(500, 500_001)
+NOTE = f"""# The meshes of scripts/accuracy.sh --lot: a package of Debian 12, and a path in it.
+#
+# Drawn by `scripts/accuracy.sh --draw`, before anything was measured on them. All files of {len(PACKAGES)} packages in formats that
+# the import reads are put into the order of the SHA-256 of "{SEED}:package:path". From the first on a file is taken that has
+# {TRIANGLES[0]} to {TRIANGLES[-1]} triangles, whose name no other one has, and of whose package there are not {OF_A_PACKAGE} yet.
+"""
+
+
+def unpack(packages, folder):
+    """Each package in a folder of its name, with what its archives hold; compressed files become plain ones."""
+    os.makedirs(folder, exist_ok=True)
+    for package in packages:
+        root = os.path.join(folder, package)
+        if not os.path.isdir(root):
+            subprocess.run(['apt-get', '-qq', '-o', 'APT::Sandbox::User=root', 'download', package], cwd=folder, stdout=sys.stderr, check=True)
+            deb, = glob.glob(f'{folder}/{package}_*.deb')
+            subprocess.run(['dpkg-deb', '-x', deb, root], check=True)
+            os.remove(deb)
+        for path in files_of(root):
+            if path.endswith('.zip'):
+                with zipfile.ZipFile(path) as archive:
+                    archive.extractall(path + '.d')
+        for path in files_of(root):
+            if path.endswith('.gz') and is_mesh(path[:-3]):
+                with gzip.open(path) as packed, open(path[:-3], 'wb') as plain:
+                    shutil.copyfileobj(packed, plain)
+
+
+def files_of(root):
+    """Plain files alone: a link could lead anywhere."""
+    return [path for path in sorted(glob.glob(f'{glob.escape(root)}/**', recursive=True))
+            if os.path.isfile(path) and not os.path.islink(path)]
+
+
+def is_mesh(path):
+    return os.path.splitext(path)[1].lower() in FORMATS
+
+
+def candidates(folder):
+    """Pairs of a package and a path in it, by the lot."""
+    found = [(package, os.path.relpath(path, f'{folder}/{package}')) for package in PACKAGES
+             for path in files_of(f'{folder}/{package}') if is_mesh(path)]
+    return sorted(found, key=lambda one: hashlib.sha256(':'.join([SEED, *one]).encode()).hexdigest())
+
+
+def triangles_of(path, bin):
+    """As the accuracy is measured, but of a few points and one cheap method, whose figures nobody sees; 0 of what is refused."""
+    done = subprocess.run([f'{bin}/relief-accuracy', path, '--budget', '0.25MB', '--methods', 'paper', '--samples', '100'],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=1800, check=False)
+    if done.returncode:
+        print(f'  refused: {done.stderr.strip()}', file=sys.stderr)
+        return 0
+    return json.loads(done.stdout)['meshes'][0]['triangles']
+
+
+def draw(folder, bin):
+    unpack(PACKAGES, folder)
+    taken, of_package, passed = [], collections.Counter(), collections.Counter()
+    drawn = candidates(folder)
+    for package, name in drawn:
+        if len(taken) == MESHES:
+            break
+        if of_package[package] == OF_A_PACKAGE:
+            continue
+        if any(os.path.basename(name) == os.path.basename(other) for _, other, _ in taken):
+            continue
+        triangles = triangles_of(f'{folder}/{package}/{name}', bin)
+        print(f'{package}: {name}: {triangles} triangles', file=sys.stderr)
+        if triangles in TRIANGLES:
+            taken.append((package, name, triangles))
+            of_package[package] += 1
+        else:
+            passed['refused' if triangles == 0 else 'too few or too many triangles'] += 1
+    with open(LIST, 'w', encoding='utf-8') as file:
+        file.write(NOTE + f'# Of {len(drawn)} files. Passed over: ' +
+                   (', '.join(f'{count} {why}' for why, count in sorted(passed.items())) or 'none') + '.\n')
+        file.writelines(f'{package}: {name}\n' for package, name, _ in taken)
+
+
+def main():
+    folder = sys.argv[1]
+    if sys.argv[2:3] == ['--draw']:
+        draw(folder, sys.argv[3])
+        return
+    with open(LIST, encoding='utf-8') as file:
+        listed = [line.rstrip('\n').split(': ', 1) for line in file if line[0] != '#']
+    unpack(sorted({package for package, _ in listed}), folder)
+    for package, name in listed:
+        path = f'{folder}/{package}/{name}'
+        if not os.path.isfile(path):
+            sys.exit(f'accuracy.sh: {package} no longer has {name}; is this Debian 12? Else draw anew with --draw')
+        print(path)
+
+
+if __name__ == '__main__':
+    main()
