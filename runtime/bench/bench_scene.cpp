@@ -60,7 +60,8 @@ void addFlow(AirSettings& air, const BenchScene& scene) {
     flow.box_max = scene.collider.bounds.max;
     for (std::uint32_t i = 0; i < kNodes * kNodes * kNodes; ++i) {
         const auto x = static_cast<float>(i % kNodes) / kNodes - 0.5F;
-        const auto z = static_cast<float>(i / (kNodes * kNodes)) / kNodes - 0.5F;
+        const std::uint32_t layer = i / (kNodes * kNodes);
+        const auto z = static_cast<float>(layer) / kNodes - 0.5F;
         flow.nodes.push_back(0.25F * scene.side * glm::vec3(-z, 0.0F, x));
     }
     air.flow = std::make_shared<const FlowField>(std::move(flow));

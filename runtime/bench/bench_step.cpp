@@ -97,6 +97,27 @@ Result<std::vector<Rival>> rivalsFor(const Bench& bench, const BenchScene& scene
     return rivals;
 }
 
+Work workOf(Rival& rival, const BenchScene& scene, const std::function<void()>& warm) {
+    return {rival.name,
+            [&rival]() -> Result<void> {
+                rival.step.step();
+                return {};
+            },
+            "collider",
+            [&rival, &scene, warm] {
+                warm();
+                rival.step.begin(scene);
+            }};
+}
+
+Json bytesOf(const std::vector<Rival>& rivals) {
+    Json bytes = Json::object();
+    for (const Rival& rival : rivals) {
+        bytes[rival.name] = rival.step.bytes();
+    }
+    return bytes;
+}
+
 /// The variant that is called for, beside those that it is compared with.
 Result<std::vector<BenchVariant>> variantsFor(const std::string& only, const std::vector<Rival>& rivals) {
     std::vector<BenchVariant> variants = benchVariants();
@@ -157,25 +178,14 @@ Result<Json> benchStep(const Bench& bench) {
              },
              [&system] { system.particles->step(2.0F * kBenchLifetime); }});  // no particle survives it
     }
-    Json bytes = Json::object();
     for (Rival& rival : rivals) {
-        bytes[rival.name] = rival.step.bytes();
-        works.push_back({rival.name,
-                         [&rival]() -> Result<void> {
-                             rival.step.step();
-                             return {};
-                         },
-                         "collider",
-                         [&] {
-                             warm();
-                             rival.step.begin(scene);
-                         }});
+        works.push_back(workOf(rival, scene, warm));
     }
     const int rounds = bench.software ? 5 : count > (1U << 20) ? 3 : 11;
     return Json{{{"particles", count},
                  {"maps", scene.collider.maps.size()},
                  {"steps", steps},
-                 {"brick_bytes", std::move(bytes)},
+                 {"brick_bytes", bytesOf(rivals)},
                  {"rows", RELIEF_TRY(timeInTurns(bench, works, {.rounds = rounds, .calls = steps}))}}};
 }
 
