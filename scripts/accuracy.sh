@@ -39,7 +39,7 @@ fi
 if [ "${1:-}" = --lot ]; then
     python3 scripts/lot.py "$folder/lot" >"$folder/lot.paths"
     mapfile -t meshes <"$folder/lot.paths"
-    "$bin/relief-accuracy" "${meshes[@]}" --methods volume,unreal,bricks,fitted,patches "${@:2}" | python3 scripts/accuracy_table.py patches
+    "$bin/relief-accuracy" "${meshes[@]}" --methods volume,unreal,bricks,fitted,ours "${@:2}" | python3 scripts/accuracy_table.py
     exit 0
 fi
 if [ "${1:-}" = --corpus ]; then
