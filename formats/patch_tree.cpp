@@ -128,6 +128,13 @@ const std::array<float, 256>& stepsOfScales() {
     return kSteps;
 }
 
+PatchVote votePair(PatchTexels texels, const PatchRecord& pair, const glm::vec3& in_cell) {
+    const PatchVote a = votePatch(texels, patchTexel(texels, pair.first()), in_cell);
+    const PatchVote b = votePatch(texels, patchTexel(texels, pair.first() + 1), in_cell);
+    const bool both = (pair.low & 16U) != 0;
+    return (both ? b.distance > a.distance : b.distance < a.distance) ? b : a;
+}
+
 template <class Vec, class Real = typename Vec::value_type>
 Vec acrossOf(const PatchFrame& frame, const Vec& in_cell) {
     Real a = in_cell[frame.first];
@@ -240,6 +247,10 @@ PatchRecord PatchRecord::split(std::uint32_t children, std::uint32_t inside, std
     return {2U | children << 2U | inside << 10U | s << 18U | t << 25U, first | code << 24U};
 }
 
+PatchRecord PatchRecord::pair(bool both, std::uint32_t first) {
+    return {15U | (both ? 16U : 0U), first};
+}
+
 PatchRecord PatchRecord::patch(const PatchFrame& frame, bool outside_below, const PatchHeights& heights,
                                std::uint32_t first) {
     const std::uint32_t count = heights.side * heights.side;
@@ -328,7 +339,7 @@ std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
     }
     PatchVote vote;
     if (record.kind() == PatchRecord::Kind::kPatch) {
-        vote = votePatch(texels, record, in_cell);
+        vote = record.isPair() ? votePair(texels, record, in_cell) : votePatch(texels, record, in_cell);
         vote.distance *= cell;
     } else if (record.kind() == PatchRecord::Kind::kSplit) {
         vote.normal = octahedron(record.low >> 18U & 127U, record.low >> 25U, kCoarseHalfRange);
@@ -357,7 +368,7 @@ Result<void> validatePatches(PatchTexels texels) {
     // Level by level: [at, end) are the records of one level, and the next begins at `end`.
     std::uint64_t at = 1;
     std::uint64_t end = 1 + root_count;
-    std::vector<std::uint32_t> patches;
+    std::vector<std::uint32_t> leaves;
     for (std::uint32_t level = 0; at < end; ++level) {
         std::uint64_t next = end;
         for (; at < end; ++at) {
@@ -370,11 +381,7 @@ Result<void> validatePatches(PatchTexels texels) {
                 }
                 next += children;
             } else if (record.kind() == PatchRecord::Kind::kPatch) {
-                const PatchFrame frame = frameOf(record);
-                if (sideOf(record) == 0 || frame.diagonal > 2 || frame.first > 2) {
-                    return invalid(index, "is a patch of no known kind");
-                }
-                patches.push_back(index);
+                leaves.push_back(index);
             } else if ((record.low >> 16U & 0xffU) == 0xffU || record.low >> 24U == 0xffU) {
                 return invalid(index, "has the index 255 of a normal, which none has");
             } else if (!std::isfinite(floatOf(record.high))) {
@@ -383,13 +390,33 @@ Result<void> validatePatches(PatchTexels texels) {
         }
         end = next;
     }
-    for (const std::uint32_t index : patches) {
+    const auto behind = [&](const PatchRecord& record, std::uint32_t used) {
+        return record.first() >= end && std::uint64_t{record.first()} + used <= count;
+    };
+    const auto check = [&](std::uint32_t index) -> Result<void> {
         const PatchRecord record = patchTexel(texels, index);
+        const PatchFrame frame = frameOf(record);
         const std::uint32_t side = sideOf(record);
-        if (side > 2 &&
-            (record.first() < end || std::uint64_t{record.first()} + heightTexels(side) > count)) {
+        if (record.kind() != PatchRecord::Kind::kPatch || side == 0 || frame.diagonal > 2 ||
+            frame.first > 2) {
+            return invalid(index, "is a patch of no known kind");
+        }
+        if (side > 2 && !behind(record, heightTexels(side))) {
             return invalid(index, "is a patch whose heights lie elsewhere");
         }
+        return {};
+    };
+    for (const std::uint32_t index : leaves) {
+        const PatchRecord record = patchTexel(texels, index);
+        if (!record.isPair()) {
+            RELIEF_TRY(check(index));
+            continue;
+        }
+        if (!behind(record, 2)) {
+            return invalid(index, "is a pair whose patches lie elsewhere");
+        }
+        RELIEF_TRY(check(record.first()));
+        RELIEF_TRY(check(record.first() + 1));
     }
     return {};
 }

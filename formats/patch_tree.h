@@ -7,7 +7,7 @@
 //
 //     texel 0           n.x, n.y, n.z, and the number of levels below the roots
 //     the next ones     the records of the roots, x fastest; then those of split cells' children, level by level
-//     the others        heights
+//     the others        heights, and the records of pairs
 //
 //     record    low                                                        high
 //     outside   0 in bits 0-1; 16-31: packed normal of the nearest plane   that plane's distance from the cell's middle, in
@@ -20,6 +20,8 @@
 //               face, 2 of the cube; 7-8: the first axis; 9-10: first and  24-31: scale
 //               second axis mirrored; 11-22: base + 2048; 23-30: last
 //               height
+//     pair      3 in bits 0-1, 3 in 2-3; 4: inside is what is in   0-23: texel of the record of a patch, which that of the
+//               both of two patches, else what is in either        other one follows
 #pragma once
 
 #include <array>
@@ -98,6 +100,10 @@ struct PatchRecord {
     /// \param offset  the distance of the cell's middle from the coarse plane, cells, positive outside.
     [[nodiscard]] static PatchRecord split(std::uint32_t children, std::uint32_t inside, std::uint32_t first,
                                            const glm::vec3& normal, float offset);
+    /// \param both  inside is what is in both of two patches, else what is in either.
+    /// \param first  texel of the first one's record, which the second one's follows.
+    [[nodiscard]] static PatchRecord pair(bool both, std::uint32_t first);
+    [[nodiscard]] bool isPair() const { return (low & 15U) == 15U; }
     /// \param first  texel of the heights; of no use for 2².
     [[nodiscard]] static PatchRecord patch(const PatchFrame& frame, bool outside_below,
                                            const PatchHeights& heights, std::uint32_t first);
@@ -137,8 +143,8 @@ struct PatchVote {
 /// \return nullopt beyond the roots.
 [[nodiscard]] std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p);
 
-/// That every record leads to texels of the map: children to the next free ones, level by level, and patches to those
-/// behind the records. Fails with kInvalidInput.
+/// That every record leads to texels of the map: children to the next free ones, level by level, and patches and pairs to
+/// those behind the records. Fails with kInvalidInput.
 /// \param texels  any bytes.
 [[nodiscard]] Result<void> validatePatches(PatchTexels texels);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace relief {
 namespace {
@@ -118,11 +119,126 @@ std::array<double, kSide> rowOf(const std::array<double, kSide * kSide>& heights
     return across;
 }
 
+/// Calls visit(line, height) with the height on each line of a grid, in order.
+template <std::size_t kSide, class Visit>
+void forEachHeight(const LineGrid& grid, const std::array<double, kSide * kSide>& heights,
+                   const Visit& visit) {
+    const std::vector<Between> between = betweenOf<kSide>(grid);
+    for (std::size_t j = 0; j < grid.across(); ++j) {
+        const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
+        for (std::size_t i = 0; i < grid.across(); ++i) {
+            const double* const first = &row[between[i].first];
+            visit(j * grid.across() + i, first[0] + between[i].share * (first[1] - first[0]));
+        }
+    }
+}
+
 /// Sums over the lines of a row between two heights, weighted by their shares.
 struct RowSums {
     double square[3] = {};  // both the first's share, one each, both the second's
     double right[2] = {};
 };
+
+/// One round of least squares.
+/// \param heights  of the round before, by which errors are weighted; there is none before round 0.
+template <std::size_t kSide>
+void fitRound(const LineGrid& grid, std::span<const HeightTarget> targets, int round,
+              std::array<double, kSide * kSide>& heights) {
+    static const HeightSystem<kSide> kEmpty;
+    HeightSystem<kSide> system = kEmpty;
+    const std::size_t across = grid.across();
+    const std::vector<Between> between = betweenOf<kSide>(grid);
+    for (std::size_t j = 0; j < across; ++j) {
+        const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
+        std::array<RowSums, kSide - 1> sums;
+        for (std::size_t i = 0; i < across; ++i) {
+            const HeightTarget& target = targets[j * across + i];
+            const std::size_t first = between[i].first;
+            const double s = between[i].share;
+            double weight = target.above * target.below;
+            if (round > 0) {
+                const double off = row[first] + s * (row[first + 1] - row[first]) - target.height;
+                weight =
+                    (off > 0.0 ? target.above : target.below) * kSmallError / (kSmallError + std::abs(off));
+            }
+            RowSums& sum = sums[first];
+            const double second = weight * s;
+            sum.square[0] += (weight - second) * (1.0 - s);
+            sum.square[1] += second * (1.0 - s);
+            sum.square[2] += second * s;
+            sum.right[0] += (weight - second) * target.height;
+            sum.right[1] += second * target.height;
+        }
+        const double t = between[j].share;
+        for (std::size_t i = 0; i + 1 < kSide; ++i) {
+            const auto& [square, right] = sums[i];
+            const std::size_t node = between[j].first * kSide + i;
+            const auto addPair = [&](std::size_t a, std::size_t b,
+                                     double share) {  // of nodes in two rows
+                system.add(a, b, share * square[0]);
+                system.add(a, b + 1, share * square[1]);
+                system.add(a + 1, b, share * square[1]);
+                system.add(a + 1, b + 1, share * square[2]);
+            };
+            const auto addOne = [&](std::size_t a, double share, double share_right) {
+                system.add(a, a, share * square[0]);
+                system.add(a + 1, a, share * square[1]);
+                system.add(a + 1, a + 1, share * square[2]);
+                system.addRight(a, share_right * right[0]);
+                system.addRight(a + 1, share_right * right[1]);
+            };
+            addOne(node, (1.0 - t) * (1.0 - t), 1.0 - t);
+            addOne(node + kSide, t * t, t);
+            addPair(node + kSide, node, t * (1.0 - t));
+        }
+    }
+    system.solve(heights);
+}
+
+template <std::size_t kSide>
+PatchHeights coded(std::array<double, kSide * kSide>& heights) {
+    const PatchHeights codes = PatchHeights::of(heights, kSide);
+    codes.decode(heights);
+    return codes;
+}
+
+/// The length up to `w` that should lie between a pair's surfaces.
+double betweenTo(const CellColumn& column, double w, bool walls) {
+    const double inside = column.insideTo(w);
+    return walls ? inside : w - column.enters - inside;
+}
+
+/// The best part of a line to lie between a pair's surfaces.
+struct Part {
+    double begin = 0.0;
+    double end = 0.0;
+    double gain = 0.0;  // over none; 0: none is best
+};
+
+Part bestPart(const CellColumn& column, const MistakeCosts& costs, bool walls) {
+    Part best;
+    double gain = 0.0;
+    double begin = column.enters;
+    double from = column.enters;
+    bool belongs = column.inside == walls;
+    const auto add = [&](double to) {
+        gain += belongs ? costs.false_outside * (to - from) : -costs.false_inside * (to - from);
+        from = to;
+        belongs = !belongs;
+        if (gain > best.gain) {
+            best = {begin, to, gain};
+        }
+        if (gain <= 0.0) {
+            gain = 0.0;
+            begin = to;
+        }
+    };
+    for (const double turn : column.turns) {
+        add(turn);
+    }
+    add(column.leaves);
+    return best;
+}
 
 }  // namespace
 
@@ -148,25 +264,28 @@ PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
     volume_ = length * columns.grid().volumePerLength();
     outside_below_ = outside_below.value_or(lower < 0.0);
     targets_.resize(lines.size());
+    by_error_.resize(lines.size(), 1);
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!lines[i].misses()) {
-            targets_[i] = targetOf(columns[i]);
+            bool by_error = true;
+            targets_[i] = targetOf(columns[i], by_error);
+            by_error_[i] = by_error ? 1 : 0;
         }
     }
 }
 
-PatchFitter::Target PatchFitter::targetOf(const CellColumn& column) const {
+HeightTarget PatchFitter::targetOf(const CellColumn& column, bool& by_error) const {
     const double above = outside_below_ ? costs_.false_outside : costs_.false_inside;
     const double below = outside_below_ ? costs_.false_inside : costs_.false_outside;
-    const Target enters{.height = column.enters, .above = above};
-    const Target leaves{.height = column.leaves, .below = below};
+    const HeightTarget enters{.height = column.enters, .above = above};
+    const HeightTarget leaves{.height = column.leaves, .below = below};
     if (column.turns.empty()) {
         return column.inside == outside_below_ ? enters : leaves;
     }
     if (column.turns.size() == 1 && column.inside != outside_below_) {
         return {column.turns[0], above, below};
     }
-    Target best = enters;
+    HeightTarget best = enters;
     double least = column.wrongAt(column.enters, outside_below_, costs_);
     if (const double wrong = column.wrongAt(column.leaves, outside_below_, costs_); wrong < least) {
         best = leaves;
@@ -178,95 +297,132 @@ PatchFitter::Target PatchFitter::targetOf(const CellColumn& column) const {
             least = wrong;
         }
     }
-    best.by_error = false;
+    by_error = false;
     return best;
 }
 
 template <std::size_t kSide>
 double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) const {
     const LineGrid& grid = columns_.grid();
-    const std::vector<Between> between = betweenOf<kSide>(grid);
     double wrong = 0.0;
-    for (std::size_t j = 0; j < grid.across(); ++j) {
-        const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
-        for (std::size_t i = 0; i < grid.across(); ++i) {
-            const std::size_t index = j * grid.across() + i;
-            const double* const first = &row[between[i].first];
-            const double height = first[0] + between[i].share * (first[1] - first[0]);
-            if (targets_[index].by_error) {
-                const LineGrid::Line& line = grid.lines()[index];
-                const double off = std::clamp(height, line.enters, line.leaves) - targets_[index].height;
-                wrong += (off > 0.0 ? targets_[index].above : targets_[index].below) * std::abs(off);
-            } else {
-                wrong += columns_[index].wrongAt(height, outside_below_, costs_);
-            }
+    forEachHeight<kSide>(grid, heights, [&](std::size_t i, double height) {
+        if (by_error_[i] != 0) {
+            const LineGrid::Line& line = grid.lines()[i];
+            const double off = std::clamp(height, line.enters, line.leaves) - targets_[i].height;
+            wrong += (off > 0.0 ? targets_[i].above : targets_[i].below) * std::abs(off);
+        } else {
+            wrong += columns_[i].wrongAt(height, outside_below_, costs_);
         }
-    }
+    });
     return wrong * grid.volumePerLength();
 }
 
 template <std::size_t kSide>
 FittedPatch PatchFitter::fitOf(int rounds) const {
-    static const HeightSystem<kSide> kEmpty;
-    const std::size_t across = columns_.grid().across();
-    const std::vector<Between> between = betweenOf<kSide>(columns_.grid());
     std::array<double, kSide * kSide> heights{};
     for (int round = 0; round < rounds; ++round) {
-        HeightSystem<kSide> system = kEmpty;
-        for (std::size_t j = 0; j < across; ++j) {
-            const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
-            std::array<RowSums, kSide - 1> sums;
-            for (std::size_t i = 0; i < across; ++i) {
-                const Target& target = targets_[j * across + i];
-                const std::size_t first = between[i].first;
-                const double s = between[i].share;
-                double weight = target.above * target.below;
-                if (round > 0) {
-                    const double off = row[first] + s * (row[first + 1] - row[first]) - target.height;
-                    weight = (off > 0.0 ? target.above : target.below) * kSmallError /
-                             (kSmallError + std::abs(off));
-                }
-                RowSums& sum = sums[first];
-                const double second = weight * s;
-                sum.square[0] += (weight - second) * (1.0 - s);
-                sum.square[1] += second * (1.0 - s);
-                sum.square[2] += second * s;
-                sum.right[0] += (weight - second) * target.height;
-                sum.right[1] += second * target.height;
-            }
-            const double t = between[j].share;
-            for (std::size_t i = 0; i + 1 < kSide; ++i) {
-                const auto& [square, right] = sums[i];
-                const std::size_t node = between[j].first * kSide + i;
-                const auto addPair = [&](std::size_t a, std::size_t b,
-                                         double share) {  // of nodes in two rows
-                    system.add(a, b, share * square[0]);
-                    system.add(a, b + 1, share * square[1]);
-                    system.add(a + 1, b, share * square[1]);
-                    system.add(a + 1, b + 1, share * square[2]);
-                };
-                const auto addOne = [&](std::size_t a, double share, double share_right) {
-                    system.add(a, a, share * square[0]);
-                    system.add(a + 1, a, share * square[1]);
-                    system.add(a + 1, a + 1, share * square[2]);
-                    system.addRight(a, share_right * right[0]);
-                    system.addRight(a + 1, share_right * right[1]);
-                };
-                addOne(node, (1.0 - t) * (1.0 - t), 1.0 - t);
-                addOne(node + kSide, t * t, t);
-                addPair(node + kSide, node, t * (1.0 - t));
-            }
-        }
-        system.solve(heights);
+        fitRound<kSide>(columns_.grid(), targets_, round, heights);
     }
     FittedPatch fitted;
-    fitted.heights = PatchHeights::of(heights, kSide);
-    fitted.heights.decode(heights);
+    fitted.heights = coded<kSide>(heights);
     fitted.wrong = wrongOf<kSide>(heights);
     return fitted;
 }
 
 FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
+    return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
+}
+
+PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls)
+    : columns_(columns) {
+    const std::vector<LineGrid::Line>& lines = columns.grid().lines();
+    const auto leastOf = [&](bool of_walls) {
+        const MistakeCosts between = of_walls ? costs : MistakeCosts{costs.false_outside, costs.false_inside};
+        double least = 0.0;
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            if (!lines[i].misses()) {
+                const CellColumn column = columns[i];
+                least += between.false_outside * betweenTo(column, column.leaves, of_walls) -
+                         bestPart(column, between, of_walls).gain;
+            }
+        }
+        return least * columns.grid().volumePerLength();
+    };
+    const double of_walls = leastOf(true);
+    const double of_gaps = leastOf(false);
+    walls_ = walls.value_or(of_walls <= of_gaps);
+    least_ = walls_ ? of_walls : of_gaps;
+    costs_ = walls_ ? costs : MistakeCosts{costs.false_outside, costs.false_inside};
+    targets_[0].resize(lines.size());
+    targets_[1].resize(lines.size());
+    for (std::uint32_t i = 0; i < lines.size(); ++i) {
+        if (lines[i].misses()) {
+            continue;
+        }
+        const CellColumn column = columns[i];
+        const Part part = bestPart(column, costs_, walls_);
+        if (part.gain > 0.0) {
+            targets_[0][i] = {part.begin, costs_.false_outside,
+                              part.begin > column.enters ? costs_.false_inside : 0.0};
+            targets_[1][i] = {part.end, part.end < column.leaves ? costs_.false_inside : 0.0,
+                              costs_.false_outside};
+        } else {
+            without_.push_back(i);
+        }
+    }
+}
+
+template <std::size_t kSide>
+FittedPair PairFitter::fitOf(int rounds) const {
+    const LineGrid& grid = columns_.grid();
+    std::array<std::vector<HeightTarget>, 2> targets = targets_;
+    std::array<std::array<double, kSide * kSide>, 2> heights{};
+    std::array<std::vector<double>, 2> on_lines;
+    const auto lay = [&] {
+        for (std::size_t k = 0; k < 2; ++k) {
+            on_lines[k].resize(grid.lines().size());
+            forEachHeight<kSide>(grid, heights[k],
+                                 [&](std::size_t i, double height) { on_lines[k][i] = height; });
+        }
+    };
+    for (int round = 0; round < rounds; ++round) {
+        if (round > 0) {
+            // Both surfaces close what lies between them where nothing should.
+            lay();
+            for (const std::uint32_t i : without_) {
+                const LineGrid::Line& line = grid.lines()[i];
+                const double low = std::clamp(on_lines[0][i], line.enters, line.leaves);
+                const double high = std::clamp(on_lines[1][i], line.enters, line.leaves);
+                const double cost = high > low ? costs_.false_inside : 0.0;
+                targets[0][i] = {0.5 * (low + high), 0.0, cost};
+                targets[1][i] = {0.5 * (low + high), cost, 0.0};
+            }
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            fitRound<kSide>(grid, targets[k], round, heights[k]);
+        }
+    }
+    FittedPair fitted;
+    for (std::size_t k = 0; k < 2; ++k) {
+        fitted.heights[k] = coded<kSide>(heights[k]);
+    }
+    lay();
+    for (std::size_t i = 0; i < grid.lines().size(); ++i) {
+        if (grid.lines()[i].misses()) {
+            continue;
+        }
+        const CellColumn column = columns_[i];
+        const double low = std::clamp(on_lines[0][i], column.enters, column.leaves);
+        const double high = std::max(low, std::clamp(on_lines[1][i], column.enters, column.leaves));
+        const double between = betweenTo(column, high, walls_) - betweenTo(column, low, walls_);
+        fitted.wrong += costs_.false_outside * (betweenTo(column, column.leaves, walls_) - between) +
+                        costs_.false_inside * (high - low - between);
+    }
+    fitted.wrong *= grid.volumePerLength();
+    return fitted;
+}
+
+FittedPair PairFitter::fit(std::uint32_t side, int rounds) const {
     return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
 }
 

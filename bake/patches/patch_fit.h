@@ -12,9 +12,49 @@
 
 namespace relief {
 
+/// The best height on a line.
+struct HeightTarget {
+    double height = 0.0;
+    /// Costs of errors above and below it: none where a line has no surface, and any height at least, or at most, as high
+    /// will do. None for lines that miss the cube.
+    double above = 0.0;
+    double below = 0.0;
+};
+
 struct FittedPatch {
     PatchHeights heights;
     double wrong = 0.0;  ///< volume on the wrong side, in cells, times its costs
+};
+
+/// A surface below, and one above.
+struct FittedPair {
+    std::array<PatchHeights, 2> heights;
+    double wrong = 0.0;  ///< as of a patch
+};
+
+/// Fits walls, or gaps, to columns: inside is what lies between two surfaces, or what does not.
+class PairFitter {
+  public:
+    /// \param columns  borrowed.
+    /// \param walls  by the columns where it is not given.
+    PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls = {});
+
+    [[nodiscard]] bool walls() const { return walls_; }
+    /// No pair has less volume on the wrong side, in cells, times its costs.
+    [[nodiscard]] double least() const { return least_; }
+    /// As PatchFitter::fit.
+    [[nodiscard]] FittedPair fit(std::uint32_t side, int rounds) const;
+
+  private:
+    template <std::size_t kSide>
+    [[nodiscard]] FittedPair fitOf(int rounds) const;
+
+    const CellColumns& columns_;
+    MistakeCosts costs_;  // of what lies between
+    bool walls_ = true;
+    double least_ = 0.0;
+    std::array<std::vector<HeightTarget>, 2> targets_;
+    std::vector<std::uint32_t> without_;  // lines on which nothing lies between
 };
 
 /// Fits patches of several sizes to the same columns.
@@ -34,17 +74,8 @@ class PatchFitter {
     [[nodiscard]] double volume() const { return volume_; }
 
   private:
-    /// The best height of a line.
-    struct Target {
-        double height = 0.0;
-        /// Costs of errors above and below it: none where a line has no surface, and any height at least, or at most, as high
-        /// will do. None for lines that miss the cube.
-        double above = 0.0;
-        double below = 0.0;
-        /// The length on the wrong side is the error, as far as that is in the cube.
-        bool by_error = true;
-    };
-    [[nodiscard]] Target targetOf(const CellColumn& column) const;
+    /// \param by_error  the length on the wrong side is the error, as far as that is in the cube.
+    [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
     template <std::size_t kSide>
     [[nodiscard]] FittedPatch fitOf(int rounds) const;
     /// The volume on the wrong side among some heights.
@@ -54,7 +85,8 @@ class PatchFitter {
     const CellColumns& columns_;
     MistakeCosts costs_;
     bool outside_below_ = false;
-    std::vector<Target> targets_;
+    std::vector<HeightTarget> targets_;
+    std::vector<std::uint8_t> by_error_;  // targetOf()
     double inside_volume_ = 0.0;
     double volume_ = 0.0;
 };

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "bake/mesh/loops.h"
@@ -31,7 +32,25 @@ constexpr int kSteps = 60;
 /// Of the time.
 constexpr double kSearchShare = 0.7;
 constexpr int kHalvings = 12;
-constexpr std::array<std::uint32_t, 3> kSides = {2, 3, 5};
+/// Of the surface in a cell: so much of it looks the other way where pairs are tried.
+constexpr double kOtherSide = 0.03;
+
+/// What a leaf with a surface holds.
+struct Shape {
+    std::uint32_t side = 0;  // heights along a side; 0: no surface
+    bool pair = false;
+
+    /// Texels beside the leaf's record.
+    [[nodiscard]] std::uint32_t texels() const {
+        return (pair ? 2 : 1) * heightTexels(side) + (pair ? 2 : 0);
+    }
+    [[nodiscard]] double bytes() const { return kTexelBytes * (1.0 + texels()); }
+};
+/// In the order in which they are tried, behind the two signs.
+constexpr std::array<Shape, 6> kShapes = {
+    {{2, false}, {3, false}, {5, false}, {2, true}, {3, true}, {5, true}}};
+constexpr std::size_t kSingles = 3;
+constexpr std::size_t kFlats = 2;
 
 /// Cells do not end in the planes of even numbers, in which models have walls.
 constexpr double kBesideRoots = 1.00137;
@@ -39,23 +58,81 @@ constexpr glm::dvec3 kOriginShift{0.4171, 0.5337,
                                   0.4623};  // of the room that whole roots leave, on the low side
 
 struct Candidate {
-    std::uint32_t side = 0;  // 0: no patch, but a sign
-    bool inside = false;     // the sign
-    double wrong = 0.0;      // volume, object units, times its costs
-    double bytes = 0.0;      // beyond a record's bit in its parent
+    Shape shape{};
+    bool inside = false;  // of one without a surface
+    double wrong = 0.0;   // volume, object units, times its costs
 
-    [[nodiscard]] double cost(double byte) const { return wrong + byte * bytes; }
+    /// Beyond a bit in the record above.
+    [[nodiscard]] double bytes() const { return shape.side > 0 ? shape.bytes() : 0.0; }
+    [[nodiscard]] double cost(double byte) const { return wrong + byte * bytes(); }
 };
+
+/// The unit gradients of w of all frames.
+const std::array<glm::dvec3, 13>& waysOfFrames() {
+    static const auto kWays = [] {
+        std::array<glm::dvec3, 13> ways;
+        std::ranges::transform(patchFrames(), ways.begin(), [](const PatchFrame& frame) {
+            return unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
+        });
+        return ways;
+    }();
+    return kWays;
+}
+
+/// A steep piece costs much, one that faces away everything.
+double worthSeen(double cosine) {
+    return cosine > 0.2 ? cosine : 5.0 * cosine - 0.8;
+}
+
+struct FrameChoice {
+    std::uint8_t index = 0;  // of patchFrames()
+    bool two_sides = false;  // there is surface to see from above, and from below
+};
+
+/// The frame that sees most of the surface in a cell from both sides, where there is some on each: lines along a thin wall
+/// pass it by, and find nothing to mend. Else that which sees most from above, or from below.
+FrameChoice chooseFrame(const std::vector<ClippedTriangle>& pieces) {
+    FrameChoice single;
+    FrameChoice both{.two_sides = true};
+    double best_single = -std::numeric_limits<double>::infinity();
+    double best_both = best_single;
+    for (std::uint8_t frame = 0; frame < waysOfFrames().size(); ++frame) {
+        double above = 0.0;
+        double below = 0.0;
+        double either = 0.0;
+        for (const ClippedTriangle& piece : pieces) {
+            const double cosine = dot(piece.normal, waysOfFrames()[frame]);
+            above += piece.area * worthSeen(cosine);
+            below += piece.area * worthSeen(-cosine);
+            either += piece.area * worthSeen(std::abs(cosine));
+        }
+        if (std::max(above, below) > best_single + 1e-9) {
+            best_single = std::max(above, below);
+            single.index = frame;
+        }
+        if (either > best_both + 1e-9) {
+            best_both = either;
+            both.index = frame;
+        }
+    }
+    double area[2] = {};
+    for (const ClippedTriangle& piece : pieces) {
+        area[dot(piece.normal, waysOfFrames()[both.index]) < 0.0 ? 0 : 1] += piece.area;
+    }
+    return std::min(area[0], area[1]) > kOtherSide * (area[0] + area[1]) ? both : single;
+}
 
 struct Node {
     MeshCell cell;
-    std::uint8_t frame = 0;  // of patchFrames()
+    FrameChoice frame;
     std::uint8_t tried = 0;  // candidates
     std::uint8_t chosen = 0;
     bool split = false;
-    bool outside_below = false;
-    std::array<Candidate, 2 + kSides.size()> candidates;
-    std::array<PatchHeights, 2> heights;  // of 2² and 3²
+    bool turned = false;  // a single surface has the outside below
+    bool walls = true;    // a pair has the inside between
+    std::array<Candidate, kFlats + kShapes.size()> candidates;
+    std::array<PatchHeights, 2> heights;  // of single surfaces of 2² and 3²
+    double pair_least = 0.0;              // mistakes of the best pair there could be
     std::unique_ptr<std::array<Node, 8>> children;
     double bytes = 0.0;
     double wrong = 0.0;
@@ -64,39 +141,6 @@ struct Node {
     [[nodiscard]] const Candidate& leaf() const { return candidates[chosen]; }
     void add(const Candidate& candidate) { candidates[tried++] = candidate; }
 };
-
-double bytesOf(std::uint32_t side) {
-    return kTexelBytes * (1.0 + heightTexels(side));
-}
-
-/// The frame that sees most of the surface in a cell from above, or from below.
-std::uint8_t bestFrame(const std::vector<ClippedTriangle>& pieces) {
-    static const auto kAlong = [] {
-        std::array<glm::dvec3, 13> along;
-        std::ranges::transform(patchFrames(), along.begin(), [](const PatchFrame& frame) {
-            return unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
-        });
-        return along;
-    }();
-    std::uint8_t best = 0;
-    double best_score = -std::numeric_limits<double>::infinity();
-    for (std::uint8_t frame = 0; frame < kAlong.size(); ++frame) {
-        const glm::dvec3& along = kAlong[frame];
-        for (const double sign : {1.0, -1.0}) {
-            double score = 0.0;
-            for (const ClippedTriangle& piece : pieces) {
-                const double cosine = sign * dot(piece.normal, along);
-                // A steep piece costs much, one that faces away everything.
-                score += piece.area * (cosine > 0.2 ? cosine : 5.0 * cosine - 0.8);
-            }
-            if (score > best_score + 1e-9) {
-                best_score = score;
-                best = frame;
-            }
-        }
-    }
-    return best;
-}
 
 class Planner {
   public:
@@ -195,38 +239,54 @@ class Planner {
             return cost;
         };
         const auto pays = [&] {
-            return node.tried < node.candidates.size() &&
-                   (node.tried < 2 || byte * bytesOf(kSides[node.tried - 2]) < least());
+            if (node.tried < kFlats) {
+                return true;
+            }
+            const std::size_t shape = node.tried - kFlats;
+            return shape < (node.frame.two_sides ? kShapes.size() : kSingles) &&
+                   byte * kShapes[shape].bytes() + (kShapes[shape].pair ? node.pair_least : 0.0) < least();
         };
         if (!pays()) {
             return;
         }
         const std::vector<UnitTriangle> triangles = unitTriangles(query_.mesh(), node.cell);
         if (node.tried == 0) {
-            node.frame = bestFrame(piecesOf(triangles));
+            node.frame = chooseFrame(piecesOf(triangles));
         }
-        const CellColumns columns(query_, node.cell, triangles, grids_[node.frame]);
-        const PatchFitter fitter(columns, options_.costs);
         const double volume = node.cell.size * node.cell.size * node.cell.size;
-        if (node.tried == 0) {
-            const double inside = fitter.insideVolume();
-            node.add({.inside = false, .wrong = options_.costs.false_outside * volume * inside});
-            node.add(
-                {.inside = true, .wrong = options_.costs.false_inside * volume * (fitter.volume() - inside)});
-            node.outside_below = fitter.outsideBelow();
-        }
-        while (pays()) {
-            const std::uint32_t side = kSides[node.tried - 2];
-            const FittedPatch fitted = fitter.fit(side, kRounds);
-            if (side < kPatchSideMax) {
-                node.heights[node.tried - 2] = fitted.heights;
+        const CellColumns columns(query_, node.cell, triangles, grids_[node.frame.index]);
+        if (node.tried < kFlats + kSingles) {
+            const PatchFitter fitter(columns, options_.costs);
+            if (node.tried == 0) {
+                const double inside = fitter.insideVolume();
+                node.add({.wrong = options_.costs.false_outside * volume * inside});
+                node.add({.inside = true,
+                          .wrong = options_.costs.false_inside * volume * (fitter.volume() - inside)});
+                node.turned = fitter.outsideBelow();
             }
-            node.add({.side = side, .wrong = volume * fitted.wrong, .bytes = bytesOf(side)});
+            while (node.tried < kFlats + kSingles && pays()) {
+                const Shape& shape = kShapes[node.tried - kFlats];
+                const FittedPatch fitted = fitter.fit(shape.side, kRounds);
+                if (shape.side < kPatchSideMax) {
+                    node.heights[node.tried - kFlats] = fitted.heights;
+                }
+                node.add({.shape = shape, .wrong = volume * fitted.wrong});
+            }
+        }
+        if (node.tried < kFlats + kSingles || !pays()) {
+            return;
+        }
+        const PairFitter fitter(columns, options_.costs);
+        node.pair_least = volume * fitter.least();
+        node.walls = fitter.walls();
+        while (pays()) {
+            const Shape& shape = kShapes[node.tried - kFlats];
+            node.add({.shape = shape, .wrong = volume * fitter.fit(shape.side, kRounds).wrong});
         }
     }
 
     [[nodiscard]] double trialBytes(const Node& node) const {
-        if (node.tried < node.candidates.size()) {
+        if (node.tried < kFlats + kSingles) {
             return options_.trial_bytes;
         }
         const double mended = node.candidates[3].wrong / node.candidates[4].wrong;
@@ -241,7 +301,7 @@ class Planner {
         for (std::uint8_t i = 1; i < node.tried; ++i) {
             node.chosen = node.candidates[i].cost(byte) < node.leaf().cost(byte) ? i : node.chosen;
         }
-        node.bytes = node.leaf().bytes;
+        node.bytes = node.leaf().bytes();
         node.wrong = node.leaf().wrong;
         if (node.empty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
             return;
@@ -352,18 +412,51 @@ class Planner {
     }
 
     /// The lines to choose by are few for each square of 5² heights, and enough for larger ones.
+    [[nodiscard]] CellColumns finalColumns(const Node& node) const {
+        return {query_, node.cell, unitTriangles(query_.mesh(), node.cell),
+                (node.leaf().shape.side < kPatchSideMax ? grids_ : final_grids_)[node.frame.index]};
+    }
     [[nodiscard]] PatchHeights finalHeights(const Node& node) const {
-        if (node.leaf().side < kPatchSideMax) {
-            return node.heights[node.chosen - 2];
+        if (node.leaf().shape.side < kPatchSideMax) {
+            return node.heights[node.chosen - kFlats];
         }
-        const CellColumns columns(query_, node.cell, unitTriangles(query_.mesh(), node.cell),
-                                  final_grids_[node.frame]);
-        return PatchFitter(columns, options_.costs, node.outside_below)
-            .fit(kPatchSideMax, kFinalRounds)
+        const CellColumns columns = finalColumns(node);
+        return PatchFitter(columns, options_.costs, node.turned).fit(kPatchSideMax, kFinalRounds).heights;
+    }
+    [[nodiscard]] std::array<PatchHeights, 2> finalPair(const Node& node) const {
+        const CellColumns columns = finalColumns(node);
+        return PairFitter(columns, options_.costs, node.walls)
+            .fit(node.leaf().shape.side, kFinalRounds)
             .heights;
     }
 
-    [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.leaf().side > 0; }
+    /// Writes a leaf with a surface.
+    /// \param first  the texels that it has beside its record.
+    void writeLeaf(const Node& node, std::uint32_t first, PatchRecord& record,
+                   std::vector<PatchRecord>& texels) const {
+        const auto write = [&](const PatchHeights& heights, std::uint32_t at) {
+            for (std::uint32_t k = 0; k < heightTexels(heights.side); ++k) {
+                texels[at + k] = heights.texel(k);
+            }
+        };
+        if (!node.leaf().shape.pair) {
+            const PatchHeights heights = finalHeights(node);
+            record = PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
+            write(heights, first);
+            return;
+        }
+        const std::array<PatchHeights, 2> pair = finalPair(node);
+        record = PatchRecord::pair(node.walls, first);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            // Outside is below the lower surface of a wall, and above that of a gap.
+            const std::uint32_t at = first + 2 + k * heightTexels(pair[k].side);
+            texels[first + k] =
+                PatchRecord::patch(patchFrames()[node.frame.index], (k == 0) == node.walls, pair[k], at);
+            write(pair[k], at);
+        }
+    }
+
+    [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.leaf().shape.side > 0; }
 
     [[nodiscard]] DepthMap encode() const {
         // Records level by level, and where the children of each begin.
@@ -392,9 +485,9 @@ class Planner {
         std::uint32_t next = 1 + static_cast<std::uint32_t>(records.size());
         for (std::size_t i = 0; i < records.size(); ++i) {
             const Node& node = *records[i];
-            if (!node.split && node.leaf().side > 0) {
+            if (!node.split && hasRecord(node)) {
                 first[i] = next;
-                next += heightTexels(node.leaf().side);
+                next += node.leaf().shape.texels();
             }
         }
         std::vector<PatchRecord> texels(next);
@@ -406,15 +499,10 @@ class Planner {
                    (1.0 - kSearchShare) * static_cast<double>(++done) / static_cast<double>(records.size()));
             if (node.split) {
                 texels[1 + i] = splitOf(node, first[i]);
-            } else if (node.leaf().side == 0) {
+            } else if (!hasRecord(node)) {
                 texels[1 + i] = flat(node);
             } else {
-                const PatchHeights heights = finalHeights(node);
-                texels[1 + i] =
-                    PatchRecord::patch(patchFrames()[node.frame], node.outside_below, heights, first[i]);
-                for (std::uint32_t k = 0; k < heightTexels(heights.side); ++k) {
-                    texels[first[i] + k] = heights.texel(k);
-                }
+                writeLeaf(node, first[i], texels[1 + i], texels);
             }
         });
         std::vector<std::byte> bytes;

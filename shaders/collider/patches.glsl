@@ -93,6 +93,15 @@ vec4 reliefPatch(int first, uvec2 record, vec3 q) {
     return vec4(per_length * gradient, (at.z - height) * per_length);
 }
 
+// As reliefPatch(), of two patches.
+vec4 reliefPatchPair(int first, uvec2 record, vec3 q) {
+    int at = first + int(record.y & 0xffffffu);
+    vec4 a = reliefPatch(first, reliefPatchTexel(at), q);
+    vec4 b = reliefPatch(first, reliefPatchTexel(at + 1), q);
+    bool both = (record.x & 16u) != 0u;
+    return (both ? b.w > a.w : b.w < a.w) ? b : a;
+}
+
 // Where a point ends up in a tree.
 struct ReliefLeaf {
     uvec2 record;  // its own, or where it has none that of the split cell above it
@@ -152,7 +161,8 @@ ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
         vec3 normal = vec3(0.0);
         float distance = RELIEF_FAR_OUTSIDE;
         if ((record.x & 3u) == 3u) {
-            vec4 piece = reliefPatch(place.x, record, leaf.q);
+            bool pair = (record.x & 15u) == 15u;
+            vec4 piece = pair ? reliefPatchPair(place.x, record, leaf.q) : reliefPatch(place.x, record, leaf.q);
             normal = piece.xyz;
             distance = cell * piece.w;
         } else if (leaf.inside || whole) {

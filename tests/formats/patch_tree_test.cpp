@@ -121,6 +121,38 @@ TEST(PatchTree, PlanesAreExactBetweenTheirCodes) {
     }
 }
 
+TEST(PatchTree, PairsAreWhatIsInBothOrInEither) {
+    // A wall, whose sides see each other's back, and the edge between two walls at right angles.
+    const auto plane = [](const PatchFrame& frame, bool outside_below, double height) {
+        return PatchRecord::patch(frame, outside_below, PatchHeights::of(std::vector(4, height), 2), 0);
+    };
+    const PatchFrame& x = patchFrames()[0];
+    const PatchFrame& y = patchFrames()[1];
+    ASSERT_EQ(x.first, 0);
+    ASSERT_EQ(y.first, 1);
+    for (const bool both : {true, false}) {
+        const DepthMap wall = patchesOf(
+            {{1, 1, 1}, 0}, {PatchRecord::pair(both, 2), plane(x, both, 0.375), plane(x, !both, 0.5)});
+        const DepthMap edge = patchesOf(
+            {{1, 1, 1}, 0}, {PatchRecord::pair(both, 2), plane(x, false, 0.5), plane(y, false, 0.75)});
+        for (const DepthMap* map : {&wall, &edge}) {
+            ASSERT_TRUE(validatePatches(map->texels)) << validatePatches(map->texels).error().message;
+        }
+        std::mt19937 random(4);
+        std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+        for (int i = 0; i < 200; ++i) {
+            const glm::vec3 p(unit(random), unit(random), unit(random));
+            const float way = both ? 1.0F : -1.0F;
+            EXPECT_NEAR(vote(wall, p)->distance, way * std::max(0.375F - p.x, p.x - 0.5F), 1e-6F);
+            const float of_edge =
+                both ? std::max(p.x - 0.5F, p.y - 0.75F) : std::min(p.x - 0.5F, p.y - 0.75F);
+            EXPECT_NEAR(vote(edge, p)->distance, of_edge, 1e-6F);
+            const bool by_x = both == (p.x - 0.5F > p.y - 0.75F);
+            EXPECT_NEAR(vote(edge, p)->normal[by_x ? 0 : 1], 1.0F, 1e-6F);
+        }
+    }
+}
+
 TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
     // Two roots: one flat and outside, one split with no records but for one child, which is flat and inside.
     const glm::vec3 up(0, 1, 0);
@@ -185,11 +217,17 @@ TEST(PatchTree, BrokenTreesAreRefused) {
     refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 1)}, "heights lie elsewhere");
     refused({{1, 1, 1}, 0}, {PatchRecord::patch(frame, false, codes, 14)}, "heights lie elsewhere");
     PatchRecord odd = PatchRecord::patch(frame, false, codes, 2);
-    odd.low |= 3U << 2U;
-    refused({{1, 1, 1}, 0}, {odd}, "no known kind");
-    odd = PatchRecord::patch(frame, false, codes, 2);
     odd.low |= 3U << 5U;
     refused({{1, 1, 1}, 0}, {odd}, "no known kind");
+    // Pairs of themselves, of what lies beyond the map, of another kind, of pairs, and of patches without heights.
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 1)}, "patches lie elsewhere");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 15)}, "patches lie elsewhere");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), leaf, leaf}, "no known kind");
+    const PatchRecord flat =
+        PatchRecord::patch(frame, false, PatchHeights::of(std::array{0.1, 0.2, 0.3, 0.4}, 2), 0);
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), flat, PatchRecord::pair(true, 2)}, "no known kind");
+    refused({{1, 1, 1}, 0}, {PatchRecord::pair(true, 2), flat, PatchRecord::patch(frame, false, codes, 14)},
+            "heights lie elsewhere");
     odd = PatchRecord::flat(true, up, std::nanf(""));
     refused({{1, 1, 1}, 0}, {odd}, "not finite");
     odd = leaf;

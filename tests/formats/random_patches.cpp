@@ -73,17 +73,28 @@ DepthMap randomPatches(std::mt19937& random) {
             const bool inside = below(2) == 0;
             records.push_back(PatchRecord::flat(inside, normal(), (inside ? -2.0F : 2.0F) * unit(random)));
         } else {
-            std::array<double, 25> values{};
-            for (double& value : values) {
-                value = 1.5 * double{unit(random)};
+            const auto place = [&] { return static_cast<std::uint32_t>(1 + nodes.size() + heights.size()); };
+            const auto patch = [&](std::uint32_t side) {
+                std::array<double, 25> values{};
+                for (double& value : values) {
+                    value = 1.5 * double{unit(random)};
+                }
+                const PatchHeights codes = PatchHeights::of(std::span(values).first(side * side), side);
+                const PatchRecord record =
+                    PatchRecord::patch(patchFrames()[below(13)], below(2) == 0, codes, place());
+                for (std::uint32_t k = 0; k < heightTexels(side); ++k) {
+                    heights.push_back(codes.texel(k));
+                }
+                return record;
+            };
+            if (below(3) > 0) {
+                records.push_back(patch(node.side));
+                continue;
             }
-            const PatchHeights codes =
-                PatchHeights::of(std::span(values).first(node.side * node.side), node.side);
-            const auto place = static_cast<std::uint32_t>(1 + nodes.size() + heights.size());
-            records.push_back(PatchRecord::patch(patchFrames()[below(13)], below(2) == 0, codes, place));
-            for (std::uint32_t k = 0; k < heightTexels(node.side); ++k) {
-                heights.push_back(codes.texel(k));
-            }
+            const std::array<PatchRecord, 2> both = {patch(node.side),
+                                                     patch(std::array{2U, 3U, 5U}[below(3)])};
+            records.push_back(PatchRecord::pair(below(2) == 0, place()));
+            heights.insert(heights.end(), both.begin(), both.end());
         }
     }
     records.insert(records.end(), heights.begin(), heights.end());

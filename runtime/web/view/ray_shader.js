@@ -280,6 +280,18 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
     return Stretch(over ? above : -above, here < last ? here : ends, here < last ? -1 : border);
 }
 
+// As aheadInPatch(), of two patches: one alone decides that a point is in neither, or in either.
+Stretch aheadInPair(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
+    int at = first + int(record.y & 0xffffffu);
+    Stretch a = aheadInPatch(first, reliefPatchTexel(at), q, way, tiny, ends, border);
+    Stretch b = aheadInPatch(first, reliefPatchTexel(at + 1), q, way, tiny, ends, border);
+    int decides = (record.x & 16u) != 0u ? 1 : -1;
+    if (a.side == b.side) {
+        return (a.side == decides) == (a.end > b.end) ? a : b;
+    }
+    return a.side == decides ? a : b;
+}
+
 // Leaf by leaf of a tree, and in a patch from one crossing of its surface to the next.
 Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
     int beyond = reliefHas(u_relief_maps[i].info, RELIEF_ENCLOSES) ? 1 : 0;
@@ -310,8 +322,11 @@ Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
     }
     float size = reliefLength(d);
     float rate = size / cell;
-    Stretch stretch = aheadInPatch(place.x, leaf.record, (o + t * d - low) / cell, d / size, u_tiny * rate,
-                                   (min(ends, max(far, t + u_tiny)) - t) * rate, border);
+    vec3 q = (o + t * d - low) / cell;
+    float room = (min(ends, max(far, t + u_tiny)) - t) * rate;
+    bool pair = (leaf.record.x & 15u) == 15u;
+    Stretch stretch = pair ? aheadInPair(place.x, leaf.record, q, d / size, u_tiny * rate, room, border)
+                           : aheadInPatch(place.x, leaf.record, q, d / size, u_tiny * rate, room, border);
     stretch.end = t + stretch.end / rate;
     return stretch;
 }
