@@ -13,16 +13,6 @@ int reliefBitCount(uint bits) {
     return int((bits + (bits >> 4)) & 0xfu);
 }
 
-// Height i of a patch, as a code; the last one lies in the record, as do all of 2 by 2.
-float reliefPatchCode(int first, uvec2 record, int i, int last) {
-    uint four = record.y;
-    if (last > 3 && i != last) {
-        uvec2 texel = reliefPatchTexel(first + int(record.y & 0xffffffu) + (i >> 3));
-        four = (i & 4) != 0 ? texel.y : texel.x;
-    }
-    return float(i == last ? (record.x >> 23) & 0xffu : (four >> (8 * (i & 3))) & 0xffu);
-}
-
 // The place of q across the frame of a patch: u, v and the depth w.
 vec3 reliefPatchAcross(uvec2 record, vec3 q) {
     uint diagonal = (record.x >> 5) & 3u;
@@ -48,10 +38,27 @@ float reliefPatchSquares(uvec2 record) {
 // The codes at the corners of a square, whose lowest is that corner: 00, 10, 01 and 11.
 vec4 reliefPatchCodes(int first, uvec2 record, vec2 corner, float squares) {
     int side = int(squares) + 1;
-    int i = int(corner.y) * side + int(corner.x);
+    int at = int(corner.y) * side + int(corner.x);
     int end = side * side - 1;
-    return vec4(reliefPatchCode(first, record, i, end), reliefPatchCode(first, record, i + 1, end),
-                reliefPatchCode(first, record, i + side, end), reliefPatchCode(first, record, i + side + 1, end));
+    // The four lie within seven bytes, so in two texels that follow each other; those of 2 by 2, but the last, in the record.
+    ivec4 i = ivec4(at, at + 1, at + side, at + side + 1);
+    uvec4 words = uvec4(record.y, 0u, 0u, 0u);
+    if (side > 2) {
+        int texel = first + int(record.y & 0xffffffu);
+        int begin = at >> 3;
+        words = uvec4(reliefPatchTexel(texel + begin), reliefPatchTexel(texel + min(begin + 1, (end - 1) >> 3)));
+        i -= 8 * begin;
+        end -= 8 * begin;
+    }
+    uvec4 low = uvec4((i.x & 4) != 0 ? words.y : words.x, (i.y & 4) != 0 ? words.y : words.x,
+                      (i.z & 4) != 0 ? words.y : words.x, (i.w & 4) != 0 ? words.y : words.x);
+    uvec4 high = uvec4((i.x & 4) != 0 ? words.w : words.z, (i.y & 4) != 0 ? words.w : words.z,
+                       (i.z & 4) != 0 ? words.w : words.z, (i.w & 4) != 0 ? words.w : words.z);
+    uvec4 four = uvec4(i.x > 7 ? high.x : low.x, i.y > 7 ? high.y : low.y, i.z > 7 ? high.z : low.z,
+                       i.w > 7 ? high.w : low.w);
+    uvec4 codes = (four >> uvec4(8 * (i & 3))) & 0xffu;
+    codes.w = i.w == end ? (record.x >> 23) & 0xffu : codes.w;
+    return vec4(codes);
 }
 
 // The height of code 0, and of a step.
@@ -93,13 +100,17 @@ vec4 reliefPatch(int first, uvec2 record, vec3 q) {
     return vec4(per_length * gradient, (at.z - height) * per_length);
 }
 
-// As reliefPatch(), of two patches.
-vec4 reliefPatchPair(int first, uvec2 record, vec3 q) {
+// As reliefPatch(), also of a pair.
+vec4 reliefPatchOrPair(int first, uvec2 record, vec3 q) {
+    bool pair = (record.x & 15u) == 15u;
     int at = first + int(record.y & 0xffffffu);
-    vec4 a = reliefPatch(first, reliefPatchTexel(at), q);
-    vec4 b = reliefPatch(first, reliefPatchTexel(at + 1), q);
-    bool both = (record.x & 16u) != 0u;
-    return (both ? b.w > a.w : b.w < a.w) ? b : a;
+    vec4 piece = reliefPatch(first, pair ? reliefPatchTexel(at) : record, q);
+    if (pair) {
+        vec4 other = reliefPatch(first, reliefPatchTexel(at + 1), q);
+        bool both = (record.x & 16u) != 0u;
+        piece = (both ? other.w > piece.w : other.w < piece.w) ? other : piece;
+    }
+    return piece;
 }
 
 // Where a point ends up in a tree.
@@ -161,8 +172,7 @@ ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
         vec3 normal = vec3(0.0);
         float distance = RELIEF_FAR_OUTSIDE;
         if ((record.x & 3u) == 3u) {
-            bool pair = (record.x & 15u) == 15u;
-            vec4 piece = pair ? reliefPatchPair(place.x, record, leaf.q) : reliefPatch(place.x, record, leaf.q);
+            vec4 piece = reliefPatchOrPair(place.x, record, leaf.q);
             normal = piece.xyz;
             distance = cell * piece.w;
         } else if (leaf.inside || whole) {
