@@ -196,8 +196,8 @@ def arguments(words):
     unknown = [rival for rival in options.rivals if rival not in RIVALS]
     if unknown:
         parser.error(f"--rivals has '{unknown[0]}'; known: {', '.join(RIVALS)}")
-    if options.markdown and (options.only or options.rivals != list(RIVALS)):
-        parser.error('--markdown is for the sixty and all rivals; leave out --only and --rivals')
+    if options.markdown and options.only:
+        parser.error('--markdown is for all sixty; leave out --only')
     return options
 
 
