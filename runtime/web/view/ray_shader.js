@@ -280,16 +280,21 @@ Stretch aheadInPatch(int first, uvec2 record, vec3 q, vec3 way, float tiny, floa
     return Stretch(over ? above : -above, here < last ? here : ends, here < last ? -1 : border);
 }
 
-// As aheadInPatch(), of two patches: one alone decides that a point is in neither, or in either.
-Stretch aheadInPair(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
+// The stretch in a leaf's patch or its pair: one patch alone decides that a point is outside of both, or inside of either. One call
+// for both, since compilers copy it.
+Stretch aheadInLeaf(int first, uvec2 record, vec3 q, vec3 way, float tiny, float ends, int border) {
+    bool pair = (record.x & 15u) == 15u;
     int at = first + int(record.y & 0xffffffu);
-    Stretch a = aheadInPatch(first, reliefPatchTexel(at), q, way, tiny, ends, border);
-    Stretch b = aheadInPatch(first, reliefPatchTexel(at + 1), q, way, tiny, ends, border);
     int decides = (record.x & 16u) != 0u ? 1 : -1;
-    if (a.side == b.side) {
-        return (a.side == decides) == (a.end > b.end) ? a : b;
+    Stretch stretch = Stretch(0, NEVER, -1);
+    for (int k = 0; k < (pair ? 2 : 1); ++k) {
+        Stretch one = aheadInPatch(first, pair ? reliefPatchTexel(at + k) : record, q, way, tiny, ends, border);
+        bool decided = one.side == decides;
+        if (k == 0 || (one.side == stretch.side ? decided == (one.end > stretch.end) : decided)) {
+            stretch = one;
+        }
     }
-    return a.side == decides ? a : b;
+    return stretch;
 }
 
 // Leaf by leaf of a tree, and in a patch from one crossing of its surface to the next.
@@ -324,9 +329,7 @@ Stretch aheadPatches(int i, vec3 o, vec3 d, float t, float far) {
     float rate = size / cell;
     vec3 q = (o + t * d - low) / cell;
     float room = (min(ends, max(far, t + u_tiny)) - t) * rate;
-    bool pair = (leaf.record.x & 15u) == 15u;
-    Stretch stretch = pair ? aheadInPair(place.x, leaf.record, q, d / size, u_tiny * rate, room, border)
-                           : aheadInPatch(place.x, leaf.record, q, d / size, u_tiny * rate, room, border);
+    Stretch stretch = aheadInLeaf(place.x, leaf.record, q, d / size, u_tiny * rate, room, border);
     stretch.end = t + stretch.end / rate;
     return stretch;
 }
