@@ -90,7 +90,7 @@ void fields(Visitor& visit, R& report) {
         ms("build", stages.build_ms, "Acceleration structure");
         ms("trace", stages.trace_ms, "Rays");
         ms("encode", stages.encode_ms, "Texels");
-        ms("fit", stages.fit_ms, "Planes");
+        ms("fit", stages.fit_ms, "Planes and patches");
         ms("refine", stages.refine_ms, "Refinement of texels by the other maps");
         ms("check", all.check_ms, "Measuring the result");
         ms("write", all.write_ms, "Writing");

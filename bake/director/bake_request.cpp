@@ -55,7 +55,8 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
     if (request.layout && settings.source != MapSource::kPlanner) {
         return "--layout is of what is planned, but the maps were named; leave it out";
     }
-    if (request.max_maps != kPlannedMapsMax && settings.layout == Layout::kPatches) {
+    if (request.max_maps != kPlannedMapsMax && settings.source == MapSource::kPlanner &&
+        settings.layout == Layout::kPatches) {
         return "--max-maps does nothing with patches, which are one map; leave it out, or add --layout views";
     }
     // Names need the file's own triangles and separate parts.
@@ -114,7 +115,8 @@ bool take(std::string_view name, std::string_view value, BakeRequest& request) {
 Result<BakeSettings> settingsOf(const BakeRequest& request) {
     BakeSettings settings;
     settings.source = RELIEF_TRY(sourceOf(request));
-    settings.layout = request.layout.value_or(Layout::kViews);
+    settings.layout =
+        request.layout.value_or(request.holes == Holes::kKeep ? Layout::kViews : Layout::kPatches);
     settings.shape = RELIEF_TRY(parseShapeOptions(request.as));
     const std::string conflict = conflictOf(request, settings);
     if (!conflict.empty()) {

@@ -107,7 +107,7 @@ void fields(Visitor& visit, Request& request) {
         {.help =
              "What to plan. patches: small depth maps in an octree, by far the fewest mistakes. views: depth "
              "maps of the whole mesh, to look at and to edit",
-         .fallback = "views"});
+         .fallback = "patches; with --holes keep, views"});
     visit("max_maps", request.max_maps,
           {.help = "Plan at most this many views, each of which every step of a simulation looks at",
            .range = {1.0, double{ContainerLimits{}.maps}}});
@@ -170,7 +170,7 @@ enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
 /// A request, read and found consistent.
 struct BakeSettings {
     MapSource source = MapSource::kPlanner;
-    Layout layout = Layout::kViews;
+    Layout layout = Layout::kPatches;
     BakeOptions bake;
     ShapeOptions shape;  ///< without a thickness: it depends on the mesh
 };

@@ -33,7 +33,12 @@ float rounded(double value) {
 class Advisor {
   public:
     Advisor(const MeshCheck& run, const std::string& mesh_file, const std::string& output)
-        : run_(run), output_(output), planned_(run.recorded.request) {
+        : run_(run),
+          output_(output),
+          planned_(run.recorded.request),
+          has_patches_(std::ranges::any_of(
+              run.collider.maps, [](const DepthMap& map) { return map.format == MapFormat::kPatches; })),
+          plans_patches_(planned_.holes == Holes::kClose) {
         const TruthSamples& truth = run.judged().samples;
         truth_.options = truth.options;
         truth_.options.samples = std::min(truth_.options.samples, kTrialSamplesMax);
@@ -51,13 +56,19 @@ class Advisor {
     std::vector<Advice> run() {
         const bool sheet = any({WrongCause::kSheet});
         const bool open = any({WrongCause::kOpen});
+        // They mend most of what other maps do wrong, and cost each step no more.
+        if (!has_patches_ && plans_patches_ && !run_.places.empty()) {
+            tryBudget(*planned_.budget, "patches of as many bytes");
+        }
         if (any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryBudget(roundBudget(2 * run_.collider.gpuBytes()), "planned maps of twice the bytes");
+            tryBudget(roundBudget(2 * run_.collider.gpuBytes()),
+                      plans_patches_ ? "patches of twice the bytes" : "planned maps of twice the bytes");
         }
         if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();
         }
-        if (any({WrongCause::kSilhouette, WrongCause::kUnseen})) {
+        // Nothing is out of sight of patches.
+        if (!has_patches_ && any({WrongCause::kSilhouette, WrongCause::kUnseen})) {
             tryCubes();
             tryMoreMaps();
         }
@@ -219,7 +230,9 @@ class Advisor {
     const MeshCheck& run_;
     const std::string& output_;
     BakeRequest planned_;  // the recorded bake, planned anew for as many bytes
-    TruthSamples truth_;   // near the surface alone, and fewer
+    bool has_patches_;
+    bool plans_patches_;  // unless told otherwise
+    TruthSamples truth_;  // near the surface alone, and fewer
     std::vector<Advice> advice_;
 };
 

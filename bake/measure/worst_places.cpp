@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "bake/measure/patch_cells.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
-#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -211,7 +211,7 @@ WorstPlace describe(const std::vector<std::uint32_t>& points, const std::vector<
 
 double texelAt(const DepthMap& map, const glm::vec3& p) {
     if (map.projection() == Projection::kLocal) {
-        return patchSpacing(map.texels) * double{map.object_per_map.x};
+        return patchSpacingAt(map, p);
     }
     if (map.projection() == Projection::kOrthographic) {
         return std::max(double{map.object_per_map.x} / map.width, double{map.object_per_map.y} / map.height);

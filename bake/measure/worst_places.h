@@ -53,7 +53,7 @@ struct WorstPlace {
                                                   const Sights& sights, const Collider& collider,
                                                   std::size_t count = 3);
 
-/// Side of a map's texels at a point of its volume, object units, the longer one.
+/// Side of a map's texels at a point of its volume, object units, the longer one; of patches patchSpacingAt().
 [[nodiscard]] double texelAt(const DepthMap& map, const glm::vec3& p);
 
 }  // namespace relief

@@ -346,6 +346,10 @@ bool LineGrid::nearStarts(const UnitTriangle& triangle) const {
     return false;
 }
 
+double LineGrid::expectedHits(const ClippedTriangle& piece) const {
+    return piece.area * std::abs(dot(piece.normal, along_)) / volume_per_length_;
+}
+
 double CellColumn::insideTo(double w) const {
     double length = 0.0;
     double from = enters;
@@ -404,6 +408,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
         hits[end[hit.line]++] = hit;
     }
 
+    hits_ = hits.size();
     turns_.reserve(hits.size());
     BodyCounter counter = cell.bodies;
     for (std::size_t i = 0; i < grid.starts().size(); ++i) {

@@ -74,6 +74,8 @@ class LineGrid {
     [[nodiscard]] std::size_t startOfRow(double row) const;
     /// Whether the way from one start to the next may cross the triangle: that it may be near a side by which lines enter.
     [[nodiscard]] bool nearStarts(const UnitTriangle& triangle) const;
+    /// Lines that meet a piece of a surface, as far as that goes by its area.
+    [[nodiscard]] double expectedHits(const ClippedTriangle& piece) const;
     /// The volume of a column for a unit of its w, in cells.
     [[nodiscard]] double volumePerLength() const { return volume_per_length_; }
     /// −1 if (u, v, w) is left-handed, else 1.
@@ -119,6 +121,8 @@ class CellColumns {
                 const LineGrid& grid);
 
     [[nodiscard]] const LineGrid& grid() const { return grid_; }
+    /// Of lines with triangles.
+    [[nodiscard]] std::size_t hits() const { return hits_; }
     /// \param line  an index of LineGrid::lines(), of one that does not miss.
     [[nodiscard]] CellColumn operator[](std::size_t line) const;
 
@@ -132,6 +136,7 @@ class CellColumns {
     const LineGrid& grid_;
     std::vector<Turns> columns_;
     std::vector<double> turns_;
+    std::size_t hits_ = 0;
 };
 
 }  // namespace relief

@@ -32,8 +32,16 @@ constexpr int kSteps = 60;
 /// Of the time.
 constexpr double kSearchShare = 0.7;
 constexpr int kHalvings = 12;
+/// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
+/// among flat faces, trees are larger without end.
+constexpr double kCellsPerByte = 0.6;
 /// Of the surface in a cell: so much of it looks the other way where pairs are tried.
 constexpr double kOtherSide = 0.03;
+
+/// Where lines meet less than this share of what the area lets expect, parts lie between them, of about so much volume for
+/// the area's power of 3/2.
+constexpr double kPassedBy = 0.5;
+constexpr double kVolumePassedBy = 0.1;
 
 /// What a leaf with a surface holds.
 struct Shape {
@@ -133,6 +141,7 @@ struct Node {
     std::array<Candidate, kFlats + kShapes.size()> candidates;
     std::array<PatchHeights, 2> heights;  // of single surfaces of 2² and 3²
     double pair_least = 0.0;              // mistakes of the best pair there could be
+    double passed_by = 0.0;               // volume between the lines, counted with each candidate's mistakes
     std::unique_ptr<std::array<Node, 8>> children;
     double bytes = 0.0;
     double wrong = 0.0;
@@ -223,6 +232,18 @@ class Planner {
         return pieces;
     }
 
+    /// In cells.
+    [[nodiscard]] static double volumePassedBy(const CellColumns& columns,
+                                               std::span<const ClippedTriangle> pieces) {
+        double expected = 0.0;
+        for (const ClippedTriangle& piece : pieces) {
+            expected += columns.grid().expectedHits(piece);
+        }
+        const auto hits = static_cast<double>(columns.hits());
+        const double area = (expected - hits) * columns.grid().volumePerLength();
+        return hits < kPassedBy * expected ? kVolumePassedBy * area * std::sqrt(area) : 0.0;
+    }
+
     /// Tries what may pay where a byte is worth so much wrong volume.
     void tryLeaves(Node& node, double byte) const {
         if (node.empty()) {
@@ -250,18 +271,22 @@ class Planner {
             return;
         }
         const std::vector<UnitTriangle> triangles = unitTriangles(query_.mesh(), node.cell);
+        std::vector<ClippedTriangle> pieces;
         if (node.tried == 0) {
-            node.frame = chooseFrame(piecesOf(triangles));
+            pieces = piecesOf(triangles);
+            node.frame = chooseFrame(pieces);
         }
         const double volume = node.cell.size * node.cell.size * node.cell.size;
         const CellColumns columns(query_, node.cell, triangles, grids_[node.frame.index]);
         if (node.tried < kFlats + kSingles) {
             const PatchFitter fitter(columns, options_.costs);
             if (node.tried == 0) {
+                node.passed_by = volume * volumePassedBy(columns, pieces);
                 const double inside = fitter.insideVolume();
-                node.add({.wrong = options_.costs.false_outside * volume * inside});
+                node.add({.wrong = options_.costs.false_outside * volume * inside + node.passed_by});
                 node.add({.inside = true,
-                          .wrong = options_.costs.false_inside * volume * (fitter.volume() - inside)});
+                          .wrong = options_.costs.false_inside * volume * (fitter.volume() - inside) +
+                                   node.passed_by});
                 node.turned = fitter.outsideBelow();
             }
             while (node.tried < kFlats + kSingles && pays()) {
@@ -270,18 +295,19 @@ class Planner {
                 if (shape.side < kPatchSideMax) {
                     node.heights[node.tried - kFlats] = fitted.heights;
                 }
-                node.add({.shape = shape, .wrong = volume * fitted.wrong});
+                node.add({.shape = shape, .wrong = volume * fitted.wrong + node.passed_by});
             }
         }
         if (node.tried < kFlats + kSingles || !pays()) {
             return;
         }
         const PairFitter fitter(columns, options_.costs);
-        node.pair_least = volume * fitter.least();
+        node.pair_least = volume * fitter.least() + node.passed_by;
         node.walls = fitter.walls();
         while (pays()) {
             const Shape& shape = kShapes[node.tried - kFlats];
-            node.add({.shape = shape, .wrong = volume * fitter.fit(shape.side, kRounds).wrong});
+            node.add(
+                {.shape = shape, .wrong = volume * fitter.fit(shape.side, kRounds).wrong + node.passed_by});
         }
     }
 
@@ -294,7 +320,10 @@ class Planner {
     }
 
     /// The cheapest tree below a node where a byte is worth so much wrong volume.
-    void choose(Node& node, double byte, std::uint32_t level) const {
+    void choose(Node& node, double byte, std::uint32_t level) {
+        if (static_cast<double>(++looked_at_) > kCellsPerByte * bytes_) {
+            return;  // chooseAll() discards it all
+        }
         tryLeaves(node, byte);
         node.split = false;
         node.chosen = 0;
@@ -329,12 +358,16 @@ class Planner {
         }
     }
 
-    /// \return the bytes of the whole tree.
+    /// \return the bytes of the whole tree; infinity of one that is far too large.
     double chooseAll(double byte) {
+        looked_at_ = 0;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
             choose(nodes_[i], byte, 0);
             report(kSearchShare * std::min(1.0, taken_ / bytes_));
         });
+        if (static_cast<double>(looked_at_) > kCellsPerByte * bytes_) {
+            return std::numeric_limits<double>::infinity();
+        }
         double texels = 1.0 + static_cast<double>(nodes_.size());
         wrong_ = 0.0;
         for (const Node& node : nodes_) {
@@ -537,6 +570,7 @@ class Planner {
     std::vector<Node> nodes_;
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the tree tried last
+    std::atomic<std::size_t> looked_at_ = 0;
     mutable std::mutex report_;
 };
 

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/measure/patch_cells.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/ray_cost.h"
 #include "bake/patches/patch_planner.h"
@@ -26,6 +27,7 @@
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -434,7 +436,9 @@ class Bake {
                                   static_cast<double>(texels_));
             };
         }
-        add(bakePatches(query, options), MapReport{job.spec, job.texels(), job.texels()});
+        DepthMap map = bakePatches(query, options);
+        const std::uint64_t covered = patchCount(map) > 0 ? job.texels() : 0;
+        add(std::move(map), MapReport{job.spec, covered, job.texels()});
         finish(job.texels());
         return {};
     }
@@ -457,9 +461,13 @@ class Bake {
     /// Object units.
     [[nodiscard]] double finestTexel() const {
         double finest = std::numeric_limits<double>::infinity();
-        for (const Job& job : jobs_) {
-            const glm::dvec3& across = job.view.axis[0];
-            finest = std::min(finest, std::sqrt(dot(across, across)) / job.view.width);
+        for (std::size_t i = 0; i < jobs_.size(); ++i) {
+            const glm::dvec3& across = jobs_[i].view.axis[0];
+            const DepthMap& map = baked_.collider.maps[i];
+            const double texel = kindOf(jobs_[i]) == Kind::kPatches
+                                     ? patchSpacing(map.texels) * double{map.object_per_map.x}
+                                     : std::sqrt(dot(across, across)) / jobs_[i].view.width;
+            finest = std::min(finest, texel);
         }
         return finest;
     }

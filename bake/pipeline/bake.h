@@ -38,7 +38,7 @@ struct BakeReport {
     double build_ms = 0.0;   ///< acceleration structure
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
-    double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane
+    double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane, and patches
     double refine_ms = 0.0;  ///< texels of those maps chosen anew, knowing the other maps
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each

@@ -120,7 +120,7 @@ Result<PlannedBake> bakeTreePlanned(const MeshQuery& query, std::uint64_t budget
     Baked baked = RELIEF_TRY(bake(query.prepared(), options));
     const DepthMap& tree = baked.collider.maps.front();
     Plan plan;
-    plan.maps = {{spec, 1.0, "depth maps in an octree, each along the axis that sees its piece best"}};
+    plan.maps = {{spec, 1.0, "small depth maps in an octree, each along the axis that sees its piece best"}};
     plan.texel = patchSpacing(tree.texels) * double{tree.object_per_map.x};
     plan.bytes = baked.collider.gpuBytes();
     return PlannedBake{std::move(plan), std::move(baked)};

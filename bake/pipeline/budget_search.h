@@ -48,7 +48,7 @@ struct BudgetSearchOptions {
     std::uint64_t budget_min = 32'000;      ///< bytes; lowered to budget_max
     std::uint64_t budget_max = 64'000'000;  ///< bytes
     BakeOptions bake;                       ///< its maps do not count
-    Layout layout = Layout::kViews;
+    Layout layout = Layout::kPatches;
     std::uint32_t max_maps = kPlannedMapsMax;  ///< of views
     /// Fewer samples than `relief check` takes, whose noise (0.04 percent of deviation where 1 % is wrong) is
     /// below what one more step would tell apart.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "bake/measure/patch_cells.h"
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -80,7 +82,7 @@ std::string planLine(const PlanReport& report, const std::string& unit) {
     std::string line = "planned for " + bytesText(report.budget) + " on the GPU, where the " +
                        (patches ? "patches" : "maps") + " take " + bytesText(plan.bytes);
     if (patches) {
-        line += ": heights of " + shortNumber(plan.texel) + " " + unitText(unit) + " and more apart";
+        line += ": heights at least " + shortNumber(plan.texel) + " " + unitText(unit) + " apart";
     } else {
         line += ": texels of " + shortNumber(plan.texel) + " " + unitText(unit) + "; " +
                 shortNumber(plan.unseen_percent) +
@@ -93,6 +95,24 @@ std::string planLine(const PlanReport& report, const std::string& unit) {
                 countText(report.tries.size(), "try", "tries");
     }
     return line + "\n";
+}
+
+std::string msText(const char* stage, double ms) {
+    return stage + (" " + std::to_string(std::llround(ms)));
+}
+
+/// "ray tree 3, fitting 812": those that the maps went through.
+std::string stagesText(const BakeReport& report) {
+    const std::pair<const char*, double> stages[] = {{"ray tree", report.build_ms},
+                                                     {"rays", report.trace_ms},
+                                                     {"texels", report.encode_ms},
+                                                     {"fitting", report.fit_ms},
+                                                     {"refining", report.refine_ms}};
+    std::string text;
+    for (const auto& [stage, ms] : stages) {
+        text += ms > 0.0 ? (text.empty() ? "" : ", ") + msText(stage, ms) : "";
+    }
+    return text;
 }
 
 }  // namespace
@@ -141,24 +161,20 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
         const DepthMap& map = baked.collider.maps[i];
         const MapReport& report = baked.report.maps[i];
-        rows.push_back({std::to_string(i), mapFormatName(map.format), projectionName(map.projection()),
-                        keepsText(map), sizeText(map), bytesText(gpuBytes(map)),
-                        shareText(BakedMapReport{.baked = report}.coverage()),
-                        summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
+        const bool patches = map.format == MapFormat::kPatches;
+        rows.push_back(
+            {std::to_string(i), mapFormatName(map.format), projectionName(map.projection()), keepsText(map),
+             patches ? countText(patchCount(map), "patch", "patches") : sizeText(map),
+             bytesText(gpuBytes(map)), patches ? "-" : shareText(BakedMapReport{.baked = report}.coverage()),
+             summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
     }
     text += table(rows);
     const BakeTimes& times = summary.times;
     const bool searched = times.search_ms > 0.0;
-    const auto ms = [](const std::string& what, double value) {
-        return what + " " + std::to_string(std::llround(value));
-    };
-    const BakeReport& report = baked.report;
-    text += std::to_string(std::llround(times.total_ms)) + " ms: " + ms("import", times.import_ms) + ", " +
-            ms(searched ? "search" : "plan", searched ? times.search_ms : times.plan_ms) + ", ";
-    text += (searched ? "its last bake: " : "") + ms("tree", report.build_ms) + ", " +
-            ms("rays", report.trace_ms) + ", " + ms("texels", report.encode_ms) + ", " +
-            ms("planes", report.fit_ms) + ", " + ms("refining", report.refine_ms) + (searched ? "; " : ", ") +
-            ms("writing", times.write_ms) + "\n";
+    text += std::to_string(std::llround(times.total_ms)) + " ms: " + msText("import", times.import_ms) +
+            ", " + msText(searched ? "search" : "plan", searched ? times.search_ms : times.plan_ms) + ", " +
+            (searched ? "its last bake: " : "") + stagesText(baked.report) + (searched ? "; " : ", ") +
+            msText("writing", times.write_ms) + "\n";
     if (summary.wrong) {
         text += "wrong near the surface: " + shortNumber(summary.wrong->total()) + " %\n";
     }

@@ -111,6 +111,11 @@ std::string causeText(const WorstPlace& place, const Collider& collider) {
         case WrongCause::kTexel:
             break;
     }
+    if (place.map >= 0 &&
+        collider.maps[static_cast<std::size_t>(place.map)].projection() == Projection::kLocal) {
+        return "finer than the patches: " + decides + ", whose heights are " +
+               lengthText(place.texel, collider.unit) + " apart there";
+    }
     return "below the texel size: " + decides + ", whose " + texels;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <span>
 
 #include "bake/measure/worst_places.h"
@@ -27,6 +28,16 @@ std::string megabytes(double bytes) {
     const auto tenths = static_cast<std::uint64_t>(std::ceil(bytes / 1e5));
     return tenths < 100 ? std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "MB"
                         : std::to_string((tenths + 9) / 10) + "MB";
+}
+
+/// Of patches in a box, whose middle may be a large cell without any.
+double finestIn(const Bounds& box, const DepthMap& map) {
+    double finest = texelAt(map, box.center());
+    for (int i = 0; i < 27; ++i) {
+        const glm::vec3 share = 0.5F * glm::vec3(i % 3, i / 3 % 3, i / 9);
+        finest = std::min(finest, texelAt(map, glm::mix(box.min, box.max, share)));
+    }
+    return finest;
 }
 
 double middleExtent(const SurfacePart& part) {
@@ -107,7 +118,8 @@ std::string partName(const SurfacePart& part, std::size_t index) {
 double partTexel(const SurfacePart& part, const Collider& collider) {
     double texel = 0.0;
     for (const DepthMap& map : collider.maps) {
-        const double here = texelAt(map, part.bounds.center());
+        const double here = map.projection() == Projection::kLocal ? finestIn(part.bounds, map)
+                                                                   : texelAt(map, part.bounds.center());
         texel = here > 0.0 && (texel == 0.0 || here < texel) ? here : texel;
     }
     return texel;
@@ -217,7 +229,7 @@ std::optional<std::string> strayText(const SurfaceParts& parts, const std::strin
            positionText(part.bounds.center()) + ", far from all else, which is " +
            lengthText(double{strays.rest.longestSide()}, unit) + " long at " +
            positionText(strays.rest.center()) +
-           ": most texels are spent on the empty space between; delete it from the mesh";
+           ": the space between is empty, and takes bytes from the surface; delete it from the mesh";
 }
 
 std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit) {

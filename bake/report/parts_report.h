@@ -21,7 +21,7 @@ namespace relief {
 [[nodiscard]] std::string partName(const SurfacePart& part, std::size_t index);
 /// Of a lost or coarse part: a budget, a thickness or a bake of its own that would keep it.
 [[nodiscard]] std::string partCure(const SurfacePart& part, const Collider& collider);
-/// Side of the finest texels at the middle of a part, object units; 0 without maps.
+/// Side of the finest texels at the middle of a part, or of patches in its box, object units; 0 without maps.
 [[nodiscard]] double partTexel(const SurfacePart& part, const Collider& collider);
 /// "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, called outside; …", and partCure().
 [[nodiscard]] std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts,
@@ -72,7 +72,8 @@ void fields(Visitor& visit, R& report) {
           {"Standard deviation of their distance from it", "object units", kFromZero});
     fields(visit, accuracy.wrong);
     visit("texel", partTexel(part, collider),
-          {"Side of the finest texels at its middle", "object units", kFromZero});
+          {"Side of the finest texels at its middle, or of the finest patches' in its box", "object units",
+           kFromZero});
     visit("cure", wants ? std::optional(partCure(part, collider)) : std::nullopt,
           {"A way to keep it; null unless coarse or lost"});
 }

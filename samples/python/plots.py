@@ -34,8 +34,8 @@ axes.set(title="Signed distance, half way through", xlabel="x", ylabel="y")
 figure.colorbar(picture, label="distance, mesh units", extend="both")
 figure.savefig("slice.png", dpi=120)
 
-# %% Its maps, but for patches, which lie in no image
-views = [one for one in collider.maps if one.format != "patches"]
+# %% Depth maps of the whole mesh. Those of patches lie in no image
+views = relief.bake(mesh, budget=500_000, layout="views").maps
 figure, axes = plt.subplots(1, max(len(views), 1), figsize=(3.2 * max(len(views), 1), 3.6), layout="constrained", squeeze=False)
 for one, axis in zip(views, axes[0]):
     axis.imshow(one.depth[0], origin="lower", cmap="viridis")

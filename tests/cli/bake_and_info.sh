@@ -60,7 +60,7 @@ json report.json "len(d['maps']) <= 8"
 expect 0 "$relief" check walls.relief --mesh walls.obj --samples 2000 --max-error 5 --json
 cp stdout report.json
 json report.json "d['mesh']['shape']['sheets'] == 1 and abs(d['mesh']['shape']['thickness'] - 0.2) < 1e-6"
-expect 0 "$relief" bake walls.obj -o solid.relief --budget 100kB --as solid --no-check --max-maps 2 --json
+expect 0 "$relief" bake walls.obj -o solid.relief --budget 100kB --as solid --no-check --layout views --max-maps 2 --json
 cp stdout report.json
 json report.json "d['shape']['solids_with_holes'] == 1 and d['wrong_percent'] is None and len(d['maps']) <= 2"
 json report.json "' --as solid' in d['provenance']['options']"

@@ -47,7 +47,7 @@ json.dump({
 open('points.csv', 'w').write('x,y,z\n0,0,0\n4,0,0\n0.2,1.05,0.3\n0.2,-1.02,0.3\n')
 P
 python3 meshes.py
-small=(--budget 60kB --max-maps 3 --no-check)
+small=(--budget 60kB --no-check)
 
 # bakes MESH SHAPE OPTIONS…: SHAPE as Python over `s`.
 bakes() {
@@ -124,7 +124,7 @@ bakes names.obj "s['named'][0]['name'] == 'Fenster = \"vorn\" \$x;\'é'" --as "F
 json report.json "'Fenster = \"vorn\" \$x;\'é=shell' in __import__('shlex').split(d['provenance']['options'])"
 expect 0 "$relief" check out.relief --mesh names.obj --samples 2000 --json
 json stdout "d['mesh']['shape']['sheets'] == 2"
-expect 0 "$relief" bake names.obj -o rough.relief --budget 10kB --max-maps 1 --no-check --as "Fenster = \"vorn\" \$x;'é=shell"
+expect 0 "$relief" bake names.obj -o rough.relief --budget 10kB --no-check --as "Fenster = \"vorn\" \$x;'é=shell"
 expect 0 "$relief" check rough.relief --mesh names.obj --samples 2000 --json
 cp stdout check.json
 python3 - <<'P' || die "the advised commands lack the name: $(cat check.json)"
@@ -151,7 +151,6 @@ version = 1
 [defaults]
 output = "{stem}.baked.relief"
 budget = "60kB"
-max-maps = 3
 no-check = true
 as = "shell"
 [[asset]]
@@ -169,4 +168,4 @@ sed -i 's/tub=solid/tub=shell/' r.toml
 expect 0 "$relief" bake --recipe r.toml -q --json
 json stdout "[a['state'] for a in d['assets']] == ['baked', 'up to date']"
 sed -i 's/tub=shell/tub=sheet/' r.toml
-expect_error 3 "r\.toml:10:6: --as is 'tub=sheet' but" "$relief" bake --recipe r.toml
+expect_error 3 "r\.toml:9:6: --as is 'tub=sheet' but" "$relief" bake --recipe r.toml

@@ -3,22 +3,40 @@
 
 mesh=$models/OBJ/spider.obj
 
-# By default the maps are planned, for 1 MB; the report says which and why.
+# By default patches are planned, for 1 MB; the report says so.
 expect 0 "$relief" bake "$mesh" -o default.relief --plan-out default.toml --json
 cp stdout report.json
 json report.json 'd["settings"]["budget"] == 10**6 and d["plan"]["budget"] == 10**6'
 json report.json '0.9e6 < d["plan"]["bytes"] == d["texel_bytes"] <= 10**6'
 json report.json 'len(d["plan"]["maps"]) == len(d["maps"]) and all(m["reason"] for m in d["plan"]["maps"])'
-json report.json 'd["plan"]["texel"] > 0 and 0 <= d["plan"]["unseen_percent"] < 20'
-json report.json 'all("decode=plane" in m for m in d["settings"]["maps"])'
-json report.json 'd["settings"]["resolution"] is None and d["times_ms"]["plan"] > 0 and d["times_ms"]["fit"] > 0'
+json report.json 'd["plan"]["texel"] > 0 and d["plan"]["unseen_percent"] == 0'
+json report.json 'd["settings"]["maps"] == ["patches:bytes=1000000"]'
+json report.json 'd["settings"]["resolution"] is None and d["times_ms"]["fit"] > 0'
 expect 0 "$relief" bake "$mesh" -o budget.relief --budget 1MB
 cmp default.relief budget.relief || die "the default is not a budget of 1 MB"
-grep -qE 'planned for 1.0 MB on the GPU, where the maps take [0-9.]+ [kM]B: ' stderr || die "the report does not say what was planned: $(cat stderr)"
-grep -q 'both sides along' stderr || die "the report does not say why: $(cat stderr)"
-for time in import plan tree rays texels planes writing; do
+grep -qE 'planned for 1.0 MB on the GPU, where the patches take [0-9.]+ [kM]B: ' stderr || die "the report does not say what was planned: $(cat stderr)"
+grep -q 'in an octree' stderr || die "the report does not say why: $(cat stderr)"
+for time in import plan fitting writing; do
     grep -q "ms: .*$time [0-9]" stderr || die "the report does not say how long $time took: $(cat stderr)"
 done
+
+# Views are planned where they are asked for, and where the surface is baked as it is.
+expect 0 "$relief" bake "$mesh" -o views.relief --layout views --plan-out views.toml --json
+cp stdout report.json
+json report.json '0.9e6 < d["plan"]["bytes"] == d["texel_bytes"] <= 10**6'
+json report.json 'len(d["plan"]["maps"]) == len(d["maps"]) > 1 and all(m["reason"] for m in d["plan"]["maps"])'
+json report.json 'd["plan"]["texel"] > 0 and 0 <= d["plan"]["unseen_percent"] < 20 and d["times_ms"]["plan"] > 0'
+json report.json 'all("decode=plane" in m for m in d["settings"]["maps"])'
+expect 0 "$relief" bake "$mesh" -o views.relief --layout views
+grep -qE 'where the maps take [0-9.]+ [kM]B: texels of ' stderr || die "the report does not say what was planned: $(cat stderr)"
+grep -q 'both sides along' stderr || die "the report does not say why: $(cat stderr)"
+for time in import plan fitting refining writing; do
+    grep -q "ms: .*$time [0-9]" stderr || die "the report does not say how long $time took: $(cat stderr)"
+done
+expect 0 "$relief" bake "$mesh" -o keep.relief --holes keep --no-check --json
+json stdout 'all("decode=plane" in m for m in d["settings"]["maps"])'
+expect_error 1 'max-maps.*--layout views' "$relief" bake "$mesh" -o keep.relief --max-maps 3
+expect_error 1 'layout.*leave it out' "$relief" bake "$mesh" -o keep.relief --layout views --paper
 
 # The collider records the budget, and what counts is what the maps take on the GPU; --compress changes the file alone.
 json report.json '" --budget 1000000" in d["provenance"]["options"]'
@@ -33,7 +51,7 @@ expect 0 "$relief" check recorded.relief --mesh "$mesh" --samples 2000
 expect 0 "$relief" bake "$mesh" -o named.relief --map cube:size=16 --json
 json stdout '"--budget" not in d["provenance"]["options"]'
 # Maps that someone has enlarged are no longer those that were planned.
-expect 0 "$relief" bake "$mesh" -o small.relief --budget 20kB --plan-out small.toml -q
+expect 0 "$relief" bake "$mesh" -o small.relief --budget 20kB --layout views --plan-out small.toml -q
 sed 's/^size = .*/size = "128x128"/' small.toml >enlarged.toml
 expect 0 "$relief" bake "$mesh" -o enlarged.relief --plan enlarged.toml --json
 json stdout '"--budget" not in d["provenance"]["options"] and d["texel_bytes"] > 20000'
@@ -69,7 +87,7 @@ for how in '--budget 60kB' '--max-error 4%'; do
 done
 
 # A changed plan is followed.
-sed -e '0,/^size = .*/s//size = "33x44"/' -e '0,/^depth = .*/s//depth = "half"/' default.toml >edited.toml
+sed -e '0,/^size = .*/s//size = "33x44"/' -e '0,/^depth = .*/s//depth = "half"/' views.toml >edited.toml
 expect 0 "$relief" bake "$mesh" -o edited.relief --plan edited.toml -q
 expect 0 "$relief" info edited.relief --json
 json stdout '(d["maps"][0]["width"], d["maps"][0]["height"]) == (33, 44)'
@@ -85,11 +103,11 @@ bake_fails() {
     [ "$(cat old.relief old.toml)" = "$(printf 'precious\nprecious')" ] || die "an older output was touched: $*"
 }
 bake_fails 2 'none\.toml' -o old.relief --plan none.toml
-sed 's/^dir = .*/dir = "up"/' default.toml >wrong.toml
+sed 's/^dir = .*/dir = "up"/' views.toml >wrong.toml
 bake_fails 3 "wrong\.toml:$(grep -n -m1 '^dir' wrong.toml | cut -d: -f1):7: dir is 'up'" -o old.relief --plan wrong.toml
-sed 's/^decode/decoed/' default.toml >wrong.toml
+sed 's/^decode/decoed/' views.toml >wrong.toml
 bake_fails 3 "wrong\.toml:[0-9]+:1: .*did you mean 'decode'" -o old.relief --plan wrong.toml
-sed 's/^size = .*/size = "20000"/' default.toml >wrong.toml
+sed 's/^size = .*/size = "20000"/' views.toml >wrong.toml
 bake_fails 6 'wrong\.toml:[0-9]+:8: .*16384' -o old.relief --plan wrong.toml
 (echo version = 1 && for _ in 1 2; do printf '[[map]]\nformat = "float"\nsize = 16384\n'; done) >wrong.toml
 bake_fails 6 'wrong\.toml.*bytes' -o old.relief --plan wrong.toml
@@ -102,16 +120,16 @@ bake_fails 1 'two outputs' -o new.relief --plan-out ./new.relief
 cp "$mesh" mesh.obj
 expect_error 1 'is the input' "$relief" bake mesh.obj -o new.relief --plan-out mesh.obj
 cmp "$mesh" mesh.obj || die "the mesh was replaced"
-expect_error 1 'is the input' "$relief" bake mesh.obj --plan default.toml -o default.toml
+expect_error 1 'is the input' "$relief" bake mesh.obj --plan views.toml -o views.toml
 bake_fails 2 'missing' -o old.relief --plan-out missing/plan.toml
 bake_fails 1 'standard output' -o old.relief --plan-out -
 
 # --max-error holds as relief check measures it, on other points; if it cannot, nothing is written.
-expect 0 "$relief" bake "$bunny" -o b.relief --max-error 2% --plan-out b.toml --json
-json stdout 'd["plan"]["search"]["wrong_percent"] <= 2 and d["texel_bytes"] < 250000'
-json stdout 'len(d["plan"]["search"]["tries"]) >= 3 and d["plan"]["search"]["max_error_percent"] == 2'
+expect 0 "$relief" bake "$bunny" -o b.relief --max-error 0.5% --plan-out b.toml --json
+json stdout 'd["plan"]["search"]["wrong_percent"] <= 0.5 and d["texel_bytes"] < 250000'
+json stdout 'len(d["plan"]["search"]["tries"]) >= 3 and d["plan"]["search"]["max_error_percent"] == 0.5'
 [ "$(grep -c 'on the wrong side' stderr)" -ge 3 ] || die "the tries are not told: $(cat stderr)"
-expect 0 "$relief" check b.relief --mesh "$bunny" --samples 100000 --seed 5 --max-error 2.15
+expect 0 "$relief" check b.relief --mesh "$bunny" --samples 100000 --seed 5 --max-error 0.57
 expect 0 "$relief" bake "$bunny" -o b2.relief --plan b.toml -q
 cmp b.relief b2.relief || die "the found plan's file bakes other bytes"
 expect_error 7 'max-error.*best is .* bytes' "$relief" bake "$bunny" -o old.relief --max-error 0.001 --budget 40kB \
@@ -121,8 +139,8 @@ expect_error 7 'max-error.*best is .* bytes' "$relief" bake "$bunny" -o old.reli
 # Only one option may choose the maps.
 bake_fails 1 '--map and --budget' -o old.relief --map float --budget 1MB
 bake_fails 1 '--map and --paper' -o old.relief --map float --paper
-bake_fails 1 '--paper and --plan' -o old.relief --plan default.toml --paper
-bake_fails 1 '--plan and --max-error' -o old.relief --plan default.toml --max-error 1
+bake_fails 1 '--paper and --plan' -o old.relief --plan views.toml --paper
+bake_fails 1 '--plan and --max-error' -o old.relief --plan views.toml --max-error 1
 bake_fails 1 'resolution.*planned' -o old.relief --resolution 64
 bake_fails 1 'resolution.*planned' -o old.relief --resolution 64 --budget 1MB
 bake_fails 1 'plan-out' -o old.relief --paper --plan-out p.toml

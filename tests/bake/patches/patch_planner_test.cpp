@@ -210,6 +210,16 @@ TEST(PatchPlanner, OverlappingShellsAreOneSolid) {
     EXPECT_LT(wrongPercent(query, checked(query, 250'000), 40'000), 0.3);
 }
 
+TEST(PatchPlanner, PartsBetweenTheLinesAreFound) {
+    // Of a thousandth of the longest side, where the lines of the largest cells are more than that apart.
+    const TriangleMesh speck = makeIcosphere({40, 0.3, 0.1}, 0.02, 2);
+    const MeshQuery query = queryOf(joined({makeIcosphere({0, 0, 0}, 1.0, 4), speck}));
+    const DepthMap map = checked(query, 100'000);
+    EXPECT_LT(vote(map, {40, 0.3F, 0.1F})->distance, 0.0F);
+    EXPECT_GT(vote(map, {40.03F, 0.3F, 0.1F})->distance, 0.0F);
+    EXPECT_LT(vote(map, {0.5F, 0.5F, 0.5F})->distance, 0.0F);
+}
+
 TEST(PatchPlanner, BytesAreKeptDownToTheLeast) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 48, 24));
     for (const std::uint64_t bytes : {kPatchBytesMin, std::uint64_t{2000}, std::uint64_t{9999}}) {

@@ -16,15 +16,16 @@ BudgetSearchOptions optionsFor(double percent) {
 }
 
 TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
+    constexpr double kPromise = 0.1;  // percent
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
     const Result<MeshQuery> query = MeshQuery::build(mesh);
     ASSERT_TRUE(query);
-    BudgetSearchOptions options = optionsFor(2.0);
+    BudgetSearchOptions options = optionsFor(kPromise);
     std::size_t told = 0;
     options.tried = [&](const BudgetTry&) { ++told; };
     const Result<BudgetSearchResult> found = bakeForError(*query, *query, options);
     ASSERT_TRUE(found) << found.error().message;
-    EXPECT_LE(found->chosen.wrong_percent, 2.0);
+    EXPECT_LE(found->chosen.wrong_percent, kPromise);
     EXPECT_EQ(found->chosen.bytes, found->baked.collider.gpuBytes());
     EXPECT_EQ(found->plan.bytes, found->chosen.bytes);
     EXPECT_LE(found->chosen.bytes, found->chosen.budget);
@@ -38,7 +39,7 @@ TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
         EXPECT_GE(made.budget, 32'000U);
         narrow =
             narrow ||
-            (made.wrong_percent > 2.0 &&
+            (made.wrong_percent > kPromise &&
              made.budget<found->chosen.budget&& static_cast<double>(made.budget) * 1.1> static_cast<double>(
                  found->chosen.budget));
     }
