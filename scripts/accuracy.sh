@@ -9,7 +9,7 @@
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
 #   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each;
 #                                        --help has --only, --steps, --markdown and others
-#   scripts/accuracy.sh --lot            ten meshes by lot (lot.txt), with patches in the place of ours; --draw draws them
+#   scripts/accuracy.sh --lot            ten meshes by lot (lot.txt), --draw draws them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -53,7 +53,7 @@ if [ "${1:-}" = --page ]; then
         echo '# Wrong points per byte'
         echo
         echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the distance volumes of [README.md](README.md),'
-        echo 'dense and sparse; the maps of the paper; the maps that `relief bake` plans.'
+        echo 'dense and sparse; the maps of the paper; planned views; and the patches that `relief bake` plans by default.'
         echo
         "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
     } >"$folder/accuracy.md"

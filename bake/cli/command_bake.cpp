@@ -138,9 +138,9 @@ void addBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "bake",
-        "Bakes a mesh into a collider\n\nWithout --map, --paper or --plan, the maps are planned: "
-        "directions, places (cubes in cavities that no\nouter view sees) and sizes, for --budget bytes "
-        "or for --max-error.",
+        "Bakes a mesh into a collider\n\nWithout --map, --paper or --plan, a tree of small depth maps is "
+        "planned, or with --layout views\ndirections, places and sizes of large ones, for --budget bytes or "
+        "for --max-error.",
         "relief bake bunny.obj -o bunny.relief\n"
         "relief bake bunny.obj -o bunny.relief --budget 256kB --plan-out plan.toml\n"
         "relief bake bunny.obj -o bunny.relief --plan plan.toml\n"

@@ -20,7 +20,7 @@ slab = ((-2500, -10, -2500), (2500, 0, 2500), 'slab')
 pillars = [((x, 0.5, z), (x + 2, 9.5, z + 2), f'pillar_{x}_{z}') for x in (-2000, 0, 2000) for z in (-2000, 0, 2000)]
 save('slab.obj', [slab] + pillars)
 save('unit.obj', [((0, 0, 0), (1, 1, 1), 'a'), ((2, 0, 0), (3, 1, 1), 'b')])
-for name, far in ('stray.obj', 1e3), ('lost.obj', 1e6):
+for name, far in ('stray.obj', 1e3), ('lost.obj', 1e9):
     save(name, [((0, 0, 0), (10, 10, 10), 'body'), ((far, 0, 0), (far + 1, 1, 1), 'helper')])
 # A sheet of 10 and, on its own, one of 0.2.
 def sheet(x, y, side, first):
@@ -62,7 +62,7 @@ head -1 stdout | matches 'good$' || die "two boxes: $(head -1 stdout)"
 # A stray is named, and shells have the size of their parts whatever the box.
 expect 0 "$relief" bake stray.obj -o stray.relief --budget 64kB
 grep -qE 'stray\.obj: helper \(12 triangles\) lies astray at .*; delete it from the mesh' stderr || die "no word of the stray: $(cat stderr)"
-expect_error 4 'lost\.obj: helper \(12 triangles\) lies astray' "$relief" bake lost.obj -o stray.relief --budget 64kB
+expect_error 4 'lost\.obj: helper \([0-9]+ triangles\) lies astray' "$relief" bake lost.obj -o stray.relief --budget 64kB
 expect 0 "$relief" bake sheets.obj -o sheets.relief --budget 64kB --json
 json stdout 'abs(d["shape"]["thickness_least"] - 0.05) < 1e-6 and 0.1 < d["shape"]["thickness"] <= 0.4 and not d["shape"]["thickness_asked"]'
 expect 0 "$relief" check sheets.relief --mesh sheets.obj --samples 20000

@@ -10,7 +10,7 @@ import { dataOf, pageData, viewer } from "./lib/view.mjs";
 
 function bake(folder, budget = "60kB") {
     const file = path.join(folder, "bunny.relief");
-    run("relief", "bake", bunny, "-q", "-o", file, "--budget", budget);
+    run("relief", "bake", bunny, "-q", "-o", file, "--layout", "views", "--budget", budget);
     return file;
 }
 
