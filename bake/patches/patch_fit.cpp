@@ -171,7 +171,8 @@ void fitRound(const LineGrid& grid, std::span<const HeightTarget> targets, int r
         }
         const double t = between[j].share;
         for (std::size_t i = 0; i + 1 < kSide; ++i) {
-            const auto& [square, right] = sums[i];
+            const double* const square = sums[i].square;
+            const double* const right = sums[i].right;
             const std::size_t node = between[j].first * kSide + i;
             const auto addPair = [&](std::size_t a, std::size_t b,
                                      double share) {  // of nodes in two rows
