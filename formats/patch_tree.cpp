@@ -58,10 +58,6 @@ std::array<std::uint32_t, 2> coarseIndex(const glm::vec3& normal) {
     return {coarse(fine.s), coarse(fine.t)};
 }
 
-std::uint32_t sideOf(const PatchRecord& patch) {
-    return std::array{2U, 3U, 5U, 0U}[patch.low >> 2U & 3U];
-}
-
 PatchFrame frameOf(const PatchRecord& patch) {
     return {static_cast<std::uint8_t>(patch.low >> 5U & 3U), static_cast<std::uint8_t>(patch.low >> 7U & 3U),
             static_cast<std::uint8_t>(patch.low >> 9U & 3U)};
@@ -77,7 +73,7 @@ constexpr float kNearest = 1.0F / 1024.0F;
 
 PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
     const PatchFrame frame = frameOf(patch);
-    const std::uint32_t side = sideOf(patch);
+    const std::uint32_t side = patch.side();
     const glm::vec3 at = frame.across(in_cell);
     const auto last = static_cast<float>(side - 1);
     const float x = at.x * last;
@@ -303,53 +299,58 @@ PatchMapSize patchMapSize(std::size_t texels) {
     return {width, static_cast<std::uint32_t>((texels + width - 1) / width)};
 }
 
-std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
+PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p) {
     const auto [roots, levels] = patchTreeSize(texels);
-    const glm::vec3 size(roots);
-    // Written so that NaN is outside.
-    if (!(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z)) {
-        return std::nullopt;
-    }
     const glm::vec3 root(std::floor(p.x), std::floor(p.y), std::floor(p.z));
-    glm::vec3 in_cell = p - root;
     const glm::uvec3 at(root);
-    PatchRecord record = patchTexel(texels, 1 + (at.z * roots.y + at.y) * roots.x + at.x);
-    float cell = 1.0F;    // its size, in root cells
-    bool beside = false;  // a child without a record
-    bool inside = record.kind() == PatchRecord::Kind::kInside;
-    for (std::uint32_t level = 0; level < levels && record.kind() == PatchRecord::Kind::kSplit && !beside;
-         ++level) {
-        glm::vec3 child = 2.0F * in_cell;
+    PatchLeaf leaf{patchTexel(texels, 1 + (at.z * roots.y + at.y) * roots.x + at.x), p - root};
+    leaf.inside = leaf.record.kind() == PatchRecord::Kind::kInside;
+    for (std::uint32_t level = 0;
+         level < levels && leaf.record.kind() == PatchRecord::Kind::kSplit && !leaf.beside; ++level) {
+        const glm::vec3 child = 2.0F * leaf.in_cell;
         const std::uint32_t x = child.x >= 1.0F ? 1 : 0;
         const std::uint32_t y = child.y >= 1.0F ? 1 : 0;
         const std::uint32_t z = child.z >= 1.0F ? 1 : 0;
         const std::uint32_t octant = x + 2 * y + 4 * z;
-        beside = (record.children() >> octant & 1U) == 0;
-        if (beside) {
-            inside = (record.low >> (10U + octant) & 1U) != 0;
+        leaf.beside = (leaf.record.children() >> octant & 1U) == 0;
+        if (leaf.beside) {
+            leaf.inside = (leaf.record.low >> (10U + octant) & 1U) != 0;
         } else {
-            in_cell = {child.x - static_cast<float>(x), child.y - static_cast<float>(y),
-                       child.z - static_cast<float>(z)};
-            cell *= 0.5F;
+            leaf.in_cell = {child.x - static_cast<float>(x), child.y - static_cast<float>(y),
+                            child.z - static_cast<float>(z)};
+            leaf.cell *= 0.5F;
             const auto before =
-                static_cast<std::uint32_t>(std::popcount(record.children() & ((1U << octant) - 1U)));
-            record = patchTexel(texels, record.first() + before);
-            inside = record.kind() == PatchRecord::Kind::kInside;
+                static_cast<std::uint32_t>(std::popcount(leaf.record.children() & ((1U << octant) - 1U)));
+            leaf.record = patchTexel(texels, leaf.record.first() + before);
+            leaf.inside = leaf.record.kind() == PatchRecord::Kind::kInside;
         }
     }
+    return leaf;
+}
+
+std::optional<PatchVote> votePatches(PatchTexels texels, const glm::vec3& p) {
+    const glm::vec3 size(patchTreeSize(texels).roots);
+    // Written so that NaN is outside.
+    if (!(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < size.x && p.y < size.y && p.z < size.z)) {
+        return std::nullopt;
+    }
+    const PatchLeaf leaf = patchLeafAt(texels, p);
+    const PatchRecord& record = leaf.record;
     PatchVote vote;
     if (record.kind() == PatchRecord::Kind::kPatch) {
-        vote = record.isPair() ? votePair(texels, record, in_cell) : votePatch(texels, record, in_cell);
-        vote.distance *= cell;
+        vote = record.isPair() ? votePair(texels, record, leaf.in_cell)
+                               : votePatch(texels, record, leaf.in_cell);
+        vote.distance *= leaf.cell;
     } else if (record.kind() == PatchRecord::Kind::kSplit) {
         vote.normal = octahedron(record.low >> 18U & 127U, record.low >> 25U, kCoarseHalfRange);
         const float offset =
             (static_cast<float>(record.high >> 24U) - float{kOffsetZero}) * (1.0F / float{kOffsetZero});
-        vote.distance = cell * onSide(inside, dot(vote.normal, in_cell - 0.5F) + offset, kNearest);
+        vote.distance =
+            leaf.cell * onSide(leaf.inside, dot(vote.normal, leaf.in_cell - 0.5F) + offset, kNearest);
     } else {
         vote.normal = decodeNormal(unpackNormal(static_cast<std::uint16_t>(record.low >> 16U)));
-        const float distance = floatOf(record.high) + cell * dot(vote.normal, in_cell - 0.5F);
-        vote.distance = onSide(inside, distance, cell * kNearest);
+        const float distance = floatOf(record.high) + leaf.cell * dot(vote.normal, leaf.in_cell - 0.5F);
+        vote.distance = onSide(leaf.inside, distance, leaf.cell * kNearest);
     }
     return vote;
 }
@@ -396,7 +397,7 @@ Result<void> validatePatches(PatchTexels texels) {
     const auto check = [&](std::uint32_t index) -> Result<void> {
         const PatchRecord record = patchTexel(texels, index);
         const PatchFrame frame = frameOf(record);
-        const std::uint32_t side = sideOf(record);
+        const std::uint32_t side = record.side();
         if (record.kind() != PatchRecord::Kind::kPatch || side == 0 || frame.diagonal > 2 ||
             frame.first > 2) {
             return invalid(index, "is a patch of no known kind");

@@ -93,6 +93,8 @@ struct PatchRecord {
     enum class Kind : std::uint8_t { kOutside = 0, kInside = 1, kSplit = 2, kPatch = 3 };
     [[nodiscard]] Kind kind() const { return static_cast<Kind>(low & 3U); }
     [[nodiscard]] std::uint32_t children() const { return low >> 2U & 0xffU; }  ///< of a split cell: a mask
+    /// Heights along each side of a patch; 0 of a pair.
+    [[nodiscard]] std::uint32_t side() const { return std::array{2U, 3U, 5U, 0U}[low >> 2U & 3U]; }
     [[nodiscard]] std::uint32_t first() const { return high & 0xffffffU; }  ///< of a split cell or a patch
 
     /// \param distance  of the nearest plane from the cell's middle, root cells.
@@ -133,6 +135,17 @@ struct PatchMapSize {
     std::uint32_t height;
 };
 [[nodiscard]] PatchMapSize patchMapSize(std::size_t texels);
+
+/// The cell that a point ends up in.
+struct PatchLeaf {
+    PatchRecord record;       ///< its own, or without one that of the split cell above it
+    glm::vec3 in_cell{0.0F};  ///< the point in the unit cube of the record's cell
+    float cell = 1.0F;        ///< the size of that, in root cells
+    bool beside = false;      ///< it has no record
+    bool inside = false;      ///< of one without a patch
+};
+/// \param p  map space, within the roots.
+[[nodiscard]] PatchLeaf patchLeafAt(PatchTexels texels, const glm::vec3& p);
 
 /// The vote on a point, in map space: its distance in root cells.
 struct PatchVote {

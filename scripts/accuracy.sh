@@ -9,7 +9,7 @@
 #   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
 #   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each;
 #                                        --help has --only, --steps, --markdown and others
-#   scripts/accuracy.sh --lot            ten meshes by lot (lot.txt), --draw draws them
+#   scripts/accuracy.sh --lot            ten meshes by lot (lot.txt); --draw draws them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

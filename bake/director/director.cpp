@@ -45,13 +45,8 @@ class MapMaker {
     /// Chooses the views, and bakes them for the budget.
     Result<Baked> forBudget(const MeshQuery& query, PlanReport& report, double* plan_ms = nullptr) const {
         const Stopwatch watch;
-        std::optional<ViewChoice> views;
-        if (settings_.layout == Layout::kViews) {
-            ViewOptions options;
-            options.prefer = settings_.bake.prefer;
-            options.max_maps = request_.max_maps;
-            views = RELIEF_TRY(chooseViews(query, options));
-        }
+        const std::optional<ViewChoice> views =
+            RELIEF_TRY(viewsFor(query, settings_.layout, settings_.bake.prefer, request_.max_maps));
         if (plan_ms != nullptr) {
             *plan_ms += watch.ms();
         }

@@ -11,11 +11,6 @@ namespace {
 
 using Kind = PatchRecord::Kind;
 
-/// Gaps between the heights along a side of a patch.
-double gapsOf(const PatchRecord& record) {
-    return static_cast<double>(1U << (record.low >> 2U & 3U));  // of 2, 3 or 5 heights
-}
-
 }  // namespace
 
 std::uint32_t patchCount(const DepthMap& map) {
@@ -33,29 +28,18 @@ std::uint32_t patchCount(const DepthMap& map) {
 }
 
 double patchSpacingAt(const DepthMap& map, const glm::vec3& p) {
-    const auto [roots, levels] = patchTreeSize(map.texels);
-    const glm::dvec3 last = glm::dvec3(roots) - 1.0;
-    const glm::dvec3 in_roots = map.object_to_map.apply(p);
-    const glm::dvec3 root = glm::clamp(glm::floor(in_roots), glm::dvec3(0.0), last);
-    glm::dvec3 in_cell = glm::clamp(in_roots - root, glm::dvec3(0.0), glm::dvec3(1.0));
-    const glm::uvec3 at(root);
-    PatchRecord record = patchTexel(map.texels, 1 + (at.z * roots.y + at.y) * roots.x + at.x);
-    double cell = double{map.object_per_map.x};
-    while (record.kind() == Kind::kSplit) {
-        const glm::dvec3 child = glm::min(glm::floor(2.0 * in_cell), glm::dvec3(1.0));
-        const unsigned octant = static_cast<unsigned>(child.x) + 2 * static_cast<unsigned>(child.y) +
-                                4 * static_cast<unsigned>(child.z);
-        cell *= 0.5;
-        if ((record.children() >> octant & 1U) == 0) {
-            return cell;
-        }
-        in_cell = 2.0 * in_cell - child;
-        const auto before =
-            static_cast<std::uint32_t>(std::popcount(record.children() & ((1U << octant) - 1U)));
-        record = patchTexel(map.texels, record.first() + before);
+    const glm::vec3 roots(patchTreeSize(map.texels).roots);
+    const glm::vec3 last(std::nextafter(roots.x, 0.0F), std::nextafter(roots.y, 0.0F),
+                         std::nextafter(roots.z, 0.0F));
+    const PatchLeaf leaf =
+        patchLeafAt(map.texels, glm::clamp(map.object_to_map.apply(p), glm::vec3(0.0F), last));
+    const double cell = double{map.object_per_map.x} * double{leaf.cell};
+    if (leaf.record.kind() != Kind::kPatch) {
+        return leaf.beside ? 0.5 * cell : cell;
     }
-    record = record.isPair() ? patchTexel(map.texels, record.first()) : record;
-    return record.kind() == Kind::kPatch ? cell / gapsOf(record) : cell;
+    const PatchRecord patch =
+        leaf.record.isPair() ? patchTexel(map.texels, leaf.record.first()) : leaf.record;
+    return cell / (patch.side() - 1);
 }
 
 }  // namespace relief

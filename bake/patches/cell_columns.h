@@ -57,7 +57,7 @@ class LineGrid {
         double leaves = 0.0;
         [[nodiscard]] bool misses() const { return leaves == 0.0 && enters == 0.0; }
     };
-    /// Where a line enters the cube.
+    /// The place at which a line enters the cube.
     struct Start {
         std::uint32_t line;
         glm::dvec3 point;  ///< in the cube, next to its side

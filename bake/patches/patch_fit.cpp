@@ -120,15 +120,16 @@ std::array<double, kSide> rowOf(const std::array<double, kSide * kSide>& heights
 }
 
 /// Calls visit(line, height) with the height on each line of a grid, in order.
+/// \param between  betweenOf() the grid.
 template <std::size_t kSide, class Visit>
-void forEachHeight(const LineGrid& grid, const std::array<double, kSide * kSide>& heights,
+void forEachHeight(std::span<const Between> between, const std::array<double, kSide * kSide>& heights,
                    const Visit& visit) {
-    const std::vector<Between> between = betweenOf<kSide>(grid);
-    for (std::size_t j = 0; j < grid.across(); ++j) {
+    const std::size_t across = between.size();
+    for (std::size_t j = 0; j < across; ++j) {
         const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
-        for (std::size_t i = 0; i < grid.across(); ++i) {
+        for (std::size_t i = 0; i < across; ++i) {
             const double* const first = &row[between[i].first];
-            visit(j * grid.across() + i, first[0] + between[i].share * (first[1] - first[0]));
+            visit(j * across + i, first[0] + between[i].share * (first[1] - first[0]));
         }
     }
 }
@@ -142,12 +143,11 @@ struct RowSums {
 /// One round of least squares.
 /// \param heights  of the round before, by which errors are weighted; there is none before round 0.
 template <std::size_t kSide>
-void fitRound(const LineGrid& grid, std::span<const HeightTarget> targets, int round,
+void fitRound(std::span<const Between> between, std::span<const HeightTarget> targets, int round,
               std::array<double, kSide * kSide>& heights) {
     static const HeightSystem<kSide> kEmpty;
     HeightSystem<kSide> system = kEmpty;
-    const std::size_t across = grid.across();
-    const std::vector<Between> between = betweenOf<kSide>(grid);
+    const std::size_t across = between.size();
     for (std::size_t j = 0; j < across; ++j) {
         const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
         std::array<RowSums, kSide - 1> sums;
@@ -306,7 +306,7 @@ template <std::size_t kSide>
 double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) const {
     const LineGrid& grid = columns_.grid();
     double wrong = 0.0;
-    forEachHeight<kSide>(grid, heights, [&](std::size_t i, double height) {
+    forEachHeight<kSide>(betweenOf<kSide>(grid), heights, [&](std::size_t i, double height) {
         if (by_error_[i] != 0) {
             const LineGrid::Line& line = grid.lines()[i];
             const double off = std::clamp(height, line.enters, line.leaves) - targets_[i].height;
@@ -320,9 +320,10 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
 
 template <std::size_t kSide>
 FittedPatch PatchFitter::fitOf(int rounds) const {
+    const std::vector<Between> between = betweenOf<kSide>(columns_.grid());
     std::array<double, kSide * kSide> heights{};
     for (int round = 0; round < rounds; ++round) {
-        fitRound<kSide>(columns_.grid(), targets_, round, heights);
+        fitRound<kSide>(between, targets_, round, heights);
     }
     FittedPatch fitted;
     fitted.heights = coded<kSide>(heights);
@@ -376,13 +377,14 @@ PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, st
 template <std::size_t kSide>
 FittedPair PairFitter::fitOf(int rounds) const {
     const LineGrid& grid = columns_.grid();
+    const std::vector<Between> between = betweenOf<kSide>(grid);
     std::array<std::vector<HeightTarget>, 2> targets = targets_;
     std::array<std::array<double, kSide * kSide>, 2> heights{};
     std::array<std::vector<double>, 2> on_lines;
     const auto lay = [&] {
         for (std::size_t k = 0; k < 2; ++k) {
             on_lines[k].resize(grid.lines().size());
-            forEachHeight<kSide>(grid, heights[k],
+            forEachHeight<kSide>(between, heights[k],
                                  [&](std::size_t i, double height) { on_lines[k][i] = height; });
         }
     };
@@ -400,7 +402,7 @@ FittedPair PairFitter::fitOf(int rounds) const {
             }
         }
         for (std::size_t k = 0; k < 2; ++k) {
-            fitRound<kSide>(grid, targets[k], round, heights[k]);
+            fitRound<kSide>(between, targets[k], round, heights[k]);
         }
     }
     FittedPair fitted;
@@ -415,9 +417,9 @@ FittedPair PairFitter::fitOf(int rounds) const {
         const CellColumn column = columns_[i];
         const double low = std::clamp(on_lines[0][i], column.enters, column.leaves);
         const double high = std::max(low, std::clamp(on_lines[1][i], column.enters, column.leaves));
-        const double between = betweenTo(column, high, walls_) - betweenTo(column, low, walls_);
-        fitted.wrong += costs_.false_outside * (betweenTo(column, column.leaves, walls_) - between) +
-                        costs_.false_inside * (high - low - between);
+        const double held = betweenTo(column, high, walls_) - betweenTo(column, low, walls_);
+        fitted.wrong += costs_.false_outside * (betweenTo(column, column.leaves, walls_) - held) +
+                        costs_.false_inside * (high - low - held);
     }
     fitted.wrong *= grid.volumePerLength();
     return fitted;

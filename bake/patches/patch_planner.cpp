@@ -12,6 +12,7 @@
 
 #include "bake/mesh/loops.h"
 #include "bake/patches/cell_columns.h"
+#include "bake/patches/frame_choice.h"
 #include "bake/patches/patch_fit.h"
 #include "formats/patch_tree.h"
 
@@ -35,15 +36,12 @@ constexpr int kHalvings = 12;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
-/// Of the surface in a cell: so much of it looks the other way where pairs are tried.
-constexpr double kOtherSide = 0.03;
-
-/// Where lines meet less than this share of what the area lets expect, parts lie between them, of about so much volume for
-/// the area's power of 3/2.
+/// Parts lie between lines that meet less than this share of what the area lets expect, of about so much volume for the area's
+/// power of 3/2.
 constexpr double kPassedBy = 0.5;
 constexpr double kVolumePassedBy = 0.1;
 
-/// What a leaf with a surface holds.
+/// The contents of a leaf with a surface.
 struct Shape {
     std::uint32_t side = 0;  // heights along a side; 0: no surface
     bool pair = false;
@@ -74,61 +72,6 @@ struct Candidate {
     [[nodiscard]] double bytes() const { return shape.side > 0 ? shape.bytes() : 0.0; }
     [[nodiscard]] double cost(double byte) const { return wrong + byte * bytes(); }
 };
-
-/// The unit gradients of w of all frames.
-const std::array<glm::dvec3, 13>& waysOfFrames() {
-    static const auto kWays = [] {
-        std::array<glm::dvec3, 13> ways;
-        std::ranges::transform(patchFrames(), ways.begin(), [](const PatchFrame& frame) {
-            return unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
-        });
-        return ways;
-    }();
-    return kWays;
-}
-
-/// A steep piece costs much, one that faces away everything.
-double worthSeen(double cosine) {
-    return cosine > 0.2 ? cosine : 5.0 * cosine - 0.8;
-}
-
-struct FrameChoice {
-    std::uint8_t index = 0;  // of patchFrames()
-    bool two_sides = false;  // there is surface to see from above, and from below
-};
-
-/// The frame that sees most of the surface in a cell from both sides, where there is some on each: lines along a thin wall
-/// pass it by, and find nothing to mend. Else that which sees most from above, or from below.
-FrameChoice chooseFrame(const std::vector<ClippedTriangle>& pieces) {
-    FrameChoice single;
-    FrameChoice both{.two_sides = true};
-    double best_single = -std::numeric_limits<double>::infinity();
-    double best_both = best_single;
-    for (std::uint8_t frame = 0; frame < waysOfFrames().size(); ++frame) {
-        double above = 0.0;
-        double below = 0.0;
-        double either = 0.0;
-        for (const ClippedTriangle& piece : pieces) {
-            const double cosine = dot(piece.normal, waysOfFrames()[frame]);
-            above += piece.area * worthSeen(cosine);
-            below += piece.area * worthSeen(-cosine);
-            either += piece.area * worthSeen(std::abs(cosine));
-        }
-        if (std::max(above, below) > best_single + 1e-9) {
-            best_single = std::max(above, below);
-            single.index = frame;
-        }
-        if (either > best_both + 1e-9) {
-            best_both = either;
-            both.index = frame;
-        }
-    }
-    double area[2] = {};
-    for (const ClippedTriangle& piece : pieces) {
-        area[dot(piece.normal, waysOfFrames()[both.index]) < 0.0 ? 0 : 1] += piece.area;
-    }
-    return std::min(area[0], area[1]) > kOtherSide * (area[0] + area[1]) ? both : single;
-}
 
 struct Node {
     MeshCell cell;

@@ -128,6 +128,17 @@ Result<PlannedBake> bakeTreePlanned(const MeshQuery& query, std::uint64_t budget
 
 }  // namespace
 
+Result<std::optional<ViewChoice>> viewsFor(const MeshQuery& query, Layout layout, Prefer prefer,
+                                           std::uint32_t max_maps) {
+    if (layout == Layout::kPatches) {
+        return std::nullopt;
+    }
+    ViewOptions options;
+    options.prefer = prefer;
+    options.max_maps = max_maps;
+    return RELIEF_TRY(chooseViews(query, options));
+}
+
 Result<PlannedBake> bakePlanned(const MeshQuery& query, const std::optional<ViewChoice>& choice,
                                 std::uint64_t budget_bytes, BakeOptions options) {
     options.planned_budget = budget_bytes;
@@ -156,13 +167,8 @@ Result<PlannedBake> bakePlanned(const MeshQuery& query, const std::optional<View
 
 Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
                                         const BudgetSearchOptions& options) {
-    std::optional<ViewChoice> views;
-    if (options.layout == Layout::kViews) {
-        ViewOptions view_options;
-        view_options.prefer = options.bake.prefer;
-        view_options.max_maps = options.max_maps;
-        views = RELIEF_TRY(chooseViews(query, view_options));
-    }
+    std::optional<ViewChoice> views =
+        RELIEF_TRY(viewsFor(query, options.layout, options.bake.prefer, options.max_maps));
     return Search(query, truth, std::move(views), options).run();
 }
 

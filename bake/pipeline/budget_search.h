@@ -15,6 +15,10 @@
 
 namespace relief {
 
+/// The views of a layout; nullopt of patches, which have none. Errors: those of chooseViews.
+[[nodiscard]] Result<std::optional<ViewChoice>> viewsFor(const MeshQuery& query, Layout layout, Prefer prefer,
+                                                         std::uint32_t max_maps);
+
 struct PlannedBake {
     Plan plan;  ///< its bytes are those of the baked maps
     Baked baked;

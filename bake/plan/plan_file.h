@@ -19,8 +19,8 @@
 // `budget`, optional, is the number of bytes on the GPU that the maps were planned for, for the collider's record alone.
 // `thickness`, optional, is the default from which each shell derives its own (bake/shape/thickness.h), in the mesh's units.
 // A map has `format`, `size`, or `bytes` of patches, and other keys of map_spec.h, with strings as after --map; `size` and
-// `bytes` may be whole numbers. Numbers
-// are the shortest that read back as the same floats: a plan and its file bake to the same bytes.
+// `bytes` may be whole numbers. Numbers are the shortest that read back as the same floats: a plan and its file bake to the
+// same bytes.
 #pragma once
 
 #include <cstdint>

@@ -21,7 +21,7 @@ enum class Quality : std::uint8_t { kFast, kNormal, kBest };
 template <>
 inline constexpr std::array<std::string_view, 3> kWordsOf<Quality>{"fast", "normal", "best"};
 
-/// What is planned: a tree of patches (formats/patch_tree.h), or maps of the whole mesh along chosen directions and from
+/// The maps that are planned: a tree of patches (formats/patch_tree.h), or maps of the whole mesh along chosen directions and from
 /// chosen places.
 enum class Layout : std::uint8_t { kPatches, kViews };
 

@@ -113,7 +113,7 @@ vec4 reliefPatchOrPair(int first, uvec2 record, vec3 q) {
     return piece;
 }
 
-// Where a point ends up in a tree.
+// The cell of a tree that a point ends up in.
 struct ReliefLeaf {
     uvec2 record;  // its own, or where it has none that of the split cell above it
     vec3 q;        // the place of the point in the unit cube of the record's cell

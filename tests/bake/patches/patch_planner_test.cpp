@@ -169,7 +169,7 @@ TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
             holes += vote(map, glm::vec3(axes * in_wall))->distance >= 0.0F ? 1 : 0;
             holes += vote(map, glm::vec3(axes * in_gap))->distance <= 0.0F ? 1 : 0;
         }
-        // Where a wall cuts a corner of a cell, its volume may not be worth a record.
+        // A wall that cuts a corner of a cell may have too little volume there to be worth a record.
         EXPECT_LE(holes, 8) << half;
         EXPECT_LT(wrongPercent(query, map, 40'000), 0.1);
     }

@@ -1,4 +1,4 @@
-// What the GPU answers at many points against what the CPU does.
+// The GPU's answers at many points against the CPU's.
 //
 // Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows
 // are in texels, and it divides by a normal's length last), and a GL may fuse or reorder operations and be
