@@ -32,7 +32,9 @@ constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
 /// Of the time.
 constexpr double kSearchShare = 0.7;
-constexpr int kHalvings = 12;
+constexpr int kNarrowings = 12;
+/// Of the bytes: a tree that leaves less is large enough.
+constexpr double kSpare = 3e-4;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
@@ -323,13 +325,15 @@ class Planner {
         return taken_;
     }
 
-    /// The least worth of a byte at which the tree fits.
+    /// The least worth of a byte at which the tree fits, nearly.
     void searchByte() {
         double byte = 1e-3 * static_cast<double>(root_ * root_ * root_);
         double dear = byte;
+        double taken_dear = 0.0;
         double taken = chooseAll(byte);
         for (int i = 0; i < kSteps && taken <= bytes_; ++i) {
             dear = byte;
+            taken_dear = taken;
             if (!(wrong_ > 0.0)) {
                 return;
             }
@@ -339,11 +343,19 @@ class Planner {
             taken = chooseAll(byte);
         }
         double cheap = byte;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = std::sqrt(cheap * dear);
-            (chooseAll(middle) > bytes_ ? cheap : dear) = middle;
+        double taken_cheap = taken;
+        const auto square = [](double x) { return x * x; };
+        for (int i = 0; i < kNarrowings && taken_dear < (1.0 - kSpare) * bytes_; ++i) {
+            const double share = (square(bytes_ / taken_dear) - 1.0) /
+                                 (square(bytes_ / taken_dear) - square(bytes_ / taken_cheap));
+            byte = dear + std::clamp(share, 0.1, 0.9) * (cheap - dear);
+            taken = chooseAll(byte);
+            (taken > bytes_ ? cheap : dear) = byte;
+            (taken > bytes_ ? taken_cheap : taken_dear) = taken;
         }
-        chooseAll(dear);
+        if (byte != dear) {
+            chooseAll(dear);
+        }
     }
 
     /// A cell without a patch: the nearest surface.
