@@ -15,6 +15,8 @@ namespace {
 
 /// Lines stand beside the middle of their squares by an odd share, since models are built on even ones.
 constexpr double kBeside = 0.0371;
+/// Of a place between two lines.
+constexpr double kRounding = 1e-9;
 /// Of more triangles the tree tells sooner that none is crossed.
 constexpr std::size_t kManyTriangles = 32;
 
@@ -70,33 +72,40 @@ class Path {
             return;
         }
         for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
-            cross(crossed(i), from, to, counter);
+            if (const int side = sideCrossed(crossed(i), from, to); side != 0) {
+                counter.cross(bodyOf(i), side);
+            }
         }
     }
 
-    void cross(const Crossed& one, const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
+    /// Of BodyCounter::cross; 0: the segment passes the triangle by.
+    [[nodiscard]] int sideCrossed(const Crossed& one, const glm::dvec3& from, const glm::dvec3& to) const {
         for (int axis = 0; axis < 3; ++axis) {
             if ((from[axis] < one.low[axis] && to[axis] < one.low[axis]) ||
                 (from[axis] > one.high[axis] && to[axis] > one.high[axis])) {
-                return;
+                return 0;
             }
         }
         const UnitTriangle& p = triangles_[one.index];
-        const glm::dvec3 normal = relief::cross(p[1] - p[0], p[2] - p[0]);
+        const glm::dvec3 normal = cross(p[1] - p[0], p[2] - p[0]);
         const double before = dot(normal, from - p[0]);
         const double after = dot(normal, to - p[0]);
         if ((before < 0.0) == (after < 0.0)) {
-            return;
+            return 0;
         }
         // Within the triangle: the line passes all edges on one side.
         const glm::dvec3 way = to - from;
         const auto past = [&](const glm::dvec3& a, const glm::dvec3& b) {
-            return dot(way, relief::cross(a - from, b - from));
+            return dot(way, cross(a - from, b - from));
         };
         const double e[3] = {past(p[0], p[1]), past(p[1], p[2]), past(p[2], p[0])};
-        if ((e[0] >= 0.0 && e[1] >= 0.0 && e[2] >= 0.0) || (e[0] <= 0.0 && e[1] <= 0.0 && e[2] <= 0.0)) {
-            counter.cross(query_.bodyOf(cell_.triangles[one.index]), before < 0.0 ? 1 : -1);
-        }
+        const bool within =
+            (e[0] >= 0.0 && e[1] >= 0.0 && e[2] >= 0.0) || (e[0] <= 0.0 && e[1] <= 0.0 && e[2] <= 0.0);
+        return !within ? 0 : before < 0.0 ? 1 : -1;
+    }
+
+    [[nodiscard]] std::uint32_t bodyOf(std::uint32_t index) const {
+        return query_.bodyOf(cell_.triangles[index]);
     }
 
   private:
@@ -139,12 +148,21 @@ struct Hit {
     }
 };
 
+/// The way to a start meets a triangle.
+struct Crossing {
+    std::size_t start;
+    std::uint32_t body;
+    int side;  // of BodyCounter::cross
+};
+
 /// An edge of a triangle over the lines' grid, upwards, so that the two triangles at it agree which lines it passes.
 struct GridEdge {
     double begin;  // rows from here on
     double end;    // to before here
     double x;
     double x_by_row;
+    double low;  // of x
+    double high;
 
     GridEdge(glm::dvec3 a, glm::dvec3 b) {
         if (std::tie(b.y, b.x) < std::tie(a.y, a.x)) {
@@ -153,10 +171,12 @@ struct GridEdge {
         begin = a.y;
         end = b.y;
         x = a.x;
+        low = std::min(a.x, b.x);
+        high = std::max(a.x, b.x);
         x_by_row = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0.0;
     }
     [[nodiscard]] bool meets(double row) const { return begin <= row && row < end; }
-    [[nodiscard]] double at(double row) const { return x + (row - begin) * x_by_row; }
+    [[nodiscard]] double at(double row) const { return std::clamp(x + (row - begin) * x_by_row, low, high); }
 };
 
 /// The first whole number from `at` on, of those up to `size`.
@@ -172,17 +192,23 @@ int firstFrom(double at, int size) {
 void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& grid,
              std::vector<Hit>& hits) {
     const auto& [a, b, c] = triangle;
+    const auto size = static_cast<int>(grid.across());
+    const auto [first, last] = std::minmax({a.y, b.y, c.y});
+    const int first_row = firstFrom(first, size);
+    const int end_row = firstFrom(last, size);
+    const auto [leftmost, rightmost] = std::minmax({a.x, b.x, c.x});
+    if (first_row == end_row || firstFrom(leftmost, size) == firstFrom(rightmost, size)) {
+        return;  // between the lines, as small ones are
+    }
     const glm::dvec3 normal = cross(b - a, c - a);
     if (normal.z == 0.0) {
         return;
     }
     const auto [lowest, highest] = std::minmax({a.z, b.z, c.z});
-    const auto [first, last] = std::minmax({a.y, b.y, c.y});
     const GridEdge edges[3] = {{a, b}, {b, c}, {c, a}};
-    const auto size = static_cast<int>(grid.across());
     const int side = (normal.z > 0.0) == (grid.handedness() > 0) ? 1 : -1;
     const glm::dvec2 slope = glm::dvec2(normal) / -normal.z;
-    for (int row = firstFrom(first, size); row < firstFrom(last, size); ++row) {
+    for (int row = first_row; row < end_row; ++row) {
         double left = std::numeric_limits<double>::infinity();
         double right = -left;
         for (const GridEdge& edge : edges) {
@@ -265,17 +291,29 @@ std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
                                    std::span<const UnitTriangle> triangles) {
     std::array<MeshCell, 8> children;
     const Path path(query, cell, triangles);
-    for (unsigned octant = 0; octant < 8; ++octant) {
-        MeshCell& child = children[octant];
-        const glm::dvec3 corner = 0.5 * glm::dvec3(octant & 1U, octant >> 1U & 1U, octant >> 2U);
-        child.size = 0.5 * cell.size;
-        child.low = cell.low + cell.size * corner;
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            const UnitTriangle& p = triangles[i];
+    const auto cornerOf = [](unsigned octant) {
+        return 0.5 * glm::dvec3(octant & 1U, octant >> 1U & 1U, octant >> 2U);
+    };
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const UnitTriangle& p = triangles[i];
+        const glm::dvec3 low = glm::min(glm::min(p[0], p[1]), p[2]);
+        const glm::dvec3 high = glm::max(glm::max(p[0], p[1]), p[2]);
+        for (unsigned octant = 0; octant < 8; ++octant) {
+            const glm::dvec3 corner = cornerOf(octant);
+            if (glm::any(glm::greaterThanEqual(low, corner + 0.5)) ||
+                glm::any(glm::lessThanEqual(high, corner))) {
+                continue;
+            }
             if (meetsUnitCube({2.0 * (p[0] - corner), 2.0 * (p[1] - corner), 2.0 * (p[2] - corner)})) {
-                child.triangles.push_back(cell.triangles[i]);
+                children[octant].triangles.push_back(cell.triangles[i]);
             }
         }
+    }
+    for (unsigned octant = 0; octant < 8; ++octant) {
+        MeshCell& child = children[octant];
+        const glm::dvec3 corner = cornerOf(octant);
+        child.size = 0.5 * cell.size;
+        child.low = cell.low + cell.size * corner;
         child.bodies = cell.bodies;
         path.go(cell.known, corner + 0.5 * child.known, child.bodies);
     }
@@ -318,7 +356,7 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
             line = span(axes.at(place(column), place(row), 0.0));
             if (!line.misses()) {
                 const double within = line.enters + 1e-9 * (line.leaves - line.enters);
-                starts_.push_back({index, axes.at(place(column), place(row), within)});
+                starts_.push_back({index, column, axes.at(place(column), place(row), within)});
             }
         }
     }
@@ -331,8 +369,35 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
     }
 }
 
-std::size_t LineGrid::startOfRow(double row) const {
-    return row_starts_[static_cast<std::size_t>(firstFrom(row, static_cast<int>(across_)))];
+template <class Visit>
+void LineGrid::forEachWayBy(const UnitTriangle& over, const Visit& visit) const {
+    const auto size = static_cast<int>(across_);
+    const auto [low, high] = std::minmax({over[0].y, over[1].y, over[2].y});
+    const auto [left, right] = std::minmax({over[0].x, over[1].x, over[2].x});
+    const auto column = [&](double at) { return static_cast<int>(std::clamp<double>(at, -1.0, size)); };
+    const int from = column(std::ceil(left - kRounding));
+    const int to = column(std::floor(right + kRounding));
+    const auto visitWay = [&](std::size_t start) {
+        if (start > 0 && start < starts_.size()) {
+            visit(start);
+        }
+    };
+    const int end_row = firstFrom(std::floor(high) + 1.0, size);
+    for (int row = firstFrom(low, size); row < end_row; ++row) {
+        const std::size_t first = row_starts_[row];
+        const auto count = static_cast<int>(row_starts_[row + 1] - first);
+        if (count == 0) {
+            continue;
+        }
+        visitWay(first);
+        const auto begin = static_cast<int>(starts_[first].column);
+        const auto [least, most] =
+            row % 2 == 0 ? std::pair(from - begin, to + 1 - begin) : std::pair(begin - to, begin + 1 - from);
+        for (int i = std::max(least, 1); i <= std::min(most, count - 1); ++i) {
+            visit(first + i);
+        }
+    }
+    visitWay(row_starts_[end_row]);
 }
 
 bool LineGrid::nearStarts(const UnitTriangle& triangle) const {
@@ -377,13 +442,8 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                          std::span<const UnitTriangle> triangles, const LineGrid& grid)
     : grid_(grid), columns_(grid.lines().size()) {
     std::vector<Hit> unordered;
-    struct Near {
-        Path::Crossed crossed;
-        std::size_t first;  // start to which the way may cross it
-        std::size_t last;
-    };
+    std::vector<Crossing> crossings;
     const Path path(query, cell, triangles);
-    std::vector<Near> near;
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         UnitTriangle over = triangles[i];
         for (glm::dvec3& corner : over) {
@@ -392,11 +452,18 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
             corner.y = corner.y * grid.across() - (0.5 + kBeside);
         }
         if (grid.nearStarts(triangles[i])) {
-            const auto [low, high] = std::minmax({over[0].y, over[1].y, over[2].y});
-            near.push_back({path.crossed(i), grid.startOfRow(low), grid.startOfRow(std::floor(high) + 1.0)});
+            const Path::Crossed crossed = path.crossed(i);
+            grid.forEachWayBy(over, [&](std::size_t start) {
+                const int side =
+                    path.sideCrossed(crossed, grid.starts()[start - 1].point, grid.starts()[start].point);
+                if (side != 0) {
+                    crossings.push_back({start, path.bodyOf(i), side});
+                }
+            });
         }
         addHits(over, cell.triangles[i], grid, unordered);
     }
+    std::ranges::sort(crossings, std::less(), &Crossing::start);
     // By line, and along each.
     std::vector<std::uint32_t> end(columns_.size() + 1, 0);
     for (const Hit& hit : unordered) {
@@ -411,16 +478,12 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     hits_ = hits.size();
     turns_.reserve(hits.size());
     BodyCounter counter = cell.bodies;
+    path.go(cell.known, grid.starts().front().point, counter);
+    auto crossing = crossings.begin();
     for (std::size_t i = 0; i < grid.starts().size(); ++i) {
         const LineGrid::Start& start = grid.starts()[i];
-        if (i == 0) {
-            path.go(cell.known, start.point, counter);
-        } else {
-            for (const Near& one : near) {
-                if (one.first <= i && i <= one.last) {
-                    path.cross(one.crossed, grid.starts()[i - 1].point, start.point, counter);
-                }
-            }
+        for (; crossing != crossings.end() && crossing->start == i; ++crossing) {
+            counter.cross(crossing->body, crossing->side);
         }
         const std::span along(hits.begin() + (start.line == 0 ? 0 : end[start.line - 1]),
                               hits.begin() + end[start.line]);
@@ -429,7 +492,9 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
         if (along.empty()) {
             continue;
         }
-        std::ranges::sort(along, std::less());
+        if (along.size() > 1) {
+            std::ranges::sort(along, std::less());
+        }
         BodyCounter bodies = counter;
         bool in = column.inside;
         for (const Hit& hit : along) {

@@ -60,6 +60,7 @@ class LineGrid {
     /// The place at which a line enters the cube.
     struct Start {
         std::uint32_t line;
+        std::uint32_t column;
         glm::dvec3 point;  ///< in the cube, next to its side
     };
 
@@ -70,10 +71,12 @@ class LineGrid {
     [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
     /// One for each line that does not miss, along a path in short steps.
     [[nodiscard]] const std::vector<Start>& starts() const { return starts_; }
-    /// The first of a row that is not below `row`, or the number of all.
-    [[nodiscard]] std::size_t startOfRow(double row) const;
     /// Whether the way from one start to the next may cross the triangle: that it may be near a side by which lines enter.
     [[nodiscard]] bool nearStarts(const UnitTriangle& triangle) const;
+    /// Calls visit(i) for each i > 0 such that the way from starts()[i − 1] to starts()[i] may cross a triangle.
+    /// \param over  the triangle, with lines at whole numbers of x and y.
+    template <class Visit>
+    void forEachWayBy(const UnitTriangle& over, const Visit& visit) const;
     /// Lines that meet a piece of a surface, as far as that goes by its area.
     [[nodiscard]] double expectedHits(const ClippedTriangle& piece) const;
     /// The volume of a column for a unit of its w, in cells.
@@ -86,9 +89,9 @@ class LineGrid {
     unsigned across_;
     std::vector<Line> lines_;
     std::vector<Start> starts_;
-    std::vector<std::size_t> row_starts_;
-    glm::dvec3 along_{0.0};   // of w, in the cube
-    double start_reach_ = 0;  // how far from such a side the way gets
+    std::vector<std::size_t> row_starts_;  // the first of each row, and their number
+    glm::dvec3 along_{0.0};                // of w, in the cube
+    double start_reach_ = 0;               // how far from such a side the way gets
     double volume_per_length_ = 0.0;
     int handedness_ = 1;
 };
