@@ -13,8 +13,6 @@
 namespace relief {
 namespace {
 
-/// Lines stand beside the middle of their squares by an odd share, since models are built on even ones.
-constexpr double kBeside = 0.0371;
 /// Of a place between two lines.
 constexpr double kRounding = 1e-9;
 /// Of more triangles the tree tells sooner that none is crossed.
@@ -220,7 +218,8 @@ void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& 
         const int end = firstFrom(right, size);
         for (int x = firstFrom(left, size); x < end; ++x) {
             const double w = std::clamp(a.z + slope.x * (x - a.x) + slope.y * (row - a.y), lowest, highest);
-            const auto line = static_cast<std::uint32_t>(row * size + x);
+            const auto line =
+                static_cast<std::uint32_t>(grid.lineAt(static_cast<unsigned>(x), static_cast<unsigned>(row)));
             if (w > grid.lines()[line].enters && w < grid.lines()[line].leaves) {
                 hits.push_back({line, index, w, side});
             }
@@ -320,10 +319,6 @@ std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
     return children;
 }
 
-double LineGrid::place(unsigned i) const {
-    return (i + 0.5 + kBeside) / across_;
-}
-
 LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
     : frame_(frame), across_(across), lines_(std::size_t{across} * across) {
     const CubeAxes axes(frame);
@@ -331,6 +326,7 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
     const double volume = dot(cross(axes.u, axes.v), axes.w);
     volume_per_length_ = std::abs(volume) / (static_cast<double>(across) * across);
     handedness_ = volume < 0.0 ? -1 : 1;
+    const auto place = [&](unsigned i) { return (i + kOffset) / across_; };
     const auto span = [&](const glm::dvec3& start) {
         Line line{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
         for (int axis = 0; axis < 3; ++axis) {
@@ -351,7 +347,7 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
         row_starts_.push_back(starts_.size());
         for (unsigned step = 0; step < across; ++step) {
             const unsigned column = row % 2 == 0 ? step : across - 1 - step;
-            const std::uint32_t index = row * across + column;
+            const auto index = static_cast<std::uint32_t>(lineAt(column, row));
             Line& line = lines_[index];
             line = span(axes.at(place(column), place(row), 0.0));
             if (!line.misses()) {
@@ -361,6 +357,11 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
         }
     }
     row_starts_.push_back(starts_.size());
+    for (const Line& line : lines_) {
+        enters_.push_back(static_cast<float>(line.enters));
+        leaves_.push_back(static_cast<float>(line.leaves));
+        lengths_.push_back(line.leaves - line.enters);
+    }
     start_reach_ = 1e-6;
     if (frame.diagonal != 0) {  // where the way from side to side leaves both
         for (std::size_t i = 1; i < starts_.size(); ++i) {
@@ -440,7 +441,7 @@ double CellColumn::wrongAt(double height, bool outside_below, const MistakeCosts
 
 CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                          std::span<const UnitTriangle> triangles, const LineGrid& grid)
-    : grid_(grid), columns_(grid.lines().size()) {
+    : grid_(grid), columns_(grid.lines().size()), inside_(grid.lines().size(), 0.0F) {
     std::vector<Hit> unordered;
     std::vector<Crossing> crossings;
     const Path path(query, cell, triangles);
@@ -448,8 +449,8 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
         UnitTriangle over = triangles[i];
         for (glm::dvec3& corner : over) {
             corner = grid.frame().across(corner);
-            corner.x = corner.x * grid.across() - (0.5 + kBeside);
-            corner.y = corner.y * grid.across() - (0.5 + kBeside);
+            corner.x = corner.x * grid.across() - LineGrid::kOffset;
+            corner.y = corner.y * grid.across() - LineGrid::kOffset;
         }
         if (grid.nearStarts(triangles[i])) {
             const Path::Crossed crossed = path.crossed(i);
@@ -479,24 +480,27 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     turns_.reserve(hits.size());
     BodyCounter counter = cell.bodies;
     path.go(cell.known, grid.starts().front().point, counter);
+    bool enters_inside = counter.inside();
     auto crossing = crossings.begin();
     for (std::size_t i = 0; i < grid.starts().size(); ++i) {
-        const LineGrid::Start& start = grid.starts()[i];
-        for (; crossing != crossings.end() && crossing->start == i; ++crossing) {
-            counter.cross(crossing->body, crossing->side);
+        const std::uint32_t line = grid.starts()[i].line;
+        if (crossing != crossings.end() && crossing->start == i) {
+            for (; crossing != crossings.end() && crossing->start == i; ++crossing) {
+                counter.cross(crossing->body, crossing->side);
+            }
+            enters_inside = counter.inside();
         }
-        const std::span along(hits.begin() + (start.line == 0 ? 0 : end[start.line - 1]),
-                              hits.begin() + end[start.line]);
-        Turns& column = columns_[start.line];
-        column = {static_cast<std::uint32_t>(turns_.size()), 0, counter.inside()};
+        inside_[line] = enters_inside ? 1.0F : 0.0F;
+        const std::span along(hits.begin() + (line == 0 ? 0 : end[line - 1]), hits.begin() + end[line]);
         if (along.empty()) {
             continue;
         }
         if (along.size() > 1) {
             std::ranges::sort(along, std::less());
         }
+        const auto first = static_cast<std::uint32_t>(turns_.size());
         BodyCounter bodies = counter;
-        bool in = column.inside;
+        bool in = enters_inside;
         for (const Hit& hit : along) {
             bodies.cross(query.bodyOf(hit.triangle), hit.side);
             if (bodies.inside() != in) {
@@ -504,13 +508,16 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                 turns_.push_back(hit.w);
             }
         }
-        column.count = static_cast<std::uint32_t>(turns_.size()) - column.first;
+        if (turns_.size() > first) {
+            columns_[line] = {first, static_cast<std::uint32_t>(turns_.size()) - first};
+            turning_.push_back(line);
+        }
     }
 }
 
 CellColumn CellColumns::operator[](std::size_t line) const {
     const Turns& turns = columns_[line];
-    return {grid_.lines()[line].enters, grid_.lines()[line].leaves, turns.inside,
+    return {grid_.lines()[line].enters, grid_.lines()[line].leaves, inside_[line] != 0.0F,
             std::span(turns_).subspan(turns.first, turns.count)};
 }
 

@@ -45,10 +45,16 @@ struct ClippedTriangle {
 [[nodiscard]] std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
                                                  std::span<const UnitTriangle> triangles);
 
-/// The lines through the unit cube along one frame, in a square of `across` lines by as many, u fastest: what they have in
-/// common for all cells.
+/// The lines through the unit cube along one frame, in a square of `across` lines by as many: what they have in common for all
+/// cells. Rows follow each other by v. Within a row, four quarters are beside each other, the first line of each, then the
+/// second of each: fits treat four lines at once (lanes.h), in up to four squares between heights.
 class LineGrid {
   public:
+    /// From the side of the cube to its first line, in distances between lines. Not by half, since models are built on even
+    /// numbers.
+    static constexpr double kOffset = 0.5371;
+
+    /// \param across  a multiple of 4.
     LineGrid(const PatchFrame& frame, unsigned across);
 
     /// From where a line enters the cube to where it leaves it, w of PatchFrame. Both 0 if it misses the cube.
@@ -66,9 +72,16 @@ class LineGrid {
 
     [[nodiscard]] const PatchFrame& frame() const { return frame_; }
     [[nodiscard]] unsigned across() const { return across_; }
-    /// u of the i-th line of a row, and v of the i-th row.
-    [[nodiscard]] double place(unsigned i) const;
+    /// The index of a line, by its u and v.
+    [[nodiscard]] std::size_t lineAt(unsigned column, unsigned row) const {
+        const unsigned quarter = across_ / 4;
+        return std::size_t{row} * across_ + 4 * (column % quarter) + column / quarter;
+    }
     [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
+    /// What lines() says, each in an array.
+    [[nodiscard]] const std::vector<float>& enters() const { return enters_; }
+    [[nodiscard]] const std::vector<float>& leaves() const { return leaves_; }
+    [[nodiscard]] const std::vector<double>& lengths() const { return lengths_; }
     /// One for each line that does not miss, along a path in short steps.
     [[nodiscard]] const std::vector<Start>& starts() const { return starts_; }
     /// Whether the way from one start to the next may cross the triangle: that it may be near a side by which lines enter.
@@ -88,6 +101,9 @@ class LineGrid {
     PatchFrame frame_;
     unsigned across_;
     std::vector<Line> lines_;
+    std::vector<float> enters_;
+    std::vector<float> leaves_;
+    std::vector<double> lengths_;
     std::vector<Start> starts_;
     std::vector<std::size_t> row_starts_;  // the first of each row, and their number
     glm::dvec3 along_{0.0};                // of w, in the cube
@@ -128,16 +144,21 @@ class CellColumns {
     [[nodiscard]] std::size_t hits() const { return hits_; }
     /// \param line  an index of LineGrid::lines(), of one that does not miss.
     [[nodiscard]] CellColumn operator[](std::size_t line) const;
+    /// Of each line: 1 if it is inside where it enters, else 0.
+    [[nodiscard]] std::span<const float> inside() const { return inside_; }
+    /// The lines with turns.
+    [[nodiscard]] std::span<const std::uint32_t> turning() const { return turning_; }
 
   private:
     struct Turns {
         std::uint32_t first = 0;
         std::uint32_t count = 0;
-        bool inside = false;
     };
 
     const LineGrid& grid_;
     std::vector<Turns> columns_;
+    std::vector<float> inside_;
+    std::vector<std::uint32_t> turning_;
     std::vector<double> turns_;
     std::size_t hits_ = 0;
 };

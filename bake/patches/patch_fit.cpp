@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "bake/patches/lanes.h"
+
 namespace relief {
 namespace {
 
@@ -12,7 +14,7 @@ namespace {
 constexpr double kSmooth = 3e-4;
 constexpr double kAnchor = 1e-7;
 /// An error below which all errors weigh the same, in units of w.
-constexpr double kSmallError = 4e-3;
+constexpr float kSmallError = 4e-3F;
 
 /// A symmetric system for kSide² heights. The bilinear basis couples a node with those up to one row and one column on, second
 /// differences with those two rows on.
@@ -43,154 +45,191 @@ class HeightSystem {
     }
 
     void add(std::size_t i, std::size_t j, double value) {  // i >= j
-        rows_[i][kBand + j - i] += value;
+        columns_[j][i - j] += value;
     }
     void addRight(std::size_t i, double value) { right_[i] += value; }
 
     /// By LDLᵀ, which keeps the band.
     void solve(std::array<double, kNodes>& x) {
-        std::array<double, kNodes> pivots;
-        std::array<double, kBand> scaled;  // a row of LD
-        for (std::size_t i = 0; i < kNodes; ++i) {
-            const std::size_t first = i > kBand ? i - kBand : 0;
-            double* const row = &rows_[i][kBand - (i - first)];  // [j − first]
-            double pivot = rows_[i][kBand];
-            double right = right_[i];
-            for (std::size_t j = first; j < i; ++j) {
-                const std::size_t from = std::max(first, j > kBand ? j - kBand : 0);
-                double sum = row[j - first];
-                for (std::size_t k = from; k < j; ++k) {
-                    sum -= scaled[k - first] * rows_[j][kBand + k - j];
+        for (std::size_t j = 0; j < kNodes; ++j) {
+            const std::array<double, kWidth>& column = columns_[j];
+            const double pivot = 1.0 / column[0];
+            const std::size_t count = std::min(kBand, kNodes - 1 - j);
+            for (std::size_t i = 1; i <= count; ++i) {
+                const double factor = column[i] * pivot;
+                right_[j + i] -= factor * right_[j];
+                double* const other = columns_[j + i].data();
+                for (std::size_t k = 0; k <= count - i; k += 2) {
+                    storeLanes(other + k, loadLanes<TwoDoubles>(other + k) -
+                                              factor * loadLanes<TwoDoubles>(&column[i + k]));
                 }
-                scaled[j - first] = sum;
-                row[j - first] = sum * pivots[j];
-                pivot -= sum * row[j - first];
-                right -= row[j - first] * x[j];
             }
-            pivots[i] = 1.0 / pivot;
-            x[i] = right;
         }
-        for (std::size_t i = 0; i < kNodes; ++i) {
-            x[i] *= pivots[i];
+        for (std::size_t j = kNodes; j-- > 0;) {
+            const std::array<double, kWidth>& column = columns_[j];
+            double sum = right_[j];
+            for (std::size_t i = std::min(kBand, kNodes - 1 - j); i > 0; --i) {
+                sum -= column[i] * x[j + i];
+            }
+            x[j] = sum / column[0];
         }
-        for (std::size_t i = kNodes; i-- > 0;) {
-            for (std::size_t k = i > kBand ? i - kBand : 0; k < i; ++k) {
-                x[k] -= rows_[i][kBand + k - i] * x[i];
+    }
+
+  private:
+    static constexpr std::size_t kWidth = (kBand + 3) / 2 * 2;
+    std::array<std::array<double, kWidth>, kNodes> columns_{};  // from the diagonal down, and zeros
+    std::array<double, kNodes> right_{};
+};
+
+/// kSide² heights on the lines of a grid, four at a time.
+template <std::size_t kSide>
+class HeightLanes {
+  public:
+    static constexpr std::size_t kSquares = kSide - 1;  // along a side
+
+    HeightLanes(const LineGrid& grid, const std::array<double, kSide * kSide>& heights)
+        : lines_(grid.across() / kSquares),
+          quarter_(grid.across() / kLanes),
+          per_line_(1.0F / static_cast<float>(lines_)) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            first_[lane] = static_cast<float>(lane % (kLanes / kSquares) * quarter_) + kOffset;
+            const std::size_t square = squareOf(lane);
+            for (std::size_t row = 0; row < kSide; ++row) {
+                left_[row][lane] = static_cast<float>(heights[row * kSide + square]);
+                right_[row][lane] = static_cast<float>(heights[row * kSide + square + 1]);
+            }
+        }
+    }
+
+    [[nodiscard]] static constexpr std::size_t squareOf(std::size_t lane) { return lane * kSquares / kLanes; }
+    /// Of lines, in a square along its side.
+    [[nodiscard]] std::size_t lines() const { return lines_; }
+    /// Of a row.
+    [[nodiscard]] std::size_t quarter() const { return quarter_; }
+    /// Of the second height of a square, for its index-th row of lines.
+    [[nodiscard]] float rowShare(std::size_t index) const {
+        return (static_cast<float>(index) + kOffset) * per_line_;
+    }
+    /// As rowShare(), for the index-th lanes of a row.
+    [[nodiscard]] Lanes shares(std::size_t index) const {
+        return (first_ + static_cast<float>(index)) * per_line_;
+    }
+
+    /// A row of lines.
+    struct Row {
+        Lanes left;
+        Lanes rise;
+        [[nodiscard]] Lanes at(Lanes shares) const { return left + shares * rise; }
+    };
+    /// \param square  of the rows of squares.
+    [[nodiscard]] Row row(std::size_t square, float share) const {
+        const Lanes left = left_[square] + share * (left_[square + 1] - left_[square]);
+        const Lanes right = right_[square] + share * (right_[square + 1] - right_[square]);
+        return {left, right - left};
+    }
+
+    /// On one line.
+    [[nodiscard]] float operator[](std::size_t line) const {
+        const std::size_t in_row = line % (kLanes * quarter_);
+        const std::size_t j = line / (kLanes * quarter_);
+        return row(j / lines_, rowShare(j % lines_)).at(shares(in_row / kLanes))[in_row % kLanes];
+    }
+
+    /// Calls visit(line, heights) with the index of the first of each four lines, in order.
+    template <class Visit>
+    void forEach(const Visit& visit) const {
+        std::size_t line = 0;
+        for (std::size_t square = 0; square < kSquares; ++square) {
+            for (std::size_t j = 0; j < lines_; ++j) {
+                const Row across = row(square, rowShare(j));
+                for (std::size_t i = 0; i < quarter_; ++i, line += kLanes) {
+                    visit(line, across.at(shares(i)));
+                }
             }
         }
     }
 
   private:
-    std::array<std::array<double, kBand + 1>, kNodes> rows_{};  // the diagonal last
-    std::array<double, kNodes> right_{};
+    static constexpr auto kOffset = static_cast<float>(LineGrid::kOffset);
+
+    std::size_t lines_;
+    std::size_t quarter_;
+    float per_line_;
+    Lanes first_;        // the place of the first lanes in their squares, in lines
+    Lanes left_[kSide];  // by row of heights, those beside the square of each lane
+    Lanes right_[kSide];
 };
 
-/// A line's place among the heights of a row, or a row's.
-struct Between {
-    std::size_t first;
-    double share;  // of the next one
-
-    Between(double place, std::size_t side) {
-        const double last = static_cast<double>(side) - 1.0;
-        const double at = std::clamp(place, 0.0, 1.0) * last;
-        first = std::min(static_cast<std::size_t>(at), side - 2);
-        share = at - static_cast<double>(first);
-    }
-};
-
-/// The lines of a grid in the squares between kSide² heights.
-template <std::size_t kSide>
-std::vector<Between> betweenOf(const LineGrid& grid) {
-    std::vector<Between> between;
-    for (unsigned i = 0; i < grid.across(); ++i) {
-        between.emplace_back(grid.place(i), kSide);
-    }
-    return between;
-}
-
-/// Heights across a row of lines.
-template <std::size_t kSide>
-std::array<double, kSide> rowOf(const std::array<double, kSide * kSide>& heights, const Between& row) {
-    std::array<double, kSide> across;
-    for (std::size_t i = 0; i < kSide; ++i) {
-        const double* const lower = &heights[row.first * kSide + i];
-        across[i] = lower[0] + row.share * (lower[kSide] - lower[0]);
-    }
-    return across;
-}
-
-/// Calls visit(line, height) with the height on each line of a grid, in order.
-/// \param between  betweenOf() the grid.
-template <std::size_t kSide, class Visit>
-void forEachHeight(std::span<const Between> between, const std::array<double, kSide * kSide>& heights,
-                   const Visit& visit) {
-    const std::size_t across = between.size();
-    for (std::size_t j = 0; j < across; ++j) {
-        const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
-        for (std::size_t i = 0; i < across; ++i) {
-            const double* const first = &row[between[i].first];
-            visit(j * across + i, first[0] + between[i].share * (first[1] - first[0]));
-        }
-    }
-}
-
-/// Sums over the lines of a row between two heights, weighted by their shares.
+/// Sums over lines between two heights, weighted by their shares.
 struct RowSums {
-    double square[3] = {};  // both the first's share, one each, both the second's
-    double right[2] = {};
+    Lanes square[3] = {};  // both the first's share, one each, both the second's
+    Lanes right[2] = {};
 };
 
 /// One round of least squares.
 /// \param heights  of the round before, by which errors are weighted; there is none before round 0.
 template <std::size_t kSide>
-void fitRound(std::span<const Between> between, std::span<const HeightTarget> targets, int round,
+void fitRound(const LineGrid& grid, const HeightTargets& targets, int round,
               std::array<double, kSide * kSide>& heights) {
     static const HeightSystem<kSide> kEmpty;
     HeightSystem<kSide> system = kEmpty;
-    const std::size_t across = between.size();
-    for (std::size_t j = 0; j < across; ++j) {
-        const std::array<double, kSide> row = rowOf<kSide>(heights, between[j]);
-        std::array<RowSums, kSide - 1> sums;
-        for (std::size_t i = 0; i < across; ++i) {
-            const HeightTarget& target = targets[j * across + i];
-            const std::size_t first = between[i].first;
-            const double s = between[i].share;
-            double weight = target.above * target.below;
-            if (round > 0) {
-                const double off = row[first] + s * (row[first + 1] - row[first]) - target.height;
-                weight =
-                    (off > 0.0 ? target.above : target.below) * kSmallError / (kSmallError + std::abs(off));
+    const HeightLanes<kSide> before(grid, heights);
+    std::size_t line = 0;
+    for (std::size_t square = 0; square + 1 < kSide; ++square) {
+        RowSums lower;  // both rows' heights the lower one's share, ...
+        RowSums upper;
+        Lanes mixed[3] = {};
+        for (std::size_t j = 0; j < before.lines(); ++j) {
+            const float t = before.rowShare(j);
+            const auto row = before.row(square, t);
+            RowSums sum;
+            for (std::size_t i = 0; i < before.quarter(); ++i, line += kLanes) {
+                const auto height = loadLanes<Lanes>(&targets.height[line]);
+                const auto above = loadLanes<Lanes>(&targets.above[line]);
+                const auto below = loadLanes<Lanes>(&targets.below[line]);
+                const Lanes s = before.shares(i);
+                Lanes weight = above * below;
+                if (round > 0) {
+                    const Lanes off = row.at(s) - height;
+                    weight = (off > 0.0F ? above : below) * (kSmallError / (kSmallError + absLanes(off)));
+                }
+                const Lanes second = weight * s;
+                const Lanes first = weight - second;
+                const Lanes both = first * s;
+                sum.square[0] += first - both;
+                sum.square[1] += both;
+                sum.square[2] += second - both;
+                sum.right[0] += first * height;
+                sum.right[1] += second * height;
             }
-            RowSums& sum = sums[first];
-            const double second = weight * s;
-            sum.square[0] += (weight - second) * (1.0 - s);
-            sum.square[1] += second * (1.0 - s);
-            sum.square[2] += second * s;
-            sum.right[0] += (weight - second) * target.height;
-            sum.right[1] += second * target.height;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Lanes once = t * sum.square[k];
+                const Lanes twice = t * once;
+                upper.square[k] += twice;
+                mixed[k] += once - twice;
+                lower.square[k] += sum.square[k] - 2.0F * once + twice;
+            }
+            for (std::size_t k = 0; k < 2; ++k) {
+                const Lanes once = t * sum.right[k];
+                upper.right[k] += once;
+                lower.right[k] += sum.right[k] - once;
+            }
         }
-        const double t = between[j].share;
-        for (std::size_t i = 0; i + 1 < kSide; ++i) {
-            const double* const square = sums[i].square;
-            const double* const right = sums[i].right;
-            const std::size_t node = between[j].first * kSide + i;
-            const auto addPair = [&](std::size_t a, std::size_t b,
-                                     double share) {  // of nodes in two rows
-                system.add(a, b, share * square[0]);
-                system.add(a, b + 1, share * square[1]);
-                system.add(a + 1, b, share * square[1]);
-                system.add(a + 1, b + 1, share * square[2]);
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::size_t node = square * kSide + before.squareOf(lane);
+            const auto add = [&](std::size_t a, const RowSums& sums) {
+                system.add(a, a, double{sums.square[0][lane]});
+                system.add(a + 1, a, double{sums.square[1][lane]});
+                system.add(a + 1, a + 1, double{sums.square[2][lane]});
+                system.addRight(a, double{sums.right[0][lane]});
+                system.addRight(a + 1, double{sums.right[1][lane]});
             };
-            const auto addOne = [&](std::size_t a, double share, double share_right) {
-                system.add(a, a, share * square[0]);
-                system.add(a + 1, a, share * square[1]);
-                system.add(a + 1, a + 1, share * square[2]);
-                system.addRight(a, share_right * right[0]);
-                system.addRight(a + 1, share_right * right[1]);
-            };
-            addOne(node, (1.0 - t) * (1.0 - t), 1.0 - t);
-            addOne(node + kSide, t * t, t);
-            addPair(node + kSide, node, t * (1.0 - t));
+            add(node, lower);
+            add(node + kSide, upper);
+            system.add(node + kSide, node, double{mixed[0][lane]});
+            system.add(node + kSide, node + 1, double{mixed[1][lane]});
+            system.add(node + kSide + 1, node, double{mixed[1][lane]});
+            system.add(node + kSide + 1, node + 1, double{mixed[2][lane]});
         }
     }
     system.solve(heights);
@@ -245,51 +284,70 @@ Part bestPart(const CellColumn& column, const MistakeCosts& costs, bool walls) {
 
 PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
                          std::optional<bool> outside_below)
-    : columns_(columns), costs_(costs) {
-    const std::vector<LineGrid::Line>& lines = columns.grid().lines();
-    double lower = 0.0;  // inside in the lower half of a column more than in the upper one
-    double length = 0.0;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const CellColumn column = columns[i];
-        const double half = 0.5 * (column.leaves - column.enters);
-        length += 2.0 * half;
-        if (column.turns.empty()) {
-            inside_volume_ += column.inside ? 2.0 * half : 0.0;
-            continue;
+    : columns_(columns),
+      costs_(costs),
+      targets_(columns.grid().lines().size()),
+      by_error_(columns.grid().lines().size(), 1.0F) {
+    const std::vector<double>& lengths = columns.grid().lengths();
+    std::array<double, kLanes> length{};
+    std::array<double, kLanes> inside{};
+    for (std::size_t i = 0; i < lengths.size(); i += kLanes) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            length[k] += lengths[i + k];
+            inside[k] += double{columns.inside()[i + k]} * lengths[i + k];
         }
-        const double inside = column.insideTo(column.leaves);
-        lower += 2.0 * column.insideTo(column.enters + half) - inside;
-        inside_volume_ += inside;
     }
-    inside_volume_ *= columns.grid().volumePerLength();
-    volume_ = length * columns.grid().volumePerLength();
+    const auto volumeOf = [&](const std::array<double, kLanes>& sums) {
+        return ((sums[0] + sums[1]) + (sums[2] + sums[3])) * columns.grid().volumePerLength();
+    };
+    double lower = 0.0;  // inside in the lower half of a column more than in the upper one
+    for (const std::uint32_t line : columns.turning()) {
+        const CellColumn column = columns[line];
+        const double all = column.insideTo(column.leaves);
+        lower += 2.0 * column.insideTo(0.5 * (column.enters + column.leaves)) - all;
+        inside[0] += all - double{columns.inside()[line]} * lengths[line];
+    }
+    inside_volume_ = volumeOf(inside);
+    volume_ = volumeOf(length);
     outside_below_ = outside_below.value_or(lower < 0.0);
-    targets_.resize(lines.size());
-    by_error_.resize(lines.size(), 1);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (!lines[i].misses()) {
-            bool by_error = true;
-            targets_[i] = targetOf(columns[i], by_error);
-            by_error_[i] = by_error ? 1 : 0;
+    aimAtEnds();
+    for (const std::uint32_t line : columns.turning()) {
+        bool by_error = true;
+        targets_.set(line, targetOf(columns[line], by_error));
+        if (!by_error) {
+            by_error_[line] = 0.0F;
+            not_by_error_.push_back(line);
         }
+    }
+}
+
+void PatchFitter::aimAtEnds() {
+    const LineGrid& grid = columns_.grid();
+    const auto above = static_cast<float>(outside_below_ ? costs_.false_outside : costs_.false_inside);
+    const auto below = static_cast<float>(outside_below_ ? costs_.false_inside : costs_.false_outside);
+    const Lanes none{};
+    for (std::size_t line = 0; line < targets_.height.size(); line += kLanes) {
+        const auto enters = loadLanes<Lanes>(&grid.enters()[line]);
+        const auto leaves = loadLanes<Lanes>(&grid.leaves()[line]);
+        const auto inside = loadLanes<Lanes>(&columns_.inside()[line]);
+        const auto low = inside == (outside_below_ ? 1.0F : 0.0F);
+        const auto meets = leaves > enters;
+        storeLanes(&targets_.height[line], low ? enters : leaves);
+        storeLanes(&targets_.above[line], (low & meets) ? allLanes(above) : none);
+        storeLanes(&targets_.below[line], (~low & meets) ? allLanes(below) : none);
     }
 }
 
 HeightTarget PatchFitter::targetOf(const CellColumn& column, bool& by_error) const {
     const double above = outside_below_ ? costs_.false_outside : costs_.false_inside;
     const double below = outside_below_ ? costs_.false_inside : costs_.false_outside;
-    const HeightTarget enters{.height = column.enters, .above = above};
-    const HeightTarget leaves{.height = column.leaves, .below = below};
-    if (column.turns.empty()) {
-        return column.inside == outside_below_ ? enters : leaves;
-    }
     if (column.turns.size() == 1 && column.inside != outside_below_) {
         return {column.turns[0], above, below};
     }
-    HeightTarget best = enters;
+    HeightTarget best{.height = column.enters, .above = above};
     double least = column.wrongAt(column.enters, outside_below_, costs_);
     if (const double wrong = column.wrongAt(column.leaves, outside_below_, costs_); wrong < least) {
-        best = leaves;
+        best = {.height = column.leaves, .below = below};
         least = wrong;
     }
     for (const double turn : column.turns) {
@@ -305,25 +363,28 @@ HeightTarget PatchFitter::targetOf(const CellColumn& column, bool& by_error) con
 template <std::size_t kSide>
 double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) const {
     const LineGrid& grid = columns_.grid();
-    double wrong = 0.0;
-    forEachHeight<kSide>(betweenOf<kSide>(grid), heights, [&](std::size_t i, double height) {
-        if (by_error_[i] != 0) {
-            const LineGrid::Line& line = grid.lines()[i];
-            const double off = std::clamp(height, line.enters, line.leaves) - targets_[i].height;
-            wrong += (off > 0.0 ? targets_[i].above : targets_[i].below) * std::abs(off);
-        } else {
-            wrong += columns_[i].wrongAt(height, outside_below_, costs_);
-        }
+    const HeightLanes<kSide> on_lines(grid, heights);
+    Lanes sums{};
+    on_lines.forEach([&](std::size_t line, Lanes height) {
+        const Lanes held = clampLanes(height, loadLanes<Lanes>(&grid.enters()[line]),
+                                      loadLanes<Lanes>(&grid.leaves()[line]));
+        const Lanes off = held - loadLanes<Lanes>(&targets_.height[line]);
+        const Lanes cost =
+            off > 0.0F ? loadLanes<Lanes>(&targets_.above[line]) : loadLanes<Lanes>(&targets_.below[line]);
+        sums += loadLanes<Lanes>(&by_error_[line]) * cost * absLanes(off);
     });
+    double wrong = double{sumOfLanes(sums)};
+    for (const std::uint32_t line : not_by_error_) {
+        wrong += columns_[line].wrongAt(double{on_lines[line]}, outside_below_, costs_);
+    }
     return wrong * grid.volumePerLength();
 }
 
 template <std::size_t kSide>
 FittedPatch PatchFitter::fitOf(int rounds) const {
-    const std::vector<Between> between = betweenOf<kSide>(columns_.grid());
     std::array<double, kSide * kSide> heights{};
     for (int round = 0; round < rounds; ++round) {
-        fitRound<kSide>(between, targets_, round, heights);
+        fitRound<kSide>(columns_.grid(), targets_, round, heights);
     }
     FittedPatch fitted;
     fitted.heights = coded<kSide>(heights);
@@ -336,7 +397,8 @@ FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
 }
 
 PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls)
-    : columns_(columns) {
+    : columns_(columns),
+      targets_{HeightTargets(columns.grid().lines().size()), HeightTargets(columns.grid().lines().size())} {
     const std::vector<LineGrid::Line>& lines = columns.grid().lines();
     const auto leastOf = [&](bool of_walls) {
         const MistakeCosts between = of_walls ? costs : MistakeCosts{costs.false_outside, costs.false_inside};
@@ -355,8 +417,6 @@ PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, st
     walls_ = walls.value_or(of_walls <= of_gaps);
     least_ = walls_ ? of_walls : of_gaps;
     costs_ = walls_ ? costs : MistakeCosts{costs.false_outside, costs.false_inside};
-    targets_[0].resize(lines.size());
-    targets_[1].resize(lines.size());
     for (std::uint32_t i = 0; i < lines.size(); ++i) {
         if (lines[i].misses()) {
             continue;
@@ -364,10 +424,10 @@ PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, st
         const CellColumn column = columns[i];
         const Part part = bestPart(column, costs_, walls_);
         if (part.gain > 0.0) {
-            targets_[0][i] = {part.begin, costs_.false_outside,
-                              part.begin > column.enters ? costs_.false_inside : 0.0};
-            targets_[1][i] = {part.end, part.end < column.leaves ? costs_.false_inside : 0.0,
-                              costs_.false_outside};
+            targets_[0].set(i, {part.begin, costs_.false_outside,
+                                part.begin > column.enters ? costs_.false_inside : 0.0});
+            targets_[1].set(
+                i, {part.end, part.end < column.leaves ? costs_.false_inside : 0.0, costs_.false_outside});
         } else {
             without_.push_back(i);
         }
@@ -377,15 +437,15 @@ PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, st
 template <std::size_t kSide>
 FittedPair PairFitter::fitOf(int rounds) const {
     const LineGrid& grid = columns_.grid();
-    const std::vector<Between> between = betweenOf<kSide>(grid);
-    std::array<std::vector<HeightTarget>, 2> targets = targets_;
+    std::array<HeightTargets, 2> targets = targets_;
     std::array<std::array<double, kSide * kSide>, 2> heights{};
-    std::array<std::vector<double>, 2> on_lines;
+    std::array<std::vector<float>, 2> on_lines;
     const auto lay = [&] {
         for (std::size_t k = 0; k < 2; ++k) {
             on_lines[k].resize(grid.lines().size());
-            forEachHeight<kSide>(between, heights[k],
-                                 [&](std::size_t i, double height) { on_lines[k][i] = height; });
+            HeightLanes<kSide>(grid, heights[k]).forEach([&](std::size_t line, Lanes height) {
+                storeLanes(&on_lines[k][line], height);
+            });
         }
     };
     for (int round = 0; round < rounds; ++round) {
@@ -394,15 +454,15 @@ FittedPair PairFitter::fitOf(int rounds) const {
             lay();
             for (const std::uint32_t i : without_) {
                 const LineGrid::Line& line = grid.lines()[i];
-                const double low = std::clamp(on_lines[0][i], line.enters, line.leaves);
-                const double high = std::clamp(on_lines[1][i], line.enters, line.leaves);
+                const double low = std::clamp(double{on_lines[0][i]}, line.enters, line.leaves);
+                const double high = std::clamp(double{on_lines[1][i]}, line.enters, line.leaves);
                 const double cost = high > low ? costs_.false_inside : 0.0;
-                targets[0][i] = {0.5 * (low + high), 0.0, cost};
-                targets[1][i] = {0.5 * (low + high), cost, 0.0};
+                targets[0].set(i, {0.5 * (low + high), 0.0, cost});
+                targets[1].set(i, {0.5 * (low + high), cost, 0.0});
             }
         }
         for (std::size_t k = 0; k < 2; ++k) {
-            fitRound<kSide>(between, targets[k], round, heights[k]);
+            fitRound<kSide>(grid, targets[k], round, heights[k]);
         }
     }
     FittedPair fitted;
@@ -415,8 +475,8 @@ FittedPair PairFitter::fitOf(int rounds) const {
             continue;
         }
         const CellColumn column = columns_[i];
-        const double low = std::clamp(on_lines[0][i], column.enters, column.leaves);
-        const double high = std::max(low, std::clamp(on_lines[1][i], column.enters, column.leaves));
+        const double low = std::clamp(double{on_lines[0][i]}, column.enters, column.leaves);
+        const double high = std::max(low, std::clamp(double{on_lines[1][i]}, column.enters, column.leaves));
         const double held = betweenTo(column, high, walls_) - betweenTo(column, low, walls_);
         fitted.wrong += costs_.false_outside * (betweenTo(column, column.leaves, walls_) - held) +
                         costs_.false_inside * (high - low - held);

@@ -21,6 +21,21 @@ struct HeightTarget {
     double below = 0.0;
 };
 
+/// A HeightTarget for each line, each number in an array.
+struct HeightTargets {
+    std::vector<float> height;
+    std::vector<float> above;
+    std::vector<float> below;
+
+    /// As of lines that miss the cube.
+    explicit HeightTargets(std::size_t lines) : height(lines), above(lines), below(lines) {}
+    void set(std::size_t line, const HeightTarget& target) {
+        height[line] = static_cast<float>(target.height);
+        above[line] = static_cast<float>(target.above);
+        below[line] = static_cast<float>(target.below);
+    }
+};
+
 struct FittedPatch {
     PatchHeights heights;
     double wrong = 0.0;  ///< volume on the wrong side, in cells, times its costs
@@ -53,7 +68,7 @@ class PairFitter {
     MistakeCosts costs_;  // of what lies between
     bool walls_ = true;
     double least_ = 0.0;
-    std::array<std::vector<HeightTarget>, 2> targets_;
+    std::array<HeightTargets, 2> targets_;
     std::vector<std::uint32_t> without_;  // lines on which nothing lies between
 };
 
@@ -81,12 +96,15 @@ class PatchFitter {
     /// The volume on the wrong side among some heights.
     template <std::size_t kSide>
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;
+    /// Of the lines without turns.
+    void aimAtEnds();
 
     const CellColumns& columns_;
     MistakeCosts costs_;
     bool outside_below_ = false;
-    std::vector<HeightTarget> targets_;
-    std::vector<std::uint8_t> by_error_;  // targetOf()
+    HeightTargets targets_;
+    std::vector<float> by_error_;              // 0 of the lines below, else 1
+    std::vector<std::uint32_t> not_by_error_;  // targetOf()
     double inside_volume_ = 0.0;
     double volume_ = 0.0;
 };

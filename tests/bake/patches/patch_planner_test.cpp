@@ -64,9 +64,12 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     for (const MeshCell& one : cells) {
         EXPECT_EQ(one.bodies.inside(), query.inside(glm::vec3(one.low + one.size * one.known)));
         for (const PatchFrame& frame : patchFrames()) {
-            const LineGrid grid(frame, 9);
+            constexpr unsigned kAcross = 12;
+            const LineGrid grid(frame, kAcross);
+            const auto place = [](unsigned at) { return (at + LineGrid::kOffset) / kAcross; };
             const CellColumns columns(query, one, unitTriangles(query.mesh(), one), grid);
-            for (unsigned line = 0; line < 81; ++line) {
+            for (unsigned i = 0; i < kAcross * kAcross; ++i) {
+                const std::size_t line = grid.lineAt(i % kAcross, i / kAcross);
                 if (grid.lines()[line].misses()) {
                     continue;
                 }
@@ -81,7 +84,7 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
                                             frame.across(glm::dvec3(0, 0, 1)) - zero);
                     const glm::dvec3 p =
                         glm::inverse(across) *
-                        (glm::dvec3(grid.place(line % 9), grid.place(line / 9), 0.5 * (from + to)) - zero);
+                        (glm::dvec3(place(i % kAcross), place(i / kAcross), 0.5 * (from + to)) - zero);
                     if (to - from > 1e-4) {
                         wrong += query.inside(glm::vec3(one.low + one.size * p)) != inside ? 1 : 0;
                     }
