@@ -53,15 +53,16 @@ class Path {
     Path(const MeshQuery& query, const MeshCell& cell, std::span<const UnitTriangle> triangles)
         : query_(query), cell_(cell), triangles_(triangles) {}
 
-    /// One of the cell's triangles, and its box.
+    /// One of the cell's triangles, with its box and a normal of any length.
     struct Crossed {
         std::uint32_t index;
         glm::dvec3 low;
         glm::dvec3 high;
+        glm::dvec3 normal;
     };
     [[nodiscard]] Crossed crossed(std::uint32_t index) const {
         const auto& [a, b, c] = triangles_[index];
-        return {index, glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
+        return {index, glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c), cross(b - a, c - a)};
     }
 
     void go(const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
@@ -78,18 +79,17 @@ class Path {
 
     /// Of BodyCounter::cross; 0: the segment passes the triangle by.
     [[nodiscard]] int sideCrossed(const Crossed& one, const glm::dvec3& from, const glm::dvec3& to) const {
+        const UnitTriangle& p = triangles_[one.index];
+        const double before = dot(one.normal, from - p[0]);
+        const double after = dot(one.normal, to - p[0]);
+        if ((before < 0.0) == (after < 0.0)) {
+            return 0;
+        }
         for (int axis = 0; axis < 3; ++axis) {
             if ((from[axis] < one.low[axis] && to[axis] < one.low[axis]) ||
                 (from[axis] > one.high[axis] && to[axis] > one.high[axis])) {
                 return 0;
             }
-        }
-        const UnitTriangle& p = triangles_[one.index];
-        const glm::dvec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-        const double before = dot(normal, from - p[0]);
-        const double after = dot(normal, to - p[0]);
-        if ((before < 0.0) == (after < 0.0)) {
-            return 0;
         }
         // Within the triangle: the line passes all edges on one side.
         const glm::dvec3 way = to - from;
@@ -136,10 +136,10 @@ struct CubeAxes {
 
 /// A line meets a triangle.
 struct Hit {
-    std::uint32_t line;
-    std::uint32_t triangle;
     double w;
-    int side;  // of BodyCounter::cross
+    std::uint32_t triangle;
+    int side;            // of BodyCounter::cross
+    std::uint32_t next;  // hit of the line
 
     [[nodiscard]] bool operator<(const Hit& other) const {
         return std::tie(w, triangle, side) < std::tie(other.w, other.triangle, other.side);
@@ -186,9 +186,38 @@ int firstFrom(double at, int size) {
     return whole + (whole < size && whole < at ? 1 : 0);
 }
 
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+/// All hits of a cell.
+struct Hits {
+    std::vector<Hit> hits;
+    std::vector<std::uint32_t> last;  // of each line, or kNone
+
+    explicit Hits(std::size_t lines) : last(lines, kNone) { hits.reserve(2 * lines); }
+    void add(std::uint32_t line, std::uint32_t triangle, double w, int side) {
+        hits.push_back({w, triangle, side, last[line]});
+        last[line] = static_cast<std::uint32_t>(hits.size() - 1);
+    }
+    /// In order. \param room  for those of a line with several.
+    [[nodiscard]] std::span<const Hit> along(std::uint32_t line, std::vector<Hit>& room) const {
+        std::uint32_t at = last[line];
+        if (at == kNone) {
+            return {};
+        }
+        if (hits[at].next == kNone) {
+            return {&hits[at], 1};
+        }
+        room.clear();
+        for (; at != kNone; at = hits[at].next) {
+            room.push_back(hits[at]);
+        }
+        std::ranges::sort(room, std::less());
+        return room;
+    }
+};
+
 /// \param triangle  over the grid: lines at whole numbers of x and y, z their w.
-void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& grid,
-             std::vector<Hit>& hits) {
+void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& grid, Hits& hits) {
     const auto& [a, b, c] = triangle;
     const auto size = static_cast<int>(grid.across());
     const auto [first, last] = std::minmax({a.y, b.y, c.y});
@@ -218,10 +247,9 @@ void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& 
         const int end = firstFrom(right, size);
         for (int x = firstFrom(left, size); x < end; ++x) {
             const double w = std::clamp(a.z + slope.x * (x - a.x) + slope.y * (row - a.y), lowest, highest);
-            const auto line =
-                static_cast<std::uint32_t>(grid.lineAt(static_cast<unsigned>(x), static_cast<unsigned>(row)));
+            const std::uint32_t line = grid.lineAt(static_cast<unsigned>(x), static_cast<unsigned>(row));
             if (w > grid.lines()[line].enters && w < grid.lines()[line].leaves) {
-                hits.push_back({line, index, w, side});
+                hits.add(line, index, w, side);
             }
         }
     }
@@ -326,6 +354,10 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
     const double volume = dot(cross(axes.u, axes.v), axes.w);
     volume_per_length_ = std::abs(volume) / (static_cast<double>(across) * across);
     handedness_ = volume < 0.0 ? -1 : 1;
+    for (unsigned column = 0; column < across; ++column) {
+        const unsigned quarter = across / 4;
+        in_row_.push_back(4 * (column % quarter) + column / quarter);
+    }
     const auto place = [&](unsigned i) { return (i + kOffset) / across_; };
     const auto span = [&](const glm::dvec3& start) {
         Line line{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -347,7 +379,7 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
         row_starts_.push_back(starts_.size());
         for (unsigned step = 0; step < across; ++step) {
             const unsigned column = row % 2 == 0 ? step : across - 1 - step;
-            const auto index = static_cast<std::uint32_t>(lineAt(column, row));
+            const std::uint32_t index = lineAt(column, row);
             Line& line = lines_[index];
             line = span(axes.at(place(column), place(row), 0.0));
             if (!line.misses()) {
@@ -416,21 +448,6 @@ double LineGrid::expectedHits(const ClippedTriangle& piece) const {
     return piece.area * std::abs(dot(piece.normal, along_)) / volume_per_length_;
 }
 
-double CellColumn::insideTo(double w) const {
-    double length = 0.0;
-    double from = enters;
-    bool in = inside;
-    for (const double turn : turns) {
-        if (turn >= w) {
-            break;
-        }
-        length += in ? turn - from : 0.0;
-        from = turn;
-        in = !in;
-    }
-    return length + (in ? std::max(0.0, w - from) : 0.0);
-}
-
 double CellColumn::wrongAt(double height, bool outside_below, const MistakeCosts& costs) const {
     const double middle = std::clamp(height, enters, leaves);
     const double below = insideTo(middle);
@@ -442,7 +459,8 @@ double CellColumn::wrongAt(double height, bool outside_below, const MistakeCosts
 CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                          std::span<const UnitTriangle> triangles, const LineGrid& grid)
     : grid_(grid), columns_(grid.lines().size()), inside_(grid.lines().size(), 0.0F) {
-    std::vector<Hit> unordered;
+    Hits hits(columns_.size());
+    bool wound = cell.bodies.odd.empty();  // nothing but body 0 there
     std::vector<Crossing> crossings;
     const Path path(query, cell, triangles);
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
@@ -462,26 +480,17 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                 }
             });
         }
-        addHits(over, cell.triangles[i], grid, unordered);
+        addHits(over, cell.triangles[i], grid, hits);
+        wound = wound && path.bodyOf(i) == 0;
     }
     std::ranges::sort(crossings, std::less(), &Crossing::start);
-    // By line, and along each.
-    std::vector<std::uint32_t> end(columns_.size() + 1, 0);
-    for (const Hit& hit : unordered) {
-        ++end[hit.line + 1];
-    }
-    std::partial_sum(end.begin(), end.end(), end.begin());
-    std::vector<Hit> hits(unordered.size());
-    for (const Hit& hit : unordered) {
-        hits[end[hit.line]++] = hit;
-    }
-
-    hits_ = hits.size();
-    turns_.reserve(hits.size());
+    hits_ = hits.hits.size();
+    turns_.reserve(hits_);
     BodyCounter counter = cell.bodies;
     path.go(cell.known, grid.starts().front().point, counter);
     bool enters_inside = counter.inside();
     auto crossing = crossings.begin();
+    std::vector<Hit> room;
     for (std::size_t i = 0; i < grid.starts().size(); ++i) {
         const std::uint32_t line = grid.starts()[i].line;
         if (crossing != crossings.end() && crossing->start == i) {
@@ -491,21 +500,29 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
             enters_inside = counter.inside();
         }
         inside_[line] = enters_inside ? 1.0F : 0.0F;
-        const std::span along(hits.begin() + (line == 0 ? 0 : end[line - 1]), hits.begin() + end[line]);
+        const std::span<const Hit> along = hits.along(line, room);
         if (along.empty()) {
             continue;
         }
-        if (along.size() > 1) {
-            std::ranges::sort(along, std::less());
-        }
         const auto first = static_cast<std::uint32_t>(turns_.size());
-        BodyCounter bodies = counter;
         bool in = enters_inside;
-        for (const Hit& hit : along) {
-            bodies.cross(query.bodyOf(hit.triangle), hit.side);
-            if (bodies.inside() != in) {
-                in = !in;
-                turns_.push_back(hit.w);
+        const auto turnWhere = [&](bool inside, double w) {
+            if (inside != in) {
+                in = inside;
+                turns_.push_back(w);
+            }
+        };
+        if (wound) {
+            int winding = counter.winding;
+            for (const Hit& hit : along) {
+                winding += hit.side;
+                turnWhere(winding != 0, hit.w);
+            }
+        } else {
+            BodyCounter bodies = counter;
+            for (const Hit& hit : along) {
+                bodies.cross(query.bodyOf(hit.triangle), hit.side);
+                turnWhere(bodies.inside(), hit.w);
             }
         }
         if (turns_.size() > first) {
@@ -513,12 +530,6 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
             turning_.push_back(line);
         }
     }
-}
-
-CellColumn CellColumns::operator[](std::size_t line) const {
-    const Turns& turns = columns_[line];
-    return {grid_.lines()[line].enters, grid_.lines()[line].leaves, inside_[line] != 0.0F,
-            std::span(turns_).subspan(turns.first, turns.count)};
 }
 
 }  // namespace relief

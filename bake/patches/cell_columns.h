@@ -1,6 +1,7 @@
 // The inside of a mesh in one cell of a grid, on lines along the axis of a patch.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -73,9 +74,8 @@ class LineGrid {
     [[nodiscard]] const PatchFrame& frame() const { return frame_; }
     [[nodiscard]] unsigned across() const { return across_; }
     /// The index of a line, by its u and v.
-    [[nodiscard]] std::size_t lineAt(unsigned column, unsigned row) const {
-        const unsigned quarter = across_ / 4;
-        return std::size_t{row} * across_ + 4 * (column % quarter) + column / quarter;
+    [[nodiscard]] std::uint32_t lineAt(unsigned column, unsigned row) const {
+        return row * across_ + in_row_[column];
     }
     [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
     /// What lines() says, each in an array.
@@ -100,6 +100,7 @@ class LineGrid {
   private:
     PatchFrame frame_;
     unsigned across_;
+    std::vector<std::uint32_t> in_row_;  // lineAt() row 0
     std::vector<Line> lines_;
     std::vector<float> enters_;
     std::vector<float> leaves_;
@@ -126,7 +127,20 @@ struct CellColumn {
     std::span<const double> turns;  ///< where it goes from outside to inside or back, in order
 
     /// The length from where it enters to `w` that is inside.
-    [[nodiscard]] double insideTo(double w) const;
+    [[nodiscard]] double insideTo(double w) const {
+        double length = 0.0;
+        double from = enters;
+        bool in = inside;
+        for (const double turn : turns) {
+            if (turn >= w) {
+                break;
+            }
+            length += in ? turn - from : 0.0;
+            from = turn;
+            in = !in;
+        }
+        return length + (in ? std::max(0.0, w - from) : 0.0);
+    }
     /// The length on which "inside where w < height" is wrong, or with outside_below "w ≥ height", times its costs.
     [[nodiscard]] double wrongAt(double height, bool outside_below, const MistakeCosts& costs) const;
 };
@@ -143,7 +157,11 @@ class CellColumns {
     /// Of lines with triangles.
     [[nodiscard]] std::size_t hits() const { return hits_; }
     /// \param line  an index of LineGrid::lines(), of one that does not miss.
-    [[nodiscard]] CellColumn operator[](std::size_t line) const;
+    [[nodiscard]] CellColumn operator[](std::size_t line) const {
+        const Turns& turns = columns_[line];
+        return {grid_.lines()[line].enters, grid_.lines()[line].leaves, inside_[line] != 0.0F,
+                std::span(turns_).subspan(turns.first, turns.count)};
+    }
     /// Of each line: 1 if it is inside where it enters, else 0.
     [[nodiscard]] std::span<const float> inside() const { return inside_; }
     /// The lines with turns.

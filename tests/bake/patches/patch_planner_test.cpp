@@ -69,7 +69,7 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
             const auto place = [](unsigned at) { return (at + LineGrid::kOffset) / kAcross; };
             const CellColumns columns(query, one, unitTriangles(query.mesh(), one), grid);
             for (unsigned i = 0; i < kAcross * kAcross; ++i) {
-                const std::size_t line = grid.lineAt(i % kAcross, i / kAcross);
+                const std::uint32_t line = grid.lineAt(i % kAcross, i / kAcross);
                 if (grid.lines()[line].misses()) {
                     continue;
                 }
