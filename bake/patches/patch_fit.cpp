@@ -381,9 +381,8 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
 }
 
 template <std::size_t kSide>
-FittedPatch PatchFitter::fitOf(int rounds) const {
-    std::array<double, kSide * kSide> heights{};
-    for (int round = 0; round < rounds; ++round) {
+FittedPatch PatchFitter::fitOf(int first, int rounds, std::array<double, kSide * kSide> heights) const {
+    for (int round = first; round < first + rounds; ++round) {
         fitRound<kSide>(columns_.grid(), targets_, round, heights);
     }
     FittedPatch fitted;
@@ -393,7 +392,13 @@ FittedPatch PatchFitter::fitOf(int rounds) const {
 }
 
 FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
-    return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
+    return side == 2 ? fitOf<2>(0, rounds) : side == 3 ? fitOf<3>(0, rounds) : fitOf<5>(0, rounds);
+}
+
+FittedPatch PatchFitter::refine(const PatchHeights& heights, int rounds) const {
+    std::array<double, std::size_t{kPatchSideMax} * kPatchSideMax> decoded;
+    heights.decode(decoded);
+    return fitOf<kPatchSideMax>(1, rounds, decoded);
 }
 
 PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls)

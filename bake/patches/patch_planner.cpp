@@ -23,13 +23,16 @@ constexpr double kTexelBytes = 8.0;
 /// A root for each so many bytes.
 constexpr double kBytesPerRoot = 160.0;
 constexpr int kRounds = 2;
-constexpr int kFinalRounds = 4;
+constexpr int kFinalRounds = 2;  // behind those
+constexpr int kFinalPairRounds = 4;
 /// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
 /// alone gets far, and eight of them cost more.
 constexpr double kMendedLeast = 1.2;
 constexpr double kMendedMost = 2.5;
 constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
+/// Shapes that pay at this share of a byte's worth are tried at once: later steps would look at the cell's columns again.
+constexpr double kForesight = 0.5;
 /// Of the time.
 constexpr double kSearchShare = 0.7;
 constexpr int kNarrowings = 12;
@@ -84,9 +87,9 @@ struct Node {
     bool turned = false;  // a single surface has the outside below
     bool walls = true;    // a pair has the inside between
     std::array<Candidate, kFlats + kShapes.size()> candidates;
-    std::array<PatchHeights, 2> heights;  // of single surfaces of 2² and 3²
-    double pair_least = 0.0;              // mistakes of the best pair there could be
-    double passed_by = 0.0;               // volume between the lines, counted with each candidate's mistakes
+    std::array<PatchHeights, kSingles> heights;
+    double pair_least = 0.0;  // mistakes of the best pair there could be
+    double passed_by = 0.0;   // volume between the lines, counted with each candidate's mistakes
     std::unique_ptr<std::array<Node, 8>> children;
     double bytes = 0.0;
     double wrong = 0.0;
@@ -204,17 +207,19 @@ class Planner {
             }
             return cost;
         };
+        double worth = byte;
         const auto pays = [&] {
             if (node.tried < kFlats) {
                 return true;
             }
             const std::size_t shape = node.tried - kFlats;
             return shape < (node.frame.two_sides ? kShapes.size() : kSingles) &&
-                   byte * kShapes[shape].bytes() + (kShapes[shape].pair ? node.pair_least : 0.0) < least();
+                   worth * kShapes[shape].bytes() + (kShapes[shape].pair ? node.pair_least : 0.0) < least();
         };
         if (!pays()) {
             return;
         }
+        worth *= kForesight;
         const std::vector<UnitTriangle> triangles = unitTriangles(query_.mesh(), node.cell);
         std::vector<ClippedTriangle> pieces;
         if (node.tried == 0) {
@@ -237,9 +242,7 @@ class Planner {
             while (node.tried < kFlats + kSingles && pays()) {
                 const Shape& shape = kShapes[node.tried - kFlats];
                 const FittedPatch fitted = fitter.fit(shape.side, kRounds);
-                if (shape.side < kPatchSideMax) {
-                    node.heights[node.tried - kFlats] = fitted.heights;
-                }
+                node.heights[node.tried - kFlats] = fitted.heights;
                 node.add({.shape = shape, .wrong = volume * fitted.wrong + node.passed_by});
             }
         }
@@ -405,16 +408,17 @@ class Planner {
                 (node.leaf().shape.side < kPatchSideMax ? grids_ : final_grids_)[node.frame.index]};
     }
     [[nodiscard]] PatchHeights finalHeights(const Node& node) const {
-        if (node.leaf().shape.side < kPatchSideMax) {
-            return node.heights[node.chosen - kFlats];
+        const PatchHeights& chosen = node.heights[node.chosen - kFlats];
+        if (chosen.side < kPatchSideMax) {
+            return chosen;
         }
         const CellColumns columns = finalColumns(node);
-        return PatchFitter(columns, options_.costs, node.turned).fit(kPatchSideMax, kFinalRounds).heights;
+        return PatchFitter(columns, options_.costs, node.turned).refine(chosen, kFinalRounds).heights;
     }
     [[nodiscard]] std::array<PatchHeights, 2> finalPair(const Node& node) const {
         const CellColumns columns = finalColumns(node);
         return PairFitter(columns, options_.costs, node.walls)
-            .fit(node.leaf().shape.side, kFinalRounds)
+            .fit(node.leaf().shape.side, kFinalPairRounds)
             .heights;
     }
 
