@@ -342,7 +342,7 @@ std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
         child.size = 0.5 * cell.size;
         child.low = cell.low + cell.size * corner;
         child.bodies = cell.bodies;
-        path.go(cell.known, corner + 0.5 * child.known, child.bodies);
+        path.go(MeshCell::kKnown, corner + 0.5 * MeshCell::kKnown, child.bodies);
     }
     return children;
 }
@@ -487,7 +487,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     hits_ = hits.hits.size();
     turns_.reserve(hits_);
     BodyCounter counter = cell.bodies;
-    path.go(cell.known, grid.starts().front().point, counter);
+    path.go(MeshCell::kKnown, grid.starts().front().point, counter);
     bool enters_inside = counter.inside();
     auto crossing = crossings.begin();
     std::vector<Hit> room;

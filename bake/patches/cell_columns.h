@@ -18,12 +18,13 @@ using UnitTriangle = std::array<glm::dvec3, 3>;
 
 /// A cube in object space, and the part of the surface in it.
 struct MeshCell {
+    /// A point of the unit cube, beside its middle.
+    static constexpr glm::dvec3 kKnown{0.5137, 0.4919, 0.5113};
+
     glm::dvec3 low{0.0};
     double size = 0.0;
     std::vector<std::uint32_t> triangles;  ///< those that meet the cube, in order
-    /// A point of the unit cube, beside its middle, and the bodies that it is in.
-    glm::dvec3 known{0.5137, 0.4919, 0.5113};
-    BodyCounter bodies;
+    BodyCounter bodies;                    ///< that kKnown is in
 
     [[nodiscard]] glm::dvec3 middle() const { return low + 0.5 * size; }
     [[nodiscard]] UnitTriangle inUnit(const TriangleMesh& mesh, std::uint32_t triangle) const;

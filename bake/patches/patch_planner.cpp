@@ -52,51 +52,47 @@ struct Shape {
     bool pair = false;
 
     /// Texels beside the leaf's record.
-    [[nodiscard]] std::uint32_t texels() const {
+    [[nodiscard]] constexpr std::uint32_t texels() const {
         return (pair ? 2 : 1) * heightTexels(side) + (pair ? 2 : 0);
     }
-    [[nodiscard]] double bytes() const { return kTexelBytes * (1.0 + texels()); }
+    /// Beyond a bit in the record above.
+    [[nodiscard]] constexpr double bytes() const { return side > 0 ? kTexelBytes * (1.0 + texels()) : 0.0; }
 };
-/// In the order in which they are tried, behind the two signs.
-constexpr std::array<Shape, 6> kShapes = {
-    {{2, false}, {3, false}, {5, false}, {2, true}, {3, true}, {5, true}}};
-constexpr std::size_t kSingles = 3;
+/// In the order in which they are tried: outside and inside without a surface, then these.
+constexpr std::array<Shape, 8> kShapes = {
+    {{}, {}, {2, false}, {3, false}, {5, false}, {2, true}, {3, true}, {5, true}}};
 constexpr std::size_t kFlats = 2;
+constexpr std::size_t kFlatsAndSingles = 5;
 
 /// Cells do not end in the planes of even numbers, in which models have walls.
 constexpr double kBesideRoots = 1.00137;
 constexpr glm::dvec3 kOriginShift{0.4171, 0.5337,
                                   0.4623};  // of the room that whole roots leave, on the low side
 
-struct Candidate {
-    Shape shape{};
-    bool inside = false;  // of one without a surface
-    double wrong = 0.0;   // volume, object units, times its costs
-
-    /// Beyond a bit in the record above.
-    [[nodiscard]] double bytes() const { return shape.side > 0 ? shape.bytes() : 0.0; }
-    [[nodiscard]] double cost(double byte) const { return wrong + byte * bytes(); }
-};
-
 struct Node {
-    MeshCell cell;
     FrameChoice frame;
-    std::uint8_t tried = 0;  // candidates
+    std::uint8_t tried = 0;  // of kShapes
     std::uint8_t chosen = 0;
     bool split = false;
-    bool turned = false;  // a single surface has the outside below
-    bool walls = true;    // a pair has the inside between
-    std::array<Candidate, kFlats + kShapes.size()> candidates;
-    std::array<PatchHeights, kSingles> heights;
-    double pair_least = 0.0;  // mistakes of the best pair there could be
-    double passed_by = 0.0;   // volume between the lines, counted with each candidate's mistakes
-    std::unique_ptr<std::array<Node, 8>> children;
+    bool turned = false;                          // a single surface has the outside below
+    bool walls = true;                            // a pair has the inside between
+    std::array<double, kShapes.size()> mistakes;  // of each tried: volume, object units, times its costs
+    double pair_least = 0.0;                      // mistakes of the best pair there could be
+    double passed_by = 0.0;  // volume between the lines, counted with each one's mistakes
     double bytes = 0.0;
     double wrong = 0.0;
+    std::unique_ptr<std::array<Node, 8>> children;
+    MeshCell cell;
+    std::array<PatchHeights, kFlatsAndSingles - kFlats> heights;
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
-    [[nodiscard]] const Candidate& leaf() const { return candidates[chosen]; }
-    void add(const Candidate& candidate) { candidates[tried++] = candidate; }
+    [[nodiscard]] const Shape& shape() const { return kShapes[chosen]; }
+    /// Of one without a surface.
+    [[nodiscard]] bool inside() const { return empty() ? cell.bodies.inside() : chosen == 1; }
+    [[nodiscard]] double cost(std::size_t index, double byte) const {
+        return mistakes[index] + byte * kShapes[index].bytes();
+    }
+    void add(double wrong_volume) { mistakes[tried++] = wrong_volume; }
 };
 
 class Planner {
@@ -167,7 +163,7 @@ class Planner {
         }
         forEachIndex(0, nodes_.size(), 16, [&](std::size_t i) {
             MeshCell& cell = nodes_[i].cell;
-            cell.bodies = query_.bodiesAt(glm::vec3(cell.low + cell.size * cell.known));
+            cell.bodies = query_.bodiesAt(glm::vec3(cell.low + cell.size * MeshCell::kKnown));
         });
     }
 
@@ -196,14 +192,14 @@ class Planner {
     void tryLeaves(Node& node, double byte) const {
         if (node.empty()) {
             if (node.tried == 0) {
-                node.add({.inside = node.cell.bodies.inside()});
+                node.add(0.0);
             }
             return;
         }
         const auto least = [&] {
             double cost = std::numeric_limits<double>::infinity();
             for (std::size_t i = 0; i < node.tried; ++i) {
-                cost = std::min(cost, node.candidates[i].cost(byte));
+                cost = std::min(cost, node.cost(i, byte));
             }
             return cost;
         };
@@ -212,9 +208,9 @@ class Planner {
             if (node.tried < kFlats) {
                 return true;
             }
-            const std::size_t shape = node.tried - kFlats;
-            return shape < (node.frame.two_sides ? kShapes.size() : kSingles) &&
-                   worth * kShapes[shape].bytes() + (kShapes[shape].pair ? node.pair_least : 0.0) < least();
+            const std::size_t next = node.tried;
+            return next < (node.frame.two_sides ? kShapes.size() : kFlatsAndSingles) &&
+                   worth * kShapes[next].bytes() + (kShapes[next].pair ? node.pair_least : 0.0) < least();
         };
         if (!pays()) {
             return;
@@ -228,42 +224,37 @@ class Planner {
         }
         const double volume = node.cell.size * node.cell.size * node.cell.size;
         const CellColumns columns(query_, node.cell, triangles, grids_[node.frame.index]);
-        if (node.tried < kFlats + kSingles) {
+        if (node.tried < kFlatsAndSingles) {
             const PatchFitter fitter(columns, options_.costs);
             if (node.tried == 0) {
                 node.passed_by = volume * volumePassedBy(columns, pieces);
                 const double inside = fitter.insideVolume();
-                node.add({.wrong = options_.costs.false_outside * volume * inside + node.passed_by});
-                node.add({.inside = true,
-                          .wrong = options_.costs.false_inside * volume * (fitter.volume() - inside) +
-                                   node.passed_by});
+                node.add(options_.costs.false_outside * volume * inside + node.passed_by);
+                node.add(options_.costs.false_inside * volume * (fitter.volume() - inside) + node.passed_by);
                 node.turned = fitter.outsideBelow();
             }
-            while (node.tried < kFlats + kSingles && pays()) {
-                const Shape& shape = kShapes[node.tried - kFlats];
-                const FittedPatch fitted = fitter.fit(shape.side, kRounds);
+            while (node.tried < kFlatsAndSingles && pays()) {
+                const FittedPatch fitted = fitter.fit(kShapes[node.tried].side, kRounds);
                 node.heights[node.tried - kFlats] = fitted.heights;
-                node.add({.shape = shape, .wrong = volume * fitted.wrong + node.passed_by});
+                node.add(volume * fitted.wrong + node.passed_by);
             }
         }
-        if (node.tried < kFlats + kSingles || !pays()) {
+        if (node.tried < kFlatsAndSingles || !pays()) {
             return;
         }
         const PairFitter fitter(columns, options_.costs);
         node.pair_least = volume * fitter.least() + node.passed_by;
         node.walls = fitter.walls();
         while (pays()) {
-            const Shape& shape = kShapes[node.tried - kFlats];
-            node.add(
-                {.shape = shape, .wrong = volume * fitter.fit(shape.side, kRounds).wrong + node.passed_by});
+            node.add(volume * fitter.fit(kShapes[node.tried].side, kRounds).wrong + node.passed_by);
         }
     }
 
     [[nodiscard]] double trialBytes(const Node& node) const {
-        if (node.tried < kFlats + kSingles) {
+        if (node.tried < kFlatsAndSingles) {
             return options_.trial_bytes;
         }
-        const double mended = node.candidates[3].wrong / node.candidates[4].wrong;
+        const double mended = node.mistakes[3] / node.mistakes[4];
         return options_.trial_bytes * std::clamp(mended, kMendedLeast, kMendedMost);
     }
 
@@ -276,10 +267,10 @@ class Planner {
         node.split = false;
         node.chosen = 0;
         for (std::uint8_t i = 1; i < node.tried; ++i) {
-            node.chosen = node.candidates[i].cost(byte) < node.leaf().cost(byte) ? i : node.chosen;
+            node.chosen = node.cost(i, byte) < node.cost(node.chosen, byte) ? i : node.chosen;
         }
-        node.bytes = node.leaf().bytes();
-        node.wrong = node.leaf().wrong;
+        node.bytes = node.shape().bytes();
+        node.wrong = node.mistakes[node.chosen];
         if (node.empty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
             return;
         }
@@ -365,7 +356,7 @@ class Planner {
     [[nodiscard]] PatchRecord flat(const Node& node) const {
         const glm::dvec3 middle = node.cell.middle();
         const ClosestPoint closest = query_.closest(glm::vec3(middle));
-        const bool inside = node.leaf().inside;
+        const bool inside = node.inside();
         glm::dvec3 away = middle - closest.point;
         away = length(away) > 0.0 ? (inside ? -away : away) : unitNormal(query_.mesh(), closest.triangle);
         const double distance = closest.distance / root_;
@@ -394,8 +385,8 @@ class Planner {
                 continue;
             }
             const glm::dvec3 middle = 0.5 * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U) + 0.25;
-            inside |= child.leaf().inside ? 1U << i : 0U;
-            agree += (dot(normal, middle - center) < 0.0) == child.leaf().inside ? 1 : -1;
+            inside |= child.inside() ? 1U << i : 0U;
+            agree += (dot(normal, middle - center) < 0.0) == child.inside() ? 1 : -1;
         }
         normal = agree < 0 ? -normal : normal;  // of meshes that are not wound
         return PatchRecord::split(children, inside, first, glm::vec3(normal),
@@ -405,7 +396,7 @@ class Planner {
     /// The lines to choose by are few for each square of 5² heights, and enough for larger ones.
     [[nodiscard]] CellColumns finalColumns(const Node& node) const {
         return {query_, node.cell, unitTriangles(query_.mesh(), node.cell),
-                (node.leaf().shape.side < kPatchSideMax ? grids_ : final_grids_)[node.frame.index]};
+                (node.shape().side < kPatchSideMax ? grids_ : final_grids_)[node.frame.index]};
     }
     [[nodiscard]] PatchHeights finalHeights(const Node& node) const {
         const PatchHeights& chosen = node.heights[node.chosen - kFlats];
@@ -418,7 +409,7 @@ class Planner {
     [[nodiscard]] std::array<PatchHeights, 2> finalPair(const Node& node) const {
         const CellColumns columns = finalColumns(node);
         return PairFitter(columns, options_.costs, node.walls)
-            .fit(node.leaf().shape.side, kFinalPairRounds)
+            .fit(node.shape().side, kFinalPairRounds)
             .heights;
     }
 
@@ -431,7 +422,7 @@ class Planner {
                 texels[at + k] = heights.texel(k);
             }
         };
-        if (!node.leaf().shape.pair) {
+        if (!node.shape().pair) {
             const PatchHeights heights = finalHeights(node);
             record = PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
             write(heights, first);
@@ -448,7 +439,7 @@ class Planner {
         }
     }
 
-    [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.leaf().shape.side > 0; }
+    [[nodiscard]] static bool hasRecord(const Node& node) { return node.split || node.shape().side > 0; }
 
     [[nodiscard]] DepthMap encode() const {
         // Records level by level, and where the children of each begin.
@@ -479,7 +470,7 @@ class Planner {
             const Node& node = *records[i];
             if (!node.split && hasRecord(node)) {
                 first[i] = next;
-                next += node.leaf().shape.texels();
+                next += node.shape().texels();
             }
         }
         std::vector<PatchRecord> texels(next);

@@ -51,7 +51,7 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     for (std::uint32_t t = 0; t < query.mesh().triangles.size(); ++t) {
         cell.triangles.push_back(t);
     }
-    cell.bodies = query.bodiesAt(glm::vec3(cell.low + cell.size * cell.known));
+    cell.bodies = query.bodiesAt(glm::vec3(cell.low + cell.size * MeshCell::kKnown));
     std::vector<MeshCell> cells = {cell};
     for (unsigned i = 0; i < 8; ++i) {
         const auto child = [&](const MeshCell& of, unsigned octant) {
@@ -62,7 +62,7 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     }
     int wrong = 0;
     for (const MeshCell& one : cells) {
-        EXPECT_EQ(one.bodies.inside(), query.inside(glm::vec3(one.low + one.size * one.known)));
+        EXPECT_EQ(one.bodies.inside(), query.inside(glm::vec3(one.low + one.size * MeshCell::kKnown)));
         for (const PatchFrame& frame : patchFrames()) {
             constexpr unsigned kAcross = 12;
             const LineGrid grid(frame, kAcross);
