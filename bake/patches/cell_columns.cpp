@@ -193,9 +193,17 @@ struct Hits {
     std::vector<Hit> hits;
     std::vector<std::uint32_t> last;  // of each line, or kNone
 
-    explicit Hits(std::size_t lines) : last(lines, kNone) { hits.reserve(2 * lines); }
+    void clear(std::size_t lines) {
+        hits.clear();
+        last.assign(lines, kNone);
+    }
     void add(std::uint32_t line, std::uint32_t triangle, double w, int side) {
-        hits.push_back({w, triangle, side, last[line]});
+        // One by one: copied as a whole, it would wait for its parts to be stored.
+        Hit& hit = hits.emplace_back();
+        hit.w = w;
+        hit.triangle = triangle;
+        hit.side = side;
+        hit.next = last[line];
         last[line] = static_cast<std::uint32_t>(hits.size() - 1);
     }
     /// In order. \param room  for those of a line with several.
@@ -394,6 +402,12 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
         leaves_.push_back(static_cast<float>(line.leaves));
         lengths_.push_back(line.leaves - line.enters);
     }
+    // In the order in which PatchFitter adds up the inside, so that what is inside all over has no volume outside.
+    std::array<double, 4> sums{};
+    for (std::size_t i = 0; i < lengths_.size(); ++i) {
+        sums[i % 4] += lengths_[i];
+    }
+    volume_ = ((sums[0] + sums[1]) + (sums[2] + sums[3])) * volume_per_length_;
     start_reach_ = 1e-6;
     if (frame.diagonal != 0) {  // where the way from side to side leaves both
         for (std::size_t i = 1; i < starts_.size(); ++i) {
@@ -459,9 +473,13 @@ double CellColumn::wrongAt(double height, bool outside_below, const MistakeCosts
 CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                          std::span<const UnitTriangle> triangles, const LineGrid& grid)
     : grid_(grid), columns_(grid.lines().size()), inside_(grid.lines().size(), 0.0F) {
-    Hits hits(columns_.size());
+    // Kept from cell to cell, which take a few microseconds each.
+    thread_local Hits hits;
+    thread_local std::vector<Crossing> crossings;
+    thread_local std::vector<Hit> room;
+    hits.clear(columns_.size());
+    crossings.clear();
     bool wound = cell.bodies.odd.empty();  // nothing but body 0 there
-    std::vector<Crossing> crossings;
     const Path path(query, cell, triangles);
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         UnitTriangle over = triangles[i];
@@ -490,7 +508,6 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     path.go(MeshCell::kKnown, grid.starts().front().point, counter);
     bool enters_inside = counter.inside();
     auto crossing = crossings.begin();
-    std::vector<Hit> room;
     for (std::size_t i = 0; i < grid.starts().size(); ++i) {
         const std::uint32_t line = grid.starts()[i].line;
         if (crossing != crossings.end() && crossing->start == i) {

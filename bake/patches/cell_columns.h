@@ -95,6 +95,8 @@ class LineGrid {
     [[nodiscard]] double expectedHits(const ClippedTriangle& piece) const;
     /// The volume of a column for a unit of its w, in cells.
     [[nodiscard]] double volumePerLength() const { return volume_per_length_; }
+    /// Of all columns.
+    [[nodiscard]] double volume() const { return volume_; }
     /// −1 if (u, v, w) is left-handed, else 1.
     [[nodiscard]] int handedness() const { return handedness_; }
 
@@ -111,6 +113,7 @@ class LineGrid {
     glm::dvec3 along_{0.0};                // of w, in the cube
     double start_reach_ = 0;               // how far from such a side the way gets
     double volume_per_length_ = 0.0;
+    double volume_ = 0.0;
     int handedness_ = 1;
 };
 

@@ -184,9 +184,9 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets, int round,
             const auto row = before.row(square, t);
             RowSums sum;
             for (std::size_t i = 0; i < before.quarter(); ++i, line += kLanes) {
-                const auto height = loadLanes<Lanes>(&targets.height[line]);
-                const auto above = loadLanes<Lanes>(&targets.above[line]);
-                const auto below = loadLanes<Lanes>(&targets.below[line]);
+                const auto height = loadLanes<Lanes>(targets.height(line));
+                const auto above = loadLanes<Lanes>(targets.above(line));
+                const auto below = loadLanes<Lanes>(targets.below(line));
                 const Lanes s = before.shares(i);
                 Lanes weight = above * below;
                 if (round > 0) {
@@ -284,37 +284,41 @@ Part bestPart(const CellColumn& column, const MistakeCosts& costs, bool walls) {
 
 PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
                          std::optional<bool> outside_below)
-    : columns_(columns),
-      costs_(costs),
-      targets_(columns.grid().lines().size()),
-      by_error_(columns.grid().lines().size(), 1.0F) {
+    : columns_(columns), costs_(costs), targets_(columns.grid().lines().size()) {
     const std::vector<double>& lengths = columns.grid().lengths();
-    std::array<double, kLanes> length{};
     std::array<double, kLanes> inside{};
     for (std::size_t i = 0; i < lengths.size(); i += kLanes) {
         for (std::size_t k = 0; k < kLanes; ++k) {
-            length[k] += lengths[i + k];
             inside[k] += double{columns.inside()[i + k]} * lengths[i + k];
         }
     }
-    const auto volumeOf = [&](const std::array<double, kLanes>& sums) {
-        return ((sums[0] + sums[1]) + (sums[2] + sums[3])) * columns.grid().volumePerLength();
-    };
     double lower = 0.0;  // inside in the lower half of a column more than in the upper one
     for (const std::uint32_t line : columns.turning()) {
         const CellColumn column = columns[line];
-        const double all = column.insideTo(column.leaves);
-        lower += 2.0 * column.insideTo(0.5 * (column.enters + column.leaves)) - all;
+        const double middle = 0.5 * (column.enters + column.leaves);
+        double half = 0.0;
+        double all = 0.0;
+        if (const double turn = column.turns[0]; column.turns.size() > 1) {
+            half = column.insideTo(middle);
+            all = column.insideTo(column.leaves);
+        } else if (column.inside) {
+            half = std::min(turn, middle) - column.enters;
+            all = turn - column.enters;
+        } else {
+            half = std::max(0.0, middle - turn);
+            all = column.leaves - turn;
+        }
+        lower += 2.0 * half - all;
         inside[0] += all - double{columns.inside()[line]} * lengths[line];
     }
-    inside_volume_ = volumeOf(inside);
-    volume_ = volumeOf(length);
+    inside_volume_ = ((inside[0] + inside[1]) + (inside[2] + inside[3])) * columns.grid().volumePerLength();
     outside_below_ = outside_below.value_or(lower < 0.0);
     aimAtEnds();
     for (const std::uint32_t line : columns.turning()) {
         bool by_error = true;
         targets_.set(line, targetOf(columns[line], by_error));
         if (!by_error) {
+            by_error_.resize(lengths.size(), 1.0F);
             by_error_[line] = 0.0F;
             not_by_error_.push_back(line);
         }
@@ -326,15 +330,15 @@ void PatchFitter::aimAtEnds() {
     const auto above = static_cast<float>(outside_below_ ? costs_.false_outside : costs_.false_inside);
     const auto below = static_cast<float>(outside_below_ ? costs_.false_inside : costs_.false_outside);
     const Lanes none{};
-    for (std::size_t line = 0; line < targets_.height.size(); line += kLanes) {
+    for (std::size_t line = 0; line < grid.lines().size(); line += kLanes) {
         const auto enters = loadLanes<Lanes>(&grid.enters()[line]);
         const auto leaves = loadLanes<Lanes>(&grid.leaves()[line]);
         const auto inside = loadLanes<Lanes>(&columns_.inside()[line]);
         const auto low = inside == (outside_below_ ? 1.0F : 0.0F);
         const auto meets = leaves > enters;
-        storeLanes(&targets_.height[line], low ? enters : leaves);
-        storeLanes(&targets_.above[line], (low & meets) ? allLanes(above) : none);
-        storeLanes(&targets_.below[line], (~low & meets) ? allLanes(below) : none);
+        storeLanes(targets_.height(line), low ? enters : leaves);
+        storeLanes(targets_.above(line), (low & meets) ? allLanes(above) : none);
+        storeLanes(targets_.below(line), (~low & meets) ? allLanes(below) : none);
     }
 }
 
@@ -368,10 +372,11 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
     on_lines.forEach([&](std::size_t line, Lanes height) {
         const Lanes held = clampLanes(height, loadLanes<Lanes>(&grid.enters()[line]),
                                       loadLanes<Lanes>(&grid.leaves()[line]));
-        const Lanes off = held - loadLanes<Lanes>(&targets_.height[line]);
+        const Lanes off = held - loadLanes<Lanes>(targets_.height(line));
         const Lanes cost =
-            off > 0.0F ? loadLanes<Lanes>(&targets_.above[line]) : loadLanes<Lanes>(&targets_.below[line]);
-        sums += loadLanes<Lanes>(&by_error_[line]) * cost * absLanes(off);
+            off > 0.0F ? loadLanes<Lanes>(targets_.above(line)) : loadLanes<Lanes>(targets_.below(line));
+        const Lanes wrong = cost * absLanes(off);
+        sums += by_error_.empty() ? wrong : loadLanes<Lanes>(&by_error_[line]) * wrong;
     });
     double wrong = double{sumOfLanes(sums)};
     for (const std::uint32_t line : not_by_error_) {

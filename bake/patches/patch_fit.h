@@ -21,19 +21,26 @@ struct HeightTarget {
     double below = 0.0;
 };
 
-/// A HeightTarget for each line, each number in an array.
-struct HeightTargets {
-    std::vector<float> height;
-    std::vector<float> above;
-    std::vector<float> below;
-
+/// A HeightTarget for each line, each number of all lines after the other.
+class HeightTargets {
+  public:
     /// As of lines that miss the cube.
-    explicit HeightTargets(std::size_t lines) : height(lines), above(lines), below(lines) {}
+    explicit HeightTargets(std::size_t lines) : lines_(lines), numbers_(3 * lines) {}
     void set(std::size_t line, const HeightTarget& target) {
-        height[line] = static_cast<float>(target.height);
-        above[line] = static_cast<float>(target.above);
-        below[line] = static_cast<float>(target.below);
+        *height(line) = static_cast<float>(target.height);
+        *above(line) = static_cast<float>(target.above);
+        *below(line) = static_cast<float>(target.below);
     }
+    [[nodiscard]] float* height(std::size_t line) { return &numbers_[line]; }
+    [[nodiscard]] float* above(std::size_t line) { return &numbers_[lines_ + line]; }
+    [[nodiscard]] float* below(std::size_t line) { return &numbers_[2 * lines_ + line]; }
+    [[nodiscard]] const float* height(std::size_t line) const { return &numbers_[line]; }
+    [[nodiscard]] const float* above(std::size_t line) const { return &numbers_[lines_ + line]; }
+    [[nodiscard]] const float* below(std::size_t line) const { return &numbers_[2 * lines_ + line]; }
+
+  private:
+    std::size_t lines_;
+    std::vector<float> numbers_;
 };
 
 struct FittedPatch {
@@ -86,9 +93,8 @@ class PatchFitter {
     [[nodiscard]] FittedPatch fit(std::uint32_t side, int rounds) const;
     /// Goes on from 5² heights that were fitted to fewer lines.
     [[nodiscard]] FittedPatch refine(const PatchHeights& heights, int rounds) const;
-    /// The volume that is inside, and all, in cells.
+    /// The volume that is inside, in cells.
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
-    [[nodiscard]] double volume() const { return volume_; }
 
   private:
     /// \param by_error  the length on the wrong side is the error, as far as that is in the cube.
@@ -107,10 +113,9 @@ class PatchFitter {
     MistakeCosts costs_;
     bool outside_below_ = false;
     HeightTargets targets_;
-    std::vector<float> by_error_;              // 0 of the lines below, else 1
+    std::vector<float> by_error_;              // 0 of the lines below, else 1; none where there are none
     std::vector<std::uint32_t> not_by_error_;  // targetOf()
     double inside_volume_ = 0.0;
-    double volume_ = 0.0;
 };
 
 }  // namespace relief

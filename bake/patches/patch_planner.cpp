@@ -86,6 +86,8 @@ struct Node {
     std::array<PatchHeights, kFlatsAndSingles - kFlats> heights;
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
+    /// Without a look at the cell, which is out of reach of the cache: what has a surface is tried as both flats.
+    [[nodiscard]] bool seenEmpty() const { return tried == 1; }
     [[nodiscard]] const Shape& shape() const { return kShapes[chosen]; }
     /// Of one without a surface.
     [[nodiscard]] bool inside() const { return empty() ? cell.bodies.inside() : chosen == 1; }
@@ -190,10 +192,10 @@ class Planner {
 
     /// Tries what may pay where a byte is worth so much wrong volume.
     void tryLeaves(Node& node, double byte) const {
-        if (node.empty()) {
-            if (node.tried == 0) {
-                node.add(0.0);
-            }
+        if (node.tried == 0 && node.empty()) {
+            node.add(0.0);
+        }
+        if (node.seenEmpty()) {
             return;
         }
         const auto least = [&] {
@@ -230,7 +232,8 @@ class Planner {
                 node.passed_by = volume * volumePassedBy(columns, pieces);
                 const double inside = fitter.insideVolume();
                 node.add(options_.costs.false_outside * volume * inside + node.passed_by);
-                node.add(options_.costs.false_inside * volume * (fitter.volume() - inside) + node.passed_by);
+                node.add(options_.costs.false_inside * volume * (columns.grid().volume() - inside) +
+                         node.passed_by);
                 node.turned = fitter.outsideBelow();
             }
             while (node.tried < kFlatsAndSingles && pays()) {
@@ -271,7 +274,7 @@ class Planner {
         }
         node.bytes = node.shape().bytes();
         node.wrong = node.mistakes[node.chosen];
-        if (node.empty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
+        if (node.seenEmpty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
             return;
         }
         if (!node.children) {
