@@ -167,9 +167,9 @@ struct RowSums {
 };
 
 /// One round of least squares.
-/// \param heights  of the round before, by which errors are weighted; there is none before round 0.
+/// \param weighted  by the errors of `heights`, of the round before.
 template <std::size_t kSide>
-void fitRound(const LineGrid& grid, const HeightTargets& targets, int round,
+void fitRound(const LineGrid& grid, const HeightTargets& targets, bool weighted,
               std::array<double, kSide * kSide>& heights) {
     static const HeightSystem<kSide> kEmpty;
     HeightSystem<kSide> system = kEmpty;
@@ -189,7 +189,7 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets, int round,
                 const auto below = loadLanes<Lanes>(targets.below(line));
                 const Lanes s = before.shares(i);
                 Lanes weight = above * below;
-                if (round > 0) {
+                if (weighted) {
                     const Lanes off = row.at(s) - height;
                     weight = (off > 0.0F ? above : below) * (kSmallError / (kSmallError + absLanes(off)));
                 }
@@ -240,6 +240,27 @@ PatchHeights coded(std::array<double, kSide * kSide>& heights) {
     const PatchHeights codes = PatchHeights::of(heights, kSide);
     codes.decode(heights);
     return codes;
+}
+
+/// The same surface by kSide² heights, of as many or of those of the size before.
+template <std::size_t kSide>
+std::array<double, kSide * kSide> refined(const PatchHeights& from) {
+    std::array<double, kSide * kSide> heights;
+    from.decode(heights);
+    if (from.side == kSide) {
+        return heights;
+    }
+    const std::array<double, kSide* kSide> coarse = heights;
+    for (std::size_t j = 0; j < kSide; ++j) {
+        for (std::size_t i = 0; i < kSide; ++i) {
+            const double* const lower = &coarse[j / 2 * from.side];
+            const double* const upper = &coarse[(j + 1) / 2 * from.side];
+            const std::size_t left = i / 2;
+            const std::size_t right = (i + 1) / 2;
+            heights[j * kSide + i] = 0.25 * (lower[left] + lower[right] + upper[left] + upper[right]);
+        }
+    }
+    return heights;
 }
 
 /// The length up to `w` that should lie between a pair's surfaces.
@@ -386,9 +407,13 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
 }
 
 template <std::size_t kSide>
-FittedPatch PatchFitter::fitOf(int first, int rounds, std::array<double, kSide * kSide> heights) const {
-    for (int round = first; round < first + rounds; ++round) {
-        fitRound<kSide>(columns_.grid(), targets_, round, heights);
+FittedPatch PatchFitter::fitOf(int rounds, const PatchHeights* from) const {
+    std::array<double, kSide * kSide> heights{};
+    if (from != nullptr) {
+        heights = refined<kSide>(*from);
+    }
+    for (int round = 0; round < rounds; ++round) {
+        fitRound<kSide>(columns_.grid(), targets_, from != nullptr || round > 0, heights);
     }
     FittedPatch fitted;
     fitted.heights = coded<kSide>(heights);
@@ -396,14 +421,8 @@ FittedPatch PatchFitter::fitOf(int first, int rounds, std::array<double, kSide *
     return fitted;
 }
 
-FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
-    return side == 2 ? fitOf<2>(0, rounds) : side == 3 ? fitOf<3>(0, rounds) : fitOf<5>(0, rounds);
-}
-
-FittedPatch PatchFitter::refine(const PatchHeights& heights, int rounds) const {
-    std::array<double, std::size_t{kPatchSideMax} * kPatchSideMax> decoded;
-    heights.decode(decoded);
-    return fitOf<kPatchSideMax>(1, rounds, decoded);
+FittedPatch PatchFitter::fit(std::uint32_t side, int rounds, const PatchHeights* from) const {
+    return side == 2 ? fitOf<2>(rounds, from) : side == 3 ? fitOf<3>(rounds, from) : fitOf<5>(rounds, from);
 }
 
 PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls)
@@ -472,7 +491,7 @@ FittedPair PairFitter::fitOf(int rounds) const {
             }
         }
         for (std::size_t k = 0; k < 2; ++k) {
-            fitRound<kSide>(grid, targets[k], round, heights[k]);
+            fitRound<kSide>(grid, targets[k], round > 0, heights[k]);
         }
     }
     FittedPair fitted;

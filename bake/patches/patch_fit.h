@@ -90,19 +90,16 @@ class PatchFitter {
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
     /// \param side  2, 3 or 5 heights.
     /// \param rounds  of least squares, each with weights from the one before that turn it into least absolute error.
-    [[nodiscard]] FittedPatch fit(std::uint32_t side, int rounds) const;
-    /// Goes on from 5² heights that were fitted to fewer lines.
-    [[nodiscard]] FittedPatch refine(const PatchHeights& heights, int rounds) const;
+    /// \param from  heights to weigh the first round's errors by, as many or those of the size before; may be null.
+    [[nodiscard]] FittedPatch fit(std::uint32_t side, int rounds, const PatchHeights* from = nullptr) const;
     /// The volume that is inside, in cells.
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
 
   private:
     /// \param by_error  the length on the wrong side is the error, as far as that is in the cube.
     [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
-    /// \param heights  before round `first`.
     template <std::size_t kSide>
-    [[nodiscard]] FittedPatch fitOf(int first, int rounds,
-                                    std::array<double, kSide * kSide> heights = {}) const;
+    [[nodiscard]] FittedPatch fitOf(int rounds, const PatchHeights* from) const;
     /// The volume on the wrong side among some heights.
     template <std::size_t kSide>
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;

@@ -237,7 +237,11 @@ class Planner {
                 node.turned = fitter.outsideBelow();
             }
             while (node.tried < kFlatsAndSingles && pays()) {
-                const FittedPatch fitted = fitter.fit(kShapes[node.tried].side, kRounds);
+                const std::uint32_t side = kShapes[node.tried].side;
+                const FittedPatch fitted =
+                    side < kPatchSideMax
+                        ? fitter.fit(side, kRounds)
+                        : fitter.fit(side, kRounds - 1, &node.heights[node.tried - kFlats - 1]);
                 node.heights[node.tried - kFlats] = fitted.heights;
                 node.add(volume * fitted.wrong + node.passed_by);
             }
@@ -407,7 +411,9 @@ class Planner {
             return chosen;
         }
         const CellColumns columns = finalColumns(node);
-        return PatchFitter(columns, options_.costs, node.turned).refine(chosen, kFinalRounds).heights;
+        return PatchFitter(columns, options_.costs, node.turned)
+            .fit(kPatchSideMax, kFinalRounds, &chosen)
+            .heights;
     }
     [[nodiscard]] std::array<PatchHeights, 2> finalPair(const Node& node) const {
         const CellColumns columns = finalColumns(node);
