@@ -258,7 +258,7 @@ struct Measured {
     Json results = Json::array();  ///< those of one mesh and budget are neighbours
 };
 
-/// Parts and thickness as the given collider records them.
+/// Parts, thickness and voids as the given collider records them.
 Result<BakeRequest> recordedShapeOf(const Arguments& arguments) {
     BakeRequest request;
     if (!arguments.collider.empty()) {
@@ -266,6 +266,7 @@ Result<BakeRequest> recordedShapeOf(const Arguments& arguments) {
         BakeRequest recorded = recordedBake(collider.provenance.options).request;
         request.as = std::move(recorded.as);
         request.thickness = recorded.thickness;
+        request.voids = voidsOf(recorded);
     }
     return request;
 }

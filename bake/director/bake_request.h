@@ -55,6 +55,7 @@ struct BakeRequest {
     RepairOptions repair;
     std::vector<std::string> as;
     std::optional<Thickness> thickness;
+    std::optional<VoidsAs> voids;
     std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
 };
 
@@ -154,6 +155,12 @@ void fields(Visitor& visit, Request& request) {
            .must = "a length above 0, in the collider's units",
            .recorded = true});
     visit(
+        "voids", request.voids,
+        {.help = "What sheets and solids seal off from the outside together, as a pot and its lid do: full, "
+                 "or hollow",
+         .fallback = "full",
+         .recorded = true});
+    visit(
         "time_limit", request.time_limit,
         {.help =
              "Seconds that the whole bake may take, the import included. Beyond them exit with 6, and write "
@@ -187,6 +194,10 @@ struct RecordedBake {
 };
 
 [[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
+/// Hollow where the record says nothing: there were none, or they were no part of the shape yet.
+[[nodiscard]] inline VoidsAs voidsOf(const BakeRequest& recorded) {
+    return recorded.voids.value_or(VoidsAs::kHollow);
+}
 
 /// A bake of a mesh as a command line, quoted for a shell.
 [[nodiscard]] std::string commandLine(const BakeRequest& request, const std::string& output);

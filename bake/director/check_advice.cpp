@@ -51,6 +51,9 @@ class Advisor {
         if (planned_.thickness && planned_.thickness->by_part) {
             planned_.thickness.reset();
         }
+        if (planned_.voids == VoidsAs::kFull) {
+            planned_.voids.reset();  // the default
+        }
     }
 
     std::vector<Advice> run() {

@@ -260,6 +260,7 @@ class Director {
         made.repair.method = result_.mesh.report.repair;
         made.as = asWords(result_.shape);
         made.thickness = thicknessOf(result_.shape);
+        made.voids = result_.shape.voids > 0 ? VoidsAs::kFull : request().voids;
         for (const FieldWords& field : changedFields(made)) {
             for (const std::string& word : field.words) {
                 result_.baked.collider.provenance.options.push_back({field.name, word});
@@ -397,6 +398,7 @@ Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mes
     }
     ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
     options.thickness_by_part = !request.thickness || request.thickness->by_part;
+    options.voids = request.voids.value_or(VoidsAs::kFull);
     options.thickness =
         request.thickness
             ? request.thickness->length

@@ -56,6 +56,7 @@ Result<TriangleMesh> importFor(const std::vector<std::string>& names, const Chec
 /// budget, whatever the bake's: the repaired mesh is compared with the same solid at each.
 Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh) {
     recorded.budget.reset();
+    recorded.voids = voidsOf(recorded);
     return makeSolid(recorded, mesh);
 }
 

@@ -211,6 +211,10 @@ Result<MeshQuery> MeshQuery::build(PreparedMesh mesh) {
 }
 
 bool MeshQuery::inside(const glm::vec3& p) const {
+    return inBody(p) || inVoid(p);
+}
+
+bool MeshQuery::inBody(const glm::vec3& p) const {
     const Bounds& box = mesh().bounds;
     for (int i = 0; i < 3; ++i) {
         // Written so that NaN is outside.
@@ -227,6 +231,49 @@ bool MeshQuery::inside(const glm::vec3& p) const {
         ++votes[rayIsInside(p, ways[i]) ? 1 : 0];
     }
     return votes[1] > rays / 2;
+}
+
+bool MeshQuery::inVoid(const glm::dvec3& p) const {
+    using Place = Voids::Place;
+    if (!hasVoids()) {
+        return false;
+    }
+    const Voids& voids = mesh_.voids();
+    const glm::ivec3 cell(glm::floor((p - voids.origin) / voids.step));
+    int of_void = 0;
+    int of_outside = 0;
+    voids.eachNode(cell, cell + 1, [&](const glm::ivec3&, Place place) {
+        of_void += place == Place::kVoid ? 1 : 0;
+        of_outside += place == Place::kOutside ? 1 : 0;
+    });
+    if (of_void == 8 || of_outside == 8 || (of_void == 0 && !voids.meet(cell - 1, cell + 2))) {
+        return of_void == 8;
+    }
+    // A node in sight is on the same side. Where none is, as in a crease, the nearest decides.
+    std::optional<Place> seen;
+    Place nearest = Place::kSolid;
+    double least = std::numeric_limits<double>::infinity();
+    for (int reach = 0; reach < 2 && !seen; ++reach) {
+        voids.eachNode(cell - reach, cell + 1 + reach, [&](const glm::ivec3& node, Place place) {
+            if (place == Place::kSolid || seen) {
+                return;
+            }
+            const glm::dvec3 there = voids.position(node);
+            if (segmentIsFree(p, there)) {
+                seen = place;
+            } else if (const double squared = dot(there - p, there - p); squared < least) {
+                least = squared;
+                nearest = place;
+            }
+        });
+    }
+    return seen.value_or(nearest) == Place::kVoid;
+}
+
+bool MeshQuery::awayFromVoids(const glm::dvec3& low, const glm::dvec3& high) const {
+    const Voids& voids = mesh_.voids();
+    return !hasVoids() || !voids.meet(glm::ivec3(glm::floor((low - voids.origin) / voids.step)) - 1,
+                                      glm::ivec3(glm::floor((high - voids.origin) / voids.step)) + 2);
 }
 
 bool MeshQuery::rayIsInside(const glm::vec3& p, const glm::dvec3& direction) const {
@@ -253,12 +300,12 @@ BodyCounter MeshQuery::countAlong(const glm::vec3& p, const glm::dvec3& directio
 BodyCounter MeshQuery::bodiesAt(const glm::vec3& p) const {
     BodyCounter counter;
     if (!shells_ && bodies_.empty()) {
-        if (inside(p)) {
+        if (inBody(p)) {
             counter.odd.push_back(1);
         }
         return counter;
     }
-    const bool is_inside = inside(p);
+    const bool is_inside = inBody(p);
     const WaysOut ways(mesh().bounds, p);
     // A ray through an edge may count it twice.
     for (std::size_t i = 0; i < kParityDirections.size(); ++i) {
@@ -319,7 +366,21 @@ bool MeshQuery::spansInside(const glm::dvec3& p, const glm::dvec3& direction,
         }
         inside = now;
     }
-    return !inside;
+    if (inside) {
+        return false;
+    }
+    if (hasVoids() && !spans.empty()) {
+        std::size_t last = 0;
+        for (std::size_t i = 1; i < spans.size(); ++i) {
+            if (inVoid(p + 0.5 * (spans[last].end + spans[i].begin) * direction)) {
+                spans[last].end = spans[i].end;
+            } else {
+                spans[++last] = spans[i];
+            }
+        }
+        spans.resize(last + 1);
+    }
+    return true;
 }
 
 MeshQuery::Crossing MeshQuery::crossingOf(const LineHit& hit, const glm::dvec3& direction) const {
@@ -397,7 +458,8 @@ std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::d
         }
         odd = odd != !again;
         const bool free = winds ? !counter.inside() : !odd;
-        if (free && i + 1 < places.size() && places[i + 1].along - here.along > tie) {
+        if (free && i + 1 < places.size() && places[i + 1].along - here.along > tie &&
+            !inVoid(origin + 0.5 * (here.along + places[i + 1].along) * direction)) {
             gaps.push_back({here.along, places[i + 1].along, here.triangle, places[i + 1].triangle});
         }
     }

@@ -86,8 +86,17 @@ class MeshQuery {
 
     /// By the majority of seven rays, kParityDirections (inside.h): independent of the winding, and for most points of the
     /// holes of an open mesh. For PreparedMesh::woundShells the winding number decides instead, so that the overlap of two
-    /// solids is inside. In a union (PreparedMesh::unionOf) each body decides for itself, by two of three rays.
+    /// solids is inside. In a union (PreparedMesh::unionOf) each body decides for itself, by two of three rays. Voids
+    /// (PreparedMesh::voids) are inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
+
+    /// The same without voids.
+    [[nodiscard]] bool inBody(const glm::vec3& p) const;
+    [[nodiscard]] bool hasVoids() const { return !mesh_.voids().places.empty(); }
+    /// \param p  in no body. Equal for the ends of a free segment, but in creases narrower than the grid of the voids.
+    [[nodiscard]] bool inVoid(const glm::dvec3& p) const;
+    /// No void meets the box. It may be wrong for one that does not.
+    [[nodiscard]] bool awayFromVoids(const glm::dvec3& low, const glm::dvec3& high) const;
 
     /// The bodies that `p` is in, for a path that begins there and counts each triangle on its way by bodyOf(). On open meshes
     /// the path may end in another state than inside() has it.

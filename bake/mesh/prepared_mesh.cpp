@@ -21,6 +21,7 @@ struct PreparedMesh::State {
     std::optional<VertexBlocks> vertex_blocks;  // positions never change
     std::optional<EmbreeMesh> tree;
     std::vector<std::uint32_t> bodies;
+    Voids voids;
 
     /// Computes what depends on the edges, without keeping edges of its own.
     void learn() {
@@ -137,6 +138,15 @@ PreparedMesh PreparedMesh::unionOf(TriangleMesh mesh, std::vector<std::uint32_t>
 
 const std::vector<std::uint32_t>& PreparedMesh::bodies() const {
     return state_->bodies;
+}
+
+PreparedMesh PreparedMesh::withVoids(Voids voids) && {
+    state_->voids = std::move(voids);
+    return std::move(*this);
+}
+
+const Voids& PreparedMesh::voids() const {
+    return state_->voids;
 }
 
 PreparedMesh PreparedMesh::capped(TriangleMesh mesh) const {

@@ -8,6 +8,7 @@
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/vertex_blocks.h"
+#include "bake/mesh/voids.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -52,6 +53,10 @@ class PreparedMesh {
     [[nodiscard]] static PreparedMesh unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies);
     /// As passed to unionOf; empty for other meshes.
     [[nodiscard]] const std::vector<std::uint32_t>& bodies() const;
+
+    /// The same mesh, whose voids are inside.
+    [[nodiscard]] PreparedMesh withVoids(Voids voids) &&;
+    [[nodiscard]] const Voids& voids() const;
 
     /// Another mesh, with caps, whose winding is as trusted as this one's.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;

@@ -62,7 +62,7 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         return std::abs(near.offset) <= clear || query.segmentIsFree(start, near.position());
     };
     const auto insideByWinding = [&](const NearDraw& near) {
-        return isFree(near) ? near.offset < 0.0 : query.inside(glm::vec3(near.position()));
+        return near.offset < 0.0 || query.inVoid(near.position());
     };
     bool trusted = query.watertight();
     double crossings = 0.0;  // per ray
@@ -74,8 +74,8 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         const glm::vec3 position(near.position());
         const bool free = isFree(near);
         asked += free ? 0.0 : 1.0 / static_cast<double>(kTrials);
-        trusted = trusted &&
-                  (std::abs(near.offset) <= clear || !free || (near.offset < 0.0) == query.inside(position));
+        trusted = trusted && (std::abs(near.offset) <= clear || !free ||
+                              insideByWinding(near) == query.inside(position));
         crossings += query.crossings(position, kParityDirections[i % kParityDirections.size()]) /
                      static_cast<double>(kTrials);
     }
@@ -97,7 +97,7 @@ std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t c
         for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
             const NearDraw near = draw(i, count, random, triangle);
             const glm::vec3 position(near.position());
-            const bool inside = trusted ? insideByWinding(near) : query.inside(position);
+            const bool inside = trusted && isFree(near) ? insideByWinding(near) : query.inside(position);
             // Without a trusted winding the normal points to the free side of its surface.
             const bool turned = !trusted && inside != (near.offset < 0.0);
             points[i] = {position, glm::vec3(turned ? -near.surface.normal : near.surface.normal), inside};

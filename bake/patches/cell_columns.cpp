@@ -504,6 +504,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     std::ranges::sort(crossings, std::less(), &Crossing::start);
     hits_ = hits.hits.size();
     turns_.reserve(hits_);
+    const bool no_voids = query.awayFromVoids(cell.low, cell.low + cell.size);
     BodyCounter counter = cell.bodies;
     path.go(MeshCell::kKnown, grid.starts().front().point, counter);
     bool enters_inside = counter.inside();
@@ -518,7 +519,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
         }
         inside_[line] = enters_inside ? 1.0F : 0.0F;
         const std::span<const Hit> along = hits.along(line, room);
-        if (along.empty()) {
+        if (along.empty() && no_voids) {
             continue;
         }
         const auto first = static_cast<std::uint32_t>(turns_.size());
@@ -542,10 +543,36 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                 turnWhere(bodies.inside(), hit.w);
             }
         }
+        if (!no_voids) {
+            fillVoids(query, cell, grid.starts()[i], first);
+        }
         if (turns_.size() > first) {
             columns_[line] = {first, static_cast<std::uint32_t>(turns_.size()) - first};
             turning_.push_back(line);
         }
+    }
+}
+
+void CellColumns::fillVoids(const MeshQuery& query, const MeshCell& cell, const LineGrid::Start& start,
+                            std::size_t first) {
+    const LineGrid::Line& line = grid_.lines()[start.line];
+    const std::vector<double> bodies(turns_.begin() + static_cast<std::ptrdiff_t>(first), turns_.end());
+    turns_.resize(first);
+    bool in_body = inside_[start.line] != 0.0F;
+    double begin = line.enters;
+    bool in = false;
+    for (std::size_t i = 0; i <= bodies.size(); ++i) {
+        const double end = i < bodies.size() ? bodies[i] : line.leaves;
+        const double w = 0.5 * (begin + end) - line.enters;
+        const bool now = in_body || query.inVoid(cell.low + cell.size * (start.point + w * grid_.along()));
+        if (i == 0) {
+            inside_[start.line] = now ? 1.0F : 0.0F;
+        } else if (now != in) {
+            turns_.push_back(begin);
+        }
+        in = now;
+        begin = end;
+        in_body = !in_body;
     }
 }
 

@@ -93,6 +93,8 @@ class LineGrid {
     void forEachWayBy(const UnitTriangle& over, const Visit& visit) const;
     /// Lines that meet a piece of a surface, as far as that goes by its area.
     [[nodiscard]] double expectedHits(const ClippedTriangle& piece) const;
+    /// A step of w, in the cube.
+    [[nodiscard]] const glm::dvec3& along() const { return along_; }
     /// The volume of a column for a unit of its w, in cells.
     [[nodiscard]] double volumePerLength() const { return volume_per_length_; }
     /// Of all columns.
@@ -176,6 +178,9 @@ class CellColumns {
         std::uint32_t first = 0;
         std::uint32_t count = 0;
     };
+    /// Takes what lies in voids for inside. \param first  of the line's turns, which are the last.
+    void fillVoids(const MeshQuery& query, const MeshCell& cell, const LineGrid::Start& start,
+                   std::size_t first);
 
     const LineGrid& grid_;
     std::vector<Turns> columns_;

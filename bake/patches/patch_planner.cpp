@@ -76,6 +76,7 @@ struct Node {
     bool split = false;
     bool turned = false;                          // a single surface has the outside below
     bool walls = true;                            // a pair has the inside between
+    bool in_void = false;                         // of one without triangles
     std::array<double, kShapes.size()> mistakes;  // of each tried: volume, object units, times its costs
     double pair_least = 0.0;                      // mistakes of the best pair there could be
     double passed_by = 0.0;  // volume between the lines, counted with each one's mistakes
@@ -90,7 +91,7 @@ struct Node {
     [[nodiscard]] bool seenEmpty() const { return tried == 1; }
     [[nodiscard]] const Shape& shape() const { return kShapes[chosen]; }
     /// Of one without a surface.
-    [[nodiscard]] bool inside() const { return empty() ? cell.bodies.inside() : chosen == 1; }
+    [[nodiscard]] bool inside() const { return empty() ? in_void || cell.bodies.inside() : chosen == 1; }
     [[nodiscard]] double cost(std::size_t index, double byte) const {
         return mistakes[index] + byte * kShapes[index].bytes();
     }
@@ -193,6 +194,7 @@ class Planner {
     /// Tries what may pay where a byte is worth so much wrong volume.
     void tryLeaves(Node& node, double byte) const {
         if (node.tried == 0 && node.empty()) {
+            node.in_void = query_.inVoid(node.cell.middle());
             node.add(0.0);
         }
         if (node.seenEmpty()) {

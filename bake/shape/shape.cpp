@@ -20,6 +20,7 @@
 #include "bake/repair/winding.h"
 #include "bake/shape/near_copies.h"
 #include "bake/shape/parts.h"
+#include "bake/shape/sealed_voids.h"
 #include "bake/shape/sheet.h"
 #include "bake/shape/solid_union.h"
 #include "formats/base/text.h"
@@ -181,7 +182,11 @@ class Shaper {
         RELIEF_TRY(checkThickness());
         addSheets();
         PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
-        return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts()), union_.takePartOf()}};
+        std::vector<std::uint32_t> part_of = union_.takePartOf();
+        if (options_.voids == VoidsAs::kFull && hasSealingSheet()) {
+            mesh = RELIEF_TRY(fillVoids(std::move(mesh), part_of));
+        }
+        return ShapedMesh{std::move(mesh), report_, {std::move(collected_.parts()), std::move(part_of)}};
     }
 
   private:
@@ -539,6 +544,33 @@ class Shaper {
             options_.thickness_by_part && report_.sheets > 0 ? options_.thickness : 0.0;
     }
 
+    /// Shells by request have free space on both sides.
+    static bool seals(const Open& part) {
+        return part.role.kind == Kind::kSheet && part.as != ShapeAs::kShell;
+    }
+    [[nodiscard]] bool hasSealingSheet() const { return std::ranges::any_of(open_, seals); }
+
+    Result<PreparedMesh> fillVoids(PreparedMesh mesh, std::vector<std::uint32_t>& part_of) {
+        std::vector<Wall> of_part(collected_.parts().size(), Wall::kSolid);
+        for (const Open& part : open_) {
+            if (part.role.kind == Kind::kSheet) {
+                for (const std::uint32_t source : part.sheet.sources) {
+                    of_part[collected_.partOf()[source]] = seals(part) ? Wall::kSheet : Wall::kNothing;
+                }
+            }
+        }
+        std::vector<Wall> walls(part_of.size(), Wall::kSheet);
+        for (std::size_t i = 0; i < walls.size(); ++i) {
+            if (part_of[i] != kNoLabel) {
+                walls[i] = of_part[part_of[i]];
+            }
+        }
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+        Voids voids = sealedVoids(query, walls);
+        report_.voids = voids.count;
+        return voids.count > 0 ? withVoids(query, std::move(voids), part_of) : mesh;
+    }
+
     void addTerrain(const Sheet& sheet, int axis) {
         const float low = boundsOf(sheet.positions).min[axis];
         add(sheet, extruded(sheet, axis, low - static_cast<float>(kGround) * mesh_.bounds.longestSide()),
@@ -599,6 +631,7 @@ std::string ShapeReport::text() const {
     append(text, solids_with_holes, "solid with holes", "solids with holes");
     append(text, sheets, "sheet", "sheets");
     append(text, terrains, "terrain", "terrains");
+    append(text, voids, "sealed void, full", "sealed voids, full");
     return text;
 }
 

@@ -44,6 +44,7 @@ struct ShapeReport {
     std::uint64_t sheets = 0;
     std::uint64_t closable_sheets = 0;  ///< large ones that closed holes would make solids
     std::uint64_t terrains = 0;
+    std::uint64_t voids = 0;                 ///< sealed by sheets, and full
     std::uint64_t coincident_triangles = 0;  ///< dropped from sheets, and from solids closed without them
     std::uint64_t near_copies = 0;           ///< closed parts dropped for a larger one (near_copies.h)
     double thickness = 0.0;                  ///< of the thickest shell, object units; 0: no shells
@@ -68,6 +69,8 @@ void fields(Visitor& visit, R& report) {
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
+    visit("voids", report.voids,
+          {"Voids that sheets and solids seal together; they are full, but with --voids hollow"});
     visit("coincident_triangles", report.coincident_triangles,
           {"Triangles left out because they coincide with another one"});
     visit("near_copies", report.near_copies,

@@ -16,6 +16,11 @@ enum class ShapeAs : std::uint8_t { kAuto, kSolid, kShell, kTerrain };
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<ShapeAs>{"auto", "solid", "shell", "terrain"};
 
+/// Free space that sheets and solids seal together (sealed_voids.h).
+enum class VoidsAs : std::uint8_t { kFull, kHollow };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<VoidsAs>{"full", "hollow"};
+
 /// Of shells: "0.01", or "auto=0.01" where it is a default, of which each sheet takes what suits its size.
 struct Thickness {
     double length = 0.0;  ///< object units, above 0
@@ -41,6 +46,7 @@ struct ShapeOptions {
     std::vector<NamedShape> named = {};
     /// `thickness` is a default, of which each sheet takes what suits its own size (partThickness).
     bool thickness_by_part = false;
+    VoidsAs voids = VoidsAs::kFull;
 
     [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in that order
 };

@@ -101,6 +101,41 @@ TriangleMesh makeTorusMesh(double ring_radius, double tube_radius, unsigned arou
     return finished(positions, triangles);
 }
 
+TriangleMesh makePanel(int axis, double at, double window) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    const auto place = [&](double u, double v) {
+        glm::dvec3 p(0.0);
+        p[axis] = at;
+        p[(axis + 1) % 3] = u;
+        p[(axis + 2) % 3] = v;
+        positions.emplace_back(p);
+    };
+    for (const double half : {1.5, 0.5 * window}) {
+        for (int corner = 0; corner < 4; ++corner) {
+            place(corner == 1 || corner == 2 ? half : -half, corner >= 2 ? half : -half);
+        }
+    }
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        const std::uint32_t next = (i + 1) % 4;
+        triangles.insert(triangles.end(), {{i, next, i + 4}, {next, next + 4, i + 4}});
+    }
+    if (window == 0.0) {
+        positions.resize(4);
+        triangles = {{0, 1, 2}, {0, 2, 3}};
+    }
+    return finished(positions, triangles);
+}
+
+TriangleMesh makeRooms(double window) {
+    std::vector<TriangleMesh> panels;
+    for (int axis = 0; axis < 3; ++axis) {
+        panels.push_back(makePanel(axis, -0.5));
+        panels.push_back(makePanel(axis, 0.5, axis == 0 ? window : 0.0));
+    }
+    return joined(panels);
+}
+
 TriangleMesh makePlane(float height, unsigned n) {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;

@@ -28,6 +28,12 @@ namespace relief::test {
 /// n × n squares of y = height over [−1, 1]²; normals +y.
 [[nodiscard]] TriangleMesh makePlane(float height, unsigned n);
 
+/// A square of side 3 across an axis, at `at` on it, with a square window of this side in its middle.
+[[nodiscard]] TriangleMesh makePanel(int axis, double at, double window = 0.0);
+/// Six panels of side 3 that cross at ±0.5: of the 27 rooms of a cube, the one in the middle has no way out, but by a square
+/// window of this side.
+[[nodiscard]] TriangleMesh makeRooms(double window = 0.0);
+
 [[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
 /// All of them as one mesh.
 [[nodiscard]] TriangleMesh joined(const std::vector<TriangleMesh>& meshes);

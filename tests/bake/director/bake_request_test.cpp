@@ -183,6 +183,30 @@ TEST(RecordedBake, NamesSurviveTheRecord) {
     EXPECT_EQ(old.request.as, std::vector<std::string>{"caf\xc3\xa9 A%=shell"});
 }
 
+TEST(RecordedBake, KnowsIfVoidsAreFull) {
+    const auto checkedVoids = [](std::optional<VoidsAs> voids, bool forget) {
+        BakeRequest request;
+        request.budget = 20'000;
+        request.thickness = Thickness{0.06, false};
+        request.voids = voids;
+        Result<BakeResult> baked = bake(request, {}, makeRooms());
+        EXPECT_TRUE(baked) << baked.error().message;
+        Collider& collider = baked->baked.collider;
+        if (forget) {
+            std::erase_if(collider.provenance.options,
+                          [](const RecordedOption& o) { return o.name == "voids"; });
+        }
+        CheckRequest check_request;
+        check_request.samples = 1'000;
+        const Result<MeshCheck> checked = check(check_request, std::move(collider), makeRooms());
+        EXPECT_TRUE(checked) << checked.error().message;
+        return checked->shape.voids;
+    };
+    EXPECT_EQ(checkedVoids({}, false), 1U);
+    EXPECT_EQ(checkedVoids(VoidsAs::kHollow, false), 0U);
+    EXPECT_EQ(checkedVoids({}, true), 0U);  // as older versions baked it
+}
+
 TEST(RecordedBake, MakesTheSolidThatWasBaked) {
     TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     box.triangles.pop_back();

@@ -1,0 +1,53 @@
+// Free space within a mesh that no way from outside reaches.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace relief {
+
+/// The nodes of a grid, and what each lies in.
+struct Voids {
+    enum class Place : std::uint8_t { kSolid, kOutside, kVoid };
+
+    glm::dvec3 origin{0.0};  ///< of node (0, 0, 0), object space
+    double step = 0.0;       ///< between nodes, object units
+    glm::ivec3 nodes{0};
+    std::vector<Place> places;  ///< x fastest; empty: no void. Beyond them there is none
+    std::uint32_t count = 0;    ///< of voids
+
+    [[nodiscard]] std::size_t at(const glm::ivec3& node) const {
+        return (static_cast<std::size_t>(node.z) * static_cast<std::size_t>(nodes.y) +
+                static_cast<std::size_t>(node.y)) *
+                   static_cast<std::size_t>(nodes.x) +
+               static_cast<std::size_t>(node.x);
+    }
+    [[nodiscard]] glm::dvec3 position(const glm::ivec3& node) const {
+        return origin + step * glm::dvec3(node);
+    }
+    /// visit(node, place) for those of a block, both ends included, that are in the grid.
+    template <class Visit>
+    void eachNode(const glm::ivec3& first, const glm::ivec3& last, const Visit& visit) const {
+        const glm::ivec3 low = glm::max(first, glm::ivec3(0));
+        const glm::ivec3 high = glm::min(last, nodes - 1);
+        for (int z = low.z; z <= high.z; ++z) {
+            for (int y = low.y; y <= high.y; ++y) {
+                for (int x = low.x; x <= high.x; ++x) {
+                    visit(glm::ivec3(x, y, z), places[at({x, y, z})]);
+                }
+            }
+        }
+    }
+    /// A node of a block is in a void.
+    [[nodiscard]] bool meet(const glm::ivec3& first, const glm::ivec3& last) const {
+        bool found = false;
+        eachNode(first, last,
+                 [&](const glm::ivec3&, Place place) { found = found || place == Place::kVoid; });
+        return found;
+    }
+};
+
+}  // namespace relief

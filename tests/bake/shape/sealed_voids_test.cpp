@@ -1,0 +1,151 @@
+// Space that sheets seal off together: promises of sealed_voids.h, on a shape whose inside has a formula.
+#include "bake/shape/sealed_voids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
+
+#include "bake/measure/truth.h"
+#include "bake/mesh/mersenne.h"
+#include "bake/patches/patch_planner.h"
+#include "bake/repair/winding.h"
+#include "bake/shape/shape.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr double kThickness = 0.06;
+
+bool inPanel(const glm::dvec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec2 across(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+        if (std::abs(std::abs(p[axis]) - 0.5) < 0.5 * kThickness &&
+            std::max(std::abs(across.x), std::abs(across.y)) < 1.5) {
+            return true;
+        }
+    }
+    return false;
+}
+bool inMiddle(const glm::dvec3& p) {
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
+}
+
+TriangleMesh turned(TriangleMesh mesh, const glm::dmat3& turn) {
+    for (glm::vec3& p : mesh.positions) {
+        p = turn * glm::dvec3(p);
+    }
+    return finished(mesh.positions, mesh.triangles);
+}
+
+ShapedMesh shaped(const TriangleMesh& mesh, ShapeOptions options = {}) {
+    options.thickness = kThickness;
+    Result<Winding> winding = windOutwards(mesh);
+    EXPECT_TRUE(winding);
+    Result<ShapedMesh> shape = shapeMesh(winding->mesh, options);
+    EXPECT_TRUE(shape) << shape.error().message;
+    return std::move(*shape);
+}
+
+MeshQuery queryOf(const PreparedMesh& mesh) {
+    Result<MeshQuery> query = MeshQuery::build(mesh);
+    EXPECT_TRUE(query) << query.error().message;
+    return std::move(*query);
+}
+
+/// Whether the middle room is full, by its middle.
+bool isFull(const TriangleMesh& mesh, const ShapeOptions& options = {}) {
+    const ShapedMesh shape = shaped(mesh, options);
+    const bool full = queryOf(shape.mesh).inside(glm::vec3(0.01F, 0.02F, 0.03F));
+    EXPECT_EQ(shape.report.voids, full ? 1U : 0U);
+    return full;
+}
+
+class SealedVoids : public ::testing::TestWithParam<double> {};
+
+TEST_P(SealedVoids, AreInside) {
+    const glm::dmat3 turn = rotation(glm::dvec3(0.3, 1.0, 0.2), GetParam());
+    const ShapedMesh shape = shaped(turned(makeRooms(), turn));
+    EXPECT_EQ(shape.report.sheets, 6U);
+    EXPECT_EQ(shape.report.voids, 1U);
+    const MeshQuery query = queryOf(shape.mesh);
+    MersenneRandom random(7);
+    int of_middle = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+        const glm::dvec3 p = (i % 2 == 0 ? 3.4 : 1.2) * (share - 0.5);
+        const bool inside = inPanel(p) || inMiddle(p);
+        bool clear = true;  // of the surface by more than floats err
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::dvec3 step(0.0);
+            step[axis] = 1e-3;
+            clear = clear && inPanel(p + step) == inPanel(p) && inPanel(p - step) == inPanel(p);
+        }
+        if (clear) {
+            of_middle += inMiddle(p) && !inPanel(p) ? 1 : 0;
+            ASSERT_EQ(query.inside(glm::vec3(turn * p)), inside) << p.x << ' ' << p.y << ' ' << p.z;
+        }
+    }
+    EXPECT_GT(of_middle, 10'000);
+}
+
+TEST_P(SealedVoids, EndNoLineAndNoPatch) {
+    const glm::dmat3 turn = rotation(glm::dvec3(0.3, 1.0, 0.2), GetParam());
+    const ShapedMesh shape = shaped(turned(makeRooms(), turn));
+    const MeshQuery query = queryOf(shape.mesh);
+    std::vector<LineSpan> spans;
+    const glm::dvec3 middle = turn * glm::dvec3(0.01, 0.02, 0.03);
+    const glm::dvec3 x = turn * glm::dvec3(1.0, 0.0, 0.0);
+    ASSERT_TRUE(query.spansInside(middle, x, spans));
+    ASSERT_EQ(spans.size(), 1U);
+    EXPECT_NEAR(spans[0].begin, -0.54, 1e-5);
+    EXPECT_NEAR(spans[0].end, 0.52, 1e-5);
+    EXPECT_TRUE(query.gapsAlong(middle, x).empty());
+
+    for (const SurfacePoint& point : sampleSurface(query, {.samples = 5'000})) {
+        const glm::dvec3 p = glm::transpose(turn) * glm::dvec3(point.position);
+        const bool faces_room = inMiddle(p + 0.01 * (glm::transpose(turn) * glm::dvec3(point.normal)));
+        EXPECT_TRUE(!faces_room || point.buried);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Turned, SealedVoids, ::testing::Values(0.0, 33.0));
+
+TEST(SealedVoid, IsBakedFull) {
+    const ShapedMesh shape = shaped(makeRooms());
+    const MeshQuery query = queryOf(shape.mesh);
+    const DepthMap map = bakePatches(query, {.bytes = 200'000});
+    MersenneRandom random(3);
+    for (int i = 0; i < 20'000; ++i) {
+        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
+        ASSERT_LT(vote(map, glm::vec3(share - 0.5))->distance, 0.0F);
+    }
+    int wrong = 0;
+    const std::vector<TruthPoint> near = sampleNear(query, {.samples = 20'000});
+    for (const TruthPoint& point : near) {
+        wrong += (vote(map, point.position)->distance < 0.0F) != point.inside() ? 1 : 0;
+    }
+    EXPECT_LT(wrong, 60);
+}
+
+TEST(SealedVoid, HasNoWindow) {
+    EXPECT_TRUE(isFull(makeRooms()));
+    EXPECT_FALSE(isFull(makeRooms(0.08)));
+    EXPECT_FALSE(isFull(makeRooms(0.5)));
+}
+
+TEST(SealedVoid, StaysHollowOnRequest) {
+    EXPECT_FALSE(isFull(makeRooms(), {.voids = VoidsAs::kHollow}));
+    EXPECT_FALSE(isFull(makeRooms(), {.as = ShapeAs::kShell}));
+}
+
+TEST(SealedVoid, IsNoHollowOfASolid) {
+    const TriangleMesh hollow = joined({makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)),
+                                        reversed(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.3)))});
+    TriangleMesh sheet = makePanel(1, 1.2);
+    EXPECT_FALSE(isFull(joined({hollow, sheet})));
+}
+
+}  // namespace
+}  // namespace relief::test
