@@ -4,6 +4,7 @@
 #include <array>
 #include <iterator>
 #include <optional>
+#include <span>
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -20,8 +21,12 @@ constexpr std::array<std::string_view, 3> kTopKeys = {"version", "defaults", "as
 /// Options that choose the maps: an asset with one of them takes none from the defaults.
 constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "plan",  "budget",
                                                         "max-error", "decode", "depth", "resolution"};
-/// Those of kMapChoice that choose, rather than refine the choice.
+/// The first of kMapChoice choose, the others refine the choice.
 constexpr std::size_t kChoosers = 5;
+/// The first of them name the maps, which leaves nothing to plan.
+constexpr std::size_t kNamers = 3;
+/// Options about what is planned: an asset that names its maps takes none from the defaults.
+constexpr std::array<std::string_view, 2> kPlanning = {"layout", "max-maps"};
 
 /// Thrown where a recipe exceeds a limit.
 struct BeyondLimit {
@@ -142,10 +147,18 @@ void merge(RecipeAsset& asset, const RecipeAsset& defaults) {
         asset.output = defaults.output;
         asset.output_place = defaults.output_place;
     }
-    const bool chooses = std::any_of(kMapChoice.begin(), kMapChoice.begin() + kChoosers,
-                                     [&](auto name) { return asset.options.contains(std::string(name)); });
+    const auto has_one_of = [&](std::size_t first) {
+        return std::ranges::any_of(std::span(kMapChoice).first(first), [&](std::string_view name) {
+            return asset.options.contains(std::string(name));
+        });
+    };
+    const auto is_one_of = [](std::span<const std::string_view> names, const std::string& name) {
+        return std::ranges::find(names, name) != names.end();
+    };
+    const bool chooses = has_one_of(kChoosers);
+    const bool names_maps = has_one_of(kNamers);
     for (const auto& [name, value] : defaults.options) {
-        if (!chooses || std::ranges::find(kMapChoice, name) == kMapChoice.end()) {
+        if (!(chooses && is_one_of(kMapChoice, name)) && !(names_maps && is_one_of(kPlanning, name))) {
             asset.options.emplace(name, value);  // the asset's own stays
         }
     }

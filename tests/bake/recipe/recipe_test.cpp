@@ -20,7 +20,8 @@ const std::vector<RecipeKey>& keys() {
     static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},        {"paper", Kind::kFlag},
                                                  {"plan", Kind::kValue},      {"budget", Kind::kValue},
                                                  {"decode", Kind::kValue},    {"prefer", Kind::kValue},
-                                                 {"max-error", Kind::kValue}, {"compress", Kind::kValue}};
+                                                 {"max-error", Kind::kValue}, {"compress", Kind::kValue},
+                                                 {"layout", Kind::kValue},    {"max-maps", Kind::kValue}};
     return kKeys;
 }
 
@@ -62,6 +63,27 @@ TEST(Recipe, AnAssetThatChoosesItsMapsTakesNoneOfTheDefaultsChoice) {
     EXPECT_EQ(recipeArguments((*assets)[1].options), (Arguments{"--budget=1MB", "--compress=1"}));
     EXPECT_EQ(recipeArguments((*assets)[2].options), (Arguments{"--compress=1", "--paper"}));
     EXPECT_EQ(recipeArguments((*assets)[3].options), (Arguments{"--compress=1"}));
+}
+
+// Otherwise a recipe that plans views could not name the maps of one asset.
+TEST(Recipe, AnAssetThatNamesItsMapsTakesNothingAboutPlanning) {
+    const auto assets = parseRecipe(
+        recipe("[defaults]\noutput = '{stem}.relief'\nlayout = 'views'\nmax-maps = 4\nbudget = '1MB'\n"
+               "[[asset]]\nmesh = 'a'\nbudget = '2MB'\n[[asset]]\nmesh = 'b'\nlayout = 'patches'\n"
+               "[[asset]]\nmesh = 'c'\nmap = 'cube:size=8'\n[[asset]]\nmesh = 'd'\npaper = true\n"
+               "[[asset]]\nmesh = 'e'\nplan = 'e.toml'\n"),
+        keys(), "r.toml");
+    ASSERT_TRUE(assets) << assets.error().message;
+    using Arguments = std::vector<std::string>;
+    const std::vector<Arguments> wanted = {{"--budget=2MB", "--layout=views", "--max-maps=4"},
+                                           {"--budget=1MB", "--layout=patches", "--max-maps=4"},
+                                           {"--map=cube:size=8"},
+                                           {"--paper"},
+                                           {"--plan=e.toml"}};
+    ASSERT_EQ(assets->size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        EXPECT_EQ(recipeArguments((*assets)[i].options), wanted[i]);
+    }
 }
 
 TEST(Recipe, SaysWhatIsWrongAndWhere) {
