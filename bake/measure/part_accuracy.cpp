@@ -82,7 +82,8 @@ class PartMeter {
             found.state = PartVerdict::kHidden;
             return found;
         }
-        const std::pair thickness(parts_.parts[part].thickness, parts_.parts[part].right_thickness);
+        // Too thick a shell is judged by the face that it should have: by its own, a lost sheet would be right.
+        const double too_deep = 0.5 * (parts_.parts[part].thickness - parts_.parts[part].right_thickness);
         MersenneRandom random(options_.seed, part);
         std::uint32_t false_inside = 0;
         std::uint32_t false_outside = 0;
@@ -96,12 +97,10 @@ class PartMeter {
                 continue;
             }
             ++found.points;
-            const glm::vec3 p = on + found.sigma * offset;
+            const glm::vec3 p = on - too_deep * normal + found.sigma * offset;
             const std::optional<FieldValue> value = field_(p);
             const bool inside = value && value->distance < 0.0F;
-            // The face of a shell lies half of its thickness off the sheet.
-            const double off_sheet = 0.5 * thickness.first + found.sigma * dot(offset, normal);
-            const bool beyond = thickness.second < thickness.first && off_sheet > 0.5 * thickness.second;
+            const bool beyond = too_deep > 0.0 && dot(offset, normal) > 0.0;
             if (const bool truth = !beyond && query_.inside(p); truth != inside) {
                 ++(inside ? false_inside : false_outside);
             }

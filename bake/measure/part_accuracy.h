@@ -73,7 +73,7 @@ struct PartsAccuracy {
 };
 
 /// Measures at points near each part's surface in the baked solid: area-weighted, with an isotropic Gaussian offset. Truth is
-/// the side of the whole mesh, but a shell beyond its right_thickness is outside. The same for any number of threads.
+/// the side of the whole mesh, but a shell ends at its right_thickness. The same for any number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,
                                          const Field& field, const PartOptions& options);

@@ -137,6 +137,15 @@ TEST(PartAccuracy, AShellIsWrongBeyondTheThicknessThatWasAskedFor) {
     EXPECT_EQ(thick.countOf(PartVerdict::kLost), 1U);
     EXPECT_EQ(thick.parts.front().part, 1U);
     EXPECT_GT(thick.parts.front().wrong.false_inside, 40.0);
+
+    // The leaf may be too thick in the solid, but a field without it is no better.
+    const PartsAccuracy absent = measured(by_default, fieldOfBoxes({body.bounds}));
+    EXPECT_EQ(absent.countOf(PartVerdict::kLost), 1U);
+    EXPECT_EQ(absent.parts.front().part, 1U);
+    EXPECT_GT(absent.parts.front().wrong.false_outside, 40.0);
+    shell.min.y = 8.0F - 0.005F;
+    shell.max.y = 8.0F + 0.005F;
+    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell})).countOf(PartVerdict::kHeld), 2U);
 }
 
 TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {
