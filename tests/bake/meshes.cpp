@@ -167,6 +167,15 @@ TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
     return finished(positions, triangles);
 }
 
+MeshQuery queryOf(PreparedMesh mesh) {
+    Result<MeshQuery> query = MeshQuery::build(std::move(mesh));
+    if (!query) {
+        ADD_FAILURE() << query.error().message;
+        std::abort();
+    }
+    return std::move(*query);
+}
+
 TriangleMesh reversed(TriangleMesh mesh) {
     for (glm::uvec3& t : mesh.triangles) {
         std::swap(t.y, t.z);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bake/mesh/mesh.h"
+#include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
 
 namespace relief::test {
@@ -37,6 +38,9 @@ namespace relief::test {
 [[nodiscard]] TriangleMesh reversed(TriangleMesh mesh);
 /// All of them as one mesh.
 [[nodiscard]] TriangleMesh joined(const std::vector<TriangleMesh>& meshes);
+
+/// Of a mesh that must be right.
+[[nodiscard]] MeshQuery queryOf(PreparedMesh mesh);
 
 /// Bakes specs, which must be right. Maps that do not say otherwise are of the paper's texels: projected,
 /// half.

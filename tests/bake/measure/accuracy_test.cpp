@@ -22,12 +22,6 @@
 namespace relief::test {
 namespace {
 
-MeshQuery queryOf(const TriangleMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 /// Points in a box of 1.2 times the bounds.
 std::vector<glm::vec3> randomPoints(const Bounds& bounds, int count) {
     std::mt19937 random(3);

@@ -13,12 +13,6 @@
 namespace relief::test {
 namespace {
 
-MeshQuery queryOf(const TriangleMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 std::vector<BrickLayout> layouts() {
     return {{.cells = 3},
             {.cells = 8, .flat_index = true, .band = 4.0},

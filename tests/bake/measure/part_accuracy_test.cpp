@@ -15,19 +15,6 @@
 namespace relief::test {
 namespace {
 
-TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    for (const TriangleMesh& mesh : meshes) {
-        const auto first = static_cast<std::uint32_t>(positions.size());
-        positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
-        for (const glm::uvec3& t : mesh.triangles) {
-            triangles.push_back(t + first);
-        }
-    }
-    return finished(positions, triangles);
-}
-
 ShapedMesh shaped(TriangleMesh mesh, const ShapeOptions& options = {ShapeAs::kAuto, 0.01, {}}) {
     Result<Winding> winding = windOutwards(std::move(mesh));
     EXPECT_TRUE(winding) << winding.error().message;
@@ -37,9 +24,7 @@ ShapedMesh shaped(TriangleMesh mesh, const ShapeOptions& options = {ShapeAs::kAu
 }
 
 PartsAccuracy measured(const ShapedMesh& shape, const Field& field, const PartOptions& options = {}) {
-    const Result<MeshQuery> query = MeshQuery::build(shape.mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return measureParts(*query, shape.parts, field, options);
+    return measureParts(queryOf(shape.mesh), shape.parts, field, options);
 }
 
 /// The side of boxes, inside of any.

@@ -17,12 +17,6 @@
 namespace relief::test {
 namespace {
 
-MeshQuery queryOf(PreparedMesh mesh) {
-    Result<MeshQuery> query = MeshQuery::build(std::move(mesh));
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 DepthMap checked(const MeshQuery& query, std::uint64_t bytes) {
     DepthMap map = bakePatches(query, {.bytes = bytes});
     const Result<void> valid = validateFrame(map).and_then([&] { return validateTexels(map); });

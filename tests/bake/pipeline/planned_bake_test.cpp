@@ -20,12 +20,6 @@ namespace {
 
 constexpr std::uint64_t kBudget = 65536;
 
-MeshQuery queryOf(const TriangleMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 Plan planOf(const TriangleMesh& mesh, std::uint64_t budget = kBudget) {
     PlanOptions options;
     options.budget_bytes = budget;

@@ -21,12 +21,6 @@ TriangleMesh closedBy(const TriangleMesh& mesh) {
     return closed ? **closed : mesh;
 }
 
-MeshQuery queryOf(const TriangleMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 double volume(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -29,12 +29,6 @@ ShapedMesh shaped(const TriangleMesh& mesh, ShapeAs as = ShapeAs::kAuto, double 
     return std::move(*shape);
 }
 
-MeshQuery queryOf(const PreparedMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 /// Without the triangles whose middle `gone` says so of.
 template <class Gone>
 TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {

@@ -18,25 +18,6 @@
 namespace relief::test {
 namespace {
 
-MeshQuery queryOf(const TriangleMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
-TriangleMesh joined(const std::vector<TriangleMesh>& parts) {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    for (const TriangleMesh& part : parts) {
-        const auto first = static_cast<std::uint32_t>(positions.size());
-        positions.insert(positions.end(), part.positions.begin(), part.positions.end());
-        for (const glm::uvec3& t : part.triangles) {
-            triangles.push_back(t + first);
-        }
-    }
-    return finished(std::move(positions), std::move(triangles));
-}
-
 /// A ball in the middle of a hollow one: no ray from outside gets into the gap.
 constexpr double kOuter = 1.0;
 constexpr double kHollow = 0.9;

@@ -13,12 +13,6 @@
 namespace relief::test {
 namespace {
 
-MeshQuery queryOf(const TriangleMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 WrongShare wrongNear(const MeshQuery& query, const Collider& collider) {
     AccuracyOptions options;
     options.samples = 240'000;
