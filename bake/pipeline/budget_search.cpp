@@ -32,6 +32,11 @@ std::string percentText(double percent) {
     return text;
 }
 
+/// Too few bytes for the maps that the mesh needs, or to see any of it: no answer yet.
+bool isTooFew(const Error& error) {
+    return error.code == ErrorCode::kUsage || error.code == ErrorCode::kFailure;
+}
+
 class Search {
   public:
     Search(const MeshQuery& query, const MeshQuery& truth, std::optional<ViewChoice> views,
@@ -47,8 +52,7 @@ class Search {
         for (std::uint64_t budget = std::min(options_.budget_min, most);;
              budget = std::min(budget * kGrowth, most)) {
             const Result<bool> kept = keeps(budget);
-            // Too few bytes for the maps that the mesh needs: no answer yet.
-            const bool too_few = !kept && kept.error().code == ErrorCode::kUsage && budget < most;
+            const bool too_few = !kept && isTooFew(kept.error()) && budget < most;
             if (!kept && !too_few) {
                 return forward(kept);
             }
@@ -64,7 +68,7 @@ class Search {
             const auto middle = static_cast<std::uint64_t>(
                 std::sqrt(static_cast<double>(failed) * static_cast<double>(best_->chosen.budget)));
             const Result<bool> kept = keeps(middle);
-            if (!kept && kept.error().code != ErrorCode::kUsage) {
+            if (!kept && !isTooFew(kept.error())) {
                 return forward(kept);
             }
             if (!kept || !*kept) {
