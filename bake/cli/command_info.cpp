@@ -56,8 +56,8 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
         {"map", "format", "projection", "keeps", "size>", "bytes>", "stored>", "encloses", "empty is"}};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
-        rows.push_back({std::to_string(i), mapFormatName(map.format), projectionName(map.projection()),
-                        keepsText(map), sizeText(map), bytesText(info.payloads[i].raw_size),
+        rows.push_back({std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map),
+                        sizeText(map), bytesText(info.payloads[i].raw_size),
                         bytesText(info.payloads[i].stored_size) +
                             (info.payloads[i].packing == Packing::kNone
                                  ? ""

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "bake/measure/patch_cells.h"
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -161,11 +160,10 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
         const DepthMap& map = baked.collider.maps[i];
         const MapReport& report = baked.report.maps[i];
-        const bool patches = map.format == MapFormat::kPatches;
         rows.push_back(
-            {std::to_string(i), mapFormatName(map.format), projectionName(map.projection()), keepsText(map),
-             patches ? countText(patchCount(map), "patch", "patches") : sizeText(map),
-             bytesText(gpuBytes(map)), patches ? "-" : shareText(BakedMapReport{.baked = report}.coverage()),
+            {std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map), sizeText(map),
+             bytesText(gpuBytes(map)),
+             map.format == MapFormat::kPatches ? "-" : shareText(BakedMapReport{.baked = report}.coverage()),
              summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
     }
     text += table(rows);

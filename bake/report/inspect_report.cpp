@@ -57,11 +57,12 @@ std::string inspectionText(const Inspection& inspection, const std::string& name
             {"map", "is", "format", "size>", "stored>", "covered>"}};
         for (std::size_t i = 0; i < inspection.maps.size(); ++i) {
             const MapInspection& map = inspection.maps[i];
+            const bool patches = map.frame && map.frame->format == MapFormat::kPatches;
             rows.push_back({std::to_string(i), std::string(wordOf(map.state)),
                             map.frame ? mapFormatName(map.frame->format) : "-",
                             map.frame ? sizeText(*map.frame) : "-",
                             map.payload ? bytesText(map.payload->stored_size) : "-",
-                            map.coverage ? shareText(*map.coverage) : "-"});
+                            map.coverage && !patches ? shareText(*map.coverage) : "-"});
         }
         text += table(rows);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "bake/measure/patch_cells.h"
 #include "bake/plan/view_planner.h"
 #include "formats/base/text.h"
 
@@ -90,11 +91,18 @@ std::uint64_t roundBudget(std::uint64_t bytes) {
     return std::max((bytes + unit - 1) / unit * unit, kPlanBudgetMin);
 }
 
+std::string projectionText(const DepthMap& map) {
+    return map.projection() == Projection::kLocal ? "per patch" : projectionName(map.projection());
+}
+
 std::string keepsText(const DepthMap& map) {
     return map.projection() == Projection::kLocal ? "-" : compareName(map.compare);
 }
 
 std::string sizeText(const DepthMap& map) {
+    if (map.format == MapFormat::kPatches) {
+        return map.texels.empty() ? "-" : countText(patchCount(map), "patch", "patches");
+    }
     return (map.faceCount() == 1 ? "" : std::to_string(map.faceCount()) + "x") + std::to_string(map.width) +
            "x" + std::to_string(map.height);
 }

@@ -32,9 +32,11 @@ namespace relief {
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
 /// The next number of bytes with two digits, at least kPlanBudgetMin, for --budget.
 [[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
+/// "orthographic" or "cube"; "per patch" of patches, each of which has an axis of its own.
+[[nodiscard]] std::string projectionText(const DepthMap& map);
 /// The surface that a map keeps along each ray; "-" of patches, which keep all.
 [[nodiscard]] std::string keepsText(const DepthMap& map);
-/// "512x256"; of a cube "6x64x64".
+/// "512x256"; of a cube "6x64x64"; of patches "49790 patches", or "-" without texels.
 [[nodiscard]] std::string sizeText(const DepthMap& map);
 
 /// Longest sides from here on are rare in metres, and common in centimetres and millimetres.

@@ -15,7 +15,7 @@ done
 
 # A map of patches has no view: its words are exported, beside the images of other maps.
 "$relief" bake "$bunny" -o p.relief --map patches:bytes=20kB --map cube:size=16 -q
-"$relief" info p.relief | grep -q 'patches *local *- ' || die "info names a surface that patches keep: $("$relief" info p.relief)"
+"$relief" info p.relief | grep -qE 'patches +per patch +- +[1-9][0-9]+ patches +[0-9.]+ kB' || die "info does not say how many patches there are: $("$relief" info p.relief)"
 "$relief" export p.relief -o patches
 [ "$(find patches -name '*.exr' | wc -l)" -eq 7 ] || die "a tree and six faces, not $(ls patches)"
 exrheader patches/map0_patches.exr >header
