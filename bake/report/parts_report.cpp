@@ -19,6 +19,8 @@ constexpr std::size_t kShownGroups = 5;
 constexpr double kTexelsAcross = 1.0 / 3.0;
 /// Budgets beyond are not advised for the sake of a part.
 constexpr double kBudgetAdvisedMax = 1e9;
+/// Patches' bytes that a lost part is worth a try of, in units of those that they take.
+constexpr double kMorePatches = 4.0;
 /// An asked-for shell is said to swallow a part from this share of the part's longest side on.
 constexpr double kSwallows = 0.25;
 constexpr std::size_t kNameBytesMax = 80;
@@ -45,6 +47,11 @@ double middleExtent(const SurfacePart& part) {
     std::array<double, 3> extents = {size.x, size.y, size.z};
     std::sort(extents.begin(), extents.end());
     return extents[1];
+}
+
+bool hasPatches(const Collider& collider) {
+    return std::ranges::any_of(collider.maps,
+                               [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
 }
 
 std::string sideText(const PartAccuracy& accuracy) {
@@ -132,14 +139,24 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
                shortest(parseFloat(roughly(part.right_thickness)).value_or(0.0F));
     }
     const double texel = partTexel(part, collider);
-    const double across = part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part);
-    const double needed = std::min(kTexelsAcross * across, 0.5 * texel);
-    if (!(needed > 0.0)) {
+    const double right =
+        kTexelsAcross * (part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part));
+    const double needed = std::min(right, 0.5 * texel);
+    const bool patches = hasPatches(collider);
+    if (!(needed > 0.0) || (patches && !cure.empty() && texel <= right)) {
         return cure;
     }
-    const double bytes = static_cast<double>(collider.gpuBytes()) * (texel / needed) * (texel / needed);
-    cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
-    cure += "texels of " + lengthText(needed, collider.unit) + " take ";
+    auto bytes = static_cast<double>(collider.gpuBytes());
+    if (patches) {
+        // Cells are split where the mistakes are: no other part takes as much more.
+        bytes *= kMorePatches;
+        cure += cure.empty() ? "its patches' heights are " + lengthText(texel, collider.unit) + " apart; try "
+                             : ", and try ";
+    } else {
+        bytes *= (texel / needed) * (texel / needed);
+        cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
+        cure += "texels of " + lengthText(needed, collider.unit) + " take ";
+    }
     cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
     return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
 }

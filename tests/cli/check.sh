@@ -69,6 +69,28 @@ advised few.json
 "$relief" check few.relief --mesh "$bunny" --samples 20000 --json >more.json
 keeps_promise few.json more.json
 
+# Patches are told of bytes alone, for nothing is out of their sight; views are held against patches of as many bytes.
+json few.json '[a["about"] for a in d["advice"]] == ["patches of twice the bytes"]'
+expect 0 "$relief" check few.relief --mesh "$bunny" --samples 5000
+grep -q 'finer than the patches: map 0 (patches) decides, whose heights are [0-9.]* apart there' stdout || die "no cause: $(cat stdout)"
+"$relief" bake "$bunny" -o views.relief --layout views --budget 100kB -q
+"$relief" check views.relief --mesh "$bunny" --samples 20000 --json >views.json
+python3 - <<'P' >same.json || die "no advice of patches: $(cat views.json)"
+import json
+d = json.load(open('views.json'))
+d['advice'] = [a for a in d['advice'] if a['about'] == 'patches of as many bytes']
+assert d['advice'] and d['advice'][0]['wrong_percent'] < 0.6 * d['verdict']['wrong_percent']
+print(json.dumps(d))
+P
+advised same.json
+"$relief" check views.relief --mesh "$bunny" --samples 20000 --json >after.json
+json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'
+keeps_promise same.json after.json
+# Where holes are kept, views of twice the bytes are what helps.
+"$relief" bake "$bunny" -o kept.relief --budget 100kB --holes keep -q
+"$relief" check kept.relief --mesh "$bunny" --samples 20000 --json >kept.json
+json kept.json '[a["about"] for a in d["advice"]] == ["planned maps of twice the bytes"] and d["advice"][0]["helps"]'
+
 # A cavity that no map sees: a ball in a box. A cube at each place helps.
 python3 - >hollow.obj <<'P'
 import math
