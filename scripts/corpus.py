@@ -68,7 +68,7 @@ def processor_seconds():
 
 
 def step_ratio(bin, folder):
-    """A step against planned maps over one against the paper's two: the least of some runs each, in turns."""
+    """A step among patches over one among the paper's two maps: the least of some runs each, in turns."""
     least = {'ours': math.inf, 'paper': math.inf}
     for _ in range(REPEATS):
         for name in least:
