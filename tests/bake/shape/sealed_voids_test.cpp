@@ -48,12 +48,6 @@ ShapedMesh shaped(const TriangleMesh& mesh, ShapeOptions options = {}) {
     return std::move(*shape);
 }
 
-MeshQuery queryOf(const PreparedMesh& mesh) {
-    Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query) << query.error().message;
-    return std::move(*query);
-}
-
 /// Whether the middle room is full, by its middle.
 bool isFull(const TriangleMesh& mesh, const ShapeOptions& options = {}) {
     const ShapedMesh shape = shaped(mesh, options);
