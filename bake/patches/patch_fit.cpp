@@ -242,27 +242,6 @@ PatchHeights coded(std::array<double, kSide * kSide>& heights) {
     return codes;
 }
 
-/// The same surface by kSide² heights, of as many or of those of the size before.
-template <std::size_t kSide>
-std::array<double, kSide * kSide> refined(const PatchHeights& from) {
-    std::array<double, kSide * kSide> heights;
-    from.decode(heights);
-    if (from.side == kSide) {
-        return heights;
-    }
-    const std::array<double, kSide* kSide> coarse = heights;
-    for (std::size_t j = 0; j < kSide; ++j) {
-        for (std::size_t i = 0; i < kSide; ++i) {
-            const double* const lower = &coarse[j / 2 * from.side];
-            const double* const upper = &coarse[(j + 1) / 2 * from.side];
-            const std::size_t left = i / 2;
-            const std::size_t right = (i + 1) / 2;
-            heights[j * kSide + i] = 0.25 * (lower[left] + lower[right] + upper[left] + upper[right]);
-        }
-    }
-    return heights;
-}
-
 /// The length up to `w` that should lie between a pair's surfaces.
 double betweenTo(const CellColumn& column, double w, bool walls) {
     const double inside = column.insideTo(w);
@@ -407,13 +386,10 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
 }
 
 template <std::size_t kSide>
-FittedPatch PatchFitter::fitOf(int rounds, const PatchHeights* from) const {
+FittedPatch PatchFitter::fitOf(int rounds) const {
     std::array<double, kSide * kSide> heights{};
-    if (from != nullptr) {
-        heights = refined<kSide>(*from);
-    }
     for (int round = 0; round < rounds; ++round) {
-        fitRound<kSide>(columns_.grid(), targets_, from != nullptr || round > 0, heights);
+        fitRound<kSide>(columns_.grid(), targets_, round > 0, heights);
     }
     FittedPatch fitted;
     fitted.heights = coded<kSide>(heights);
@@ -421,8 +397,8 @@ FittedPatch PatchFitter::fitOf(int rounds, const PatchHeights* from) const {
     return fitted;
 }
 
-FittedPatch PatchFitter::fit(std::uint32_t side, int rounds, const PatchHeights* from) const {
-    return side == 2 ? fitOf<2>(rounds, from) : side == 3 ? fitOf<3>(rounds, from) : fitOf<5>(rounds, from);
+FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
+    return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
 }
 
 PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls)

@@ -90,8 +90,7 @@ class PatchFitter {
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
     /// \param side  2, 3 or 5 heights.
     /// \param rounds  of least squares, each with weights from the one before that turn it into least absolute error.
-    /// \param from  heights to weigh the first round's errors by, as many or those of the size before; may be null.
-    [[nodiscard]] FittedPatch fit(std::uint32_t side, int rounds, const PatchHeights* from = nullptr) const;
+    [[nodiscard]] FittedPatch fit(std::uint32_t side, int rounds) const;
     /// The volume that is inside, in cells.
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
 
@@ -99,7 +98,7 @@ class PatchFitter {
     /// \param by_error  the length on the wrong side is the error, as far as that is in the cube.
     [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
     template <std::size_t kSide>
-    [[nodiscard]] FittedPatch fitOf(int rounds, const PatchHeights* from) const;
+    [[nodiscard]] FittedPatch fitOf(int rounds) const;
     /// The volume on the wrong side among some heights.
     template <std::size_t kSide>
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;

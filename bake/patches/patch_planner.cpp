@@ -23,7 +23,7 @@ constexpr double kTexelBytes = 8.0;
 /// A root for each so many bytes.
 constexpr double kBytesPerRoot = 160.0;
 constexpr int kRounds = 2;
-constexpr int kFinalRounds = 2;  // behind those
+constexpr int kFinalRounds = 3;
 constexpr int kFinalPairRounds = 4;
 /// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
 /// alone gets far, and eight of them cost more.
@@ -84,7 +84,7 @@ struct Node {
     double wrong = 0.0;
     std::unique_ptr<std::array<Node, 8>> children;
     MeshCell cell;
-    std::array<PatchHeights, kFlatsAndSingles - kFlats> heights;
+    std::array<PatchHeights, 2> heights;  // of single surfaces of 2² and 3²
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
     /// Without a look at the cell, which is out of reach of the cache: what has a surface is tried as both flats.
@@ -239,12 +239,10 @@ class Planner {
                 node.turned = fitter.outsideBelow();
             }
             while (node.tried < kFlatsAndSingles && pays()) {
-                const std::uint32_t side = kShapes[node.tried].side;
-                const FittedPatch fitted =
-                    side < kPatchSideMax
-                        ? fitter.fit(side, kRounds)
-                        : fitter.fit(side, kRounds - 1, &node.heights[node.tried - kFlats - 1]);
-                node.heights[node.tried - kFlats] = fitted.heights;
+                const FittedPatch fitted = fitter.fit(kShapes[node.tried].side, kRounds);
+                if (fitted.heights.side < kPatchSideMax) {
+                    node.heights[node.tried - kFlats] = fitted.heights;
+                }
                 node.add(volume * fitted.wrong + node.passed_by);
             }
         }
@@ -408,14 +406,11 @@ class Planner {
                 (node.shape().side < kPatchSideMax ? grids_ : final_grids_)[node.frame.index]};
     }
     [[nodiscard]] PatchHeights finalHeights(const Node& node) const {
-        const PatchHeights& chosen = node.heights[node.chosen - kFlats];
-        if (chosen.side < kPatchSideMax) {
-            return chosen;
+        if (node.shape().side < kPatchSideMax) {
+            return node.heights[node.chosen - kFlats];
         }
         const CellColumns columns = finalColumns(node);
-        return PatchFitter(columns, options_.costs, node.turned)
-            .fit(kPatchSideMax, kFinalRounds, &chosen)
-            .heights;
+        return PatchFitter(columns, options_.costs, node.turned).fit(kPatchSideMax, kFinalRounds).heights;
     }
     [[nodiscard]] std::array<PatchHeights, 2> finalPair(const Node& node) const {
         const CellColumns columns = finalColumns(node);
