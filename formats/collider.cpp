@@ -1,12 +1,33 @@
 #include "formats/collider.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "formats/base/text.h"
+#include "formats/patch_tree.h"
 #include "formats/row_spans.h"
 
 namespace relief {
 namespace {
+
+/// The box about a map's volume, in object space.
+Bounds volumeBox(const DepthMap& map) {
+    const float low = map.projection() == Projection::kCube ? -1.0F : 0.0F;
+    const glm::vec3 high =
+        map.projection() == Projection::kLocal ? glm::vec3(patchTreeSize(map.texels).roots) : glm::vec3(1.0F);
+    Bounds box;
+    for (int corner = 0; corner < 8; ++corner) {
+        glm::vec3 p(0.0F);
+        for (int i = 0; i < 3; ++i) {
+            const glm::vec4& row = map.object_to_map.row[i];
+            const glm::vec3 axis(row);
+            p += axis * (((corner >> i & 1) != 0 ? high[i] : low) - row.w) / glm::dot(axis, axis);
+        }
+        box.add(p);
+    }
+    return box;
+}
 
 /// The %XX of a name in a recorded text; empty: malformed.
 std::string decoded(std::string_view word) {
@@ -106,6 +127,17 @@ InsideSample evaluateInside(const Collider& collider, const glm::vec3& p) {
         sample.normal = best.normal;
     }
     return sample;
+}
+
+std::optional<Bounds> insideBox(const Collider& collider) {
+    std::optional<Bounds> box;
+    for (const DepthMap& map : collider.maps) {
+        if (map.encloses && map.empty_is_outside) {
+            const Bounds volume = volumeBox(map);
+            box = box ? Bounds{glm::max(box->min, volume.min), glm::min(box->max, volume.max)} : volume;
+        }
+    }
+    return box;
 }
 
 }  // namespace relief

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,5 +89,8 @@ struct InsideSample {
 /// The same as evaluate(…).inside(), and its normal and map where that is true, but stops at the first map
 /// that sees P outside: put the map that decides most often first.
 [[nodiscard]] InsideSample evaluateInside(const Collider& collider, const glm::vec3& p);
+
+/// A box that holds all that is inside, by the volumes of maps that know what lies beyond them; none where no map does.
+[[nodiscard]] std::optional<Bounds> insideBox(const Collider& collider);
 
 }  // namespace relief

@@ -31,39 +31,9 @@ constexpr char kBeside = 2;
 constexpr double kIndexMax = 0x1p30;  // of a voxel, from the origin
 constexpr double kCellsMax = 0x1p31;
 
-/// The box about a map's volume, in object space.
-Bounds volumeBox(const DepthMap& map) {
-    const float low = map.projection() == Projection::kCube ? -1.0F : 0.0F;
-    const glm::vec3 high =
-        map.projection() == Projection::kLocal ? glm::vec3(patchTreeSize(map.texels).roots) : glm::vec3(1.0F);
-    Bounds box;
-    for (int corner = 0; corner < 8; ++corner) {
-        glm::vec3 p(0.0F);
-        for (int i = 0; i < 3; ++i) {
-            const glm::vec4& row = map.object_to_map.row[i];
-            const glm::vec3 axis(row);
-            p += axis * (((corner >> i & 1) != 0 ? high[i] : low) - row.w) / glm::dot(axis, axis);
-        }
-        box.add(p);
-    }
-    return box;
-}
-
 /// A box that holds all that is inside. Ground goes deeper than the mesh that it stands for, and so than the bounds.
-Bounds insideBox(const Collider& collider) {
-    Bounds box{glm::vec3(-std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::max())};
-    bool any = false;
-    for (const DepthMap& map : collider.maps) {
-        if (map.encloses) {
-            const Bounds volume = volumeBox(map);
-            box.min = glm::max(box.min, volume.min);
-            box.max = glm::min(box.max, volume.max);
-            any = true;
-        }
-    }
-    if (!any) {
-        return collider.bounds;
-    }
+Bounds boxOf(const Collider& collider) {
+    Bounds box = insideBox(collider).value_or(collider.bounds);
     box.add(collider.bounds.min);
     box.add(collider.bounds.max);
     return box;
@@ -248,7 +218,7 @@ Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& o
     }
     Voxels voxels = RELIEF_TRY(Voxels::create(collider, collider.bounds, options.voxels));
     if (!voxels.closed()) {
-        voxels = RELIEF_TRY(Voxels::create(collider, insideBox(collider), options.voxels));
+        voxels = RELIEF_TRY(Voxels::create(collider, boxOf(collider), options.voxels));
     }
     if (!voxels.anyInside()) {
         return invalidInput(

@@ -1,10 +1,12 @@
 #include "runtime/bench/bench_scene.h"
 
+#include <algorithm>
 #include <glm/gtc/quaternion.hpp>
 #include <utility>
 
 #include "runtime/air/air.h"
 #include "runtime/particles/emitter.h"
+#include "runtime/particles/random.h"
 
 namespace relief {
 
@@ -24,13 +26,36 @@ std::vector<Pose> fourPoses(const BenchScene& scene) {
     return poses;
 }
 
-Result<ColliderTextures> makeTextures(const BenchScene& scene, Solids solids) {
-    if (solids == Solids::kCollider) {
+std::vector<Pose> crowdPoses(const BenchScene& scene, std::uint32_t bodies) {
+    std::uint32_t across = 1;
+    while (across * across * across < bodies) {
+        ++across;
+    }
+    Pcg32 random(17);
+    std::vector<Pose> poses;
+    const Bounds& bounds = scene.collider.bounds;
+    const glm::vec3 cell = bounds.size() / static_cast<float>(across);
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+        const glm::uvec3 at(i % across, i / across % across, i / across / across);
+        const glm::quat turn = glm::normalize(
+            glm::quat(1.0F, random.signedUniform(), random.signedUniform(), random.signedUniform()));
+        const float scale = 0.8F / static_cast<float>(across);
+        const glm::vec3 middle = bounds.min + cell * (glm::vec3(at) + 0.5F);
+        poses.push_back({middle - scale * (turn * bounds.center()), turn, scale});
+    }
+    return poses;
+}
+
+Result<ColliderTextures> makeTextures(const BenchScene& scene, const BenchVariant& variant) {
+    if (variant.solids == Solids::kCollider) {
         return ColliderTextures::create(scene.collider);
     }
+    const bool crowd = variant.solids == Solids::kCrowd;
+    const std::vector<Pose> poses = crowd ? crowdPoses(scene, variant.bodies) : fourPoses(scene);
+    const std::vector<Collider> copies(crowd ? std::min(poses.size(), kCrowdColliders) : 1, scene.collider);
     std::vector<ColliderBody> bodies;
-    for (const Pose& pose : fourPoses(scene)) {
-        bodies.push_back({&scene.collider, pose, 1.0F, 0.0F});
+    for (const Pose& pose : poses) {
+        bodies.push_back({&copies[bodies.size() % copies.size()], pose, 1.0F, 0.0F});
     }
     return ColliderTextures::create(bodies);
 }
@@ -158,14 +183,17 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, cons
     RELIEF_TRY(system.particles->setForces(scene.forces));
     RELIEF_TRY(system.particles->setCollision(kSnow));
     if (variant.solids != Solids::kNone) {
-        system.textures = std::make_unique<ColliderTextures>(RELIEF_TRY(makeTextures(scene, variant.solids)));
+        system.textures = std::make_unique<ColliderTextures>(RELIEF_TRY(makeTextures(scene, variant)));
         RELIEF_TRY(system.particles->setCollider(system.textures.get()));
     }
     if (variant.set) {
         RELIEF_TRY(variant.set(*system.particles, scene));
     }
     if (variant.each_step == EachStep::kPoses) {
-        system.before_step = turning(system.textures.get(), fourPoses(scene));
+        std::vector<Pose> poses =
+            variant.solids == Solids::kCrowd ? crowdPoses(scene, variant.bodies) : fourPoses(scene);
+        poses.resize(std::min(poses.size(), kCrowdMoves));
+        system.before_step = turning(system.textures.get(), std::move(poses));
     } else if (variant.each_step == EachStep::kEvents) {
         system.before_step = [particles = system.particles.get()] {
             particles->requestEvents(0);
@@ -183,7 +211,7 @@ std::vector<BenchVariant> benchVariants() {
     const auto ground = [](ParticleSystem& particles, const BenchScene& scene) {
         return particles.setGround(scene.collider.bounds.min.y + 0.1F * scene.side);
     };
-    return {
+    std::vector<BenchVariant> variants = {
         {.name = "no_collider", .solids = Solids::kNone},
         {.name = "collider"},
         {.name = "types_16", .set = setSixteenTypes},
@@ -198,7 +226,16 @@ std::vector<BenchVariant> benchVariants() {
         {.name = "attractors", .set = airWith(addAttractors)},
         {.name = "events", .set = setEvents},
         {.name = "events_listed", .set = setEvents, .each_step = EachStep::kEvents},
+        {.name = "bodies_1000_moving",
+         .solids = Solids::kCrowd,
+         .each_step = EachStep::kPoses,
+         .bodies = 1'000},
     };
+    for (const std::uint32_t bodies : {1U, 10U, 100U, 1'000U, 10'000U, 65'536U}) {
+        variants.push_back(
+            {.name = "bodies_" + std::to_string(bodies), .solids = Solids::kCrowd, .bodies = bodies});
+    }
+    return variants;
 }
 
 }  // namespace relief

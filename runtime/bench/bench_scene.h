@@ -47,9 +47,13 @@ struct BenchSystem {
     void begin(const BenchScene& scene);
 };
 
-enum class Solids : std::uint8_t { kNone, kCollider, kFourBodies };
-/// Work of each step beside the step: nothing, new poses of the bodies, or lists of events that come to the CPU.
+/// kCrowd: bodies at random turns on a lattice that fills the scene's box, of up to kCrowdColliders copies of the collider.
+enum class Solids : std::uint8_t { kNone, kCollider, kFourBodies, kCrowd };
+inline constexpr std::size_t kCrowdColliders = 50;
+/// Work of each step beside the step: nothing, new poses of the bodies (of a crowd, of at most kCrowdMoves), or lists of
+/// events that come to the CPU.
 enum class EachStep : std::uint8_t { kNothing, kPoses, kEvents };
+inline constexpr std::size_t kCrowdMoves = 1'000;
 
 struct BenchVariant {
     std::string name;
@@ -57,9 +61,10 @@ struct BenchVariant {
     Integrator integrator = Integrator::kEuler;
     std::function<Result<void>(ParticleSystem&, const BenchScene&)> set = {};  ///< may be empty
     EachStep each_step = EachStep::kNothing;
+    std::uint32_t bodies = 0;  ///< of a crowd
 };
 
-/// "no_collider", "collider" (what the others are compared with), and the features one by one.
+/// "no_collider", "collider" (what the others are compared with), the features one by one, and crowds of bodies.
 [[nodiscard]] std::vector<BenchVariant> benchVariants();
 
 /// The system takes the scene's number of particles. Without a variant: that of "collider".

@@ -18,7 +18,7 @@ struct BlockMap {
     std::int32_t place[4];
     std::int32_t info[4];
 };
-static_assert(sizeof(BlockMap) == 144);
+static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
 
 std::int32_t flagsOf(const PlacedMap& placed) {
     const DepthMap& map = *placed.map;
@@ -36,8 +36,6 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     const PatchTreeSize tree = patches ? patchTreeSize(map.texels) : PatchTreeSize{};
     const glm::vec3 size = cube || patches ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
     const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
-    const glm::vec3 roots(tree.roots);
-    const float of_patches[3] = {roots.z, roots.x, roots.y};
     const float last[3] = {range * (2.0F / (cube ? kCubeDepthMax : 1.0F)), static_cast<float>(map.width - 1),
                            static_cast<float>(map.height - 1)};
     for (int i = 0; i < 3; ++i) {
@@ -45,9 +43,10 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
         const glm::vec3 row(map.object_to_map.row[i]);
         block.row[i] = map.object_to_map.row[i] * size[i];
         block.column[i] = glm::vec4(row * map.object_per_map[i] * map.object_per_map[i] / size[i],
-                                    patches ? of_patches[i] : last[i]);
+                                    patches ? 0.0F : last[i]);
     }
-    block.object_per_map = glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
+    block.object_per_map = patches ? glm::vec4(map.object_per_map.x, glm::vec3(tree.roots))
+                                   : glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
     const auto width = static_cast<std::int32_t>(map.width);
     const auto height = static_cast<std::int32_t>(map.height);
     const auto first = static_cast<std::int32_t>(at.first);
@@ -76,8 +75,8 @@ std::string unrolledVotes(std::span<const PlacedMap> maps) {
 
 }  // namespace
 
-std::size_t mapsInBlock(std::size_t block_bytes, std::size_t bodies) {
-    return (block_bytes - kBlockHead - bodies * sizeof(BlockBody)) / sizeof(BlockMap);
+std::size_t mapsInBlock(std::size_t block_bytes) {
+    return (block_bytes - sizeof(glm::ivec4)) / sizeof(BlockMap);
 }
 
 void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
@@ -89,40 +88,45 @@ void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
     }
 }
 
-std::vector<std::byte> colliderBlock(std::span<const BlockBody> bodies, std::span<const PlacedMap> maps,
-                                     const MapLayout& layout) {
-    std::vector<std::byte> block;
-    const auto append = [&](const void* data, std::size_t size) {
-        const auto* const bytes = static_cast<const std::byte*>(data);
-        block.insert(block.end(), bytes, bytes + size);
-    };
-    const std::int32_t counts[4] = {
-        static_cast<std::int32_t>(maps.size()), layout.textures[kFloatTexels].log2Width(),
-        layout.textures[kFixedTexels].log2Width(), layout.textures[kFrontBackTexels].log2Width()};
-    static_assert(sizeof(counts) == kBlockHead);
-    append(counts, sizeof(counts));
-    append(bodies.data(), bodies.size_bytes());
+glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout) {
+    return {static_cast<int>(maps.size()), layout.textures[kFloatTexels].log2Width(),
+            layout.textures[kFixedTexels].log2Width(), layout.textures[kFrontBackTexels].log2Width()};
+}
+
+std::vector<std::byte> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout) {
+    std::vector<std::byte> bytes(maps.size() * sizeof(BlockMap));
     for (std::size_t m = 0; m < maps.size(); ++m) {
         const BlockMap map = blockMap(maps[m], layout.places[m]);
-        append(&map, sizeof(map));
+        std::memcpy(bytes.data() + m * sizeof(BlockMap), &map, sizeof(BlockMap));
     }
+    return bytes;
+}
+
+std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout) {
+    const glm::ivec4 head = blockHead(maps, layout);
+    std::vector<std::byte> block(sizeof(head));
+    std::memcpy(block.data(), &head, sizeof(head));
+    const std::vector<std::byte> bytes = blockMaps(maps, layout);
+    block.insert(block.end(), bytes.begin(), bytes.end());
     return block;
 }
 
-std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps, const MapLayout& layout) {
+std::string colliderDefines(bool world, std::span<const PlacedMap> maps, const MapLayout& layout) {
     std::string defines;
     const auto define = [&](const std::string& name, const std::string& value = {}) {
         defines += "#define RELIEF_" + name + " " + value + "\n";
     };
-    define("MAP_CAPACITY", std::to_string(maps.size()));
+    if (!world) {
+        define("MAP_CAPACITY", std::to_string(maps.size()));
+    }
     const auto log2Width = [&](TexelKind kind) { return std::to_string(layout.textures[kind].log2Width()); };
     define("LOG2_WIDTHS", "ivec3(" + log2Width(kFloatTexels) + "," + log2Width(kFixedTexels) + "," +
                               log2Width(kFrontBackTexels) + ")");
     if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& one) { return one.live; })) {
         define("LIVE", "1");
     }
-    if (bodies > 0) {
-        define("BODIES", std::to_string(bodies));
+    if (world) {
+        define("BODIES", "1");
     } else {
         define("VOTES", unrolledVotes(maps));
     }

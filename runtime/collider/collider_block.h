@@ -1,4 +1,4 @@
-// The uniform block of shaders/collider/collider.glsl as bytes, and what that shader is compiled for.
+// Maps and bodies as shaders/collider/collider.glsl reads them, and what that shader is compiled for.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// The shader's ReliefBody, std140.
+/// A body in a world: shaders/collider/world.glsl.
 struct BlockBody {
     glm::vec4 row[3];
     glm::vec4 before[3];
@@ -22,22 +22,23 @@ struct BlockBody {
 };
 static_assert(sizeof(BlockBody) == 128);
 
-/// Bytes before the first body.
-inline constexpr std::size_t kBlockHead = 16;
-
-/// The maps that a block of so many bytes has room for beside so many bodies.
-[[nodiscard]] std::size_t mapsInBlock(std::size_t block_bytes, std::size_t bodies);
+/// The maps that a block of so many bytes has room for.
+[[nodiscard]] std::size_t mapsInBlock(std::size_t block_bytes);
 
 /// Writes the rows that take a point of the world to the body's object space.
 void writeRows(const Pose& pose, glm::vec4 (&rows)[3]);
 
-/// The whole block.
-[[nodiscard]] std::vector<std::byte> colliderBlock(std::span<const BlockBody> bodies,
-                                                   std::span<const PlacedMap> maps, const MapLayout& layout);
+/// The shader's u_relief_count.
+[[nodiscard]] glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout);
+/// The shader's ReliefMap of each map, one after the other.
+[[nodiscard]] std::vector<std::byte> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout);
+/// The whole block of a single collider, std140: the head and the maps.
+[[nodiscard]] std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout);
 
 /// Lines for makeProgram: RELIEF_MAP_CAPACITY, and what no map needs is left out of the shader, for a GL may run every
 /// branch for every map. So a program is of one collider alone.
-[[nodiscard]] std::string colliderDefines(std::size_t bodies, std::span<const PlacedMap> maps,
+/// \param world  of bodies with poses.
+[[nodiscard]] std::string colliderDefines(bool world, std::span<const PlacedMap> maps,
                                           const MapLayout& layout);
 
 }  // namespace relief

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,13 +24,13 @@ GLint integer(GLenum what) {
     return value;
 }
 
-Result<void> checkMapCount(std::size_t maps, std::size_t bodies) {
+/// Of the block; a world has a texture.
+Result<void> checkMapCount(std::size_t maps, bool world) {
     if (maps == 0) {
         return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
     }
-    const auto block_max = static_cast<std::size_t>(integer(GL_MAX_UNIFORM_BLOCK_SIZE));
-    const std::size_t map_max = mapsInBlock(block_max, bodies);
-    if (maps > map_max) {
+    const std::size_t map_max = mapsInBlock(static_cast<std::size_t>(integer(GL_MAX_UNIFORM_BLOCK_SIZE)));
+    if (!world && maps > map_max) {
         return fail(ErrorCode::kLimit, "the collider has " + std::to_string(maps) + " maps, this GL takes " +
                                            std::to_string(map_max) + "; bake it with fewer");
     }
@@ -47,12 +49,13 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
 
 Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> bodies) {
     if (bodies.size() > kBodiesMax) {
-        return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " colliders are more than " +
+        return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies are more than " +
                                            std::to_string(kBodiesMax) + "; bake some of them into one");
     }
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
     std::vector<PlacedMap> maps;
-    std::vector<BlockBody> blocks;
+    std::vector<TableBody> placed;
+    std::map<const Collider*, std::size_t> known;  // their first bodies
     for (const ColliderBody& body : bodies) {
         if (!(body.pose.scale > 0.0F)) {
             return fail(ErrorCode::kUsage, "the scale of a collider must be above 0");
@@ -63,49 +66,89 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
             return fail(ErrorCode::kUsage,
                         "the pose of a collider must be finite, its restitution and friction from 0 to 1");
         }
-        const auto first = static_cast<std::int32_t>(maps.size());
-        for (const DepthMap& map : body.collider->maps) {
-            maps.push_back({&map, body.live});
+        const std::uint32_t number = static_cast<std::uint32_t>(placed.size());
+        const std::uint32_t group = body.group.value_or(std::min(number, kGroups - 1));
+        if (group >= kGroups) {
+            return fail(ErrorCode::kUsage,
+                        "the group of a body must be from 0 to " + std::to_string(kGroups - 1));
         }
-        BlockBody block{};
-        writeRows(body.pose, block.row);
-        writeRows(body.pose, block.before);
-        block.response = glm::vec4(body.pose.scale, body.restitution, 1.0F - body.friction, 0.0F);
-        block.maps[0] = first;
-        block.maps[1] = static_cast<std::int32_t>(maps.size()) - first;
-        block.maps[2] = body.live ? 1 : 0;
-        blocks.push_back(block);
+        TableBody& added = placed.emplace_back();
+        added.pose = body.pose;
+        added.response = glm::vec4(body.pose.scale, body.restitution, 1.0F - body.friction, 0.0F);
+        const auto [same, is_new] = known.try_emplace(body.collider, number);
+        if (body.live || is_new) {
+            added.box = insideBox(*body.collider);
+            added.maps[0] = static_cast<std::int32_t>(maps.size());
+            added.maps[1] = static_cast<std::int32_t>(body.collider->maps.size());
+            for (const DepthMap& map : body.collider->maps) {
+                maps.push_back({&map, body.live});
+            }
+        } else {
+            added.box = placed[same->second].box;
+            std::copy_n(placed[same->second].maps, 2, added.maps);
+        }
+        if (body.live && is_new) {
+            known.erase(same);  // it has texels of its own
+        }
+        added.maps[2] = body.live ? 1 : 0;
+        added.maps[3] = std::int32_t{1} << group;
     }
-    return upload(maps, std::move(blocks));
+    return upload(maps, std::move(placed));
 }
 
 void ColliderTextures::setPoses(std::span<const Pose> poses) {
-    for (std::size_t i = 0; i < std::min(poses.size(), bodies_.size()); ++i) {
-        BlockBody& body = bodies_[i];
-        std::copy(std::begin(body.row), std::end(body.row), std::begin(body.before));
-        writeRows(poses[i], body.row);
-        revision_ += std::equal(std::begin(body.row), std::end(body.row), std::begin(body.before)) ? 0 : 1;
-    }
-    if (!bodies_.empty()) {
-        // Before every step: the whole of PassState would cost more than what is done here.
-        const GLint bound = integer(GL_UNIFORM_BUFFER_BINDING);
-        glBindBuffer(GL_UNIFORM_BUFFER, block_.name());
-        glBufferSubData(GL_UNIFORM_BUFFER, static_cast<GLintptr>(kBlockHead),
-                        static_cast<GLsizeiptr>(bodies_.size() * sizeof(BlockBody)), bodies_.data());
-        glBindBuffer(GL_UNIFORM_BUFFER, static_cast<GLuint>(bound));
+    if (world_) {
+        revision_ += world_->bodies.setPoses(poses) ? 1 : 0;
+        updateWorld();
     }
 }
 
+void ColliderTextures::reach(float radius) const {
+    if (world_) {
+        world_->bodies.setReach(radius);
+        updateWorld();
+    }
+}
+
+void ColliderTextures::updateWorld() const {
+    BodyTable& bodies = world_->bodies;
+    const bool is_new = bodies.isNew();
+    const std::vector<BodyTable::Rows> changes = bodies.takeChanges();
+    if (changes.empty()) {
+        return;
+    }
+    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    const std::span<const glm::uvec4> words = bodies.words();
+    const std::size_t width = std::size_t{1} << bodies.log2Width();
+    if (is_new) {
+        world_->texture = makeTexture2D(GL_RGBA32UI, static_cast<GLsizei>(width),
+                                        static_cast<GLsizei>(words.size() / width), GL_RGBA_INTEGER,
+                                        GL_UNSIGNED_INT, words.data());
+    } else {
+        useTexture(0, world_->texture);
+        for (const auto& [first, end] : changes) {
+            glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(first), static_cast<GLsizei>(width),
+                            static_cast<GLsizei>(end - first), GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                            words.subspan(first * width).data());
+        }
+    }
+    std::vector<glm::ivec4> block = bodies.block();
+    block.insert(block.begin(), world_->head);
+    glBindBuffer(GL_UNIFORM_BUFFER, block_.name());
+    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size() * sizeof(glm::ivec4)), block.data(),
+                 GL_DYNAMIC_DRAW);
+}
+
 Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> maps,
-                                                  std::vector<BlockBody> bodies) {
+                                                  std::vector<TableBody> bodies) {
     RELIEF_TRY(checkContext());
-    RELIEF_TRY(checkMapCount(maps.size(), bodies.size()));
+    const bool world = !bodies.empty();
+    RELIEF_TRY(checkMapCount(maps.size(), world));
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, integer(GL_MAX_TEXTURE_SIZE)));
     ColliderTextures result;
     result.places_ = layout.places;
-    result.bodies_ = std::move(bodies);
     result.map_count_ = static_cast<int>(maps.size());
-    result.defines_ = colliderDefines(result.bodies_.size(), maps, layout);
+    result.defines_ = colliderDefines(world, maps, layout);
 
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     forgetGlErrors();
@@ -119,26 +162,28 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
         // One texel stands for a texture that no map uses.
         result.bytes_ += layout.textures[kind].height() == 0 ? 0 : texture.texels.size();
     }
-    result.makeBlock(colliderBlock(result.bodies_, maps, layout));
+    result.block_ = makeBuffer();
+    if (world) {
+        result.world_ = std::make_unique<World>(
+            World{BodyTable(blockMaps(maps, layout), std::move(bodies)), blockHead(maps, layout), {}});
+        result.updateWorld();
+    } else {
+        const std::vector<std::byte> block = colliderBlock(maps, layout);
+        glBindBuffer(GL_UNIFORM_BUFFER, result.block_.name());
+        glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size()), block.data(), GL_STATIC_DRAW);
+    }
     RELIEF_TRY(checkAllocated("the collider's " + std::to_string(result.bytes_) + " bytes of maps",
                               "bake it with fewer"));
     return result;
 }
 
-void ColliderTextures::makeBlock(std::span<const std::byte> bytes) {
-    block_ = makeBuffer();
-    glBindBuffer(GL_UNIFORM_BUFFER, block_.name());
-    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(),
-                 bodies_.empty() ? GL_STATIC_DRAW : GL_DYNAMIC_DRAW);
-}
-
 std::vector<LiveSlot> ColliderTextures::liveSlots(std::size_t body) const {
     std::vector<LiveSlot> slots;
-    if (body >= bodies_.size() || bodies_[body].maps[2] == 0) {
+    if (body >= bodyCount() || world_->bodies[body].maps[2] == 0) {
         return slots;
     }
-    const auto first = static_cast<std::size_t>(bodies_[body].maps[0]);
-    for (std::size_t m = first; m < first + static_cast<std::size_t>(bodies_[body].maps[1]); ++m) {
+    const auto first = static_cast<std::size_t>(world_->bodies[body].maps[0]);
+    for (std::size_t m = first; m < first + static_cast<std::size_t>(world_->bodies[body].maps[1]); ++m) {
         const MapPlace& place = places_[m];
         slots.push_back({&textures_[place.kind], place.texels.x, place.texels.y, &textures_[kFloatTexels],
                          place.motion.x, place.motion.y});
@@ -152,6 +197,9 @@ void ColliderTextures::attach(GLuint program, const Binding& binding) const {
         glUniform1i(glGetUniformLocation(program, texelFormat(static_cast<TexelKind>(kind)).sampler),
                     binding.first_unit + static_cast<GLint>(kind));
     }
+    if (world_) {
+        glUniform1i(glGetUniformLocation(program, "u_relief_world"), binding.world_unit);
+    }
     const GLuint index = glGetUniformBlockIndex(program, "ReliefCollider");
     if (index != GL_INVALID_INDEX) {
         glUniformBlockBinding(program, index, static_cast<GLuint>(binding.uniform_block));
@@ -161,6 +209,9 @@ void ColliderTextures::attach(GLuint program, const Binding& binding) const {
 void ColliderTextures::bind(const Binding& binding) const {
     for (std::size_t kind = 0; kind < kTexelKinds; ++kind) {
         useTexture(binding.first_unit + static_cast<int>(kind), textures_[kind]);
+    }
+    if (world_) {
+        useTexture(binding.world_unit, world_->texture);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding.uniform_block), block_.name());
 }

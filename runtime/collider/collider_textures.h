@@ -1,5 +1,5 @@
 // Colliders on the GPU: three textures and a uniform block, read by shaders/collider/collider.glsl. One collider in
-// its own object space, or several bodies with poses in a world.
+// its own object space, or a world of bodies with poses, which takes a fourth texture (body_table.h).
 //
 // Maps of one texel layout share a 2-D texture: RGBA32F for float, RGBA8 for fixed8 and cube, RGBA16UI for
 // front-back of either depth. Their texels (gpu_image.h) follow each other as they do in the
@@ -17,12 +17,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "runtime/collider/body_table.h"
 #include "runtime/collider/collider_block.h"
 #include "runtime/collider/map_layout.h"
 #include "runtime/collider/pose.h"
@@ -38,6 +41,8 @@ struct ColliderBody {
     /// ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share.
     float friction = 0.0F;
     bool live = false;  ///< the collider's maps have no texels yet; these are drawn later
+    /// 0 to 7: the bit of ParticleType::collides that it answers to. Without one the body's own number, or 7 beyond that.
+    std::optional<std::uint32_t> group = {};
 };
 
 /// The place of the texels of a live map.
@@ -52,26 +57,30 @@ struct LiveSlot {
 
 class ColliderTextures {
   public:
-    static constexpr std::size_t kBodiesMax = 8;
-    /// Texture units and the uniform block binding that bind() uses: `first_unit`, + 1, + 2.
+    static constexpr std::size_t kBodiesMax = 65'536;
+    static constexpr std::uint32_t kGroups = 8;
+    /// Texture units and the uniform block binding that bind() uses: `first_unit`, + 1, + 2, and for a world one more.
     struct Binding {
         int first_unit = 0;
         int uniform_block = 0;
+        int world_unit = 9;
     };
 
     /// Uploads a collider. Needs a current context.
     /// Errors: kLimit (the texels or the number of maps above what this GL takes; the message has both
     /// numbers), kUnsupported (no maps).
     [[nodiscard]] static Result<ColliderTextures> create(const Collider& collider);
-    /// Uploads up to kBodiesMax of them, which share a world. The maps of those that are live are empty at
-    /// first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0, a
-    /// pose that is not finite, a share outside 0…1).
+    /// Uploads up to kBodiesMax of them, which share a world; a collider that several have, once. The maps of those that
+    /// are live are empty at first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0,
+    /// a pose that is not finite, a share outside 0…1, a group above 7).
     [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies);
 
     /// The poses at the end of the next step; those of the call before become those at its beginning. Call it
-    /// before each step while anything moves, and once more when it has stopped. Needs as many as there are
-    /// bodies. Scales may not change.
+    /// before each step while anything moves, and once more when it has stopped. Bodies beyond poses.size() stay. Scales
+    /// may not change. Costs time by the bodies that have ever moved.
     void setPoses(std::span<const Pose> poses);
+    /// Says how large the balls are that will be asked about, at most, so that a world finds the bodies that they meet.
+    void reach(float radius) const;
 
     /// One slot for each map of a live body, in their order; none for another body. The textures are this
     /// object's: call again after it has been moved.
@@ -89,7 +98,7 @@ class ColliderTextures {
     void bindStorage(int binding) const;
 
     /// 0 for one collider in its own space.
-    [[nodiscard]] std::size_t bodyCount() const { return bodies_.size(); }
+    [[nodiscard]] std::size_t bodyCount() const { return world_ ? world_->bodies.size() : 0; }
     /// Changes with every pose that does, and with every update of a live body.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
     [[nodiscard]] int mapCount() const { return map_count_; }
@@ -99,11 +108,17 @@ class ColliderTextures {
 
   private:
     [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
-                                                         std::vector<BlockBody> bodies);
-    void makeBlock(std::span<const std::byte> bytes);
+                                                         std::vector<TableBody> bodies);
+    struct World {
+        BodyTable bodies;
+        glm::ivec4 head{0};  // of the block
+        GlTexture texture;
+    };
+    /// Takes over what has changed in world_.
+    void updateWorld() const;
 
     std::vector<MapPlace> places_;  // of the maps
-    std::vector<BlockBody> bodies_;
+    std::unique_ptr<World> world_;  // none of a single collider
     std::uint64_t revision_ = 0;
     std::array<GlTexture, kTexelKinds> textures_;
     GlBuffer block_;

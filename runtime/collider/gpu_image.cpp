@@ -126,8 +126,8 @@ Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max) {
         maps.push_back({&map, false});
     }
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, side_max));
-    return GpuImage{mapTextures(maps, layout), colliderBlock({}, maps, layout),
-                    colliderDefines(0, maps, layout)};
+    return GpuImage{mapTextures(maps, layout), colliderBlock(maps, layout),
+                    colliderDefines(false, maps, layout)};
 }
 
 }  // namespace relief

@@ -36,7 +36,7 @@ Result<void> checkTypes(std::span<const ParticleType> types) {
                 "a type of particles needs numbers that are finite: a mass of at least 1e-15, a radius, "
                 "friction "
                 "threshold and loss of lifetime of at least 0, restitution and friction from 0 to 1; and it "
-                "collides with bodies 0 to 7 and the ground alone");
+                "collides with groups 0 to 7 of the bodies and the ground alone");
         }
     }
     return {};

@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// Bits of ParticleType::collides: body b of the collider, of which a single one is body 0, has bit b.
+/// Bits of ParticleType::collides: group g of the bodies (ColliderBody::group), of which a single collider is 0, has bit g.
 inline constexpr std::uint32_t kCollidesWithGround = 1U << kGroundBit;
 inline constexpr std::uint32_t kCollidesWithAll = 2 * kCollidesWithGround - 1;
 

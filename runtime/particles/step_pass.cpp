@@ -1,5 +1,6 @@
 #include "runtime/particles/step_pass.h"
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -10,16 +11,15 @@
 namespace relief {
 namespace {
 
-/// Maps that a work group copies at most. OpenGL ES 3.1 promises 16 KB of shared memory: room for 106 maps of 144 bytes beside
-/// eight bodies of 128; but each group of 64 particles makes a copy, and what many maps cost then was not measured.
+/// Maps that a work group copies at most. OpenGL ES 3.1 promises 16 KB of shared memory: room for 113 maps of 144 bytes; but
+/// each group of 64 particles makes a copy, and what many maps cost then was not measured.
 constexpr int kTourMapsMax = 64;
 
-/// True if lanes proceed on their own, from body to body or along their paths (shaders/collider/collider_tour.glsl). For one point of one
-/// collider this gains nothing, and a ball's points are as well asked in loops.
+/// True if lanes proceed on their own along their paths (shaders/collider/collider_tour.glsl). For one point this gains nothing,
+/// and a ball's points are as well asked in loops.
 bool toursMaps(const StepFeatures& features) {
-    return features.compute && features.collider != nullptr && !features.radius &&
-           (features.sweep || features.collider->bodyCount() > 1) &&
-           features.collider->mapCount() <= kTourMapsMax;
+    return features.compute && features.collider != nullptr && !features.radius && features.sweep &&
+           features.collider->bodyCount() == 0 && features.collider->mapCount() <= kTourMapsMax;
 }
 
 }  // namespace
@@ -68,6 +68,11 @@ Result<StepPass> StepPass::create(const StepFeatures& features, const StepShader
 void StepPass::use(const Values& values) const {
     program_.use();
     if (features_.collider != nullptr) {
+        float radius = 0.0F;
+        for (const ParticleType& type : values.types) {
+            radius = std::max(radius, type.radius);
+        }
+        features_.collider->reach(radius);
         features_.collider->bind(kColliderBinding);
         if (tours_) {
             features_.collider->bindStorage(kTourStorage);

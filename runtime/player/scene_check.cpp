@@ -37,7 +37,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& from = loaded.scene.colliders[i];
         report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
-        report.collider_maps += loaded.colliders[i].maps.size();
+        report.collider_maps += loaded.colliders[i]->maps.size();
     }
     if (loaded.scene.flow) {
         report.files.push_back(checkedFile(loaded.scene.flow->path, "flow"));

@@ -131,7 +131,7 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
         const float step = scene.collision.sweep > 0.0F
                                ? std::min(speed * scene.time.dt, scene.collision.sweep)
                                : speed * scene.time.dt;
-        const auto thickness = body.live ? std::nullopt : typicalThickness(loaded.colliders[i]);
+        const auto thickness = body.live ? std::nullopt : typicalThickness(*loaded.colliders[i]);
         const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
         if (thickness && step > thick) {
             warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +

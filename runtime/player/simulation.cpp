@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <span>
 #include <utility>
 
@@ -17,16 +18,17 @@ namespace {
 constexpr int kStepsUnderWay = 1;
 
 /// The colliders on the GPU: a single one without a pose in its own space, others in the world.
-Result<ColliderTextures> makeTextures(const Scene& scene, std::span<const Collider> colliders) {
+Result<ColliderTextures> makeTextures(const Scene& scene,
+                                      std::span<const std::shared_ptr<const Collider>> colliders) {
     const SceneCollider& first = scene.colliders.front();
     if (colliders.size() == 1 && !first.posed && !first.live) {
-        return ColliderTextures::create(colliders.front());
+        return ColliderTextures::create(*colliders.front());
     }
     std::vector<ColliderBody> bodies;
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const SceneCollider& from = scene.colliders[i];
         bodies.push_back(
-            {&colliders[i], poseAt(from, 0.0), from.restitution, from.friction, from.live.has_value()});
+            {colliders[i].get(), poseAt(from, 0.0), from.restitution, from.friction, from.live.has_value()});
     }
     return ColliderTextures::create(bodies);
 }

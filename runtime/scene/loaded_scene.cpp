@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <memory>
 #include <string>
 
 #include "formats/base/file_io.h"
@@ -89,13 +91,22 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         emitter.seed = overrides.seed.value_or(emitter.seed);
     }
     LoadedScene loaded;
+    std::map<fs::path, std::shared_ptr<const Collider>> known;
     for (const SceneCollider& from : scene.colliders) {
         loaded.live.emplace_back();
         if (from.live) {
             loaded.live.back() = RELIEF_TRY(loadLiveMesh(from));
         }
-        auto collider = RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames)
-                                             : openCollider(from, overrides.limits));
+        std::shared_ptr<const Collider> read = from.live ? nullptr : known[from.path];
+        if (read == nullptr) {
+            read = std::make_shared<const Collider>(
+                RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames)
+                                     : openCollider(from, overrides.limits)));
+        }
+        if (!from.live) {
+            known[from.path] = read;
+        }
+        const Collider& collider = *read;
         const bool posed = from.posed || scene.colliders.size() > 1;
         const Bounds bounds = posed ? worldBounds(from, collider.bounds) : collider.bounds;
         if (!from.origin.empty() && withinLengths(collider.bounds) && !withinLengths(bounds)) {
@@ -108,7 +119,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         }
         loaded.bounds.min = glm::min(loaded.bounds.min, bounds.min);
         loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
-        loaded.colliders.push_back(std::move(collider));
+        loaded.colliders.push_back(std::move(read));
     }
     loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
     loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,8 +31,9 @@ struct SceneOverrides {
 
 /// A scene and everything it names, read and complete: all that a Simulation plays.
 struct LoadedScene {
-    Scene scene;                      ///< overridden by the options, every default filled in
-    std::vector<Collider> colliders;  ///< those of the scene, in its order
+    Scene scene;  ///< overridden by the options, every default filled in
+    /// Those of the scene, in its order; a file that it names several times, once.
+    std::vector<std::shared_ptr<const Collider>> colliders;
     /// As many: the meshes of those that deform, whose colliders have maps without texels.
     std::vector<std::optional<LiveMesh>> live;
     Bounds bounds;                  ///< of what they occupy in the course of time, in the particles' space

@@ -96,7 +96,8 @@ std::optional<FieldFault> checkCells(const Scene& scene) {
 
 /// As ParticleType::collides.
 std::uint32_t bodiesOf(const Scene& scene) {
-    return (1U << scene.colliders.size()) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
+    const auto groups = std::min<std::size_t>(scene.colliders.size(), ColliderTextures::kGroups);
+    return (1U << groups) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
 }
 
 /// The types among the scene's other tables: what they leave open is [collision]'s.

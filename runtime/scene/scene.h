@@ -220,8 +220,8 @@ void fields(Visitor& visit, T& type) {
     visit("name", type.name, leftOut({"Name for emitter.type and spawn, not taken twice", {}, {}, "none"}));
     fields(visit, baseOf<ParticleType>(type));
     visit("collides", CollidesList{type.collides},
-          {"The colliders it meets, by number from 0, and \"ground\", as in [0, \"ground\"]; it "
-           "passes through all others",
+          {"The colliders it meets, by number from 0, 7 standing for all beyond 7 too, and \"ground\", as in "
+           "[0, \"ground\"]; it passes through all others",
            {},
            {},
            "everything"});

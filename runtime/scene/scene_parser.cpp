@@ -1,5 +1,6 @@
 #include "runtime/scene/scene_parser.h"
 
+#include <algorithm>
 #include <array>
 
 #include "formats/base/file_io.h"
@@ -94,7 +95,8 @@ void readField(const TomlValue& from, CollidesList<std::uint32_t> list, const Fi
     for (std::size_t i = 0; i < from.array()->size(); ++i) {
         const TomlValue one = from[i];
         if (one.node().is_integer()) {
-            list.bits |= 1U << one.whole({0.0, static_cast<double>(colliders) - 1.0});
+            const std::int64_t body = one.whole({0.0, static_cast<double>(colliders) - 1.0});
+            list.bits |= 1U << std::min<std::int64_t>(body, ColliderTextures::kGroups - 1);
             continue;
         }
         if (!one.node().is_string()) {

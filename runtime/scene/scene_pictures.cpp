@@ -89,7 +89,7 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
 ColliderView colliderView(const LoadedScene& loaded, const ColliderTextures& textures) {
     float texel = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
-        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(loaded.colliders[i]));
+        texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(*loaded.colliders[i]));
     }
     return {&textures, loaded.bounds, texel};
 }

@@ -21,9 +21,10 @@ struct ReliefMap {
     vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
                            // in texels here
     vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: the shift of a
-                           // standing plane by a unit of depth; width - 1; height - 1. Of patches roots along z, x and y
+                           // standing plane by a unit of depth; width - 1; height - 1
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
-                           // largest product of an orthographic ray and the normal of a plane along it
+                           // largest product of an orthographic ray and the normal of a plane along it. Of patches the
+                           // size of a root, and how many there are along x, y and z
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. With
                            // RELIEF_HAS_ROWS a texel for each row comes first, with the range of the row's texels. Of patches
                            // texel 0; from root to root along y and z; levels
@@ -31,7 +32,7 @@ struct ReliefMap {
                            // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
 };
 
-// Colliders with a pose of their own; 0: one collider, in its own object space.
+// 1: a world of bodies with poses of their own; 0: one collider, in its own object space.
 #if !defined(RELIEF_BODIES)
 #define RELIEF_BODIES 0
 #endif
@@ -41,55 +42,46 @@ struct ReliefMap {
 #define RELIEF_LIVE 0
 #endif
 
+ivec2 reliefTexel(int index, int log2_width) {
+    return ivec2(index & ((1 << log2_width) - 1), index >> log2_width);
+}
+
 #if RELIEF_BODIES > 0
-struct ReliefBody {
-    vec4 row[3];     // world to object space at the end of the step: a rotation, divided by scale
-    vec4 before[3];  // the same at its beginning
-    vec4 response;   // scale (world units of an object unit); restitution; 1 - friction
-    ivec4 maps;      // the first map; how many; 1 if they are live
-};
-#endif
+//!include collider/world.glsl
+#else
 
 layout(std140) uniform ReliefCollider {
     ivec4 u_relief_count;  // maps in use; then RELIEF_LOG2_WIDTHS
-#if RELIEF_BODIES > 0
-    ReliefBody u_relief_bodies[RELIEF_BODIES];
-#endif
     ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
 };
 
 // In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A uniform block serves lanes at different
-// addresses one after another, shared memory nearly all at once: so maps and bodies below are the work group's copy there,
-// made from the same buffer bound as storage, since copying reads different addresses, too. The counts stay in the block.
+// addresses one after another, shared memory nearly all at once: so the maps below are the work group's copy there, made
+// from the same buffer bound as storage, since copying reads different addresses, too. The counts stay in the block.
 #if defined(RELIEF_TOUR)
 layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
     ivec4 b_relief_count;
-#if RELIEF_BODIES > 0
-    ReliefBody b_relief_bodies[RELIEF_BODIES];
-#endif
     ReliefMap b_relief_maps[RELIEF_MAP_CAPACITY];
 };
 shared ReliefMap s_relief_maps[RELIEF_MAP_CAPACITY];
-#if RELIEF_BODIES > 0
-shared ReliefBody s_relief_bodies[RELIEF_BODIES];
-#endif
 
 // Called first, by every invocation of a group of so many lanes.
 void reliefShare(int lane, int lanes) {
     for (int i = lane; i < RELIEF_MAP_CAPACITY; i += lanes) {
         s_relief_maps[i] = b_relief_maps[i];
     }
-#if RELIEF_BODIES > 0
-    for (int b = lane; b < RELIEF_BODIES; b += lanes) {
-        s_relief_bodies[b] = b_relief_bodies[b];
-    }
-#endif
     memoryBarrierShared();
     barrier();
 }
 
 #define u_relief_maps s_relief_maps
-#define u_relief_bodies s_relief_bodies
+#endif
+
+#define reliefMapRow(i, k) u_relief_maps[i].row[k]
+#define reliefMapColumn(i, k) u_relief_maps[i].column[k]
+#define reliefObjectPerMap(i) u_relief_maps[i].object_per_map
+#define reliefMapPlace(i) u_relief_maps[i].place
+#define reliefMapInfo(i) u_relief_maps[i].info
 #endif
 
 // Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
@@ -217,13 +209,13 @@ float reliefRow(vec4 r, vec3 p) {
 
 // A point of object space in the space of map i.
 vec3 reliefInMap(int i, vec3 p) {
-    return vec3(reliefRow(u_relief_maps[i].row[0], p), reliefRow(u_relief_maps[i].row[1], p),
-                reliefRow(u_relief_maps[i].row[2], p));
+    return vec3(reliefRow(reliefMapRow(i, 0), p), reliefRow(reliefMapRow(i, 1), p),
+                reliefRow(reliefMapRow(i, 2), p));
 }
 
 // True for a point p of an orthographic map's own space above its texels, without its rim, which is empty.
 bool reliefInWindow(int i, vec3 p) {
-    return p.x >= 1.0 && p.y >= 1.0 && p.x < u_relief_maps[i].column[1].w && p.y < u_relief_maps[i].column[2].w;
+    return p.x >= 1.0 && p.y >= 1.0 && p.x < reliefMapColumn(i, 1).w && p.y < reliefMapColumn(i, 2).w;
 }
 
 bool reliefInDepth(vec3 p) {
@@ -279,8 +271,8 @@ vec3 reliefCubeDirection(vec3 st_face) {
 
 // From map space to object space, directions alone.
 vec3 reliefFromMap(int i, vec3 q) {
-    return u_relief_maps[i].column[0].xyz * q.x +
-           (u_relief_maps[i].column[1].xyz * q.y + u_relief_maps[i].column[2].xyz * q.z);
+    return reliefMapColumn(i, 0).xyz * q.x +
+           (reliefMapColumn(i, 1).xyz * q.y + reliefMapColumn(i, 2).xyz * q.z);
 }
 
 // The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
@@ -288,7 +280,7 @@ vec3 reliefFromMap(int i, vec3 q) {
 // direction, for a unit of depth; standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to 2 half_depth.
 float reliefPlane(int i, vec3 along_normal, float per_length, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
     float along = per_length * reliefDot(along_normal, ray);
-    float offset = abs(along) < standing ? u_relief_maps[i].column[0].w * (depth - half_depth) : depth * along;
+    float offset = abs(along) < standing ? reliefMapColumn(i, 0).w * (depth - half_depth) : depth * along;
     return per_length * reliefDot(along_normal, from) - offset;
 }
 
@@ -314,10 +306,6 @@ float reliefFrontBackDepth(int format, uint code) {
     return fixed_point;
 #endif
 #endif
-}
-
-ivec2 reliefTexel(int index, int log2_width) {
-    return ivec2(index & ((1 << log2_width) - 1), index >> log2_width);
 }
 
 // R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty. Of the normal the indices.
@@ -454,8 +442,7 @@ ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found)
 }
 #endif
 
-// Without `whole` any distance that is not below 0 stands for all of them. reliefMayHold() in collider_tour.glsl repeats when
-// the texel is not fetched: both change together.
+// Without `whole` any distance that is not below 0 stands for all of them.
 ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
@@ -469,8 +456,8 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
         int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at, exists) : place.x + at.y * place.y + at.x;
         ReliefSight sight = ReliefSight(texel, exists, p.z, reliefIsPlane(info),
                                         reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
-                                        u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
-                                        u_relief_maps[i].object_per_map.z);
+                                        reliefMapColumn(i, 2).xyz, reliefObjectPerMap(i).w,
+                                        reliefObjectPerMap(i).z);
         bool found;
         if (reliefIsFrontBack(info)) {
             vote = reliefVoteFrontBack(i, info, sight, whole, found);
@@ -504,12 +491,12 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
         vote.normal = reliefCode(index);
         if (reliefIsPlane(info)) {
             vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z)));
-            float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
+            float standing = RELIEF_STANDING_COSINE * reliefLength(reliefObjectPerMap(i).xyz * ray);
             vote.distance = reliefOctahedralPlane(i, reliefOctahedron(index), depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p),
                                         reliefFromMap(i, ray), standing);
         } else {
             float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
-            vote.distance = ahead * reliefLength(u_relief_maps[i].object_per_map.xyz * direction);
+            vote.distance = ahead * reliefLength(reliefObjectPerMap(i).xyz * direction);
         }
         if (!in_volume && !(vote.distance >= 0.0)) {
             vote.distance = RELIEF_FAR_OUTSIDE;
@@ -532,7 +519,7 @@ ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
 
 ReliefVote reliefVoteOf(int i, ivec4 info, vec3 p, bool whole) {
     vec3 in_map = reliefInMap(i, p);
-    ivec4 place = u_relief_maps[i].place;
+    ivec4 place = reliefMapPlace(i);
     ReliefVote vote;
     if (reliefIsPatches(info)) {
         vote = reliefVotePatches(i, info, in_map, whole);
@@ -545,7 +532,7 @@ ReliefVote reliefVoteOf(int i, ivec4 info, vec3 p, bool whole) {
 }
 
 ReliefVote reliefVote(int i, vec3 p, bool whole) {
-    return reliefVoteOf(i, u_relief_maps[i].info, p, whole);
+    return reliefVoteOf(i, reliefMapInfo(i), p, whole);
 }
 
 // The votes so far: of none the map is -1.
@@ -573,7 +560,7 @@ ReliefField reliefFieldOf(ReliefBest best) {
 ReliefField reliefMaps(int first, int end, vec3 p, bool whole) {
     ReliefBest best = RELIEF_NO_VOTE;
     for (int i = first; i < end && (whole || best.distance < 0.0); ++i) {
-        reliefJoin(best, i, u_relief_maps[i].info, p, whole);
+        reliefJoin(best, i, reliefMapInfo(i), p, whole);
     }
     return reliefFieldOf(best);
 }
@@ -583,12 +570,12 @@ vec3 reliefToVolume(int i, vec3 p) {
     vec3 in_map = reliefInMap(i, p);
     vec3 low = vec3(-1.0);
     vec3 high = vec3(1.0);
-    if (reliefIsPatches(u_relief_maps[i].info)) {
+    if (reliefIsPatches(reliefMapInfo(i))) {
         low = vec3(0.0);
         high = reliefPatchRoots(i);
-    } else if (!reliefIsCube(u_relief_maps[i].info)) {  // its rim has nothing
+    } else if (!reliefIsCube(reliefMapInfo(i))) {  // its rim has nothing
         low = vec3(1.0, 1.0, 0.0);
-        high = vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, 1.0);
+        high = vec3(reliefMapColumn(i, 1).w, reliefMapColumn(i, 2).w, 1.0);
     }
     return reliefFromMap(i, clamp(in_map, low, high) - in_map);
 }
@@ -649,7 +636,7 @@ ReliefField reliefEvaluate(vec3 p) {
 // map, and a GL may run it.
 #define RELIEF_VOTE_OF(n, format, flags) \
     if (best.distance < 0.0) { \
-        reliefJoin(best, n, ivec4(u_relief_maps[n].info.x, format, flags, u_relief_maps[n].info.w), p, false); \
+        reliefJoin(best, n, ivec4(reliefMapInfo(n).x, format, flags, reliefMapInfo(n).w), p, false); \
     }
 
 // For a step of a simulation: the same as reliefEvaluate where P is inside; where it is not, the first map that sees it
@@ -660,7 +647,7 @@ ReliefField reliefSolid(vec3 p) {
     RELIEF_VOTES
 #if RELIEF_MAP_CAPACITY > RELIEF_UNROLLED_MAPS
     for (int i = RELIEF_UNROLLED_MAPS; i < u_relief_count.x && best.distance < 0.0; ++i) {
-        reliefJoin(best, i, u_relief_maps[i].info, p, false);
+        reliefJoin(best, i, reliefMapInfo(i), p, false);
     }
 #endif
     return reliefFieldOf(best);
@@ -684,136 +671,6 @@ bool reliefSolidAt(vec3 p, int first) {
 
 #else
 
-vec3 reliefToObject(vec4 row0, vec4 row1, vec4 row2, vec3 p) {
-    return vec3(reliefRow(row0, p), reliefRow(row1, p), reliefRow(row2, p));
-}
-
-// A point of a body's object space in the world. (The transpose of a rotation is its inverse.)
-vec3 reliefToWorld(vec4 row0, vec4 row1, vec4 row2, float scale, vec3 q) {
-    return (scale * scale) * (row0.xyz * (q.x - row0.w) + (row1.xyz * (q.y - row1.w) + row2.xyz * (q.z - row2.w)));
-}
-
-// World to object space and back, at the beginning and at the end of the step.
-vec3 reliefBodyNow(int body, vec3 p) {
-    return reliefToObject(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2], p);
-}
-vec3 reliefBodyBefore(int body, vec3 p) {
-    return reliefToObject(u_relief_bodies[body].before[0], u_relief_bodies[body].before[1],
-                          u_relief_bodies[body].before[2], p);
-}
-vec3 reliefWorldNow(int body, vec3 q) {
-    return reliefToWorld(u_relief_bodies[body].row[0], u_relief_bodies[body].row[1], u_relief_bodies[body].row[2],
-                         u_relief_bodies[body].response.x, q);
-}
-vec3 reliefWorldBefore(int body, vec3 q) {
-    return reliefToWorld(u_relief_bodies[body].before[0], u_relief_bodies[body].before[1],
-                         u_relief_bodies[body].before[2], u_relief_bodies[body].response.x, q);
-}
-
-vec3 reliefWorldNormal(int body, vec3 n) {
-    return u_relief_bodies[body].response.x *
-           (u_relief_bodies[body].row[0].xyz * n.x +
-            (u_relief_bodies[body].row[1].xyz * n.y + u_relief_bodies[body].row[2].xyz * n.z));
-}
-
-// One body and a ball about a point of its object space, as reliefSolid or, with `whole`, reliefEvaluate.
-ReliefField reliefBodyField(int body, vec3 q, float radius, bool whole) {
-    int first = u_relief_bodies[body].maps.x;
-    int end = first + u_relief_bodies[body].maps.y;
-#if defined(RELIEF_RADIUS)
-    if (radius > 0.0) {
-        return reliefBall(first, end, q, radius / u_relief_bodies[body].response.x);
-    }
-#endif
-    return reliefMaps(first, end, q, whole);
-}
-
-// The union of all bodies in the world, which the nearest, inside the deepest, decides. The distance is in world
-// units. body is -1 where none votes.
-ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
-    ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
-    body = -1;
-    for (int b = 0; b < RELIEF_BODIES; ++b) {
-#if defined(RELIEF_MASKS)  // of a step, alone: step_mask.glsl
-        if (!collidesWith(b)) {
-            continue;
-        }
-#endif
-        float scale = u_relief_bodies[b].response.x;
-        ReliefField field = reliefBodyField(b, reliefBodyNow(b, p), radius, whole);
-        if (field.map >= 0 && scale * field.distance < best.distance) {
-            best = ReliefField(scale * field.distance, reliefWorldNormal(b, field.normal), field.map);
-            body = b;
-        }
-    }
-    return best;
-}
-
-ReliefField reliefSolid(vec3 p) {
-    int body;
-    return reliefUnion(p, 0.0, false, body);
-}
-
-ReliefField reliefEvaluate(vec3 p) {
-    int body;
-    return reliefUnion(p, 0.0, true, body);
-}
-
-#if RELIEF_LIVE
-
-// The motion of the surface of map i at a point p of object space since the update before, in object units. Of two ends it
-// is the one whose normal is more like `normal`. Zero where the map has no surface.
-vec3 reliefMotion(int i, vec3 p, vec3 normal) {
-    vec3 in_map = reliefInMap(i, p);
-    ivec4 place = u_relief_maps[i].place;
-    ivec4 info = u_relief_maps[i].info;
-    ivec2 at = ivec2(clamp(in_map.xy, vec2(0.0), vec2(place.w - 1, info.x - 1)));
-    uvec4 words = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y * place.y + at.x, RELIEF_LOG2_WIDTHS.z), 0);
-    float front = reliefDot(normal, reliefUnit(reliefOctahedron(words.r)));
-    float back = reliefDot(normal, reliefUnit(reliefOctahedron(words.g)));
-    at.y += words.b == 0u || (words.a != 0u && back > front) ? info.x : 0;
-    int texel = info.w + (at.y << RELIEF_LOG2_WIDTHS.x) + at.x;
-    return texelFetch(u_relief_float, reliefTexel(texel, RELIEF_LOG2_WIDTHS.x), 0).xyz;
-}
-
-// The same of a body; zero of one that is not live. q: its object space at the end of the step; normal: in the world.
-vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
-    if (u_relief_bodies[body].maps.z == 0 || map < 0) {
-        return vec3(0.0);
-    }
-    vec3 in_body = u_relief_bodies[body].response.x *
-                   reliefToObject(vec4(u_relief_bodies[body].row[0].xyz, 0.0), vec4(u_relief_bodies[body].row[1].xyz, 0.0),
-                                  vec4(u_relief_bodies[body].row[2].xyz, 0.0), normal);
-    return reliefMotion(map, q, in_body);
-}
-
-// The motion of a particle that rests on a live body: that of the nearest surface; zero on one that is not live. Each map
-// is evaluated alone: where one sees nothing near a silhouette, another one does.
-vec3 reliefNearestMotion(int body, vec3 q) {
-    if (u_relief_bodies[body].maps.z == 0) {
-        return vec3(0.0);
-    }
-    ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
-    int first = u_relief_bodies[body].maps.x;
-    for (int i = first; i < first + u_relief_bodies[body].maps.y; ++i) {
-        ReliefField one = reliefMaps(i, i + 1, q, true);
-        if (one.map >= 0 && abs(one.distance) < abs(nearest.distance)) {
-            nearest = one;
-        }
-    }
-    return nearest.map >= 0 ? reliefMotion(nearest.map, q, nearest.normal) : vec3(0.0);
-}
-
-#else
-
-vec3 reliefBodyMotion(int body, int map, vec3 q, vec3 normal) {
-    return vec3(0.0);
-}
-
-vec3 reliefNearestMotion(int body, vec3 q) {
-    return vec3(0.0);
-}
-
-#endif
+//!include collider/bodies.glsl
 
 #endif

@@ -152,7 +152,7 @@ ReliefLeaf reliefPatchLeaf(ivec4 place, vec3 p) {
 
 // Roots along x, y and z.
 vec3 reliefPatchRoots(int i) {
-    return vec3(u_relief_maps[i].column[1].w, u_relief_maps[i].column[2].w, u_relief_maps[i].column[0].w);
+    return reliefObjectPerMap(i).yzw;
 }
 
 // A distance of the side that a cell without a patch lies on.
@@ -165,7 +165,7 @@ ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
     bool encloses = reliefHas(info, RELIEF_ENCLOSES);
     ReliefVote vote = ReliefVote(encloses ? RELIEF_FAR_OUTSIDE : RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
     if (all(greaterThanEqual(p, vec3(0.0))) && all(lessThan(p, reliefPatchRoots(i)))) {
-        ivec4 place = u_relief_maps[i].place;
+        ivec4 place = reliefMapPlace(i);
         ReliefLeaf leaf = reliefPatchLeaf(place, p);
         uvec2 record = leaf.record;
         float cell = leaf.cell;
@@ -185,10 +185,12 @@ ReliefVote reliefVotePatches(int i, ivec4 info, vec3 p, bool whole) {
             distance = coarse ? cell * (along + offset) : uintBitsToFloat(record.y) + cell * along;
             distance = reliefOnSide(leaf.inside, distance, nearest);
         }
-        float root_size = u_relief_maps[i].object_per_map.x;
+        float root_size = reliefObjectPerMap(i).x;
         bool known = distance < RELIEF_FAR_OUTSIDE;
         vote.distance = known ? distance * root_size : RELIEF_FAR_OUTSIDE;
-        vote.normal = known ? reliefFromMap(i, normal) * (1.0 / root_size) : RELIEF_NO_CODE;
+        if (known && (whole || distance < 0.0)) {
+            vote.normal = reliefFromMap(i, normal) * (1.0 / root_size);
+        }
     }
     return vote;
 }

@@ -4,8 +4,8 @@
 uniform int u_collides[RELIEF_TYPES];  // ParticleType::collides
 int g_collides;                        // that of this invocation's particle
 
-bool collidesWith(int body) {  // RELIEF_GROUND_BIT: the floor
-    return ((g_collides >> body) & 1) != 0;
+bool collidesWith(int bits) {
+    return (g_collides & bits) != 0;
 }
 
 #endif

@@ -48,7 +48,7 @@ vec2 bodyResponse(int body);
 float aboveGround(vec3 p, float radius) {
     float above = p.y - radius - u_ground;
 #if defined(RELIEF_MASKS)
-    above = collidesWith(RELIEF_GROUND_BIT) ? above : RELIEF_FAR_OUTSIDE;
+    above = collidesWith(1 << RELIEF_GROUND_BIT) ? above : RELIEF_FAR_OUTSIDE;
 #endif
     return above;
 }

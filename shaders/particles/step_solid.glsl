@@ -1,4 +1,4 @@
-// For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is the floor alone; with RELIEF_BODIES above 0 there are
+// For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is the floor alone; with RELIEF_BODIES there are
 // bodies that have a pose at the step's beginning and one at its end, and may be live; else one collider in its own object
 // space.
 #if !defined(RELIEF_BODIES)
@@ -40,7 +40,7 @@ Solid solidOf(ReliefTour tour, vec3 p, float radius) {
 
 Solid solid(vec3 p, float radius) {
 #if defined(RELIEF_MASKS)
-    if (!collidesWith(0)) {
+    if (!collidesWith(1)) {
         return Solid(RELIEF_FAR_OUTSIDE, vec3(0.0), -1, -1, vec3(0.0));
     }
 #endif
@@ -65,21 +65,11 @@ Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
     return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
 }
 
-#if defined(RELIEF_TOUR)
-
-Solid solidOf(ReliefTour tour, vec3 p, float radius) {
-    return solidOf(reliefToured(tour), tour.best_body, p, radius);
-}
-
-#else
-
 Solid solid(vec3 p, float radius) {
     int body;
     ReliefField field = reliefUnion(p, radius, false, body);
     return solidOf(field, body, p, radius);
 }
-
-#endif
 
 // The maps of a live body show the surface at the end of the step alone. So the particle is moved with the piece of surface
 // that it met, and tested at the end: exact where all of the surface near it moves alike, as it does but for second order in
@@ -101,7 +91,7 @@ vec3 pointBefore(Solid s, vec3 p) {
 vec3 pointNow(int body, vec3 p) {
     vec3 now = p;
     // A particle that stopped on a body of colliders that are no longer set stays where it is.
-    if (body < RELIEF_BODIES) {
+    if (body < reliefBodyCount()) {
         vec3 q = reliefBodyBefore(body, p);
         now = reliefWorldNow(body, q + reliefNearestMotion(body, q));
     }
@@ -109,7 +99,7 @@ vec3 pointNow(int body, vec3 p) {
 }
 
 vec2 bodyResponse(int body) {
-    return u_relief_bodies[body].response.yz;
+    return reliefBodyResponse(body).yz;
 }
 
 #endif

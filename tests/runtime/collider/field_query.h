@@ -43,7 +43,11 @@ class FieldQuery {
 
     /// Uses textures that are there already: of one collider, or of bodies in their world, some of which may be
     /// live. They must outlive this. Fails as makeProgram does.
-    [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures);
+    /// \param defines  lines for the shader.
+    [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures,
+                                                   const std::string& defines = {});
+    /// Goes over to other textures of the same defines().
+    void use(const ColliderTextures& textures) { textures_ = &textures; }
 
     /// One sample a point, in order. Waits for the GPU.
     /// Errors: kLimit (no room on the GPU), kUnsupported, kFailure.
@@ -71,12 +75,13 @@ inline Result<FieldQuery> FieldQuery::create(const Collider& collider) {
     return query;
 }
 
-inline Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures) {
+inline Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures, const std::string& defines) {
     RELIEF_TRY(checkContext());
     const PassState state;
     FieldQuery query;
     query.textures_ = &textures;
-    query.program_ = RELIEF_TRY(makeQueryProgram("collider/collider.glsl", kFieldQuery, textures.defines()));
+    query.program_ =
+        RELIEF_TRY(makeQueryProgram("collider/collider.glsl", kFieldQuery, textures.defines() + defines));
     textures.attach(query.program_, kBinding);
     query.program_.set("u_points", 0);
     return query;

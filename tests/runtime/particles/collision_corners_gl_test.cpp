@@ -295,7 +295,7 @@ TEST_P(CollisionCornersGlTest, BlocksAndVolumesOfTheCallerStayBound) {
     glDeleteTextures(1, &volume);
 }
 
-// The last of the most bodies there may be, scaled and on its way: the number of the body comes through the
+// The last of many bodies, scaled and on its way: the number of the body comes through the
 // texture of either integrator, and through the statistics.
 TEST_P(CollisionCornersGlTest, WhatStoppedOnTheLastBodyGoesWithIt) {
     const Collider box = boxCollider();
@@ -306,7 +306,7 @@ TEST_P(CollisionCornersGlTest, WhatStoppedOnTheLastBodyGoesWithIt) {
                         glm::angleAxis(1.5F * t, glm::normalize(glm::vec3(0.3F, 1.0F, 0.2F))),
                         1.7F};
         };
-        std::vector<ColliderBody> bodies(ColliderTextures::kBodiesMax, ColliderBody{&box, {}, 1.0F, 0.0F});
+        std::vector<ColliderBody> bodies(2000, ColliderBody{&box, {}, 1.0F, 0.0F});
         std::vector<Pose> poses(bodies.size());
         poses.back() = bodies.back().pose = poseAt(0.0F);
         collideWith(ColliderTextures::create(bodies));

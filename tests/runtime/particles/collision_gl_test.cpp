@@ -481,10 +481,14 @@ TEST_P(CollisionGlTest, BadTypesBodiesAndSweepsAreErrors) {
     EXPECT_FALSE(particles_->setSweep(std::nanf("")));
     EXPECT_FALSE(particles_->setSweep(-1.0F));
     const Collider box = boxCollider();
-    const std::vector<ColliderBody> many(9, ColliderBody{&box, {}, 1.0F, 0.0F});
+    const std::vector<ColliderBody> many(ColliderTextures::kBodiesMax + 1,
+                                         ColliderBody{&box, {}, 1.0F, 0.0F});
     EXPECT_EQ(ColliderTextures::create(many).error().code, ErrorCode::kLimit);
     ColliderBody flat{&box, {}, 1.0F, 0.0F};
     flat.pose.scale = 0.0F;
+    EXPECT_EQ(ColliderTextures::create(std::span(&flat, 1)).error().code, ErrorCode::kUsage);
+    flat.pose.scale = 1.0F;
+    flat.group = ColliderTextures::kGroups;
     EXPECT_EQ(ColliderTextures::create(std::span(&flat, 1)).error().code, ErrorCode::kUsage);
 }
 

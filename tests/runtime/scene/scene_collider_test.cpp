@@ -126,11 +126,11 @@ TEST(SceneCollider, MistakesOfPlacesAreNamed) {
     expectError("restitution = 1.5\n", "3:15", "out of range");
     expectError("friction = -0.1\n", "3:12", "out of range");
     expectError("poistion = [1, 2, 3]\n", "3:1", "position");
-    std::string nine;
-    for (int i = 0; i < 9; ++i) {
-        nine += kHead;
+    std::string many;
+    for (std::size_t i = 0; i <= ColliderTextures::kBodiesMax; ++i) {
+        many += kHead;
     }
-    EXPECT_FALSE(parse(nine)) << "more bodies than a step takes";
+    EXPECT_FALSE(parse(many)) << "more bodies than a step takes";
 }
 
 TEST(SceneCollider, MistakesOfKeysAreNamed) {

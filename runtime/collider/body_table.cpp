@@ -1,0 +1,186 @@
+#include "runtime/collider/body_table.h"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/common.hpp>
+#include <glm/mat3x3.hpp>
+#include <utility>
+
+#include "shaders/collider/constants.h"
+
+namespace relief {
+namespace {
+
+static_assert(sizeof(BlockBody) == kWorldBodyTexels * sizeof(glm::uvec4));
+static_assert(2 * kGridLevelsMax <= kWorldLevels);
+
+/// How much larger boxes are than they should be, for the rounding of poses and rows: of their coordinates.
+constexpr float kSlack = 1e-5F;
+/// Cells of the grid of bodies that move are larger: it is uploaded at each step.
+constexpr float kMovingCells = 1.4F;
+/// Room for the grid of bodies that move, in shares of what it needs.
+constexpr std::size_t kRoom = 2;
+
+BodyBox boxOf(const TableBody& body, std::uint32_t index, float reach) {
+    if (!body.box) {
+        return {.body = index, .unbounded = true};
+    }
+    const glm::mat3 turn = glm::mat3_cast(body.pose.rotation);
+    const glm::vec3 center = toWorld(body.pose, body.box->center());
+    const glm::vec3 half = 0.5F * body.pose.scale * glm::max(body.box->size(), glm::vec3(0.0F));
+    const glm::vec3 far = body.pose.scale * glm::max(glm::abs(body.box->min), glm::abs(body.box->max));
+    glm::vec3 extent = half.x * glm::abs(turn[0]) + half.y * glm::abs(turn[1]) + half.z * glm::abs(turn[2]);
+    extent += reach + kSlack * (std::max({far.x, far.y, far.z}) + glm::abs(body.pose.position) + reach);
+    return {center - extent, center + extent, index, false};
+}
+
+bool sameRows(const BlockBody& block) {
+    return std::equal(std::begin(block.row), std::end(block.row), std::begin(block.before));
+}
+
+}  // namespace
+
+BodyTable::BodyTable(std::span<const std::byte> maps, std::vector<TableBody> bodies)
+    : bodies_(std::move(bodies)), moves_(bodies_.size(), 0), settles_(bodies_.size(), 0) {
+    first_body_ = maps.size() / sizeof(glm::uvec4);
+    words_.resize(first_body_ + kWorldBodyTexels * bodies_.size());
+    std::memcpy(words_.data(), maps.data(), maps.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const TableBody& body = bodies_[i];
+        BlockBody block{};
+        writeRows(body.pose, block.row);
+        writeRows(body.pose, block.before);
+        block.response = body.response;
+        std::copy(std::begin(body.maps), std::end(body.maps), std::begin(block.maps));
+        std::memcpy(&words_[first_body_ + kWorldBodyTexels * i], &block, sizeof(block));
+    }
+    arrange();
+}
+
+std::vector<BodyBox> BodyTable::boxes(bool moving) const {
+    std::vector<BodyBox> boxes;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if ((moves_[i] != 0) == moving && bodies_[i].maps[1] > 0) {
+            boxes.push_back(boxOf(bodies_[i], static_cast<std::uint32_t>(i), reach_));
+        }
+    }
+    return boxes;
+}
+
+std::size_t BodyTable::write(const BodyGrid& grid, std::size_t first, std::vector<glm::ivec4>& levels) {
+    const std::size_t end = first + grid.lists.size() + grid.entries.size();
+    if (words_.size() < end) {
+        words_.resize(end);
+    }
+    levels.clear();
+    for (const BodyGrid::Level& level : grid.levels) {
+        levels.emplace_back(__builtin_bit_cast(std::int32_t, level.cells_per_unit),
+                            static_cast<std::int32_t>(first + level.first),
+                            static_cast<std::int32_t>(level.mask), 0);
+    }
+    const std::size_t first_entry = first + grid.lists.size();
+    for (std::size_t i = 0; i < grid.lists.size(); ++i) {
+        words_[first + i] =
+            glm::uvec4(first_entry + grid.lists[i].first, first_entry + grid.lists[i].end, 0, 0);
+    }
+    for (std::size_t i = 0; i < grid.entries.size(); ++i) {
+        const BodyGrid::Entry& entry = grid.entries[i];
+        words_[first_entry + i] = glm::uvec4(entry.body, entry.low, entry.high, entry.hash);
+    }
+    return end;
+}
+
+void BodyTable::arrange() {
+    words_.resize(first_body_ + kWorldBodyTexels * bodies_.size());
+    first_moving_ = write(BodyGrid::of(boxes(false)), words_.size(), still_levels_);
+    const std::size_t end = write(BodyGrid::of(boxes(true), kMovingCells), first_moving_, moving_levels_);
+    const std::size_t room = first_moving_ + kRoom * (end - first_moving_);
+    log2_width_ = 0;
+    while ((std::size_t{1} << (2 * log2_width_)) < room) {
+        ++log2_width_;
+    }
+    const std::size_t width = std::size_t{1} << log2_width_;
+    words_.resize((room + width - 1) / width * width);
+    resized_ = true;
+}
+
+void BodyTable::placeMoving() {
+    const std::size_t room = words_.size();
+    const std::size_t end = write(BodyGrid::of(boxes(true), kMovingCells), first_moving_, moving_levels_);
+    if (end > room) {
+        arrange();
+    } else {
+        changes_.push_back({first_moving_, end});
+    }
+}
+
+bool BodyTable::setPoses(std::span<const Pose> poses) {
+    bool changed = false;
+    bool anew = false;
+    bool moved_any = false;
+    std::size_t first = bodies_.size();
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const bool moved = i < poses.size() && !(poses[i] == bodies_[i].pose);
+        if (!moved && settles_[i] == 0) {
+            continue;
+        }
+        bodies_[i].pose = moved ? poses[i] : bodies_[i].pose;
+        BlockBody block;
+        glm::uvec4* const words = &words_[first_body_ + kWorldBodyTexels * i];
+        std::memcpy(&block, words, sizeof(block));
+        std::copy(std::begin(block.row), std::end(block.row), std::begin(block.before));
+        writeRows(bodies_[i].pose, block.row);
+        std::memcpy(words, &block, sizeof(block));
+        settles_[i] = sameRows(block) ? 0 : 1;
+        anew = anew || (moved && moves_[i] == 0);
+        moves_[i] = moved ? 1 : moves_[i];
+        moved_any = moved_any || moved;
+        changed = changed || settles_[i] != 0;
+        first = std::min(first, i);
+        end = i + 1;
+    }
+    if (first < end) {
+        changes_.push_back({first_body_ + kWorldBodyTexels * first, first_body_ + kWorldBodyTexels * end});
+    }
+    if (anew) {
+        arrange();
+    } else if (moved_any) {
+        placeMoving();
+    }
+    return changed;
+}
+
+void BodyTable::setReach(float radius) {
+    if (radius > reach_) {
+        reach_ = radius;
+        arrange();
+    }
+}
+
+std::vector<glm::ivec4> BodyTable::block() const {
+    std::vector<glm::ivec4> levels = still_levels_;
+    levels.insert(levels.end(), moving_levels_.begin(), moving_levels_.end());
+    std::vector<glm::ivec4> block{glm::ivec4(log2_width_, static_cast<int>(first_body_),
+                                             static_cast<int>(bodies_.size()),
+                                             static_cast<int>(levels.size()))};
+    levels.resize(kWorldLevels);
+    block.insert(block.end(), levels.begin(), levels.end());
+    return block;
+}
+
+std::vector<BodyTable::Rows> BodyTable::takeChanges() {
+    const std::size_t width = std::size_t{1} << log2_width_;
+    std::vector<Rows> rows;
+    if (std::exchange(resized_, false)) {
+        rows.push_back({0, words_.size() / width});
+    } else {
+        for (const Rows& texels : changes_) {
+            rows.push_back({texels.first / width, (texels.end + width - 1) / width});
+        }
+    }
+    changes_.clear();
+    return rows;
+}
+
+}  // namespace relief

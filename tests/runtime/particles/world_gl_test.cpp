@@ -1,0 +1,184 @@
+// Worlds of many bodies: the broad phase gives what asking every body gives, bit by bit, and what moves is found where it is.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <random>
+#include <vector>
+
+#include "tests/formats/random_patches.h"
+#include "tests/runtime/collider/field_query.h"
+#include "tests/runtime/particles/collision_test.h"
+
+namespace relief {
+namespace {
+
+/// A reach at which every box holds every point, so that all bodies are asked.
+constexpr float kEverywhere = 1e6F;
+
+glm::vec3 randomIn(Pcg32& random, float half) {
+    const float x = random.between(-half, half);
+    const float y = random.between(-half, half);
+    return {x, y, random.between(-half, half)};
+}
+
+/// Colliders whose boxes are known, and one of which the first map abstains beyond its own.
+class Colliders {
+  public:
+    Colliders() {
+        std::mt19937 random(9);
+        colliders_[0] = boxCollider();
+        colliders_[1] = analytic::frontBackCollider(analytic::sphere({0.1, 0.0, 0.0}, 0.4), 48);
+        for (std::size_t i = 2; i < 4; ++i) {
+            colliders_[i].maps = {test::randomPatches(random)};
+        }
+        colliders_[4] = colliders_[1];
+        colliders_[4].maps[0].encloses = colliders_[4].maps[0].empty_is_outside = false;
+    }
+    [[nodiscard]] const Collider& operator[](std::size_t i) const {
+        return colliders_[i % colliders_.size()];
+    }
+    [[nodiscard]] static std::size_t size() { return 5; }
+
+  private:
+    std::array<Collider, 5> colliders_;
+};
+
+Pose randomPose(Pcg32& random, float half) {
+    const glm::vec3 axis = randomIn(random, 1.0F) + glm::vec3(0.0F, 1.1F, 0.0F);
+    return {randomIn(random, half), glm::angleAxis(random.between(0.0F, 6.0F), glm::normalize(axis)),
+            std::exp(random.between(-2.0F, 1.5F))};
+}
+
+/// Every collider at least once, so that all worlds have the same shader.
+std::vector<ColliderBody> randomWorld(const Colliders& colliders, Pcg32& random) {
+    const std::uint32_t count = static_cast<std::uint32_t>(Colliders::size()) + random.next() % 60;
+    const float half = std::exp(random.between(-0.5F, 5.0F));
+    std::vector<ColliderBody> bodies;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        bodies.push_back({&colliders[i], randomPose(random, half), random.uniform(), random.uniform()});
+    }
+    return bodies;
+}
+
+class WorldGlTest : public CollisionTest {};
+class WorldFieldGlTest : public GlTest {};
+
+TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
+    const Colliders colliders;
+    Pcg32 random(21);
+    std::unique_ptr<FieldQuery> query;
+    std::size_t inside = 0;
+    for (int world = 0; world < 200; ++world) {
+        std::vector<ColliderBody> bodies = randomWorld(colliders, random);
+        auto textures = ColliderTextures::create(bodies);
+        ASSERT_TRUE(textures) << textures.error().message;
+        if (query) {
+            query->use(*textures);
+        } else {
+            auto made = FieldQuery::create(*textures, "#define RELIEF_QUERY_INSIDE\n");
+            ASSERT_TRUE(made) << made.error().message;
+            query = std::make_unique<FieldQuery>(std::move(*made));
+        }
+        if (world % 3 == 1) {  // some of them move
+            std::vector<Pose> poses;
+            for (std::size_t i = 0; i < bodies.size(); ++i) {
+                poses.push_back(bodies[i].pose);
+                if (i % 4 == 0) {
+                    poses[i].position = randomIn(random, 2.0F);
+                }
+                bodies[i].pose = poses[i];
+            }
+            textures->setPoses(poses);
+        }
+        std::vector<glm::vec3> points;
+        for (int i = 0; i < 1'000; ++i) {
+            points.push_back(toWorld(bodies[random.next() % bodies.size()].pose, randomIn(random, 0.6F)));
+        }
+        const auto few = query->evaluate(points);
+        textures->reach(kEverywhere);
+        const auto all = query->evaluate(points);
+        ASSERT_TRUE(few && all);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            ASSERT_EQ((*few)[i].distance, (*all)[i].distance) << "world " << world;
+            if ((*all)[i].distance < 0.0F) {
+                ++inside;
+                ASSERT_EQ((*few)[i].normal, (*all)[i].normal);
+                ASSERT_EQ((*few)[i].map, (*all)[i].map);
+            }
+        }
+    }
+    EXPECT_GT(inside, 20'000U);
+}
+
+TEST_P(WorldGlTest, ParticlesAreThoseOfEveryBody) {
+    const Colliders colliders;
+    for (const bool balls : {false, true}) {
+        Pcg32 random(4);
+        std::vector<ColliderBody> bodies;
+        for (std::uint32_t i = 0; i < 60; ++i) {
+            bodies.push_back({&colliders[i], randomPose(random, 3.0F), 0.5F, 0.2F});
+        }
+        std::vector<std::vector<ParticleState>> ends;
+        for (const bool all : {false, true}) {
+            make({.capacity = 1024});
+            collideWith(ColliderTextures::create(bodies));
+            if (all) {
+                textures_->reach(kEverywhere);
+            }
+            ParticleType type;
+            type.radius = balls ? 0.05F : 0.0F;
+            type.restitution = 0.5F;
+            std::vector<ParticleType> types{type, type};
+            types[1].collides = 4U | kCollidesWithGround;
+            ASSERT_TRUE(particles_->setTypes(types));
+            ASSERT_TRUE(particles_->setSweep(balls ? 0.0F : 0.05F));
+            Pcg32 births_random(8);
+            std::vector<Birth> births;
+            for (std::uint32_t i = 0; i < 1024; ++i) {
+                births.push_back(
+                    {randomIn(births_random, 4.0F), randomIn(births_random, 4.0F), 100.0F, i % 2});
+            }
+            particles_->spawn(births);
+            std::vector<Pose> poses;
+            for (const ColliderBody& body : bodies) {
+                poses.push_back(body.pose);
+            }
+            for (int step = 0; step < 12; ++step) {
+                for (std::size_t i = 0; i < poses.size(); i += 5) {
+                    poses[i].position += glm::vec3(0.02F, 0.01F * std::sin(static_cast<float>(step)), 0.0F);
+                }
+                textures_->setPoses(poses);
+                particles_->step(kDt);
+            }
+            ends.push_back(state());
+        }
+        ASSERT_EQ(ends[0].size(), ends[1].size());
+        std::size_t met = 0;
+        for (std::size_t i = 0; i < ends[0].size(); ++i) {
+            ASSERT_EQ(ends[0][i].position, ends[1][i].position);
+            ASSERT_EQ(ends[0][i].velocity, ends[1][i].velocity);
+            ASSERT_EQ(ends[0][i].contact, ends[1][i].contact);
+            met += ends[0][i].collisions > 0 ? 1 : 0;
+        }
+        EXPECT_GT(met, 100U);
+    }
+}
+
+TEST_P(WorldFieldGlTest, AColliderOfManyBodiesIsThereOnce) {
+    const Collider box = boxCollider();
+    const auto one = ColliderTextures::create(std::vector<ColliderBody>(1, {&box, {}, 1.0F, 0.0F}));
+    const auto many = ColliderTextures::create(std::vector<ColliderBody>(1'000, {&box, {}, 1.0F, 0.0F}));
+    ASSERT_TRUE(one && many);
+    EXPECT_EQ(one->mapCount(), many->mapCount());
+    EXPECT_EQ(one->bytes(), many->bytes());
+}
+
+}  // namespace
+
+RELIEF_INSTANTIATE_STEP_TESTS(WorldGlTest);
+RELIEF_INSTANTIATE_GL_TESTS(WorldFieldGlTest);
+
+}  // namespace relief
