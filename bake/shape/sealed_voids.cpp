@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -266,9 +265,9 @@ Result<PreparedMesh> withVoids(const MeshQuery& query, Voids voids, std::vector<
     });
     std::vector<std::uint32_t> order(follows.size());
     std::iota(order.begin(), order.end(), 0U);
-    const auto surface = static_cast<std::size_t>(std::distance(
-        order.begin(),
-        std::ranges::stable_partition(order, [&](std::uint32_t i) { return follows[i] == 0; }).begin()));
+    const auto first =
+        std::stable_partition(order.begin(), order.end(), [&](std::uint32_t i) { return follows[i] == 0; });
+    const auto surface = static_cast<std::size_t>(first - order.begin());
     TriangleMesh sorted = mesh;
     std::vector<std::uint32_t> sorted_bodies(order.size());
     std::vector<std::uint32_t> sorted_parts(order.size(), kNoLabel);
