@@ -1,74 +1,24 @@
 #include "bake/import/gltf_json.h"
 
 #include <optional>
-#include <set>
 
 #include "formats/base/text.h"
+#include "formats/fields/strict_json.h"
 
 namespace relief {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kDepthMax = 256;
 constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
-constexpr std::size_t kShownMax = 200;  // bytes of the file or of the parser's message that are shown
-
-/// Looks through a text before it is parsed: nlohmann's parser takes time by the square of an array's length if a callback
-/// listens to it.
-class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
-  public:
-    std::optional<Error> refused;
-
-    bool start_object(std::size_t) { return begin(); }
-    bool start_array(std::size_t) { return begin(); }
-    bool end_object() { return end(); }
-    bool end_array() { return end(); }
-    bool key(std::string& name) {
-        if (!keys_.back().insert(name).second) {
-            refused = {ErrorCode::kInvalidInput, "its JSON has the key '" + cleanUtf8(name, kShownMax) +
-                                                     "' twice in one object; export it again"};
-        }
-        return !refused;
-    }
-
-  private:
-    bool begin() {
-        if (keys_.size() >= kDepthMax) {
-            refused = {ErrorCode::kLimit, "its JSON is nested more than " + std::to_string(kDepthMax) +
-                                              " deep; export it again"};
-        }
-        keys_.emplace_back();
-        return !refused;
-    }
-    bool end() {
-        keys_.pop_back();
-        return true;
-    }
-
-    std::vector<std::set<std::string>> keys_;  // of the open objects
-};
 
 }  // namespace
 
 Result<Json> parseGltfJson(std::string_view text) {
     // Some files are padded with zeros, at which the parser would stop.
     text = text.substr(0, text.find_last_not_of(std::string_view(" \t\r\n\0", 5)) + 1);
-    if (text.find('\0') != std::string_view::npos) {
-        return invalidInput("it is no valid JSON: it holds a byte of 0");
-    }
-    Strictness strict;
-    Json::sax_parse(text.begin(), text.end(), &strict);
-    if (strict.refused) {
-        return tl::unexpected<Error>(std::move(*strict.refused));
-    }
-    try {
-        return Json::parse(text.begin(), text.end());
-    } catch (const Json::exception& error) {  // also a number out of range
-        const std::string_view words(error.what());
-        return invalidInput("it is no valid JSON: " +
-                            cleanUtf8(words.substr(words.find("] ") + 2), kShownMax) + "; export it again");
-    }
+    Result<Json> json = parseStrictJson(text);
+    return json ? std::move(json) : fail(json.error().code, json.error().message + "; export it again");
 }
 
 std::string takeGltf(const Json& json, bool& value) {

@@ -15,8 +15,7 @@
 
 namespace relief {
 
-/// Refuses, besides what is no JSON, equal keys in one object, and nesting of more than 256. Spaces and zeros may follow.
-/// Errors: kInvalidInput, kLimit.
+/// parseStrictJson(), but spaces and zeros may follow.
 [[nodiscard]] Result<nlohmann::json> parseGltfJson(std::string_view text);
 
 /// Takes a value of a type. \return what is wrong of it ("[3] is no number"), or "".

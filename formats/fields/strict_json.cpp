@@ -1,0 +1,89 @@
+#include "formats/fields/strict_json.h"
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kShownMax = 200;  // bytes of the file or of the parser's message that are shown
+
+/// Looks through a text before it is parsed: nlohmann's parser takes time by the square of an array's length if a callback
+/// listens to it.
+class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
+  public:
+    explicit Strictness(const JsonLimits& limits) : limits_(limits) {}
+
+    std::optional<Error> refused;
+
+    bool null() { return count(); }
+    bool boolean(bool) { return count(); }
+    bool number_integer(Json::number_integer_t) { return count(); }
+    bool number_unsigned(Json::number_unsigned_t) { return count(); }
+    bool number_float(Json::number_float_t, const std::string&) { return count(); }
+    bool string(std::string&) { return count(); }
+    bool start_object(std::size_t) { return begin(); }
+    bool start_array(std::size_t) { return begin(); }
+    bool end_object() { return end(); }
+    bool end_array() { return end(); }
+    bool key(std::string& name) {
+        if (!keys_.back().insert(name).second) {
+            refused = {ErrorCode::kInvalidInput,
+                       "its JSON has the key '" + cleanUtf8(name, kShownMax) + "' twice in one object"};
+        }
+        return !refused;
+    }
+
+  private:
+    bool count() {
+        if (++values_ > limits_.values) {
+            refused = {ErrorCode::kLimit,
+                       "its JSON has more than " + std::to_string(limits_.values) + " values"};
+        }
+        return !refused;
+    }
+    bool begin() {
+        if (keys_.size() >= limits_.depth) {
+            refused = {ErrorCode::kLimit,
+                       "its JSON is nested more than " + std::to_string(limits_.depth) + " deep"};
+        }
+        keys_.emplace_back();
+        return count();
+    }
+    bool end() {
+        keys_.pop_back();
+        return true;
+    }
+
+    JsonLimits limits_;
+    std::size_t values_ = 0;
+    std::vector<std::set<std::string>> keys_;  // of the open objects
+};
+
+}  // namespace
+
+Result<Json> parseStrictJson(std::string_view text, const JsonLimits& limits) {
+    if (text.find('\0') != std::string_view::npos) {
+        return invalidInput("it is no valid JSON: it holds a byte of 0");
+    }
+    Strictness strict(limits);
+    Json::sax_parse(text.begin(), text.end(), &strict);
+    if (strict.refused) {
+        return tl::unexpected<Error>(std::move(*strict.refused));
+    }
+    try {
+        return Json::parse(text.begin(), text.end());
+    } catch (const Json::exception& error) {  // also a number out of range
+        const std::string_view words(error.what());
+        return invalidInput("it is no valid JSON: " +
+                            cleanUtf8(words.substr(words.find("] ") + 2), kShownMax));
+    }
+}
+
+}  // namespace relief

@@ -1,0 +1,186 @@
+#include "formats/world/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/base/text.h"
+#include "formats/config/confined_path.h"
+#include "formats/container.h"
+#include "formats/container_reader.h"
+#include "formats/fields/json.h"
+#include "formats/fields/json_reader.h"
+#include "formats/fields/strict_json.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A body has 15 values, a collider 12.
+constexpr std::size_t kValuesMax = 20 * (kWorldBodiesMax + kWorldCollidersMax) + 100;
+constexpr std::size_t kDepthMax = 8;
+/// Deviation of a rotation's length from 1 that decimals of a few digits have.
+constexpr double kUnitTolerance = 1e-3;
+constexpr const char* kBakeAgain = "; bake the level again";
+
+std::string placeOf(const char* list, std::size_t i) {
+    return std::string(list) + "[" + std::to_string(i) + "]";
+}
+
+bool isHash(const std::string& text) {
+    return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+Result<void> checkColliders(const std::vector<WorldCollider>& colliders) {
+    std::set<std::string> files;
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        const WorldCollider& collider = colliders[i];
+        const std::string place = placeOf("colliders", i);
+        if (!isHash(collider.hash)) {
+            return invalidInput(place + ".hash must be 32 digits of 0 to 9 and a to f" + kBakeAgain);
+        }
+        if (collider.file.find('\0') != std::string::npos) {
+            return invalidInput(place + ".file holds a zero byte; remove it");
+        }
+        const fs::path path(collider.file);
+        if (collider.file.empty() || path.is_absolute() ||
+            std::find(path.begin(), path.end(), "..") != path.end()) {
+            return invalidInput(place + ".file = " + quotedPath(path) +
+                                " must be a path inside the world's folder; put the file there");
+        }
+        if (!files.insert(path.lexically_normal().string()).second) {
+            return invalidInput(place + ".file = " + quotedPath(path) +
+                                " is that of another collider too; name each once, and place it by bodies");
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(collider.box.min[axis] <= collider.box.max[axis])) {
+                return invalidInput(place + ".min is above its max; swap them");
+            }
+        }
+    }
+    return {};
+}
+
+Result<void> checkBodies(World& world) {
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        WorldBody& body = world.bodies[i];
+        if (body.collider >= world.colliders.size()) {
+            return invalidInput(placeOf("bodies", i) + ".collider = " + std::to_string(body.collider) +
+                                " is none of the " + std::to_string(world.colliders.size()) +
+                                " colliders; the first is 0");
+        }
+        double square = 0.0;
+        for (const float part : body.rotation) {
+            square += double{part} * double{part};
+        }
+        const double length = std::sqrt(square);
+        if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
+            return invalidInput(placeOf("bodies", i) +
+                                ".rotation is no rotation: a unit quaternion has the length 1, and not " +
+                                shortest(static_cast<float>(length)) + "; scale it, or give [0, 0, 0, 1]");
+        }
+        for (float& part : body.rotation) {
+            part = static_cast<float>(double{part} / length);
+        }
+    }
+    return {};
+}
+
+/// Before the fields, as another version has others.
+Result<void> checkVersion(const nlohmann::json& json) {
+    if (!json.is_object() || !json.contains("format") || json["format"] != kWorldFormat) {
+        return invalidInput("it is no world: its format is not \"" + std::string(kWorldFormat) +
+                            "\"; name a world.json that relief bake --world wrote");
+    }
+    const auto version = json.find("version");
+    if (version != json.end() && version->is_number_unsigned() &&
+        version->get<std::uint64_t>() > kWorldVersion) {
+        return fail(ErrorCode::kUnsupported, "version " + std::to_string(version->get<std::uint64_t>()) +
+                                                 " is newer than this program, which reads version " +
+                                                 std::to_string(kWorldVersion) + "; use a newer Relief");
+    }
+    return {};
+}
+
+Result<Collider> loadColliderOf(const WorldCollider& from, const std::string& place, const fs::path& folder,
+                                const ContainerLimits& limits) {
+    const fs::path path = RELIEF_TRY(inFront(place + ".file", resolveInside(folder, from.file, "world")));
+    const auto bytes = RELIEF_TRY(inFront(place, readFile(path, containerSizeMax(limits))));
+    const std::string named = place + " (" + quotedPath(from.file) + ")";
+    if (xxh3_128Hex(bytes) != from.hash) {
+        return invalidInput(named + " has other contents than its hash has" + kBakeAgain);
+    }
+    Collider collider = RELIEF_TRY(inFront(named, readContainer(bytes, limits)));
+    if (!(collider.bounds == from.box)) {
+        return invalidInput(named + " has another box than its min and max have" + kBakeAgain);
+    }
+    return collider;
+}
+
+template <class T>
+void appendLines(std::string& text, const char* name, const std::vector<T>& all) {
+    text += std::string("  \"") + name + "\": [";
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::string line = jsonLine(jsonOf(all[i]));
+        text += (i == 0 ? "\n    " : ",\n    ") + line.substr(0, line.size() - 1);
+    }
+    text += "\n  ]";
+}
+
+}  // namespace
+
+bool looksLikeWorld(std::string_view bytes) {
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && bytes[first] == '{';
+}
+
+std::string worldText(const World& world) {
+    const auto line = [](const char* name, const Json& value) {
+        return std::string("  \"") + name +
+               "\": " + value.dump(-1, ' ', false, Json::error_handler_t::replace) + ",\n";
+    };
+    std::string text =
+        "{\n" + line("format", world.format) + line("version", world.version) + line("unit", world.unit);
+    appendLines(text, "colliders", world.colliders);
+    text += ",\n";
+    appendLines(text, "bodies", world.bodies);
+    return text + "\n}\n";
+}
+
+Result<World> parseWorld(std::string_view text) {
+    const Result<nlohmann::json> json = parseStrictJson(withoutByteOrderMark(text), {kDepthMax, kValuesMax});
+    if (!json) {
+        return fail(json.error().code, json.error().message + kBakeAgain);
+    }
+    RELIEF_TRY(checkVersion(*json));
+    World world;
+    RELIEF_TRY(readJson(*json, world));
+    if (world.unit != "m" && !world.unit.empty()) {
+        return invalidInput("unit must be \"m\" or \"\"; scale the lengths to metres");
+    }
+    RELIEF_TRY(checkColliders(world.colliders));
+    RELIEF_TRY(checkBodies(world));
+    return world;
+}
+
+Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limits) {
+    const auto bytes = RELIEF_TRY(readFile(path, kWorldBytesMax));
+    const std::string shown = quotedPath(path);
+    LoadedWorld loaded;
+    loaded.world =
+        RELIEF_TRY(inFront(shown, parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
+    ContainerLimits left = limits;
+    for (std::size_t i = 0; i < loaded.world.colliders.size(); ++i) {
+        Collider collider =
+            RELIEF_TRY(inFront(shown, loadColliderOf(loaded.world.colliders[i], placeOf("colliders", i),
+                                                     path.parent_path(), left)));
+        left.texel_bytes -= std::min(left.texel_bytes, collider.texelBytes());
+        loaded.colliders.push_back(std::move(collider));
+    }
+    return loaded;
+}
+
+}  // namespace relief

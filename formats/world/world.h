@@ -1,0 +1,148 @@
+// A world: colliders, and the bodies that are placed instances of them, in one readable file beside the colliders' files.
+//
+//     {
+//       "format": "relief-world", "version": 1, "unit": "m",
+//       "colliders": [{"file": "chair-0123456789abcdef.relief", "hash": "…", "mesh": "chair", …}],
+//       "bodies": [{"collider": 0, "node": "chair.001", "position": [3, 0, 1], "rotation": [0, 0, 0, 1], "scale": 1, …}]
+//     }
+//
+// README.md of formats, "Worlds", in words. It differs from a tileset.json of OGC 3D Tiles in that a collider is named once
+// however often it is placed, and that a pose keeps shapes: distances of a collider are those of its body times the scale.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/base/field.h"
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "formats/container_limits.h"
+
+namespace relief {
+
+inline constexpr std::size_t kWorldCollidersMax = 4096;
+inline constexpr std::size_t kWorldBodiesMax = 65'536;
+inline constexpr std::uint64_t kWorldBytesMax = std::uint64_t{64} << 20;
+inline constexpr std::uint32_t kWorldVersion = 1;
+inline constexpr std::string_view kWorldFormat = "relief-world";
+/// The name of the file in the folder of a world.
+inline constexpr const char* kWorldFileName = "world.json";
+inline constexpr double kWorldCoordinateMax = double{1e15F};
+
+struct WorldCollider {
+    std::string file;
+    std::string hash;
+    std::string mesh;
+    Bounds box{glm::vec3(0.0F), glm::vec3(0.0F)};
+};
+
+template <class Visitor, FieldsOf<WorldCollider> C>
+void fields(Visitor& visit, C& collider) {
+    visit("file", collider.file,
+          {.help = "Its container, relative to the folder of the world and inside it", .rules = kRequired});
+    visit("hash", collider.hash,
+          {.help = "XXH3-128 of that file's bytes, in hexadecimal",
+           .rules = kRequired,
+           .pattern = "^[0-9a-f]{32}$"});
+    visit("mesh", collider.mesh, {.help = "Name of its mesh in the level; may be empty", .rules = kRequired});
+    visit("min", collider.box.min,
+          {.help = "Lower corner of its box",
+           .unit = "object units",
+           .range = within(kWorldCoordinateMax),
+           .rules = kRequired});
+    visit("max", collider.box.max,
+          {.help = "Upper corner of its box",
+           .unit = "object units",
+           .range = within(kWorldCoordinateMax),
+           .rules = kRequired});
+}
+
+/// world = position + scale · rotation · object
+struct WorldBody {
+    std::uint32_t collider = 0;
+    std::string node;
+    glm::vec3 position{0.0F};
+    std::array<float, 4> rotation{0.0F, 0.0F, 0.0F, 1.0F};
+    float scale = 1.0F;
+    float restitution = 1.0F;
+    float friction = 0.0F;
+};
+
+template <class Visitor, FieldsOf<WorldBody> B>
+void fields(Visitor& visit, B& body) {
+    visit("collider", body.collider, {.help = "Index of its collider, from 0", .rules = kRequired});
+    visit("node", body.node, {.help = "Name of its node in the level; may be empty", .rules = kRequired});
+    visit("position", body.position,
+          {.help = "Of the collider's origin",
+           .unit = "world units",
+           .range = within(kWorldCoordinateMax),
+           .rules = kRequired});
+    visit("rotation", body.rotation,
+          {.help = "A unit quaternion [x, y, z, w]", .range = within(1.001), .rules = kRequired});
+    visit("scale", body.scale,
+          {.help = "World units of an object unit", .range = {1e-9, 1e9}, .rules = kRequired});
+    visit("restitution", body.restitution,
+          {.help = "Factor of the particles' own restitution", .range = kShareRange, .rules = kRequired});
+    visit("friction", body.friction,
+          {.help = "1 − friction is a factor of the particles' own 1 − friction",
+           .range = kShareRange,
+           .rules = kRequired});
+}
+
+struct World {
+    std::string format{kWorldFormat};
+    std::uint32_t version = kWorldVersion;
+    std::string unit;
+    std::vector<WorldCollider> colliders;
+    std::vector<WorldBody> bodies;
+};
+
+inline constexpr std::array<std::string_view, 2> kWorldUnits{"m", ""};
+
+template <class Visitor, FieldsOf<World> W>
+void fields(Visitor& visit, W& world) {
+    visit("format", world.format, {.help = "relief-world", .rules = kRequired});
+    visit("version", world.version,
+          {.help = "Of the format", .range = {1.0, double{kWorldVersion}}, .rules = kRequired});
+    visit("unit", world.unit,
+          {.help = "Of lengths, of the colliders' too: m, or empty where the level does not say",
+           .rules = kRequired,
+           .words = kWorldUnits});
+    visit("colliders", world.colliders,
+          {.help = "Each different shape once",
+           .rules = kRequired,
+           .items = {1.0, double{kWorldCollidersMax}}});
+    visit("bodies", world.bodies,
+          {.help = "Placed colliders; of two that are equally deep at a point the first counts",
+           .rules = kRequired,
+           .items = {1.0, double{kWorldBodiesMax}}});
+}
+
+/// Whether bytes begin as a world does, and as no container: with a brace, after any white space.
+[[nodiscard]] bool looksLikeWorld(std::string_view bytes);
+
+/// A line for each collider and each body. The same world is the same text.
+[[nodiscard]] std::string worldText(const World& world);
+
+/// Reads untrusted text; the files that it names are not looked at. Rotations get length 1.
+/// Errors, in one line and without the file's name: kInvalidInput, kUnsupported (another version), kLimit.
+[[nodiscard]] Result<World> parseWorld(std::string_view text);
+
+struct LoadedWorld {
+    World world;
+    std::vector<Collider> colliders;  ///< of world.colliders
+};
+
+/// A world with its colliders, whose hashes and boxes are compared with the file's.
+/// \param limits  texel_bytes: of all colliders together.
+/// Errors, with the file in front: those of parseWorld, readFile and readContainer; kInvalidInput: a path that leads out of
+/// the folder, a hash or a box that differs; kIo: a container that is missing.
+[[nodiscard]] Result<LoadedWorld> loadWorld(const std::filesystem::path& path,
+                                            const ContainerLimits& limits = {});
+
+}  // namespace relief

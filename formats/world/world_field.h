@@ -1,0 +1,47 @@
+// The field of a world at a point: the union of its bodies, as shaders make it of theirs.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "formats/world/world.h"
+
+namespace relief {
+
+struct WorldSample {
+    /// Signed distance in world units, as that of a FieldSample times the body's scale; meaningless where body is −1.
+    float distance = 0.0F;
+    glm::vec3 normal{0.0F};  ///< world space; zero where it is unknown
+    int body = -1;           ///< the deepest or nearest; the first of equals; −1 where every body abstains
+
+    [[nodiscard]] bool inside() const { return body >= 0 && distance < 0.0F; }
+};
+
+class WorldField {
+  public:
+    explicit WorldField(LoadedWorld loaded);
+
+    [[nodiscard]] const World& world() const { return loaded_.world; }
+    [[nodiscard]] const std::vector<Collider>& colliders() const { return loaded_.colliders; }
+    [[nodiscard]] const Collider& colliderOf(std::size_t body) const {
+        return loaded_.colliders[world().bodies[body].collider];
+    }
+
+    /// The least distance of all bodies.
+    [[nodiscard]] WorldSample evaluate(const glm::vec3& p) const;
+    /// The least distance of those whose boxes hold the point: evaluate(p) wherever that is inside.
+    [[nodiscard]] WorldSample deepest(const glm::vec3& p) const;
+
+    [[nodiscard]] glm::vec3 toObject(std::size_t body, const glm::vec3& p) const;
+    /// \param v  a vector of object space; its length is multiplied by the scale.
+    [[nodiscard]] glm::vec3 turn(std::size_t body, const glm::vec3& v) const;
+
+  private:
+    template <class Holds>
+    [[nodiscard]] WorldSample least(const glm::vec3& p, const Holds& holds) const;
+
+    LoadedWorld loaded_;
+    std::vector<Bounds> boxes_;  ///< of the bodies, in the world, with room for roundings
+};
+
+}  // namespace relief

@@ -1,0 +1,235 @@
+// World files from outside: what is read is a world, and what is none is refused with its place.
+#include "formats/world/world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/world/world_field.h"
+#include "tests/formats/analytic_shapes.h"
+#include "tests/formats/sample_colliders.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+World smallWorld() {
+    World world;
+    world.unit = "m";
+    world.colliders.push_back(
+        {"chair.relief", std::string(32, 'a'), "chair", {glm::vec3(0.0F), glm::vec3(1.0F)}});
+    world.bodies.push_back(
+        {0, "chair.001", {1.0F, 0.1F, -3.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F, 0.5F, 0.25F});
+    world.bodies.push_back({});
+    return world;
+}
+
+/// The text with a part of it replaced; the test fails if it is not there.
+std::string with(const std::string& part, const std::string& other) {
+    std::string text = worldText(smallWorld());
+    const std::size_t at = text.find(part);
+    EXPECT_NE(at, std::string::npos) << part;
+    return at == std::string::npos ? text : text.replace(at, part.size(), other);
+}
+
+TEST(World, IsReadAsItWasWrittenAndEveryLineIsOneThing) {
+    const std::string text = worldText(smallWorld());
+    EXPECT_EQ(text, R"({
+  "format": "relief-world",
+  "version": 1,
+  "unit": "m",
+  "colliders": [
+    {"file":"chair.relief","hash":"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa","mesh":"chair","min":[0.0,0.0,0.0],"max":[1.0,1.0,1.0]}
+  ],
+  "bodies": [
+    {"collider":0,"node":"chair.001","position":[1.0,0.1,-3.0],"rotation":[0.0,0.6,0.0,0.8],"scale":2.0,"restitution":0.5,"friction":0.25},
+    {"collider":0,"node":"","position":[0.0,0.0,0.0],"rotation":[0.0,0.0,0.0,1.0],"scale":1.0,"restitution":1.0,"friction":0.0}
+  ]
+}
+)");
+    const Result<World> read = parseWorld(text);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(worldText(*read), text);
+}
+
+TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
+    struct Case {
+        const char* part;
+        const char* other;
+        const char* message;
+    };
+    for (const Case& one : std::initializer_list<Case>{
+             {R"("collider":0,"node":"chair.001")", R"("collider":1,"node":"")",
+              "bodies[0].collider = 1 is none of the 1"},
+             {R"("collider":0,"node":"chair.001")", R"("collider":-1,"node":"")",
+              "bodies[0].collider must be a whole"},
+             {R"("collider":0,"node":"chair.001")", R"("collider":0.5,"node":"")",
+              "bodies[0].collider must be a whole"},
+             {R"("collider":0,"node":"chair.001")", R"("collider":9e99,"node":"")",
+              "bodies[0].collider must be a whole"},
+             {"[0.0,0.6,0.0,0.8]", "[0.0,0.6,0.0,0.9]", "bodies[0].rotation is no rotation"},
+             {"[0.0,0.6,0.0,0.8]", "[0,0,0,0]", "bodies[0].rotation is no rotation"},
+             {"[0.0,0.6,0.0,0.8]", "[0,0,1]", "bodies[0].rotation must be an array of 4"},
+             {"[0.0,0.6,0.0,0.8]", "[0,0,0,1,0]", "bodies[0].rotation has 5 elements"},
+             {"\"scale\":2.0", "\"scale\":0", "bodies[0].scale = 0 is out of range"},
+             {"\"scale\":2.0", "\"scale\":-1", "bodies[0].scale = -1 is out of range"},
+             {"\"scale\":2.0", "\"scale\":1e-300", "bodies[0].scale = "},
+             {"\"scale\":2.0", "\"scale\":\"2\"", "bodies[0].scale must be a number"},
+             {"\"scale\":2.0", "\"scale\":NaN", "no valid JSON"},
+             {"\"scale\":2.0", "\"scale\":1e999", "no valid JSON"},
+             {"\"scale\":2.0", "\"scale\":2.0,\"scale\":2.0", "has the key 'scale' twice"},
+             {"\"scale\":2.0", "\"scales\":2.0", "bodies[0] has no scale"},
+             {"\"scale\":2.0", "\"scale\":2.0,\"frction\":0",
+              "bodies[0] has an unknown key 'frction'; did you mean 'friction'?"},
+             {"\"friction\":0.25", "\"friction\":1.5",
+              "bodies[0].friction = 1.5 is out of range; choose 0 to 1"},
+             {"[1.0,0.1,-3.0]", "[1e30,0,0]", "bodies[0].position[0] = "},
+             {"[1.0,0.1,-3.0]", "[null,0,0]", "bodies[0].position[0] must be a number"},
+             {"chair.relief", "../chair.relief",
+              "colliders[0].file = '../chair.relief' must be a path inside"},
+             {"chair.relief", "a/../../chair.relief", "must be a path inside"},
+             {"chair.relief", "/chair.relief", "must be a path inside"},
+             {"chair.relief", "", "must be a path inside"},
+             {"chair.relief", "a\\u0000b", "holds a zero byte"},
+             {"aaaa", "AAAA", "colliders[0].hash must be 32 digits"},
+             {"\"min\":[0.0", "\"min\":[2.0", "colliders[0].min is above its max"},
+             {"relief-world", "relief-cache", "is no world"},
+             {"\"version\": 1", "\"version\": 2", "newer than this program"},
+             {"\"unit\": \"m\"", "\"unit\": \"cm\"", "unit must be"},
+             {"\n}\n", ",\"x\":1}", "unknown key 'x'"},
+             {"\n}\n", "", "no valid JSON"}}) {
+        const Result<World> read = parseWorld(with(one.part, one.other));
+        ASSERT_FALSE(read) << one.other;
+        EXPECT_NE(read.error().message.find(one.message), std::string::npos) << read.error().message;
+        EXPECT_NE(read.error().message.find("; "), std::string::npos) << read.error().message;
+        EXPECT_EQ(read.error().message.find('\n'), std::string::npos) << read.error().message;
+    }
+    EXPECT_EQ(parseWorld(with("\"version\": 1", "\"version\": 2")).error().code, ErrorCode::kUnsupported);
+}
+
+TEST(World, HasLimits) {
+    World world = smallWorld();
+    world.bodies.resize(kWorldBodiesMax);
+    EXPECT_TRUE(parseWorld(worldText(world)));
+    world.bodies.emplace_back();
+    EXPECT_FALSE(parseWorld(worldText(world)));
+    world = smallWorld();
+    for (std::size_t i = 1; i <= kWorldCollidersMax; ++i) {
+        world.colliders.push_back(world.colliders[0]);
+        world.colliders.back().file = std::to_string(i) + ".relief";
+    }
+    EXPECT_FALSE(parseWorld(worldText(world)));
+    world.colliders.pop_back();
+    EXPECT_TRUE(parseWorld(worldText(world)));
+    world.colliders.back().file = "./chair.relief";
+    EXPECT_FALSE(parseWorld(worldText(world))) << "a file twice";
+    EXPECT_EQ(parseWorld("[" + std::string(8'000'000, '[') + "]").error().code, ErrorCode::kLimit);
+    std::string many = "[0";
+    for (int i = 0; i < 2'000'000; ++i) {
+        many += ",0";
+    }
+    EXPECT_EQ(parseWorld(many + "]").error().code, ErrorCode::kLimit) << "before memory is taken for them";
+}
+
+/// A folder with a world of one collider in it.
+class WorldFolder : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "relief_world_XXXXXX").native();
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+        // A sphere of radius ½, seen along z from both sides.
+        collider_.bounds = {glm::vec3(-0.5F), glm::vec3(0.5F)};
+        collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),
+                                        test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {1.01, 1.01, 1.01}),
+                                        MapFormat::kFrontBackFixed, Compare::kBoth, 64, 64)};
+        const std::vector<std::byte> bytes = test::written(collider_);
+        ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
+        world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
+        world_.bodies.resize(1);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    Result<LoadedWorld> load() {
+        const std::string text = worldText(world_);
+        EXPECT_TRUE(writeFile(folder_ / "world.json", std::as_bytes(std::span(text))));
+        return loadWorld(folder_ / "world.json");
+    }
+    void expectRefused(const char* message, ErrorCode code = ErrorCode::kInvalidInput) {
+        const Result<LoadedWorld> loaded = load();
+        ASSERT_FALSE(loaded);
+        EXPECT_EQ(loaded.error().code, code);
+        EXPECT_NE(loaded.error().message.find("world.json': colliders[0]"), std::string::npos)
+            << loaded.error().message;
+        EXPECT_NE(loaded.error().message.find(message), std::string::npos) << loaded.error().message;
+    }
+
+    fs::path folder_;
+    Collider collider_;
+    World world_;
+};
+
+TEST_F(WorldFolder, IsLoadedWithItsColliders) {
+    const Result<LoadedWorld> loaded = load();
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_EQ(loaded->colliders.size(), 1U);
+    EXPECT_EQ(loaded->colliders[0], collider_);
+}
+
+TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
+    world_.colliders[0].hash[0] = world_.colliders[0].hash[0] == '0' ? '1' : '0';
+    expectRefused("other contents than its hash");
+    SetUp();
+    world_.colliders[0].box.max.x += 1.0F;
+    expectRefused("another box");
+    SetUp();
+    fs::remove(folder_ / "a.relief");
+    expectRefused("a.relief", ErrorCode::kIo);
+    SetUp();
+    fs::rename(folder_ / "a.relief", folder_.parent_path() / (folder_.filename().string() + ".relief"));
+    fs::create_symlink(folder_.parent_path() / (folder_.filename().string() + ".relief"),
+                       folder_ / "a.relief");
+    expectRefused("leads out of the world's folder");
+    fs::remove(folder_.parent_path() / (folder_.filename().string() + ".relief"));
+}
+
+TEST_F(WorldFolder, TheDeepestBodyOfAPointIsThatOfTheWholeUnion) {
+    world_.bodies = {{0, "here", {0.0F, 0.0F, 0.0F}},
+                     {0, "turned", {0.5F, 0.25F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
+                     {0, "far", {900.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}, 0.5F}};
+    Result<LoadedWorld> loaded = load();
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    const WorldField field(*std::move(loaded));
+    const Bounds& box = collider_.bounds;
+    int inside = 0;
+    for (int i = 0; i < 20 * 20 * 20; ++i) {
+        const glm::vec3 share(glm::vec3(i % 20, i / 20 % 20, i / 400) / 19.0F * 3.0F - 1.0F);
+        const glm::vec3 p = box.min + share * box.size();
+        // By hand, without WorldField: the second body is turned by 2·asin(0.6) about y.
+        const glm::vec3 moved = p - glm::vec3(0.5F, 0.25F, 0.0F);
+        const float c = 0.28F;
+        const float s = 0.96F;
+        const glm::vec3 q(c * moved.x - s * moved.z, moved.y, s * moved.x + c * moved.z);
+        const FieldSample first = evaluate(collider_, p);
+        const FieldSample second = evaluate(collider_, q / 2.0F);
+        const WorldSample all = field.evaluate(p);
+        const bool near_edge = std::abs(first.distance) < 1e-4F || std::abs(second.distance) < 1e-4F;
+        if (!near_edge) {
+            EXPECT_EQ(all.inside(), first.inside() || second.inside()) << i;
+            EXPECT_EQ(field.deepest(p).inside(), all.inside()) << i;
+        }
+        if (all.inside()) {
+            ++inside;
+            EXPECT_EQ(field.deepest(p).body, all.body);
+            EXPECT_EQ(field.deepest(p).distance, all.distance);
+        }
+    }
+    EXPECT_GT(inside, 100);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,34 @@
+// World files: a world that is written back the same, or one line.
+#include <cmath>
+#include <string_view>
+
+#include "formats/world/world.h"
+#include "tests/fuzz/target.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    const auto world = relief::parseWorld(text);
+    if (!world) {
+        const std::string& message = world.error().message;
+        mustHold(message.find("; ") != std::string::npos, "an error has a cure");
+        mustHold(message.find_first_of("\n\r\x1b") == std::string::npos, "an error is one line");
+        return 0;
+    }
+    for (const relief::WorldCollider& collider : world->colliders) {
+        mustHold(!std::filesystem::path(collider.file).is_absolute() &&
+                     collider.file.find("../") == std::string::npos,
+                 "no path leads out of the folder");
+    }
+    for (const relief::WorldBody& body : world->bodies) {
+        mustHold(body.collider < world->colliders.size() && body.scale > 0.0F,
+                 "a body has a collider and a size");
+        mustHold(std::isfinite(body.position.x + body.position.y + body.position.z), "positions are finite");
+    }
+    const std::string written = relief::worldText(*world);
+    const auto again = relief::parseWorld(written);
+    mustHold(again.has_value(), "a world that was read can be written and read");
+    mustHold(
+        again->bodies.size() == world->bodies.size() && again->colliders.size() == world->colliders.size(),
+        "and is the same");
+    return 0;
+}
