@@ -44,6 +44,7 @@ struct ImportJob {
     int folder = -1;  ///< descriptor; or -1
     ImportOptions options;
     std::uint64_t triangle_max = kTriangleMax;  ///< ImportLimits::triangles
+    bool level = false;  ///< each different mesh once, with its bodies, instead of one mesh (level.h)
 };
 
 /// Reads the mesh, in the library bake_assimp. \return the input of ImportSource::finish. Errors: as importMesh.

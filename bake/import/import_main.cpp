@@ -85,8 +85,9 @@ int work(std::span<char*> arguments) {
     const std::uint64_t memory = parseUnsigned(arguments[2]).value_or(0);
     const std::uint64_t seconds = parseUnsigned(arguments[3]).value_or(0);
     const std::uint64_t triangles = parseUnsigned(arguments[4]).value_or(0);
+    const bool level = arguments[5] == kImportsLevel;
     ImportOptions options;
-    std::size_t next = 5;
+    std::size_t next = 6;
     for (; arguments[next] != kImportNamesFollow; next += 2) {
         if (next + 2 >= arguments.size() || !setField(options, arguments[next], arguments[next + 1])) {
             return kImportExitArguments;
@@ -118,7 +119,8 @@ int work(std::span<char*> arguments) {
                                                 {static_cast<const std::byte*>(pages), size},
                                                 folder,
                                                 options,
-                                                triangles});
+                                                triangles,
+                                                level});
     return sendMessage(raw);
 }
 
@@ -126,7 +128,7 @@ int work(std::span<char*> arguments) {
 }  // namespace relief
 
 int main(int argc, char** argv) {
-    if (argc < 6) {
+    if (argc < 7) {
         return relief::kImportExitArguments;
     }
     mallopt(M_ARENA_MAX, 1);  // one heap, so that the limit is exact

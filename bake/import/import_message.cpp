@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/import/import_files.h"
+#include "bake/import/level.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -109,6 +110,18 @@ void exchange(Channel& channel, Mesh& mesh, std::uint64_t triangle_max) {
     channel.array(mesh.triangles, triangle_max);
     channel.array(mesh.marks, triangle_max);
     channel.array(mesh.labels, triangle_max);
+    channel.list(mesh.level_meshes, kLevelMeshesMax, [&](auto& one) {
+        text(one.name);
+        channel.number(one.positions);
+        channel.number(one.triangles);
+    });
+    channel.list(mesh.level_bodies, kLevelBodiesMax, [&](auto& body) {
+        channel.number(body.mesh);
+        text(body.node);
+        channel.number(body.position);
+        channel.number(body.rotation);
+        channel.number(body.scale);
+    });
 }
 
 void write(Writer& writer, const Result<TriangleMesh>& raw) {
@@ -165,6 +178,12 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
     for (SurfaceName& name : raw.surface_names) {
         name.node = cleanUtf8(name.node, kAskedNameBytesMax);
         name.material = cleanUtf8(name.material, kAskedNameBytesMax);
+    }
+    for (LevelMesh& mesh : raw.level_meshes) {
+        mesh.name = cleanUtf8(mesh.name, kAskedNameBytesMax);
+    }
+    for (LevelBody& body : raw.level_bodies) {
+        body.node = cleanUtf8(body.node, kAskedNameBytesMax);
     }
     return raw;
 }

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <map>
 #include <set>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
+#include "bake/import/level.h"
 #include "bake/import/polygon_cutter.h"
 #include "formats/base/text.h"
 
@@ -17,6 +20,8 @@ namespace {
 
 /// A transform whose determinant is this small, relative to the product of its columns' lengths, leaves no volume.
 constexpr double kFlat = 1e-9;
+/// Deviation from one scale and right angles, relative, that is rounding: a tenth of a millimetre in a metre.
+constexpr double kRigid = 1e-4;
 /// A larger share of loose vertices, one in so many, is worth a warning.
 constexpr std::uint64_t kLooseShare = 10;
 
@@ -176,16 +181,9 @@ class Flattener {
     Flattener(ImportScene scene, const ImportJob& job) : scene_(std::move(scene)), job_(job), marks_(job) {}
 
     Result<TriangleMesh> run() {
-        states_.resize(scene_.nodes.size());
-        placed_.resize(scene_.parts.size());
-        for (const std::uint32_t root : scene_.roots) {
-            static_cast<void>(RELIEF_TRY(look(root)));
-        }
-        mesh_.warnings = std::move(scene_.warnings);
-        RELIEF_TRY(countParts());
-        RELIEF_TRY(takeFrame());
+        RELIEF_TRY(prepare());
         if (!forEachUse([this](const SceneNode& node, const Transform& transform, std::uint8_t /*mark*/) {
-                return count(node, transform);
+                return count(node.parts, transform);
             })) {
             return tooManyTriangles(job_);
         }
@@ -199,6 +197,42 @@ class Flattener {
             }
             return true;
         });
+        return finish();
+    }
+
+    Result<TriangleMesh> runLevel() {
+        RELIEF_TRY(prepare());
+        for (const Use& use : uses()) {
+            RELIEF_TRY(place(use));
+        }
+        return finish();
+    }
+
+  private:
+    enum class State : std::uint8_t { kUnseen, kOpen, kEmpty, kShown };
+
+    /// A node of a level, or several with one index.
+    struct Use {
+        const SceneNode* node;
+        std::vector<std::uint32_t> parts;
+        Transform transform;
+        std::uint8_t mark;
+    };
+    /// Identifies a mesh: parts, mark, and what is applied to them, by columns.
+    using MeshKey = std::tuple<std::vector<std::uint32_t>, std::uint8_t, std::array<double, 9>>;
+
+    Result<void> prepare() {
+        states_.resize(scene_.nodes.size());
+        placed_.resize(scene_.parts.size());
+        for (const std::uint32_t root : scene_.roots) {
+            static_cast<void>(RELIEF_TRY(look(root)));
+        }
+        mesh_.warnings = std::move(scene_.warnings);
+        RELIEF_TRY(countParts());
+        return takeFrame();
+    }
+
+    Result<TriangleMesh> finish() {
         if (mesh_.triangles.empty()) {
             return invalidInput("no triangles; export the surface as polygons, not as points or lines");
         }
@@ -215,8 +249,80 @@ class Flattener {
         return std::move(mesh_);
     }
 
-  private:
-    enum class State : std::uint8_t { kUnseen, kOpen, kEmpty, kShown };
+    /// The runs of a group of an OBJ are nodes of one index.
+    std::vector<Use> uses() {
+        std::vector<Use> all;
+        std::map<std::pair<std::uint32_t, std::uint8_t>, std::size_t> known;
+        forEachUse([&](const SceneNode& node, const Transform& transform, std::uint8_t mark) {
+            if (node.index) {
+                const auto [found, added] = known.try_emplace({*node.index, mark}, all.size());
+                if (!added) {
+                    Use& use = all[found->second];
+                    use.parts.insert(use.parts.end(), node.parts.begin(), node.parts.end());
+                    return true;
+                }
+            }
+            all.push_back({&node, node.parts, transform, mark});
+            return true;
+        });
+        return all;
+    }
+
+    /// Adds a body, and its mesh if it is new.
+    Result<void> place(const Use& use) {
+        if (mesh_.level_bodies.size() == kLevelBodiesMax) {
+            return fail(ErrorCode::kLimit, "it places more than " + std::to_string(kLevelBodiesMax) +
+                                               " meshes; join some, or bake it in parts");
+        }
+        // Meshes are turned into the frame of the world, so that a pose leads from there to there.
+        const glm::dmat3 turned = use.transform.linear * glm::inverse(root_.linear);
+        glm::dmat3 applied(1.0);
+        std::optional<RigidPose> pose = rigidPose(turned);
+        if (!pose) {
+            const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
+            pose = rigidPose(turned * mirror);
+            applied = pose ? mirror : turned;
+        }
+        const RigidPose rigid = pose.value_or(RigidPose{{0.0, 0.0, 0.0, 1.0}, 1.0});
+        const std::uint32_t mesh = RELIEF_TRY(meshOf(use, applied));
+        const glm::dvec3& at = use.transform.offset;
+        mesh_.level_bodies.push_back(
+            {mesh, use.node->shown, {at.x, at.y, at.z}, rigid.rotation, rigid.scale});
+        return {};
+    }
+
+    Result<std::uint32_t> meshOf(const Use& use, const glm::dmat3& applied) {
+        std::array<double, 9> columns{};
+        std::copy_n(&applied[0][0], 9, columns.begin());
+        const auto next = static_cast<std::uint32_t>(mesh_.level_meshes.size());
+        const auto [found, added] = meshes_.try_emplace({use.parts, use.mark, columns}, next);
+        if (!added) {
+            return found->second;
+        }
+        const Transform transform{applied * root_.linear, glm::dvec3(0.0)};
+        if (!count(use.parts, transform)) {
+            return tooManyTriangles(job_);
+        }
+        if (next == kLevelMeshesMax) {
+            return fail(ErrorCode::kLimit,
+                        "it has more than " + std::to_string(kLevelMeshesMax) +
+                            " different meshes, those with unequal scales counted one by one; join some");
+        }
+        LevelMesh mesh{use.node->shown, mesh_.positions.size(), mesh_.triangles.size()};
+        for (const std::uint32_t part : use.parts) {
+            const std::vector<std::string>& names = scene_.parts[part].names;
+            if (part == use.parts.front() && !names.empty() && !names.front().empty()) {
+                mesh.name = names.front();
+            }
+            add(*use.node, scene_.parts[part], transform, use.mark,
+                static_cast<std::uint32_t>(mesh.positions));
+        }
+        mesh.positions = mesh_.positions.size() - mesh.positions;
+        mesh.triangles = mesh_.triangles.size() - mesh.triangles;
+        mesh_.level_meshes.push_back(std::move(mesh));
+        ++uses_;
+        return next;
+    }
 
     /// Whether a node or one below it has triangles. Recursive: importers run on a deep stack.
     Result<bool> look(std::uint32_t index) {
@@ -298,8 +404,8 @@ class Flattener {
         return true;
     }
 
-    bool count(const SceneNode& node, const Transform& transform) {
-        for (const std::uint32_t part : node.parts) {
+    bool count(const std::vector<std::uint32_t>& parts, const Transform& transform) {
+        for (const std::uint32_t part : parts) {
             triangles_ += scene_.parts[part].triangles.size();
             vertices_ += scene_.parts[part].triangles.empty() ? 0 : scene_.parts[part].positions.size();
             flat_ += transform.flattens() ? 1 : 0;
@@ -307,12 +413,13 @@ class Flattener {
         return triangles_ <= job_.triangle_max && vertices_ <= 3 * job_.triangle_max;
     }
 
-    /// Mirroring transforms flip triangles.
-    void add(const SceneNode& node, const ScenePart& part, const Transform& transform, std::uint8_t mark) {
+    /// Mirroring transforms flip triangles. \param first  the position that indices count from.
+    void add(const SceneNode& node, const ScenePart& part, const Transform& transform, std::uint8_t mark,
+             std::uint32_t first = 0) {
         if (part.triangles.empty()) {
             return;
         }
-        const auto base = static_cast<std::uint32_t>(mesh_.positions.size());
+        const auto base = static_cast<std::uint32_t>(mesh_.positions.size()) - first;
         for (const glm::vec3& position : part.positions) {
             mesh_.positions.emplace_back(transform.apply(position));
         }
@@ -350,6 +457,7 @@ class Flattener {
     std::uint64_t flat_ = 0;
     std::uint32_t uses_ = 0;
     std::map<SurfaceName, std::uint32_t> labels_;  // of TriangleMesh::surface_names
+    std::map<MeshKey, std::uint32_t> meshes_;      // of TriangleMesh::level_meshes
 };
 
 }  // namespace
@@ -361,6 +469,45 @@ bool Transform::mirrors() const {
 bool Transform::flattens() const {
     const double lengths = glm::length(linear[0]) * glm::length(linear[1]) * glm::length(linear[2]);
     return std::abs(determinant(linear)) <= kFlat * lengths;
+}
+
+std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
+    const double scale = std::sqrt(glm::dot(m[0], m[0]));
+    const double lost = kRigid * scale * scale;
+    for (int i = 0; i < 3; ++i) {
+        if (!(std::abs(glm::dot(m[i], m[i]) - scale * scale) <= lost &&
+              std::abs(glm::dot(m[i], m[(i + 1) % 3])) <= lost)) {
+            return std::nullopt;
+        }
+    }
+    if (!(scale > 0.0) || determinant(m) < 0.0) {
+        return std::nullopt;
+    }
+    // From the largest of its four parts, so that no digits are lost: Shepperd (1978).
+    const glm::dmat3 r = m / scale;
+    const std::array<double, 4> squares = {1 + r[0][0] - r[1][1] - r[2][2], 1 - r[0][0] + r[1][1] - r[2][2],
+                                           1 - r[0][0] - r[1][1] + r[2][2], 1 + r[0][0] + r[1][1] + r[2][2]};
+    const std::array<std::array<double, 4>, 4> rows = {{
+        {squares[0], r[0][1] + r[1][0], r[2][0] + r[0][2], r[1][2] - r[2][1]},
+        {r[0][1] + r[1][0], squares[1], r[1][2] + r[2][1], r[2][0] - r[0][2]},
+        {r[2][0] + r[0][2], r[1][2] + r[2][1], squares[2], r[0][1] - r[1][0]},
+        {r[1][2] - r[2][1], r[2][0] - r[0][2], r[0][1] - r[1][0], squares[3]},
+    }};
+    // The last of equals, so that no turn is w = 1.
+    std::size_t largest = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+        largest = squares[i] > squares[largest] ? i : largest;
+    }
+    RigidPose pose{rows[largest], scale};
+    double square = 0.0;
+    for (const double part : pose.rotation) {
+        square += part * part;
+    }
+    const double length = pose.rotation[3] < 0.0 ? -std::sqrt(square) : std::sqrt(square);
+    for (double& part : pose.rotation) {
+        part = part / length + 0.0;  // no negative zeros
+    }
+    return pose;
 }
 
 Transform operator*(const Transform& outer, const Transform& inner) {
@@ -487,6 +634,10 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings) {
 
 Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job) {
     return Flattener(std::move(scene), job).run();
+}
+
+Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job) {
+    return Flattener(std::move(scene), job).runLevel();
 }
 
 tl::unexpected<Error> tooManyTriangles(const ImportJob& job) {

@@ -1,6 +1,7 @@
 // The result of a reader, surfaces and the nodes that place them, and its conversion to one TriangleMesh.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -28,6 +29,14 @@ struct Transform {
     /// A scale of 0 along some direction.
     [[nodiscard]] bool flattens() const;
 };
+/// A transform that keeps shapes, but for their size.
+struct RigidPose {
+    std::array<double, 4> rotation{};  ///< a unit quaternion x, y, z, w, with w ≥ 0
+    double scale = 1.0;
+};
+/// \return nullopt for other transforms, mirrors included. The shift is not looked at.
+[[nodiscard]] std::optional<RigidPose> rigidPose(const glm::dmat3& linear);
+
 /// First `inner`, then `outer`.
 [[nodiscard]] Transform operator*(const Transform& outer, const Transform& inner);
 
@@ -86,6 +95,11 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 /// Errors, naming no file: kInvalidInput (nothing to show, a node within itself, an invalid frame), kUsage (a name that no
 /// triangle has), kLimit (more triangles than the job allows, or thrice as many vertices).
 [[nodiscard]] Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job);
+
+/// The same as a level: TriangleMesh::level_meshes and level_bodies. A mesh that is placed with a shear, unequal scales or a
+/// mirror counts as another, to which that has been applied; of a rotation, one scale and a shift it is a body.
+/// Errors: also kLimit (more meshes or bodies than a world may have).
+[[nodiscard]] Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job);
 
 /// "it has more than N triangles…", kLimit.
 [[nodiscard]] tl::unexpected<Error> tooManyTriangles(const ImportJob& job);

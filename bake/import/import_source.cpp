@@ -46,11 +46,29 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     return ImportSource(path, extension.substr(1), std::move(bytes));
 }
 
+tl::unexpected<Error> ImportSource::lies(const char* what) const {
+    return fail(ErrorCode::kInvalidInput,
+                quotedPath(path_) + ": the importer answers with " + what + "; export the mesh again");
+}
+
 Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) const {
-    const auto lies = [this](const char* what) {
-        return fail(ErrorCode::kInvalidInput,
-                    quotedPath(path_) + ": the importer answers with " + what + "; export the mesh again");
-    };
+    if (!raw.level_meshes.empty() || !raw.level_bodies.empty()) {
+        return lies("a level that was not requested");
+    }
+    return finishMesh(RELIEF_TRY(named(std::move(raw), names)));
+}
+
+Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names) const {
+    Result<TriangleMesh> all = named(std::move(raw), names);
+    if (!all) {
+        return forward(all);
+    }
+    Result<Level> level = cutLevel(std::move(*all));
+    return level ? std::move(level)
+                 : fail(level.error().code, quotedPath(path_) + ": " + level.error().message);
+}
+
+Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) const {
     if (!(raw.unit.empty() || raw.unit == "m") || raw.dependencies.size() != raw.dependency_hashes.size()) {
         return lies("a unit or a list of files that cannot be");
     }
@@ -83,7 +101,7 @@ Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) c
     }
     raw.name = name;
     raw.content_hash = hash_;
-    return finishMesh(std::move(raw));
+    return raw;
 }
 
 }  // namespace relief

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/import/level.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/descriptor.h"
 #include "formats/base/result.h"
@@ -34,8 +35,14 @@ class ImportSource {
     /// \param names  number of ImportOptions::names: with none there must be no marks.
     /// Errors: as finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
+    /// The same of a level, whose meshes are cut apart.
+    [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0) const;
 
   private:
+    [[nodiscard]] tl::unexpected<Error> lies(const char* what) const;
+    /// Name, hash and whole paths.
+    [[nodiscard]] Result<TriangleMesh> named(TriangleMesh raw, std::size_t names) const;
+
     ImportSource(std::filesystem::path path, std::string extension, std::vector<std::byte> bytes);
 
     std::filesystem::path path_;

@@ -21,6 +21,7 @@
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
 #include "bake/import/import_source.h"
+#include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
 #include "formats/base/descriptor.h"
 #include "formats/base/file_io.h"
@@ -106,19 +107,28 @@ class Import {
     Import(const fs::path& path, const ImportOptions& options, const ImportLimits& limits)
         : path_(path), options_(options), limits_(limits) {}
 
-    Result<TriangleMesh> run() {
+    Result<TriangleMesh> mesh() {
+        ImportSource source = RELIEF_TRY(open());
+        Result<TriangleMesh> raw = workOn(source, kImportsMesh);
+        return raw ? source.finish(std::move(*raw), options_.names.size()) : raw;
+    }
+
+    Result<Level> level() {
+        ImportSource source = RELIEF_TRY(open());
+        TriangleMesh raw = RELIEF_TRY(workOn(source, kImportsLevel));
+        return source.finishLevel(std::move(raw), options_.names.size());
+    }
+
+  private:
+    [[nodiscard]] Result<ImportSource> open() const {
         if (limits_.memory == 0 || limits_.memory > kMemoryMax || limits_.seconds == 0 ||
             limits_.triangles == 0 || limits_.triangles > kTriangleMax) {
             return fail(ErrorCode::kUsage,
                         "the importer's limits must be 1 byte to 64 TB, at least 1 second, and 1 to " +
                             std::to_string(kTriangleMax) + " triangles");
         }
-        ImportSource source = RELIEF_TRY(ImportSource::open(path_));
-        Result<TriangleMesh> raw = workOn(source);
-        return raw ? source.finish(std::move(*raw), options_.names.size()) : raw;
+        return ImportSource::open(path_);
     }
-
-  private:
     [[nodiscard]] tl::unexpected<Error> error(ErrorCode code, const std::string& what) const {
         return fail(code, "cannot read the mesh " + quotedPath(path_) + ": " + what);
     }
@@ -133,7 +143,8 @@ class Import {
         return shortOf("could not be started", number);
     }
 
-    Result<TriangleMesh> workOn(ImportSource& source) {
+    /// \param wanted  kImportsMesh or kImportsLevel.
+    Result<TriangleMesh> workOn(ImportSource& source, std::string_view wanted) {
         const std::string program = workerProgram();
         if (program.empty()) {
             return error(ErrorCode::kFailure, std::string("the program ") + kWorkerName +
@@ -154,8 +165,8 @@ class Import {
             return notStarted(failed);
         }
         Process worker;
-        if (const int failed =
-                start(program, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
+        if (const int failed = start(program, wanted,
+                                     {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
             return notStarted(failed);
         }
         alive_end.reset();
@@ -176,12 +187,16 @@ class Import {
     }
 
     /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null. \return 0 or an errno.
-    [[nodiscard]] int start(const std::string& program, const std::array<int, 4>& files,
-                            Process& worker) const {
+    [[nodiscard]] int start(const std::string& program, std::string_view wanted,
+                            const std::array<int, 4>& files, Process& worker) const {
         ProcessStart start;
         start.program = program;
-        start.arguments = {kWorkerName, path_.string(), std::to_string(limits_.memory),
-                           std::to_string(limits_.seconds), std::to_string(limits_.triangles)};
+        start.arguments = {kWorkerName,
+                           path_.string(),
+                           std::to_string(limits_.memory),
+                           std::to_string(limits_.seconds),
+                           std::to_string(limits_.triangles),
+                           std::string(wanted)};
         for (const FieldWords& option : changedFields(options_)) {
             start.arguments.push_back(option.name);
             start.arguments.push_back(option.words.front());
@@ -288,7 +303,12 @@ class Import {
 
 Result<TriangleMesh> importMeshInWorker(const fs::path& path, const ImportOptions& options,
                                         const ImportLimits& limits) {
-    return Import(path, options, limits).run();
+    return Import(path, options, limits).mesh();
+}
+
+Result<Level> importLevelInWorker(const fs::path& path, const ImportOptions& options,
+                                  const ImportLimits& limits) {
+    return Import(path, options, limits).level();
 }
 
 }  // namespace relief

@@ -83,7 +83,8 @@ Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
     ImportScene scene = RELIEF_TRY(readScene(*format, job, files));
-    TriangleMesh mesh = RELIEF_TRY(flatten(std::move(scene), job));
+    TriangleMesh mesh =
+        RELIEF_TRY(job.level ? flattenLevel(std::move(scene), job) : flatten(std::move(scene), job));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }

@@ -35,6 +35,21 @@ struct SurfaceName {
     friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
 
+/// A different mesh of a level: the next positions and triangles of a TriangleMesh that an importer hands over.
+struct LevelMesh {
+    std::string name;
+    std::uint64_t positions = 0;
+    std::uint64_t triangles = 0;  ///< whose indices count from the mesh's first position
+};
+/// A node that places a mesh: world = position + scale · rotation · mesh.
+struct LevelBody {
+    std::uint32_t mesh = 0;
+    std::string node;
+    std::array<double, 3> position{};
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};  ///< a unit quaternion x, y, z, w
+    double scale = 1.0;                                  ///< above 0
+};
+
 /// After finishMesh: at least one triangle, every index valid, every position finite and used by a triangle,
 /// no triangle without area.
 struct TriangleMesh {
@@ -63,6 +78,9 @@ struct TriangleMesh {
         dependencies;  ///< the file, by the path that was given, then those it refers to, sorted
     std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
     std::vector<std::string> warnings;           ///< of the import, one line each
+    /// Of a level, on its way from the importer alone (bake/import/level.h); else empty.
+    std::vector<LevelMesh> level_meshes;
+    std::vector<LevelBody> level_bodies;
 
     [[nodiscard]] std::uint64_t surfaceTriangles() const { return triangles.size() - cap_triangles; }
     [[nodiscard]] std::uint64_t sourceTriangles() const {

@@ -71,7 +71,7 @@ def imported(run, path):
         for number, file in enumerate(files, 3):
             os.dup2(file, number)
 
-    command = [run.bin / "relief-import", path, str(1 << 30), "20", "1000000", "names"]
+    command = [run.bin / "relief-import", path, str(1 << 30), "20", "1000000", "mesh", "names"]
     done = subprocess.run(command, preexec_fn=place, pass_fds=(3, 4, 5, 6), timeout=60)
     answer = None
     if run.expect(done.returncode == 0, f"relief-import ended with {done.returncode}"):

@@ -1,0 +1,146 @@
+#include "bake/import/level.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "formats/base/hash.h"
+
+namespace relief {
+namespace {
+
+constexpr double kUnitTolerance = 1e-6;
+constexpr double kPoseMax = 1e15;
+
+bool isPose(const LevelBody& body) {
+    double square = 0.0;
+    for (const double part : body.rotation) {
+        square += part * part;
+    }
+    // Written so that NaN is none.
+    return std::abs(square - 1.0) <= kUnitTolerance && body.scale > 0.0 && body.scale <= kPoseMax &&
+           std::all_of(body.position.begin(), body.position.end(),
+                       [](double x) { return std::abs(x) <= kPoseMax; });
+}
+
+bool fits(const TriangleMesh& all) {
+    std::uint64_t positions = 0;
+    std::uint64_t triangles = 0;
+    for (const LevelMesh& mesh : all.level_meshes) {
+        if (mesh.positions > all.positions.size() || mesh.triangles > all.triangles.size()) {
+            return false;
+        }
+        positions += mesh.positions;
+        triangles += mesh.triangles;
+    }
+    return positions == all.positions.size() && triangles == all.triangles.size() &&
+           std::all_of(all.level_bodies.begin(), all.level_bodies.end(), [&](const LevelBody& body) {
+               return body.mesh < all.level_meshes.size() && isPose(body);
+           });
+}
+
+template <class T>
+std::vector<T> cut(const std::vector<T>& all, std::size_t first, std::size_t count) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    return all.empty() ? std::vector<T>() : std::vector<T>(begin, begin + static_cast<std::ptrdiff_t>(count));
+}
+
+/// The labels of one mesh, and the names that these need.
+void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) {
+    std::map<std::uint32_t, std::uint32_t> places;
+    for (std::size_t i = 0; !all.labels.empty() && i < mesh.triangles.size(); ++i) {
+        const std::uint32_t label = all.labels[first + i];
+        const auto [found, added] =
+            places.try_emplace(label, static_cast<std::uint32_t>(mesh.surface_names.size()));
+        if (added) {
+            mesh.surface_names.push_back(all.surface_names[label]);
+        }
+        mesh.labels.push_back(found->second);
+    }
+    if (mesh.surface_names.size() < 2) {
+        mesh.surface_names.clear();
+        mesh.labels.clear();
+    }
+}
+
+/// Whether finishMesh would find an area, or a fault.
+bool isWorthAnything(const TriangleMesh& mesh) {
+    return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const glm::uvec3& t) {
+        return std::max({t.x, t.y, t.z}) >= mesh.positions.size() || hasArea(planeOf(mesh.positions, t));
+    });
+}
+
+/// XXH3-128 of positions and triangles.
+std::string hashOf(const TriangleMesh& mesh) {
+    std::vector<std::byte> bytes;
+    const auto add = [&bytes](const auto& all) {
+        const auto more = std::as_bytes(std::span(all));
+        bytes.insert(bytes.end(), more.begin(), more.end());
+    };
+    add(std::vector<std::uint64_t>{mesh.positions.size(), mesh.triangles.size()});
+    add(mesh.positions);
+    add(mesh.triangles);
+    return xxh3_128Hex(bytes);
+}
+
+}  // namespace
+
+Result<Level> cutLevel(TriangleMesh all) {
+    if (!fits(all)) {
+        return invalidInput("the importer answers with a level that does not fit together; export it again");
+    }
+    Level level;
+    level.name = all.name;
+    level.unit = all.unit;
+    level.dependencies = std::move(all.dependencies);
+    level.dependency_hashes = std::move(all.dependency_hashes);
+    level.warnings = std::move(all.warnings);
+    std::map<std::pair<std::string, std::vector<std::uint8_t>>, std::uint32_t> known;  // by hash and marks
+    std::vector<std::optional<std::uint32_t>> places;                                  // of the meshes
+    std::size_t position = 0;
+    std::size_t triangle = 0;
+    for (const LevelMesh& one : all.level_meshes) {
+        TriangleMesh mesh;
+        mesh.name = one.name;
+        mesh.unit = all.unit;
+        mesh.positions = cut(all.positions, position, one.positions);
+        mesh.triangles = cut(all.triangles, triangle, one.triangles);
+        mesh.marks = cut(all.marks, triangle, one.triangles);
+        takeLabels(all, triangle, mesh);
+        position += one.positions;
+        triangle += one.triangles;
+        if (!isWorthAnything(mesh)) {
+            level.warnings.push_back(level.name + ": left out the mesh '" + mesh.name +
+                                     "': none of its triangles has an area");
+            places.emplace_back(std::nullopt);
+            continue;
+        }
+        mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
+        mesh.content_hash = hashOf(mesh);
+        const auto [found, added] = known.try_emplace({mesh.content_hash, mesh.marks},
+                                                      static_cast<std::uint32_t>(level.meshes.size()));
+        places.emplace_back(found->second);
+        if (added) {
+            level.meshes.push_back(std::move(mesh));
+        }
+    }
+    std::vector<bool> placed(level.meshes.size(), false);
+    for (LevelBody& body : all.level_bodies) {
+        if (const std::optional<std::uint32_t> mesh = places[body.mesh]) {
+            body.mesh = *mesh;
+            placed[*mesh] = true;
+            level.bodies.push_back(std::move(body));
+        }
+    }
+    if (level.bodies.empty()) {
+        return invalidInput("it has no mesh with an area; export it again");
+    }
+    if (std::find(placed.begin(), placed.end(), false) != placed.end()) {
+        return invalidInput("the importer answers with a mesh that nothing places; export it again");
+    }
+    return level;
+}
+
+}  // namespace relief

@@ -1,0 +1,241 @@
+// Levels: each different mesh once, placed by poses where these keep its shape.
+#include "bake/import/level.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "bake/import/import_source.h"
+#include "bake/import/mesh_import.h"
+#include "tests/bake/import/import_meshes.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Levels : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "relief_level_XXXXXX").native();
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+        return folder_ / name;
+    }
+    Level level(const fs::path& path, const ImportOptions& options = {}) {
+        Result<Level> read = importLevelInWorker(path, options);
+        EXPECT_TRUE(read) << read.error().message;
+        return read ? std::move(*read) : Level();
+    }
+    Level gltf(const std::string& nodes, const std::string& roots, const ImportOptions& options = {}) {
+        return level(write("l.gltf", tetrahedronGltf({.nodes = nodes, .roots = roots})), options);
+    }
+
+    fs::path folder_;
+};
+
+glm::dvec3 placed(const LevelBody& body, const glm::dvec3& p) {
+    const glm::dvec3 v(body.rotation[0], body.rotation[1], body.rotation[2]);
+    const double w = body.rotation[3];
+    const glm::dvec3 t = 2.0 * glm::cross(v, p);
+    return glm::dvec3(body.position[0], body.position[1], body.position[2]) +
+           body.scale * (p + w * t + glm::cross(v, t));
+}
+
+/// The corners that the level has, placed, are those of the same file as one mesh, in its order.
+void expectSameCorners(const Level& level, const fs::path& path, const ImportOptions& options = {}) {
+    const Result<TriangleMesh> whole = importMeshInWorker(path, options);
+    ASSERT_TRUE(whole) << whole.error().message;
+    std::size_t triangle = 0;
+    for (const LevelBody& body : level.bodies) {
+        const TriangleMesh& mesh = level.meshes.at(body.mesh);
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t, ++triangle) {
+            ASSERT_LT(triangle, whole->triangles.size());
+            const auto wanted = cornersOf(*whole, static_cast<std::uint32_t>(triangle));
+            const auto corners = cornersOf(mesh, t);
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_LT(glm::distance(placed(body, corners[k]), glm::dvec3(wanted[k])), 1e-5) << triangle;
+            }
+        }
+    }
+    EXPECT_EQ(triangle, whole->triangles.size());
+}
+
+TEST_F(Levels, OneMeshInManyNodesIsOne) {
+    const Level read = gltf(
+        R"({"mesh":0,"name":"a"},{"mesh":0,"name":"b","translation":[5,0,0],"rotation":[0,0.6,0,0.8],"scale":[2,2,2]},)"
+        R"({"name":"group","rotation":[1,0,0,0],"scale":[0.5,0.5,0.5],"children":[3]},{"mesh":0,"name":"c","translation":[1,2,3]})",
+        "0,1,2");
+    ASSERT_EQ(read.meshes.size(), 1U);
+    ASSERT_EQ(read.bodies.size(), 3U);
+    EXPECT_EQ(read.bodies[0].node, "a");
+    EXPECT_EQ(read.bodies[0].rotation, (std::array<double, 4>{0, 0, 0, 1}));
+    EXPECT_EQ(read.bodies[0].scale, 1.0);
+    EXPECT_EQ(read.bodies[1].node, "b");
+    EXPECT_NEAR(read.bodies[1].scale, 2.0, 1e-7);
+    EXPECT_NEAR(read.bodies[1].rotation[1], 0.6, 1e-7);
+    EXPECT_NEAR(read.bodies[1].rotation[3], 0.8, 1e-7);
+    EXPECT_EQ(read.bodies[2].node, "c");
+    EXPECT_NEAR(read.bodies[2].position[1], -1.0, 1e-7);
+    EXPECT_EQ(read.meshes[0].bounds.min, glm::vec3(0.0F));
+    EXPECT_EQ(read.unit, "m");
+    expectSameCorners(read, folder_ / "l.gltf");
+}
+
+TEST_F(Levels, EveryTurnIsFoundAgain) {
+    // Quarter turns, half turns, and those whose w is nearly 0: each branch of the conversion.
+    for (const char* q :
+         {"1,0,0,0", "0,1,0,0", "0,0,1,0", "0.70710678,0,0,0.70710678", "0,-0.70710678,0,0.70710678",
+          "0.5,0.5,0.5,0.5", "-0.5,0.5,-0.5,-0.5", "0.6,0,0.8,0", "0.1,0.7,0.1,-0.7", "0.36,0.48,0.8,0"}) {
+        const Level read =
+            gltf(R"({"mesh":0,"translation":[1,2,3],"rotation":[)" + std::string(q) + "]}", "0");
+        ASSERT_EQ(read.bodies.size(), 1U);
+        EXPECT_GE(read.bodies[0].rotation[3], 0.0) << q;
+        expectSameCorners(read, folder_ / "l.gltf");
+    }
+}
+
+TEST_F(Levels, ShapesThatAPoseWouldChangeAreMeshesOfTheirOwn) {
+    const Level read = gltf(
+        R"({"mesh":0,"name":"plain"},{"mesh":0,"scale":[1,2,1]},{"mesh":0,"scale":[1,2,1],"translation":[9,0,0]},)"
+        R"({"mesh":0,"scale":[-1,1,1]},{"mesh":0,"scale":[2,2,-2],"translation":[0,9,0]},)"
+        R"({"mesh":0,"matrix":[1,0,0,0, 0.5,1,0,0, 0,0,1,0, 4,0,0,1]})",
+        "0,1,2,3,4,5");
+    ASSERT_EQ(read.bodies.size(), 6U);
+    EXPECT_EQ(read.meshes.size(), 4U) << "plain, stretched, mirrored, sheared";
+    EXPECT_EQ(read.bodies[1].mesh, read.bodies[2].mesh) << "a shift is a pose";
+    EXPECT_EQ(read.bodies[3].mesh, read.bodies[4].mesh) << "all mirrors are one and a turn";
+    EXPECT_NEAR(read.bodies[4].scale, 2.0, 1e-9);
+    expectSameCorners(read, folder_ / "l.gltf");
+}
+
+TEST_F(Levels, UnitsAndAxesAreThoseOfTheMeshes) {
+    const fs::path path = write("l.obj", tetrahedronObj());
+    ImportOptions options;
+    options.unit = "cm";
+    options.up = UpAxis::kPlusZ;
+    const Level read = level(path, options);
+    ASSERT_EQ(read.meshes.size(), 1U);
+    EXPECT_EQ(read.bodies[0].scale, 1.0);
+    EXPECT_EQ(read.bodies[0].rotation[3], 1.0);
+    EXPECT_FLOAT_EQ(read.meshes[0].bounds.max.x, 0.01F);
+    expectSameCorners(read, path, options);
+}
+
+TEST_F(Levels, ObjectsOfAnObjAreMeshesWithOnePlace) {
+    const std::string shape = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    const Level read = level(write("l.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no one\nusemtl a\n" + shape +
+                                                "o two\n" + shape + "usemtl b\nf 1 2 3\n"));
+    ASSERT_EQ(read.meshes.size(), 2U);
+    ASSERT_EQ(read.bodies.size(), 2U);
+    EXPECT_EQ(read.bodies[0].node, "one");
+    EXPECT_EQ(read.bodies[1].node, "two");
+    EXPECT_EQ(read.meshes[1].triangles.size(), 5U) << "both materials are of one object";
+    EXPECT_EQ(read.meshes[1].surface_names.size(), 2U);
+}
+
+TEST_F(Levels, EqualMeshesAreJoinedAndThoseWithoutAreaLeftOut) {
+    const std::string a = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nf 1 3 2\nf 1 2 4\n";
+    const std::string b = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no b\nf 5 7 6\nf 5 6 8\n";
+    const Level read = level(write("l.obj", a + b + "o flat\nf 1 1 2\n"));
+    EXPECT_EQ(read.meshes.size(), 1U);
+    EXPECT_EQ(read.bodies.size(), 2U);
+    ASSERT_EQ(read.warnings.size(), 1U);
+    EXPECT_NE(read.warnings[0].find("left out the mesh 'flat'"), std::string::npos) << read.warnings[0];
+    EXPECT_FALSE(importLevelInWorker(write("m.obj", "v 0 0 0\nv 1 0 0\no flat\nf 1 1 2\n")));
+}
+
+TEST_F(Levels, TrianglesOfAMeshCountOnce) {
+    std::string nodes;
+    std::string roots;
+    for (int i = 0; i < 100; ++i) {
+        nodes +=
+            std::string(i == 0 ? "" : ",") + R"({"mesh":0,"translation":[)" + std::to_string(i) + ",0,0]}";
+        roots += (i == 0 ? "" : ",") + std::to_string(i);
+    }
+    const fs::path path = write("l.gltf", tetrahedronGltf({.nodes = nodes, .roots = roots}));
+    ImportLimits limits;
+    limits.triangles = 50;
+    EXPECT_FALSE(importMeshInWorker(path, {}, limits));
+    const Result<Level> read = importLevelInWorker(path, {}, limits);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->bodies.size(), 100U);
+    limits.triangles = 3;
+    const Result<Level> few = importLevelInWorker(path, {}, limits);
+    ASSERT_FALSE(few);
+    EXPECT_EQ(few.error().code, ErrorCode::kLimit);
+}
+
+TEST_F(Levels, MoreBodiesThanAWorldHoldsAreRefused) {
+    std::string nodes;
+    std::string roots;
+    for (std::size_t i = 0; i <= kLevelBodiesMax; ++i) {
+        nodes += std::string(i == 0 ? "" : ",") + R"({"mesh":0})";
+        roots += (i == 0 ? "" : ",") + std::to_string(i);
+    }
+    const Result<Level> read =
+        importLevelInWorker(write("l.gltf", tetrahedronGltf({.nodes = nodes, .roots = roots})));
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().code, ErrorCode::kLimit);
+    EXPECT_NE(read.error().message.find("65536"), std::string::npos) << read.error().message;
+}
+
+TEST_F(Levels, NamesMarkTheTrianglesOfTheirNodes) {
+    ImportOptions options;
+    options.names = {"a"};
+    const Level read =
+        gltf(R"({"mesh":0,"name":"a"},{"mesh":0,"name":"b"},{"mesh":0,"name":"a"})", "0,1,2", options);
+    ASSERT_EQ(read.meshes.size(), 2U) << "by one mesh, but one of them is named";
+    EXPECT_EQ(read.meshes[0].marks, std::vector<std::uint8_t>(4, 1));
+    EXPECT_EQ(read.meshes[1].marks, std::vector<std::uint8_t>(4, 0));
+    EXPECT_EQ(read.bodies[2].mesh, 0U);
+}
+
+TEST_F(Levels, AnswersOfAWorkerThatLiesAreRefused) {
+    const auto honest = [] {
+        TriangleMesh raw;
+        raw.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        raw.triangles = {{0, 1, 2}};
+        raw.level_meshes = {{"m", 3, 1}};
+        raw.level_bodies = {{0, "n", {0, 0, 0}, {0, 0, 0, 1}, 1.0}};
+        return raw;
+    };
+    const Result<ImportSource> source = ImportSource::open(write("l.obj", "v 0 0 0\n"));
+    ASSERT_TRUE(source);
+    EXPECT_TRUE(source->finishLevel(honest()));
+    EXPECT_FALSE(source->finish(honest())) << "a level that nobody wanted";
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<std::function<void(TriangleMesh&)>> lies = {
+        [](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
+        [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
+        [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
+        [](TriangleMesh& raw) {
+            raw.level_meshes.push_back({"m", ~std::uint64_t{0}, 0});
+        },
+        [](TriangleMesh& raw) { raw.level_meshes.clear(); },
+        [](TriangleMesh& raw) { raw.level_bodies.clear(); },
+        [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
+        [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
+        [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
+        [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
+        [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
+        [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
+        [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
+        [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
+    };
+    for (std::size_t i = 0; i < lies.size(); ++i) {
+        TriangleMesh raw = honest();
+        lies[i](raw);
+        EXPECT_FALSE(source->finishLevel(std::move(raw))) << i;
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
