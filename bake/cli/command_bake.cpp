@@ -8,6 +8,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
+#include "bake/cli/command_world.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/director.h"
 #include "bake/report/bake_report.h"
@@ -29,6 +30,7 @@ struct BakeCommand {
     std::string output;
     BakeOutputs outputs;
     RecipeOptionsOfBake recipe;
+    std::string world;  // a folder
 };
 
 Result<void> preflight(const BakeCommand& command, FileGuard& files) {
@@ -147,7 +149,8 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"
-        "relief bake --recipe colliders.toml -j 4");
+        "relief bake --recipe colliders.toml -j 4\n"
+        "relief bake level.glb --world level --budget 16MB");
     verb.add_option("MESH", command->request.mesh,
                     "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more")
         ->type_name("");
@@ -156,12 +159,17 @@ void addBake(CLI::App& app, Action& action) {
     addFields(verb, command->request);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
+    addWorldOption(verb, command->world);
     verb.callback([command, &verb, &action] {
         action = [command, &verb](FileGuard& files) -> Result<void> {
             if (!command->recipe.recipe.empty()) {
                 return runRecipeCommand(command->recipe,
                                         {verb, command->common, command->output, command->request.threads,
                                          command->outputs.depfile, command->outputs.json, files});
+            }
+            if (!command->world.empty()) {
+                return runWorldCommand(command->world, {command->request, command->outputs, command->common,
+                                                        command->output, files});
             }
             if (command->request.mesh.empty() || command->output.empty()) {
                 return fail(ErrorCode::kUsage,

@@ -4,6 +4,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_view.h"
+#include "bake/cli/command_world.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/inspect_report.h"
@@ -26,6 +27,7 @@ struct CheckCommand {
     std::string file;
     CheckRequest request;
     ContainerLimits limits;
+    std::optional<float> within;     // world units
     std::optional<float> max_error;  // percent
     std::string html;
     bool json = false;
@@ -108,6 +110,13 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
 }
 
 Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
+    if (namesWorld(command.file)) {
+        return runWorldCheck(command.file, {command.request, command.within, command.limits,
+                                            command.max_error, command.html, command.json});
+    }
+    if (command.within) {
+        return fail(ErrorCode::kUsage, "--within is for a world; leave it out for one collider");
+    }
     if (command.request.mesh.empty()) {
         return checkFile(command.file, command.json, command.limits);
     }
@@ -151,18 +160,31 @@ void addCheck(CLI::App& app, Action& action) {
         "before it is advised; and the share of points on the wrong side, near the surface and anywhere in "
         "the box,\nthe errors of distance and normal, and the share of the surface that no map sees. Truth "
         "is the parity of\nrays through the mesh, whatever the maps say; of a collider that was baked with "
-        "--repair, the repaired mesh too.",
+        "--repair, the repaired mesh too.\n"
+        "Of a world, a file .json that relief bake --world wrote: whether its containers are there and "
+        "right, and with "
+        "--mesh\nthe share of points on the wrong side near each body, and the ten worst.",
         "relief check bunny.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
-        "relief check bunny.relief --mesh bunny.obj --max-error 2 --json");
-    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
+        "relief check bunny.relief --mesh bunny.obj --max-error 2 --json\n"
+        "relief check level/world.json --mesh level.glb");
+    verb.add_option("FILE", command->file, "The collider, or the world; - for standard input")
+        ->type_name("")
+        ->required();
     CLI::Option* mesh = addMeshOptions(verb, command->request);
     verb.add_option("--max-error", command->max_error,
                     "Exit with 7 if more than this share of the points near the surface, in percent, is on "
                     "the wrong side, or a part is lost")
         ->option_text("PCT")
         ->transform(percent())
+        ->needs(mesh);
+    verb.add_option(
+            "--within", command->within,
+            "Of a world: measure at points up to this far from the surface of each body, in world units "
+            "(default: nearly all within 1.5 % of its longest side)")
+        ->option_text("LENGTH")
+        ->check(CLI::Range(1e-6, 1e15))
         ->needs(mesh);
     verb.add_option("--html", command->html,
                     "Also write the page of relief view, with the findings in it: verdict, places to fly to, "

@@ -5,6 +5,8 @@
 #include "bake/report/collider_report.h"
 #include "bake/report/inspect_report.h"
 #include "bake/report/recipe_report.h"
+#include "bake/world/world_check_report.h"
+#include "bake/world/world_report.h"
 #include "formats/fields/json.h"
 
 namespace relief {
@@ -63,6 +65,11 @@ GeneratedTexts bakeTexts() {
             schemaOf(InspectionReport{})),
         schemaFile("info", "relief info --json", "The contents of a collider.",
                    schemaOf(ColliderReport<ColliderMapReport>{})),
+        schemaFile("world", "world.json of relief bake --world", "Placed colliders.", schemaOf(World{})),
+        schemaFile("world-bake", "relief bake --world --json", "A bake of a level.",
+                   schemaOf(WorldBakeJson{})),
+        schemaFile("world-check", "relief check world.json --json", "A world, and how wrong it is.",
+                   schemaOf(WorldCheckJson{})),
         schemaFile("recipe", "relief bake --recipe --json", "A run of a recipe.", schemaOf(RecipeJson{})),
         schemaFile("recipe-events", "relief bake --recipe --events",
                    "One line: an event of a run of a recipe.", schemaOf(RecipeEvent{}))};

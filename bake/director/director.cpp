@@ -98,7 +98,7 @@ class Director {
 
     Result<BakeResult> run(std::optional<TriangleMesh> mesh) {
         tell(watcher_.begin, "reading its options");
-        RELIEF_TRY(readOptions(mesh.has_value()));
+        RELIEF_TRY(readOptions(mesh));
         // Planning and measuring keep to --threads too.
         std::optional<tbb::global_control> control;
         if (request().threads) {
@@ -116,13 +116,13 @@ class Director {
     [[nodiscard]] BakeRequest& request() { return result_.request; }
 
     /// Before anything large is read.
-    Result<void> readOptions(bool given_mesh) {
+    Result<void> readOptions(const std::optional<TriangleMesh>& given) {
         result_.settings = RELIEF_TRY(settingsOf(request()));
         const std::string import = importOptionOf(request().import, request().import_limits);
-        if (given_mesh && !import.empty()) {
+        if (given && !import.empty()) {
             return fail(ErrorCode::kUsage, import + " is for a mesh that is read from a file; leave it out");
         }
-        if (given_mesh && !result_.settings.shape.named.empty()) {
+        if (given && given->marks.empty() && !result_.settings.shape.named.empty()) {
             return fail(ErrorCode::kUsage,
                         "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
         }

@@ -22,6 +22,10 @@ namespace {
 constexpr double kFlat = 1e-9;
 /// Deviation from one scale and right angles, relative, that is rounding: a tenth of a millimetre in a metre.
 constexpr double kRigid = 1e-4;
+/// Of bodies (formats/world).
+constexpr double kPlaceMax = 1e15;
+constexpr double kScaleMin = 1e-9;
+constexpr double kScaleMax = 1e9;
 /// A larger share of loose vertices, one in so many, is worth a warning.
 constexpr std::uint64_t kLooseShare = 10;
 
@@ -29,6 +33,12 @@ double determinant(const glm::dmat3& m) {
     return m[0][0] * (m[1][1] * m[2][2] - m[2][1] * m[1][2]) -
            m[1][0] * (m[0][1] * m[2][2] - m[2][1] * m[0][2]) +
            m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
+}
+
+/// Whether a world may have it. False for NaN.
+bool isPlaced(const glm::dvec3& offset, double scale) {
+    return std::abs(offset.x) <= kPlaceMax && std::abs(offset.y) <= kPlaceMax &&
+           std::abs(offset.z) <= kPlaceMax && scale >= kScaleMin && scale <= kScaleMax;
 }
 
 /// "1 line, 3 points and 2 free-form curves or surfaces"; "" without any.
@@ -284,6 +294,11 @@ class Flattener {
             applied = pose ? mirror : turned;
         }
         const RigidPose rigid = pose.value_or(RigidPose{{0.0, 0.0, 0.0, 1.0}, 1.0});
+        if (!isPlaced(use.transform.offset, rigid.scale)) {
+            return invalidInput(
+                "the node '" + cleanUtf8(use.node->shown, kAskedNameBytesMax) +
+                "' stands beyond 1e15, or its scale is not between 1e-9 and 1e9; mend its transform");
+        }
         const std::uint32_t mesh = RELIEF_TRY(meshOf(use, applied));
         const glm::dvec3& at = use.transform.offset;
         mesh_.level_bodies.push_back(

@@ -7,6 +7,8 @@
 #include <span>
 
 #include "formats/base/hash.h"
+#include "formats/base/text.h"
+#include "formats/validate.h"
 
 namespace relief {
 namespace {
@@ -91,6 +93,7 @@ Result<Level> cutLevel(TriangleMesh all) {
     if (!fits(all)) {
         return invalidInput("the importer answers with a level that does not fit together; export it again");
     }
+    const std::string stem = std::filesystem::path(all.name).stem().string();
     Level level;
     level.name = all.name;
     level.unit = all.unit;
@@ -103,7 +106,7 @@ Result<Level> cutLevel(TriangleMesh all) {
     std::size_t triangle = 0;
     for (const LevelMesh& one : all.level_meshes) {
         TriangleMesh mesh;
-        mesh.name = one.name;
+        mesh.name = cleanUtf8(one.name.empty() ? stem : one.name, kMeshNameMax);
         mesh.unit = all.unit;
         mesh.positions = cut(all.positions, position, one.positions);
         mesh.triangles = cut(all.triangles, triangle, one.triangles);

@@ -106,7 +106,8 @@ inline constexpr std::array<std::string_view, 2> kWorldUnits{"m", ""};
 
 template <class Visitor, FieldsOf<World> W>
 void fields(Visitor& visit, W& world) {
-    visit("format", world.format, {.help = "relief-world", .rules = kRequired});
+    visit("format", world.format,
+          {.help = "Tells it from other files", .rules = kRequired, .words = kWords<"relief-world">});
     visit("version", world.version,
           {.help = "Of the format", .range = {1.0, double{kWorldVersion}}, .rules = kRequired});
     visit("unit", world.unit,

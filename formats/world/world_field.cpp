@@ -7,8 +7,10 @@
 namespace relief {
 namespace {
 
-/// Room round the box of a body, in units of its largest coordinate: an error of rotating in floats is a tenth of that.
-constexpr float kRoom = 1e-5F;
+/// Room round the box of a body, as maps reach a little beyond that of their mesh: in units of its longest side, and for
+/// roundings of its largest coordinate.
+constexpr float kRoom = 0.01F;
+constexpr float kRounding = 1e-5F;
 
 glm::quat rotationOf(const WorldBody& body) {
     return {body.rotation[3], body.rotation[0], body.rotation[1], body.rotation[2]};
@@ -30,38 +32,48 @@ WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
         for (int axis = 0; axis < 3; ++axis) {
             largest = std::max({largest, std::abs(placed.min[axis]), std::abs(placed.max[axis])});
         }
-        placed.min -= glm::vec3(kRoom * largest);
-        placed.max += glm::vec3(kRoom * largest);
+        const glm::vec3 room(kRoom * placed.longestSide() + kRounding * largest);
+        placed.min -= room;
+        placed.max += room;
         boxes_.push_back(placed);
     }
 }
 
-template <class Holds>
-WorldSample WorldField::least(const glm::vec3& p, const Holds& holds) const {
+void WorldField::addSample(std::size_t body, const glm::vec3& p, WorldSample& best) const {
+    const FieldSample sample = relief::evaluate(colliderOf(body), toObject(body, p));
+    const WorldBody& placed = world().bodies[body];
+    const float distance = sample.distance >= kFarOutside ? kFarOutside : placed.scale * sample.distance;
+    if (sample.map >= 0 && (best.body < 0 || distance < best.distance)) {
+        best = {distance, rotationOf(placed) * sample.normal, static_cast<int>(body)};
+    }
+}
+
+WorldSample WorldField::evaluate(const glm::vec3& p) const {
     WorldSample best;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-        if (!holds(boxes_[i])) {
-            continue;
-        }
-        const FieldSample sample = relief::evaluate(colliderOf(i), toObject(i, p));
-        const float distance =
-            sample.distance >= kFarOutside ? kFarOutside : world().bodies[i].scale * sample.distance;
-        if (sample.map >= 0 && (best.body < 0 || distance < best.distance)) {
-            best = {distance, rotationOf(world().bodies[i]) * sample.normal, static_cast<int>(i)};
-        }
+        addSample(i, p, best);
     }
     return best;
 }
 
-WorldSample WorldField::evaluate(const glm::vec3& p) const {
-    return least(p, [](const Bounds&) { return true; });
+WorldSample WorldField::evaluate(const glm::vec3& p, std::span<const std::uint32_t> bodies) const {
+    WorldSample best;
+    for (const std::uint32_t i : bodies) {
+        addSample(i, p, best);
+    }
+    return best;
 }
 
-WorldSample WorldField::deepest(const glm::vec3& p) const {
-    return least(p, [&p](const Bounds& box) {
-        return p.x >= box.min.x && p.x <= box.max.x && p.y >= box.min.y && p.y <= box.max.y &&
-               p.z >= box.min.z && p.z <= box.max.z;
-    });
+std::vector<std::uint32_t> WorldField::bodiesIn(const Bounds& box) const {
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
+        const Bounds& own = boxes_[i];
+        if (own.min.x <= box.max.x && own.max.x >= box.min.x && own.min.y <= box.max.y &&
+            own.max.y >= box.min.y && own.min.z <= box.max.z && own.max.z >= box.min.z) {
+            bodies.push_back(i);
+        }
+    }
+    return bodies;
 }
 
 glm::vec3 WorldField::toObject(std::size_t body, const glm::vec3& p) const {

@@ -1,7 +1,9 @@
 // The field of a world at a point: the union of its bodies, as shaders make it of theirs.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "formats/world/world.h"
@@ -29,19 +31,20 @@ class WorldField {
 
     /// The least distance of all bodies.
     [[nodiscard]] WorldSample evaluate(const glm::vec3& p) const;
-    /// The least distance of those whose boxes hold the point: evaluate(p) wherever that is inside.
-    [[nodiscard]] WorldSample deepest(const glm::vec3& p) const;
+    /// The least distance of some bodies. \param bodies  in rising order.
+    [[nodiscard]] WorldSample evaluate(const glm::vec3& p, std::span<const std::uint32_t> bodies) const;
+    /// The bodies that may hold a point of a box: of any other the point is outside. In rising order.
+    [[nodiscard]] std::vector<std::uint32_t> bodiesIn(const Bounds& box) const;
 
     [[nodiscard]] glm::vec3 toObject(std::size_t body, const glm::vec3& p) const;
     /// \param v  a vector of object space; its length is multiplied by the scale.
     [[nodiscard]] glm::vec3 turn(std::size_t body, const glm::vec3& v) const;
 
   private:
-    template <class Holds>
-    [[nodiscard]] WorldSample least(const glm::vec3& p, const Holds& holds) const;
+    void addSample(std::size_t body, const glm::vec3& p, WorldSample& best) const;
 
     LoadedWorld loaded_;
-    std::vector<Bounds> boxes_;  ///< of the bodies, in the world, with room for roundings
+    std::vector<Bounds> boxes_;  ///< of the bodies, in the world, with room
 };
 
 }  // namespace relief

@@ -111,6 +111,14 @@ expect 3 "$relief" check plan.toml --json
 cp stdout none.json
 outputs+=(check-file:sound.json check-file:damaged.json check-file:short.json check-file:none.json)
 
+python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
+"$relief" bake level.gltf --world w --budget 100kB --json >world_bake.json
+"$relief" bake level.gltf --world w --budget 100kB --json >world_again.json
+"$relief" check w/world.json --json >world_file.json
+"$relief" check w/world.json --mesh level.gltf --samples 500 --json >world_check.json
+outputs+=(world:w/world.json world-bake:world_bake.json world-bake:world_again.json)
+outputs+=(world-check:world_file.json world-check:world_check.json)
+
 # A scene with everything in it.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
 echo '0,1,0' >points.csv

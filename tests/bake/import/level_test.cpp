@@ -187,6 +187,20 @@ TEST_F(Levels, MoreBodiesThanAWorldHoldsAreRefused) {
     EXPECT_NE(read.error().message.find("65536"), std::string::npos) << read.error().message;
 }
 
+TEST_F(Levels, PlacesThatNoWorldHasAreRefused) {
+    for (const char* place : {R"("translation":[1e20,0,0])", R"("translation":[1e39,0,0])",
+                              R"("scale":[1e-12,1e-12,1e-12])", R"("scale":[1e12,1e12,1e12])"}) {
+        const Result<Level> read = importLevelInWorker(write(
+            "l.gltf", tetrahedronGltf({.nodes = R"({"mesh":0,"name":"lost",)" + std::string(place) + "}"})));
+        ASSERT_FALSE(read) << place;
+        EXPECT_NE(read.error().message.find("the node 'lost' stands beyond"), std::string::npos)
+            << read.error().message;
+    }
+    // Flat ones are no solids, and are left out with a warning if they have no area at all.
+    EXPECT_FALSE(
+        importLevelInWorker(write("l.gltf", tetrahedronGltf({.nodes = R"({"mesh":0,"scale":[0,0,0]})"}))));
+}
+
 TEST_F(Levels, NamesMarkTheTrianglesOfTheirNodes) {
     ImportOptions options;
     options.names = {"a"};

@@ -140,10 +140,10 @@ def test_a_recipe_gives_the_same_bytes(mesh, tmp_path):
 
 
 def test_no_option_of_the_tool_is_missing():
-    """Those left out are about the command's output and about recipes; compress is save()'s."""
+    """Those left out are about the command's output, recipes and levels; compress is save()'s."""
     said = set(re.findall(r"(?:^ +| -.,)--([a-z][a-z-]*)", tool("bake", "--help").stdout, re.MULTILINE))
     others = {"help", "quiet", "verbose", "warnings-only", "output", "json", "depfile", "compress", "recipe",
-              "events", "shard", "stamp", "dry-run"}
+              "events", "shard", "stamp", "dry-run", "world"}
     has = {name for name in inspect.signature(relief.bake).parameters if name not in ("mesh", "triangles", "name")}
     assert others < said
     assert {"map" if name == "maps" else name.rstrip("_").replace("_", "-") for name in has} == said - others

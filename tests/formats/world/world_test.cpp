@@ -197,7 +197,7 @@ TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
     fs::remove(folder_.parent_path() / (folder_.filename().string() + ".relief"));
 }
 
-TEST_F(WorldFolder, TheDeepestBodyOfAPointIsThatOfTheWholeUnion) {
+TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
     world_.bodies = {{0, "here", {0.0F, 0.0F, 0.0F}},
                      {0, "turned", {0.5F, 0.25F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "far", {900.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}, 0.5F}};
@@ -220,15 +220,18 @@ TEST_F(WorldFolder, TheDeepestBodyOfAPointIsThatOfTheWholeUnion) {
         const bool near_edge = std::abs(first.distance) < 1e-4F || std::abs(second.distance) < 1e-4F;
         if (!near_edge) {
             EXPECT_EQ(all.inside(), first.inside() || second.inside()) << i;
-            EXPECT_EQ(field.deepest(p).inside(), all.inside()) << i;
+            EXPECT_EQ(field.evaluate(p, field.bodiesIn({p, p})).inside(), all.inside()) << i;
         }
         if (all.inside()) {
             ++inside;
-            EXPECT_EQ(field.deepest(p).body, all.body);
-            EXPECT_EQ(field.deepest(p).distance, all.distance);
+            EXPECT_EQ(field.evaluate(p, field.bodiesIn({p, p})).body, all.body);
+            EXPECT_EQ(field.evaluate(p, field.bodiesIn({p, p})).distance, all.distance);
         }
     }
     EXPECT_GT(inside, 100);
+    EXPECT_EQ(field.bodiesIn(box), (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(field.bodiesIn({glm::vec3(899.9F, 0.0F, 0.0F), glm::vec3(901.0F)}),
+              std::vector<std::uint32_t>{2});
 }
 
 }  // namespace

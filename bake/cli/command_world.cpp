@@ -1,0 +1,153 @@
+#include "bake/cli/command_world.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "bake/report/report_text.h"
+#include "bake/world/world_bake.h"
+#include "bake/world/world_check_report.h"
+#include "bake/world/world_report.h"
+#include "formats/base/file_io.h"
+#include "formats/base/stopwatch.h"
+#include "formats/base/text.h"
+#include "formats/fields/json.h"
+#include "runtime/command_line/command_line.h"
+#include "runtime/command_line/progress.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
+    if (!call.output.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "--output and --world are two ways to name what is written; leave one out");
+    }
+    if (call.request.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
+    }
+    if (folder == "-" || call.outputs.depfile == "-") {
+        return fail(ErrorCode::kUsage,
+                    "--world is a folder, and --depfile a file; neither is standard output");
+    }
+    RELIEF_TRY(call.files.reads(call.request.mesh));
+    if (call.outputs.json) {
+        RELIEF_TRY(call.files.writes("-", "--json"));
+    }
+    RELIEF_TRY(preflightFolder(folder, "--world"));
+    RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world"));
+    return call.files.writes(call.outputs.depfile, "--depfile");
+}
+
+Result<void> writeWorldDepfile(const fs::path& folder, const WorldCall& call, const WorldBakeResult& result) {
+    std::vector<std::string> names;
+    for (const InputFile& input : result.inputs) {
+        names.push_back(input.path);
+    }
+    return call.outputs.depfile.empty()
+               ? Result<void>()
+               : writeDepfile(call.outputs.depfile, {(folder / kWorldFileName).string()}, names);
+}
+
+void showMessages(const WorldBakeResult& result) {
+    for (const std::string& warning : result.warnings) {
+        spdlog::warn(warning);
+    }
+    for (const WorldColliderResult& collider : result.colliders) {
+        for (const std::string& warning : collider.warnings) {
+            spdlog::warn(warning);
+        }
+    }
+}
+
+/// The error of the whole run, if any collider failed.
+Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
+    for (const WorldColliderResult& collider : result.colliders) {
+        if (collider.state == WorldColliderState::kFailed) {
+            const std::size_t failed = result.countOf(WorldColliderState::kFailed);
+            return fail(collider.error.code, std::to_string(failed) + " of " +
+                                                 std::to_string(result.colliders.size()) +
+                                                 " colliders failed, first that of the mesh '" +
+                                                 collider.mesh + "': " + collider.error.message + "; " +
+                                                 quotedPath(folder / kWorldFileName) + " is left as it was");
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+void addWorldOption(CLI::App& verb, std::string& folder) {
+    verb.add_option(
+            "--world", folder,
+            "Bake a level: each different mesh of MESH once, however many nodes place it, into this folder, "
+            "and world.json, which places them. --budget is for all together, 16 MB by default. Only what "
+            "has "
+            "changed is baked again")
+        ->option_text("DIR")
+        ->excludes(verb.get_option("--recipe"));
+}
+
+Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& call) {
+    const Stopwatch total;
+    const fs::path folder = folder_name;
+    RELIEF_TRY(checkWorldRequest(call.request));
+    RELIEF_TRY(preflightWorld(folder, call));
+    Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
+    WorldWatcher watcher;
+    watcher.begin = [&](const char* stage) { progress.begin(stage); };
+    watcher.ended = [&](std::size_t done, std::size_t all) {
+        progress.set(static_cast<double>(done) / static_cast<double>(all));
+    };
+    watcher.files = &call.files;
+    const WorldBakeResult result =
+        RELIEF_TRY(bakeWorld({call.request, folder, call.outputs.compress}, watcher));
+    progress.finish();
+    RELIEF_TRY(verdict(folder, result));
+    showMessages(result);
+    RELIEF_TRY(writeWorldDepfile(folder, call, result));
+    if (call.outputs.json) {
+        return printOut(jsonText(jsonOf(WorldBakeJson{result, folder_name, total.ms()})));
+    }
+    if (!call.common.quiet) {
+        std::fputs(worldBakeText(result, cleanUtf8(folder_name), total.ms(), call.common.verbose).c_str(),
+                   stderr);
+    }
+    return {};
+}
+
+bool namesWorld(const std::string& file) {
+    return lowerCase(fs::path(file).extension().string()) == ".json";
+}
+
+Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) {
+    if (!call.html.empty() || call.request.detail) {
+        return fail(ErrorCode::kUsage, std::string(call.html.empty() ? "--detail" : "--html") +
+                                           " is for one collider; leave it out for a world");
+    }
+    const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
+    std::optional<WorldAccuracy> accuracy;
+    if (!call.request.mesh.empty()) {
+        accuracy = RELIEF_TRY(checkWorld({call.request, call.within}, field));
+        for (const std::string& warning : accuracy->warnings) {
+            spdlog::warn(warning);
+        }
+    }
+    const std::string name = inputName(file);
+    const WorldAccuracy* const measured = accuracy ? &*accuracy : nullptr;
+    RELIEF_TRY(printOut(call.json ? jsonText(jsonOf(WorldCheckJson{name, &field, measured, call.max_error}))
+                                  : worldCheckText(field, name, measured)));
+    if (accuracy && call.max_error && accuracy->all.total() > double{*call.max_error}) {
+        return fail(ErrorCode::kDifference,
+                    shortNumber(accuracy->all.total()) +
+                        " % of the points near the surface are on the wrong side, more than "
+                        "--max-error " +
+                        shortest(*call.max_error) + " %; bake the level with a larger --budget");
+    }
+    return {};
+}
+
+}  // namespace relief

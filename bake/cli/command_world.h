@@ -1,0 +1,43 @@
+// `relief bake --world`: a level becomes a folder of colliders and the file that places them. `relief check` of such a file.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bake/cli/command.h"
+#include "bake/cli/command_recipe.h"
+#include "bake/director/bake_request.h"
+#include "bake/director/mesh_check.h"
+
+namespace relief {
+
+/// Options that --world shares with a bake of one mesh.
+struct WorldCall {
+    const BakeRequest& request;
+    const BakeOutputs& outputs;
+    const CommonOptions& common;
+    const std::string& output;  ///< -o; must be empty
+    FileGuard& files;
+};
+
+void addWorldOption(CLI::App& verb, std::string& folder);
+
+/// Errors: those of bakeWorld, and of the first collider that failed; kUsage, kIo.
+[[nodiscard]] Result<void> runWorldCommand(const std::string& folder, const WorldCall& call);
+
+/// Whether `relief check` takes a file for a world: by its extension, .json.
+[[nodiscard]] bool namesWorld(const std::string& file);
+
+struct WorldCheckCall {
+    const CheckRequest& request;  ///< without a mesh: the files alone are checked
+    std::optional<float> within;
+    const ContainerLimits& limits;
+    std::optional<float> max_error;  ///< percent
+    const std::string& html;         ///< must be empty
+    bool json;
+};
+
+/// Errors: those of loadWorld and checkWorld; kUsage; kDifference: more than max_error.
+[[nodiscard]] Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call);
+
+}  // namespace relief

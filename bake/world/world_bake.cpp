@@ -1,0 +1,420 @@
+#include "bake/world/world_bake.h"
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for_each.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <set>
+
+#include "bake/director/director.h"
+#include "bake/import/level.h"
+#include "bake/measure/truth.h"
+#include "bake/recipe/bake_cache.h"
+#include "bake/report/report_text.h"
+#include "bake/shape/shape_options.h"
+#include "bake/world/budget_share.h"
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/base/stopwatch.h"
+#include "formats/base/text.h"
+#include "formats/container.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+static_assert(kLevelMeshesMax == kWorldCollidersMax && kLevelBodiesMax == kWorldBodiesMax);
+
+/// Options of a bake that decide how it goes, and none of its bytes.
+constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "time_limit",  "no_check",
+                                                            "import_memory", "import_time", "max_triangles"};
+/// As a bake of one mesh measures itself.
+constexpr std::uint32_t kCheckPoints = 4000;
+constexpr double kWarnFrom = 5.0;  ///< percent of them on the wrong side
+constexpr std::size_t kStemMax = 64;
+constexpr std::size_t kKeyDigits = 16;
+
+template <class... Arguments>
+void tell(const std::function<void(Arguments...)>& function, Arguments... arguments) {
+    if (function) {
+        function(arguments...);
+    }
+}
+
+double areaOf(const TriangleMesh& mesh) {
+    double twice = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 normal = planeOf(mesh.positions, t).normal;
+        twice += std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+    }
+    return 0.5 * twice;
+}
+
+/// A name as a part of a file's: letters, digits and _ - . of ASCII.
+std::string fileStem(const std::string& name) {
+    std::string stem;
+    for (const char c : name.substr(0, kStemMax)) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                           c == '-' || c == '.' || c == '_';
+        stem += plain ? c : '_';
+    }
+    return stem.empty() || stem.front() == '.' || stem.front() == '-' ? "_" + stem : stem;
+}
+
+/// The words of the options that the bytes depend on.
+std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress) {
+    std::vector<std::string> words = {"--compress=" + std::to_string(compress)};
+    for (const FieldWords& field : changedFields(request)) {
+        for (const std::string& word : field.words) {
+            if (std::find(kWithoutEffect.begin(), kWithoutEffect.end(), field.name) == kWithoutEffect.end()) {
+                words.push_back(optionName(field.name) + "=" + word);
+            }
+        }
+    }
+    return words;
+}
+
+WorldBody bodyOf(const LevelBody& from) {
+    WorldBody body;
+    body.collider = from.mesh;
+    body.node = from.node;
+    for (int i = 0; i < 3; ++i) {
+        body.position[i] = static_cast<float>(from.position[static_cast<std::size_t>(i)]);
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        body.rotation[i] = static_cast<float>(from.rotation[i]);
+    }
+    body.scale = static_cast<float>(from.scale);
+    return body;
+}
+
+class WorldBaker {
+  public:
+    WorldBaker(const WorldRequest& request, const WorldWatcher& watcher)
+        : request_(request), watcher_(watcher) {}
+
+    Result<WorldBakeResult> run() {
+        RELIEF_TRY(checkWorldRequest(request_.bake));
+        std::optional<tbb::global_control> control;
+        if (request_.bake.threads) {
+            control.emplace(tbb::global_control::max_allowed_parallelism, *request_.bake.threads);
+        }
+        RELIEF_TRY(readLevel());
+        RELIEF_TRY(share());
+        RELIEF_TRY(findUpToDate());
+        RELIEF_TRY(bakeStale());
+        RELIEF_TRY(writeWorld());
+        return std::move(result_);
+    }
+
+  private:
+    Result<void> readLevel() {
+        tell(watcher_.begin, "reading the level");
+        names_ = RELIEF_TRY(parseShapeOptions(request_.bake.as)).names();
+        ImportOptions options = request_.bake.import;
+        options.names = names_;
+        level_ = RELIEF_TRY(importLevelInWorker(request_.bake.mesh, options, request_.bake.import_limits));
+        for (std::size_t i = 0; i < level_.dependencies.size(); ++i) {
+            if (watcher_.files != nullptr) {
+                RELIEF_TRY(watcher_.files->reads(level_.dependencies[i]));
+            }
+            result_.inputs.push_back({level_.dependencies[i], level_.dependency_hashes[i]});
+        }
+        result_.warnings = level_.warnings;
+        return {};
+    }
+
+    Result<void> share() {
+        result_.colliders.resize(level_.meshes.size());
+        for (const LevelBody& body : level_.bodies) {
+            WorldColliderResult& collider = result_.colliders[body.mesh];
+            ++collider.bodies;
+            collider.largest_scale = std::max(collider.largest_scale, body.scale);
+        }
+        std::vector<BudgetShare> shares;
+        for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
+            WorldColliderResult& collider = result_.colliders[i];
+            collider.mesh = level_.meshes[i].name;
+            collider.area = areaOf(level_.meshes[i]);
+            shares.push_back({collider.area * collider.largest_scale * collider.largest_scale});
+        }
+        result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
+        RELIEF_TRY(shareBudget(result_.budget, shares));
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+            result_.colliders[i].budget = shares[i].bytes;
+        }
+        return {};
+    }
+
+    /// Names the containers, and compares those that are there.
+    Result<void> findUpToDate() {
+        tell(watcher_.begin, "looking for what is up to date");
+        tool_ = RELIEF_TRY(toolIdentity());
+        Result<BakeCacheEntries> cache = loadBakeCache(request_.folder);
+        if (!cache) {
+            result_.warnings.push_back(cache.error().message + "; everything is baked again");
+            cache = BakeCacheEntries{};
+        }
+        for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
+            TriangleMesh& mesh = level_.meshes[i];
+            WorldColliderResult& collider = result_.colliders[i];
+            BakeRequest request = requestOf(request_.bake, names_, mesh);
+            request.budget = collider.budget;
+            BakeCacheEntry entry{tool_, optionWords(request, request_.compress), {}, "", 0};
+            // What the import's options do is in the mesh already.
+            request.import = {};
+            request.import_limits = {};
+            request.threads.reset();
+            request.no_check = true;
+            entry.inputs = {{mesh.name, mesh.content_hash},
+                            {"marks", xxh3_128Hex(std::as_bytes(std::span(mesh.marks)))}};
+            collider.file = fileStem(mesh.name) + "-" +
+                            assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
+                            std::string(kColliderExtension);
+            const auto found = cache->find(collider.file);
+            const bool fresh = found != cache->end() && isUpToDate(entry, found->second, collider);
+            if (!fresh) {
+                collider.state = WorldColliderState::kFailed;  // until it is baked
+                stale_.push_back(i);
+            }
+            requests_.push_back(std::move(request));
+            entries_.push_back(std::move(entry));
+        }
+        return {};
+    }
+
+    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntry& known,
+                                  WorldColliderResult& collider) const {
+        if (known.tool != wanted.tool || known.options != wanted.options || known.inputs != wanted.inputs) {
+            return false;
+        }
+        const auto bytes = readFile(request_.folder / collider.file);
+        if (!bytes || xxh3_128Hex(*bytes) != known.output_hash) {
+            return false;
+        }
+        const Result<Collider> there = readContainer(*bytes);
+        if (there) {
+            take(*there, *bytes, collider);
+        }
+        return there.has_value();
+    }
+
+    static void take(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider) {
+        collider.box = from.bounds;
+        collider.gpu_bytes = from.gpuBytes();
+        collider.bytes = bytes.size();
+        collider.hash = xxh3_128Hex(bytes);
+    }
+
+    /// The largest first, so that the last to end is a small one.
+    Result<void> bakeStale() {
+        tell(watcher_.begin, "baking colliders");
+        std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
+            return result_.colliders[a].budget > result_.colliders[b].budget;
+        });
+        std::size_t done = level_.meshes.size() - stale_.size();
+        std::mutex mutex;
+        tbb::parallel_for_each(stale_.begin(), stale_.end(), [&](std::size_t i) {
+            // Or a thread that waits for a loop of one bake would begin another within it.
+            tbb::this_task_arena::isolate([&] { bakeOne(i); });
+            const std::lock_guard lock(mutex);
+            ++done;
+            remember(i);
+            if (watcher_.ended) {
+                watcher_.ended(done, level_.meshes.size());
+            }
+        });
+        return fresh_.empty() ? Result<void>() : updateBakeCache(request_.folder, fresh_);
+    }
+
+    void bakeOne(std::size_t i) {
+        WorldColliderResult& collider = result_.colliders[i];
+        const Stopwatch watch;
+        if (const Result<void> baked = tryBake(i, collider); !baked) {
+            collider.error = baked.error();
+        } else {
+            collider.state = WorldColliderState::kBaked;
+        }
+        collider.ms = watch.ms();
+    }
+
+    Result<void> tryBake(std::size_t i, WorldColliderResult& collider) {
+        BakeResult result = RELIEF_TRY(bake(requests_[i], {}, std::move(level_.meshes[i])));
+        const auto bytes =
+            RELIEF_TRY(writeContainer(result.baked.collider, {static_cast<int>(request_.compress)}));
+        if (!request_.bake.no_check) {
+            const MeshQuery query = RELIEF_TRY(MeshQuery::build(result.mesh.mesh));
+            AccuracyOptions options;
+            options.samples = kCheckPoints;
+            collider.wrong = measureNear(sampleNear(query, options), fieldOf(result.baked.collider));
+        }
+        collider.warnings = result.baked.report.warnings;
+        if (collider.wrong && collider.wrong->total() > kWarnFrom) {
+            collider.warnings.push_back(collider.mesh + ": " + shortNumber(collider.wrong->total()) +
+                                        " % wrong near the surface with its share of " +
+                                        bytesText(collider.budget) + "; give the level a larger --budget");
+        }
+        RELIEF_TRY(writeFile(request_.folder / collider.file, bytes));
+        take(result.baked.collider, bytes, collider);
+        return {};
+    }
+
+    /// \pre No other thread is in it.
+    void remember(std::size_t i) {
+        const WorldColliderResult& collider = result_.colliders[i];
+        if (collider.state != WorldColliderState::kBaked) {
+            return;
+        }
+        BakeCacheEntry entry = entries_[i];
+        entry.output_hash = collider.hash;
+        entry.output_bytes = collider.bytes;
+        fresh_[collider.file] = std::move(entry);
+        // A killed run loses so much; the last write reports errors.
+        if (since_cached_.seconds() > 2.0 && updateBakeCache(request_.folder, fresh_)) {
+            fresh_.clear();
+            since_cached_ = Stopwatch();
+        }
+    }
+
+    Result<void> writeWorld() {
+        World& world = result_.world;
+        world.unit = level_.unit;
+        for (const WorldColliderResult& collider : result_.colliders) {
+            world.colliders.push_back({collider.file, collider.hash, collider.mesh, collider.box});
+        }
+        for (const LevelBody& body : level_.bodies) {
+            world.bodies.push_back(bodyOf(body));
+        }
+        if (result_.countOf(WorldColliderState::kFailed) > 0) {
+            return {};
+        }
+        const std::string text = worldText(world);
+        // What no reader would take must not be written: a scale or a place that floats do not hold.
+        const Result<World> read = parseWorld(text);
+        if (!read) {
+            return fail(read.error().code, level_.name + ": " + read.error().message);
+        }
+        const fs::path path = request_.folder / kWorldFileName;
+        const std::vector<WorldCollider> before = collidersOf(path);
+        RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
+        result_.written = true;
+        removeUnnamed(before);
+        return {};
+    }
+
+    static std::vector<WorldCollider> collidersOf(const fs::path& path) {
+        const auto bytes = readFile(path, kWorldBytesMax);
+        if (!bytes) {
+            return {};
+        }
+        Result<World> world = parseWorld({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+        return world ? std::move(world->colliders) : std::vector<WorldCollider>();
+    }
+
+    /// Containers of the world from before that this one does not name, if they still are what that one named.
+    void removeUnnamed(const std::vector<WorldCollider>& before) {
+        std::set<std::string> named;
+        for (const WorldCollider& collider : result_.world.colliders) {
+            named.insert(collider.file);
+        }
+        for (const WorldCollider& old : before) {
+            const fs::path path = request_.folder / old.file;
+            std::error_code error;
+            const bool own = old.file.ends_with(kColliderExtension) &&
+                             !fs::path(old.file).has_parent_path() && !named.contains(old.file) &&
+                             hashOfFile(path) == old.hash;
+            if (own && fs::remove(path, error)) {
+                result_.removed.push_back(old.file);
+            }
+        }
+    }
+
+    const WorldRequest& request_;
+    const WorldWatcher& watcher_;
+    WorldBakeResult result_;
+    std::vector<std::string> names_;  // of --as
+    Level level_;                     // whose stale meshes are moved away
+    std::string tool_;
+    std::vector<BakeRequest> requests_;    // of the meshes
+    std::vector<BakeCacheEntry> entries_;  // the same, without outputs
+    std::vector<std::size_t> stale_;
+    BakeCacheEntries fresh_;  // not yet in the cache file
+    Stopwatch since_cached_;
+};
+
+}  // namespace
+
+std::size_t WorldBakeResult::countOf(WorldColliderState state) const {
+    return static_cast<std::size_t>(std::ranges::count(colliders, state, &WorldColliderResult::state));
+}
+
+std::uint64_t WorldBakeResult::gpuBytes() const {
+    std::uint64_t bytes = 0;
+    for (const WorldColliderResult& collider : colliders) {
+        bytes += collider.gpu_bytes;
+    }
+    return bytes;
+}
+
+Result<void> checkWorldRequest(const BakeRequest& request) {
+    const std::array<std::pair<const char*, bool>, 8> of_one = {{
+        {"--map", !request.map.empty()},
+        {"--paper", request.paper},
+        {"--resolution", request.resolution.has_value()},
+        {"--decode", request.decode.has_value()},
+        {"--depth", request.depth.has_value()},
+        {"--plan", !request.plan.empty()},
+        {"--plan-out", !request.plan_out.empty()},
+        {"--max-error", request.max_error.has_value()},
+    }};
+    for (const auto& [option, given] : of_one) {
+        if (given) {
+            return fail(ErrorCode::kUsage,
+                        std::string(option) + " is for one mesh; leave it out beside --world");
+        }
+    }
+    static_cast<void>(RELIEF_TRY(settingsOf(request)));
+    return {};
+}
+
+Result<WorldBakeResult> bakeWorld(const WorldRequest& request, const WorldWatcher& watcher) {
+    return WorldBaker(request, watcher).run();
+}
+
+BakeRequest requestOf(const BakeRequest& request, const std::vector<std::string>& names, TriangleMesh& mesh) {
+    std::vector<std::uint8_t> number(names.size() + 1, 0);
+    for (const std::uint8_t mark : mesh.marks) {
+        number[mark] = 1;
+    }
+    BakeRequest own = request;
+    own.mesh.clear();
+    own.as.clear();
+    std::size_t named = 0;
+    std::uint8_t next = 0;
+    for (const std::string& word : request.as) {
+        const bool has_name = word.find('=') != std::string::npos;
+        named += has_name ? 1 : 0;
+        if (!has_name || number[named] != 0) {
+            own.as.push_back(word);
+        }
+        if (has_name && number[named] != 0) {
+            number[named] = ++next;
+        }
+    }
+    number[0] = 0;
+    for (std::uint8_t& mark : mesh.marks) {
+        mark = number[mark];
+    }
+    if (next == 0) {
+        mesh.marks.clear();
+    }
+    return own;
+}
+
+}  // namespace relief

@@ -1,0 +1,296 @@
+#include "bake/world/world_check.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
+
+#include "bake/director/director.h"
+#include "bake/import/level.h"
+#include "bake/measure/percent.h"
+#include "bake/mesh/loops.h"
+#include "bake/repair/winding.h"
+#include "bake/report/report_text.h"
+#include "bake/shape/shape_options.h"
+#include "bake/world/world_bake.h"
+#include "formats/base/stopwatch.h"
+
+namespace relief {
+namespace {
+
+constexpr std::uint64_t kSamplesMax = 100'000'000;
+constexpr std::uint64_t kPointsMin = 100;  ///< of a body
+constexpr std::size_t kWorst = 10;
+/// Standard deviation of the points, in units of the longest side: that of AccuracyOptions.
+constexpr double kSigma = AccuracyOptions().sigma_share;
+
+/// A node of the level.
+struct Placed {
+    const LevelBody* body;
+    const MeshQuery* query;
+    glm::dvec3 low;  ///< its box in the world
+    glm::dvec3 high;
+
+    [[nodiscard]] glm::dvec3 turn(const glm::dvec3& p, double sign) const {
+        const glm::dvec3 v = sign * glm::dvec3(body->rotation[0], body->rotation[1], body->rotation[2]);
+        const glm::dvec3 t = 2.0 * glm::cross(v, p);
+        return p + body->rotation[3] * t + glm::cross(v, t);
+    }
+    [[nodiscard]] glm::dvec3 position() const {
+        return {body->position[0], body->position[1], body->position[2]};
+    }
+    [[nodiscard]] glm::dvec3 toWorld(const glm::dvec3& p) const {
+        return position() + body->scale * turn(p, 1.0);
+    }
+    [[nodiscard]] glm::dvec3 toObject(const glm::dvec3& p) const {
+        return turn(p - position(), -1.0) / body->scale;
+    }
+    [[nodiscard]] bool inside(const glm::dvec3& p) const {
+        return glm::all(glm::lessThanEqual(low, p)) && glm::all(glm::lessThanEqual(p, high)) &&
+               query->inside(glm::vec3(toObject(p)));
+    }
+};
+
+glm::dvec3 inBall(MersenneRandom& random) {
+    for (;;) {
+        const glm::dvec3 v{2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0,
+                           2.0 * random.uniform() - 1.0};
+        if (glm::dot(v, v) <= 1.0) {
+            return v;
+        }
+    }
+}
+
+class WorldChecker {
+  public:
+    WorldChecker(const WorldCheckRequest& request, const WorldField& field)
+        : request_(request), field_(field) {}
+
+    Result<WorldAccuracy> run() {
+        const Stopwatch watch;
+        if (request_.check.samples > kSamplesMax) {
+            return fail(ErrorCode::kLimit, "--samples is " + std::to_string(request_.check.samples) +
+                                               "; the limit is " + std::to_string(kSamplesMax));
+        }
+        RELIEF_TRY(readLevel());
+        RELIEF_TRY(makeTruth());
+        place();
+        comparePoses();
+        measure();
+        result_.seconds = watch.seconds();
+        return std::move(result_);
+    }
+
+  private:
+    /// With the names that colliders were baked by.
+    Result<void> readLevel() {
+        for (const WorldCollider& collider : field_.world().colliders) {
+            const std::size_t index = static_cast<std::size_t>(&collider - field_.world().colliders.data());
+            const Provenance& from = field_.colliders()[index].provenance;
+            recorded_.push_back(recordedBake(from.options).request);
+            by_hash_.emplace(from.mesh_hash, index);
+            for (const std::string& word : recorded_.back().as) {
+                if (word.find('=') != std::string::npos && std::ranges::find(as_, word) == as_.end()) {
+                    as_.push_back(word);
+                }
+            }
+        }
+        ImportOptions options = request_.check.import;
+        options.names = RELIEF_TRY(parseShapeOptions(as_)).names();
+        level_ = RELIEF_TRY(importLevelInWorker(request_.check.mesh, options, request_.check.import_limits));
+        result_.warnings = level_.warnings;
+        return {};
+    }
+
+    Result<void> makeTruth() {
+        queries_.reserve(level_.meshes.size());
+        const std::vector<std::string> names = RELIEF_TRY(parseShapeOptions(as_)).names();
+        for (TriangleMesh& mesh : level_.meshes) {
+            BakeRequest named;
+            named.as = as_;
+            const std::optional<std::size_t> collider =
+                colliderOf(mesh.content_hash, requestOf(named, names, mesh).as);
+            if (!collider) {
+                return invalidInput(
+                    level_.name + " has a mesh '" + mesh.name +
+                    "' that no collider of the world was baked from; bake the level again, or give "
+                    "--mesh the level that it was baked from");
+            }
+            BakeRequest recorded = recorded_[*collider];
+            recorded.budget.reset();
+            recorded.voids = voidsOf(recorded);
+            Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
+            const ShapedMesh shaped = RELIEF_TRY(makeSolid(recorded, winding.mesh));
+            queries_.push_back(RELIEF_TRY(MeshQuery::build(shaped.mesh)));
+            static_cast<void>(queries_.back().prepared().areas());  // before threads do
+        }
+        return {};
+    }
+
+    /// The collider of a mesh: of several, which differ by --as NAME=KIND, the one that was baked by these.
+    [[nodiscard]] std::optional<std::size_t> colliderOf(const std::string& hash,
+                                                        const std::vector<std::string>& as) const {
+        const auto [begin, end] = by_hash_.equal_range(hash);
+        std::optional<std::size_t> found;
+        for (auto entry = begin; entry != end; ++entry) {
+            std::vector<std::string> own = recorded_[entry->second].as;
+            std::erase_if(own, [](const std::string& word) { return word.find('=') == std::string::npos; });
+            found = !found || own == as ? entry->second : *found;
+        }
+        return found;
+    }
+
+    void place() {
+        for (const LevelBody& body : level_.bodies) {
+            Placed placed{&body, &queries_[body.mesh], glm::dvec3(std::numeric_limits<double>::max()),
+                          glm::dvec3(std::numeric_limits<double>::lowest())};
+            const Bounds& box = placed.query->mesh().bounds;
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 at =
+                    placed.toWorld({corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                    corner & 4 ? box.max.z : box.min.z});
+                placed.low = glm::min(placed.low, at);
+                placed.high = glm::max(placed.high, at);
+            }
+            placed_.push_back(placed);
+        }
+    }
+
+    /// A world whose level has changed is measured all the same, and wrong.
+    void comparePoses() {
+        const std::vector<WorldBody>& bodies = field_.world().bodies;
+        std::size_t other = 0;
+        for (std::size_t i = 0; i < std::min(bodies.size(), placed_.size()); ++i) {
+            const LevelBody& body = *placed_[i].body;
+            bool same = static_cast<float>(body.scale) == bodies[i].scale;
+            for (int k = 0; k < 3; ++k) {
+                same = same && static_cast<float>(body.position[static_cast<std::size_t>(k)]) ==
+                                   bodies[i].position[k];
+            }
+            other += same ? 0 : 1;
+        }
+        if (bodies.size() != placed_.size() || other > 0) {
+            result_.warnings.push_back(
+                level_.name + ": " +
+                (bodies.size() != placed_.size()
+                     ? "it places " + countText(placed_.size(), "mesh", "meshes") + ", and the world " +
+                           countText(bodies.size(), "body", "bodies")
+                     : countText(other, "node") + " of it stand elsewhere than the world has them") +
+                "; bake the level again");
+        }
+    }
+
+    void measure() {
+        const std::uint64_t points = std::max(kPointsMin, request_.check.samples / placed_.size());
+        std::uint64_t false_inside = 0;
+        std::uint64_t false_outside = 0;
+        for (std::size_t i = 0; i < placed_.size(); ++i) {
+            const BodyCounts counts = measureBody(i, points);
+            false_inside += counts.false_inside;
+            false_outside += counts.false_outside;
+        }
+        const std::uint64_t all = points * placed_.size();
+        result_.all = {percent(false_inside, all), percent(false_outside, all)};
+        std::vector<std::size_t>& worst = result_.worst;
+        for (std::size_t i = 0; i < result_.bodies.size(); ++i) {
+            if (result_.bodies[i].wrong.total() > 0.0) {
+                worst.push_back(i);
+            }
+        }
+        std::stable_sort(worst.begin(), worst.end(), [this](std::size_t a, std::size_t b) {
+            return result_.bodies[a].wrong.total() > result_.bodies[b].wrong.total();
+        });
+        worst.resize(std::min(worst.size(), kWorst));
+    }
+
+    struct BodyCounts {
+        std::uint64_t false_inside = 0;
+        std::uint64_t false_outside = 0;
+    };
+
+    BodyCounts measureBody(std::size_t index, std::uint64_t points) {
+        enum Verdict : std::uint8_t { kRight, kFalseInside, kFalseOutside };
+        const Placed& placed = placed_[index];
+        std::vector<glm::vec3> positions(points);
+        std::vector<std::uint8_t> verdicts(points);
+        forEachIndex(0, points, 64,
+                     [&](std::size_t i) { positions[i] = glm::vec3(draw(placed, index * points + i)); });
+        const Bounds box = boundsOf(positions);
+        const std::vector<std::uint32_t> bodies = field_.bodiesIn(box);
+        const std::vector<const Placed*> others = placedIn(box);
+        forEachIndex(0, points, 64, [&](std::size_t i) {
+            const glm::dvec3 p(positions[i]);
+            const bool truth =
+                std::ranges::any_of(others, [&p](const Placed* one) { return one->inside(p); });
+            const bool inside = field_.evaluate(positions[i], bodies).inside();
+            verdicts[i] = inside == truth ? kRight : inside ? kFalseInside : kFalseOutside;
+        });
+        BodyCounts counts;
+        glm::dvec3 sum(0.0);
+        for (std::size_t i = 0; i < points; ++i) {
+            counts.false_inside += verdicts[i] == kFalseInside ? 1 : 0;
+            counts.false_outside += verdicts[i] == kFalseOutside ? 1 : 0;
+            sum += verdicts[i] == kRight ? glm::dvec3(0.0) : glm::dvec3(positions[i]);
+        }
+        BodyAccuracy body{placed.body->node,
+                          placed.query->mesh().name,
+                          points,
+                          {percent(counts.false_inside, points), percent(counts.false_outside, points)},
+                          glm::vec3(placed.position())};
+        const std::uint64_t wrong = counts.false_inside + counts.false_outside;
+        double nearest = std::numeric_limits<double>::max();
+        for (std::size_t i = 0; i < points; ++i) {
+            const glm::dvec3 from = glm::dvec3(positions[i]) - sum / static_cast<double>(wrong);
+            if (verdicts[i] != kRight && glm::dot(from, from) < nearest) {
+                nearest = glm::dot(from, from);
+                body.place = positions[i];
+            }
+        }
+        result_.bodies.push_back(std::move(body));
+        return counts;
+    }
+
+    /// The nodes whose boxes meet a box.
+    [[nodiscard]] std::vector<const Placed*> placedIn(const Bounds& box) const {
+        std::vector<const Placed*> found;
+        for (const Placed& placed : placed_) {
+            if (glm::all(glm::lessThanEqual(placed.low, glm::dvec3(box.max))) &&
+                glm::all(glm::greaterThanEqual(placed.high, glm::dvec3(box.min)))) {
+                found.push_back(&placed);
+            }
+        }
+        return found;
+    }
+
+    /// A point near the surface of a body, in the world.
+    [[nodiscard]] glm::dvec3 draw(const Placed& placed, std::uint64_t number) const {
+        MersenneRandom random(request_.check.seed, number);
+        const TriangleMesh& mesh = placed.query->mesh();
+        const SurfaceDraw surface =
+            drawOnSurface(mesh, placed.query->prepared().areas(), random.uniform(), random);
+        if (request_.within) {
+            return placed.toWorld(surface.position) + double{*request_.within} * inBall(random);
+        }
+        const double sigma = kSigma * double{mesh.bounds.longestSide()};
+        const glm::dvec3 offset{random.normal(), random.normal(), random.normal()};
+        return placed.toWorld(surface.position + sigma * offset);
+    }
+
+    const WorldCheckRequest& request_;
+    const WorldField& field_;
+    WorldAccuracy result_;
+    std::vector<BakeRequest> recorded_;                // of the colliders
+    std::multimap<std::string, std::size_t> by_hash_;  // colliders, by the hash of their mesh
+    std::vector<std::string> as_;                      // NAME=KIND of all colliders
+    Level level_;
+    std::vector<MeshQuery> queries_;  // of its meshes
+    std::vector<Placed> placed_;
+};
+
+}  // namespace
+
+Result<WorldAccuracy> checkWorld(const WorldCheckRequest& request, const WorldField& field) {
+    return WorldChecker(request, field).run();
+}
+
+}  // namespace relief

@@ -1,0 +1,45 @@
+// A world measured against the level that it was baked from. Truth is the union of the level's meshes where its nodes place
+// them, each by Embree in its own space: a point beside one body may be inside another.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/director/mesh_check.h"
+#include "bake/measure/accuracy.h"
+#include "formats/base/result.h"
+#include "formats/container_limits.h"
+#include "formats/world/world_field.h"
+
+namespace relief {
+
+struct WorldCheckRequest {
+    CheckRequest check;  ///< of which `mesh` is the level; `samples` are shared by its bodies; no detail
+    std::optional<float> within;  ///< world units; nullopt: as relief check measures one collider
+};
+
+/// The points near the surface of one body.
+struct BodyAccuracy {
+    std::string node;
+    std::string mesh;
+    std::uint64_t points = 0;
+    WrongShare wrong;
+    glm::vec3 place{0.0F};  ///< world space: a typical point on the wrong side, or the body's position
+};
+
+struct WorldAccuracy {
+    WrongShare all;                    ///< of the points of all bodies, as many of each
+    std::vector<BodyAccuracy> bodies;  ///< in the order of the level
+    std::vector<std::size_t> worst;    ///< bodies with points on the wrong side, at most ten, the worst first
+    std::vector<std::string> warnings;
+    double seconds = 0.0;
+};
+
+/// Errors: kLimit (samples), kInvalidInput (a mesh of the level that no collider was baked from), those of
+/// importLevelInWorker, of the shapes and of Embree.
+[[nodiscard]] Result<WorldAccuracy> checkWorld(const WorldCheckRequest& request, const WorldField& field);
+
+}  // namespace relief
