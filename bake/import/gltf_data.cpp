@@ -99,12 +99,14 @@ struct Rules {
     std::array<std::uint64_t, 5> components;
     bool normalized;  ///< integers may be normalised
 };
-constexpr std::array<Rules, 5> kRules = {
+constexpr std::array<Rules, 7> kRules = {
     {{"VEC3", {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat}, true},
      {"SCALAR", {kUnsignedByte, kUnsignedShort, kUnsignedInt}, false},
      {"VEC4", {kUnsignedByte, kUnsignedShort}, false},
      {"VEC4", {kUnsignedByte, kUnsignedShort, kFloat}, true},
-     {"MAT4", {kFloat}, false}}};
+     {"MAT4", {kFloat}, false},
+     {"VEC3", {kFloat}, false},
+     {"VEC4", {kByte, kShort, kFloat}, true}}};
 
 std::uint64_t sizeOf(std::uint64_t type) {
     return type <= kUnsignedByte ? 1 : type <= kUnsignedShort ? 2 : 4;

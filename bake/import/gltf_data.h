@@ -60,6 +60,8 @@ enum class GltfUse : std::uint8_t {
     kJoints,     ///< glm::vec4 of whole numbers
     kWeights,    ///< glm::vec4
     kMatrices,   ///< glm::mat4
+    kVectors,    ///< glm::vec3 of floats
+    kRotations,  ///< glm::vec4: of floats, or normalized whole numbers of 8 or 16 bits
 };
 
 /// The elements of an accessor. Floats may be no numbers.

@@ -22,9 +22,10 @@ namespace {
 // --- the document ---
 
 // Required extensions that are read or do not change positions.
-constexpr std::array<std::string_view, 8> kKnown = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_technique_webgl", "KHR_techniques_webgl",
-    "KHR_texture_basisu",    "KHR_lights_punctual",   "EXT_texture_webp",    "MSFT_texture_dds"};
+constexpr std::array<std::string_view, 9> kKnown = {
+    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_technique_webgl",
+    "KHR_techniques_webgl",  "KHR_texture_basisu",    "KHR_lights_punctual",
+    "EXT_texture_webp",      "MSFT_texture_dds",      "EXT_mesh_gpu_instancing"};
 
 Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
@@ -61,9 +62,7 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
     }
     // Optional extensions that change the surface.
     for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsUsed", {}))) {
-        if (name == "EXT_mesh_gpu_instancing") {
-            warnings.emplace_back("instances by EXT_mesh_gpu_instancing are left out; export them as nodes");
-        } else if (name == "KHR_node_visibility") {
+        if (name == "KHR_node_visibility") {
             warnings.emplace_back(
                 "nodes that KHR_node_visibility hides are baked too; export it without them");
         }
@@ -75,6 +74,8 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
 
 /// Tolerance of a rotation's length, as in the Khronos validator: the rounding of bytes.
 constexpr double kUnitTolerance = 0.00674;
+/// Of EXT_mesh_gpu_instancing, in a whole file.
+constexpr std::uint64_t kInstancesMax = 1'000'000;
 /// Tolerance of the last row of a matrix, 0 0 0 1.
 constexpr float kRowTolerance = 1e-5F;
 
@@ -98,10 +99,26 @@ glm::dmat3 rotationOf(const glm::dvec3& v, double w) {
             {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
 }
 
+/// First scaled, then turned, then moved. \param node  for messages.
+Result<Transform> placedBy(const GltfValue& node, const glm::vec3& t, const glm::vec4& q,
+                           const glm::vec3& scale) {
+    const double length =
+        std::sqrt(double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w);
+    if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
+        return node.wrong("has a rotation that is no unit quaternion: its length is " +
+                          shortest(static_cast<float>(length)));
+    }
+    Transform transform{rotationOf(glm::dvec3(q.x, q.y, q.z) / length, q.w / length), t};
+    for (int i = 0; i < 3; ++i) {
+        transform.linear[i] *= double{scale[i]};
+    }
+    return transform;
+}
+
 Result<Transform> transformOf(const GltfValue& node) {
     const std::vector<float> matrix = RELIEF_TRY(node.numbers("matrix", 16));
     const std::vector<float> t = RELIEF_TRY(node.numbers("translation", 3));
-    std::vector<float> q = RELIEF_TRY(node.numbers("rotation", 4));
+    const std::vector<float> q = RELIEF_TRY(node.numbers("rotation", 4));
     const std::vector<float> scale = RELIEF_TRY(node.numbers("scale", 3));
     if (!matrix.empty()) {
         if (!t.empty() || !q.empty() || !scale.empty()) {
@@ -111,21 +128,9 @@ Result<Transform> transformOf(const GltfValue& node) {
         return transform ? Result<Transform>(*transform)
                          : node.wrong("has a matrix whose last row is not 0 0 0 1 (is it transposed?)");
     }
-    if (q.empty()) {
-        q = {0, 0, 0, 1};
-    }
-    const double length =
-        std::sqrt(double{q[0]} * q[0] + double{q[1]} * q[1] + double{q[2]} * q[2] + double{q[3]} * q[3]);
-    if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
-        return node.wrong("has a rotation that is no unit quaternion: its length is " +
-                          shortest(static_cast<float>(length)));
-    }
-    Transform transform{rotationOf(glm::dvec3(q[0], q[1], q[2]) / length, q[3] / length), glm::dvec3(0.0)};
-    for (int i = 0; i < 3; ++i) {
-        transform.linear[i] *= scale.empty() ? 1.0F : scale[static_cast<std::size_t>(i)];
-        transform.offset[i] = t.empty() ? 0.0F : t[static_cast<std::size_t>(i)];
-    }
-    return transform;
+    return placedBy(node, t.empty() ? glm::vec3(0.0F) : glm::vec3(t[0], t[1], t[2]),
+                    q.empty() ? glm::vec4(0, 0, 0, 1) : glm::vec4(q[0], q[1], q[2], q[3]),
+                    scale.empty() ? glm::vec3(1.0F) : glm::vec3(scale[0], scale[1], scale[2]));
 }
 
 // --- primitives ---
@@ -272,9 +277,10 @@ class GltfReader {
   private:
     /// The members of a node that SceneNode lacks.
     struct Node {
-        std::optional<std::uint32_t> parent;
-        std::optional<GltfValue> mesh;
-        std::optional<GltfValue> skin;
+        GltfValue place;
+        std::optional<std::uint32_t> parent{};
+        std::optional<GltfValue> mesh{};
+        std::optional<GltfValue> skin{};
     };
     struct Primitive {
         ScenePart part;
@@ -297,7 +303,9 @@ class GltfReader {
 
     Result<void> readNodes() {
         const std::vector<GltfValue> places = RELIEF_TRY(document_.objects("nodes"));
-        nodes_.resize(places.size());
+        for (const GltfValue& place : places) {
+            nodes_.push_back({place});
+        }
         scene_.nodes.resize(places.size());
         for (const GltfValue& place : places) {
             const auto index = static_cast<std::uint32_t>(place.index());
@@ -383,6 +391,7 @@ class GltfReader {
         }
         for (const std::uint32_t index : shown) {
             RELIEF_TRY(placeMesh(nodes_[index], scene_.nodes[index]));
+            RELIEF_TRY(placeInstances(nodes_[index], index));
         }
         scene_.counts.meshes = RELIEF_TRY(document_.objects("meshes")).size();
         scene_.counts.unplaced = scene_.counts.meshes - meshes_.size();
@@ -417,6 +426,61 @@ class GltfReader {
             scene_.parts.push_back(posed(primitive.part, *primitive.influences, joints));
         }
         return {};
+    }
+
+    /// EXT_mesh_gpu_instancing: the node's mesh becomes that of a child for each instance, before its own children.
+    Result<void> placeInstances(const Node& from, std::uint32_t index) {
+        const std::optional<GltfValue> extensions = RELIEF_TRY(from.place.object("extensions"));
+        const std::optional<GltfValue> instancing =
+            extensions ? RELIEF_TRY(extensions->object("EXT_mesh_gpu_instancing")) : std::nullopt;
+        const std::optional<GltfValue> attributes =
+            instancing ? RELIEF_TRY(instancing->object("attributes")) : std::nullopt;
+        if (!attributes) {
+            return instancing ? Result<void>(instancing->wrong("has no attributes")) : Result<void>();
+        }
+        if (from.skin) {
+            warn("instances of a skinned mesh are left out; export them as nodes");
+            return {};
+        }
+        const auto moves =
+            RELIEF_TRY(instanceValues<glm::vec3>(*attributes, "TRANSLATION", GltfUse::kVectors));
+        const auto turns =
+            RELIEF_TRY(instanceValues<glm::vec4>(*attributes, "ROTATION", GltfUse::kRotations));
+        const auto scales = RELIEF_TRY(instanceValues<glm::vec3>(*attributes, "SCALE", GltfUse::kVectors));
+        const std::size_t count = std::max({moves.size(), turns.size(), scales.size()});
+        for (const std::size_t size : {moves.size(), turns.size(), scales.size()}) {
+            if (size != count && size != 0) {
+                return attributes->wrong("have other counts of TRANSLATION, ROTATION and SCALE");
+            }
+        }
+        if (count == 0) {
+            return attributes->wrong("have none of TRANSLATION, ROTATION and SCALE");
+        }
+        instances_ += count;
+        std::vector<std::uint32_t> children;
+        for (std::size_t i = 0; i < count; ++i) {
+            SceneNode node;
+            node.transform = RELIEF_TRY(placedBy(*attributes, moves.empty() ? glm::vec3(0.0F) : moves[i],
+                                                 turns.empty() ? glm::vec4(0, 0, 0, 1) : turns[i],
+                                                 scales.empty() ? glm::vec3(1.0F) : scales[i]));
+            node.shown = scene_.nodes[index].shown;
+            node.index = static_cast<std::uint32_t>(scene_.nodes.size());
+            node.parts = scene_.nodes[index].parts;
+            children.push_back(*node.index);
+            scene_.nodes.push_back(std::move(node));
+        }
+        SceneNode& node = scene_.nodes[index];
+        node.parts.clear();
+        node.children.insert(node.children.begin(), children.begin(), children.end());
+        return {};
+    }
+
+    /// Empty where there is no such attribute.
+    template <class T>
+    Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* name, GltfUse use) {
+        const std::optional<GltfValue> accessor = RELIEF_TRY(attributes.named(name, "accessors"));
+        return accessor ? readAccessor<T>(*accessor, use, buffers_, kInstancesMax - instances_)
+                        : Result<std::vector<T>>(std::vector<T>());
     }
 
     /// The transform of each joint of a skin, of vertices as they are modelled.
@@ -585,6 +649,7 @@ class GltfReader {
     bool all_jointed_ = true;
     std::map<Key, Vertices> vertices_;
     std::uint64_t vertex_count_ = 0;
+    std::uint64_t instances_ = 0;  // of EXT_mesh_gpu_instancing
 };
 
 }  // namespace

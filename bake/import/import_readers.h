@@ -35,7 +35,7 @@ namespace relief {
 ///
 /// Everything that the triangles of the shown scene depend on must conform to the specification: version,
 /// required extensions, JSON without equal keys, buffers (percent-encoded, base64, of their length), accessors (sparse ones,
-/// KHR_mesh_quantization), indices, modes, transforms, trees of nodes, skins. Skinned meshes
+/// KHR_mesh_quantization), instances (EXT_mesh_gpu_instancing), indices, modes, transforms, trees of nodes, skins. Skinned meshes
 /// have the pose of the nodes; morph targets are left out; both with a warning.
 [[nodiscard]] Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files);
 

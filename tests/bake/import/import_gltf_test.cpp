@@ -285,7 +285,7 @@ TEST(ImportGltf, VersionsAndExtensions) {
     expectError(load(asset(R"("version":"2.1","minVersion":"2.1")")), ErrorCode::kUnsupported,
                 "version '2.1'");
     expectError(load(asset(R"("version":"3.0")")), ErrorCode::kUnsupported, "version '3.0'");
-    for (const std::string name : {"EXT_mesh_gpu_instancing", "KHR_node_visibility"}) {
+    for (const std::string name : {"KHR_node_visibility"}) {
         const Result<TriangleMesh> mesh = loadParts({.more = R"("extensionsUsed":[")" + name + "\"],"});
         ASSERT_TRUE(mesh) << mesh.error().message;
         ASSERT_EQ(mesh->warnings.size(), 1U);
@@ -300,6 +300,36 @@ TEST(ImportGltf, VersionsAndExtensions) {
     expectWrong(replaced(tetrahedronGltf(), R"("asset")", R"("assets")"), "no glTF version");
     expectWrong(replaced(tetrahedronGltf(), R"({"asset")", R"({"extensionsRequired":{},"asset")"),
                 "extensionsRequired is not an array");
+}
+
+TEST(ImportGltf, InstancesAreRepeated) {
+    // At the corners of the tetrahedron, (0, 0, 0), (1, 0, 0), (0, 2, 0) and (0, 0, 3), within a node that is twice as large.
+    const auto node = [](const std::string& attributes, const std::string& more = "") {
+        return R"({"mesh":0,"scale":[2,2,2],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)" +
+               attributes + "}}}" + more + "}";
+    };
+    GltfParts parts{.nodes = node(R"("TRANSLATION":0)"),
+                    .more = R"("extensionsRequired":["EXT_mesh_gpu_instancing"],)"};
+    const Result<TriangleMesh> mesh = loadParts(parts);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->triangles.size(), 16U);
+    EXPECT_EQ(mesh->bounds.max, glm::vec3(4.0F, 8.0F, 12.0F));
+    EXPECT_TRUE(mesh->warnings.empty());
+
+    parts.nodes = node("");
+    expectPartsWrong(parts, "attributes have none of TRANSLATION");
+    parts.nodes = node(R"("TRANSLATION":1)");
+    expectPartsWrong(parts, "accessors[1] is not of type VEC3");
+    parts.nodes = node(R"("TRANSLATION":7)");
+    expectPartsWrong(parts, "accessors[7], which does not exist");
+    parts.nodes = R"({"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{}}})";
+    expectPartsWrong(parts, "has no attributes");
+    // The same floats as three vectors of four numbers, none of which is a rotation.
+    parts.indices += R"(},{"bufferView":0,"componentType":5126,"count":3,"type":"VEC4")";
+    parts.nodes = node(R"("ROTATION":2)");
+    expectPartsWrong(parts, "no unit quaternion");
+    parts.nodes = node(R"("TRANSLATION":0,"ROTATION":2)");
+    expectPartsWrong(parts, "other counts of TRANSLATION, ROTATION and SCALE");
 }
 
 TEST(ImportGltf, EqualKeysAndJsonThatIsNone) {

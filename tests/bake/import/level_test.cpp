@@ -187,6 +187,17 @@ TEST_F(Levels, MoreBodiesThanAWorldHoldsAreRefused) {
     EXPECT_NE(read.error().message.find("65536"), std::string::npos) << read.error().message;
 }
 
+TEST_F(Levels, InstancesAreBodies) {
+    const Level read = gltf(
+        R"({"mesh":0,"name":"trees","translation":[0,0,7],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}})",
+        "0");
+    EXPECT_EQ(read.meshes.size(), 1U);
+    ASSERT_EQ(read.bodies.size(), 4U);
+    EXPECT_EQ(read.bodies[3].node, "trees");
+    EXPECT_EQ(read.bodies[3].position, (std::array<double, 3>{0, 0, 10}));
+    expectSameCorners(read, folder_ / "l.gltf");
+}
+
 TEST_F(Levels, PlacesThatNoWorldHasAreRefused) {
     for (const char* place : {R"("translation":[1e20,0,0])", R"("translation":[1e39,0,0])",
                               R"("scale":[1e-12,1e-12,1e-12])", R"("scale":[1e12,1e12,1e12])"}) {
