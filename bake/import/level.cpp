@@ -45,8 +45,8 @@ bool fits(const TriangleMesh& all) {
 
 template <class T>
 std::vector<T> cut(const std::vector<T>& all, std::size_t first, std::size_t count) {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-    return all.empty() ? std::vector<T>() : std::vector<T>(begin, begin + static_cast<std::ptrdiff_t>(count));
+    const std::span<const T> part = all.empty() ? std::span<const T>() : std::span(all).subspan(first, count);
+    return {part.begin(), part.end()};
 }
 
 /// The labels of one mesh, and the names that these need.
