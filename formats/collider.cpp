@@ -140,4 +140,11 @@ std::optional<Bounds> insideBox(const Collider& collider) {
     return box;
 }
 
+Bounds solidBox(const Collider& collider) {
+    Bounds box = insideBox(collider).value_or(collider.bounds);
+    box.add(collider.bounds.min);
+    box.add(collider.bounds.max);
+    return box;
+}
+
 }  // namespace relief

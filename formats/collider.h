@@ -92,5 +92,8 @@ struct InsideSample {
 
 /// A box that holds all that is inside, by the volumes of maps that know what lies beyond them; none where no map does.
 [[nodiscard]] std::optional<Bounds> insideBox(const Collider& collider);
+/// The box of the mesh and of all that is inside, as far as the maps know it. Ground goes deeper than the mesh that it stands
+/// for, and so than the bounds.
+[[nodiscard]] Bounds solidBox(const Collider& collider);
 
 }  // namespace relief

@@ -13,7 +13,6 @@
 #include <string>
 
 #include "formats/nearest_surface.h"
-#include "formats/patch_tree.h"
 #include "formats/polygons/ply_bytes.h"
 #include "runtime/vdb/vdb_writer.h"
 
@@ -30,14 +29,6 @@ constexpr char kBeside = 2;
 
 constexpr double kIndexMax = 0x1p30;  // of a voxel, from the origin
 constexpr double kCellsMax = 0x1p31;
-
-/// A box that holds all that is inside. Ground goes deeper than the mesh that it stands for, and so than the bounds.
-Bounds boxOf(const Collider& collider) {
-    Bounds box = insideBox(collider).value_or(collider.bounds);
-    box.add(collider.bounds.min);
-    box.add(collider.bounds.max);
-    return box;
-}
 
 /// The voxels about a collider: on which side each is, and which are of the band.
 class Voxels {
@@ -218,7 +209,7 @@ Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& o
     }
     Voxels voxels = RELIEF_TRY(Voxels::create(collider, collider.bounds, options.voxels));
     if (!voxels.closed()) {
-        voxels = RELIEF_TRY(Voxels::create(collider, boxOf(collider), options.voxels));
+        voxels = RELIEF_TRY(Voxels::create(collider, solidBox(collider), options.voxels));
     }
     if (!voxels.anyInside()) {
         return invalidInput(

@@ -21,7 +21,7 @@ glm::quat rotationOf(const WorldBody& body) {
 WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
     for (std::size_t i = 0; i < world().bodies.size(); ++i) {
         const WorldBody& body = world().bodies[i];
-        const Bounds& box = colliderOf(i).bounds;
+        const Bounds box = solidBox(colliderOf(i));
         Bounds placed;
         for (int corner = 0; corner < 8; ++corner) {
             const glm::vec3 at{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,

@@ -234,5 +234,18 @@ TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
               std::vector<std::uint32_t>{2});
 }
 
+TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {
+    collider_.bounds.min.y = 0.4F;  // the mesh is the top of the solid
+    const std::vector<std::byte> bytes = test::written(collider_);
+    ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
+    world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
+    Result<LoadedWorld> loaded = load();
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    const WorldField field(*std::move(loaded));
+    const glm::vec3 below(0.01F, -0.3F, 0.02F);
+    EXPECT_TRUE(field.evaluate(below).inside());
+    EXPECT_EQ(field.bodiesIn({below, below}), std::vector<std::uint32_t>{0});
+}
+
 }  // namespace
 }  // namespace relief
