@@ -52,14 +52,6 @@ Result<TriangleMesh> importFor(const std::vector<std::string>& names, const Chec
     return mesh;
 }
 
-/// A thickness is recorded with every sheet that was baked. Sheets that a repair has replaced take that of the default
-/// budget, whatever the bake's: the repaired mesh is compared with the same solid at each.
-Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh) {
-    recorded.budget.reset();
-    recorded.voids = voidsOf(recorded);
-    return makeSolid(recorded, mesh);
-}
-
 Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> given, MeshCheck& run) {
     run.recorded = recordedBake(run.collider.provenance.options);
     const BakeRequest& recorded = run.recorded.request;
@@ -142,6 +134,12 @@ Result<void> measure(const CheckRequest& request, MeshCheck& run) {
 }
 
 }  // namespace
+
+Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh) {
+    recorded.budget.reset();
+    recorded.voids = voidsOf(recorded);
+    return makeSolid(recorded, mesh);
+}
 
 bool MeshCheck::passes(std::optional<float> max_error) const {
     return !max_error || (original.accuracy.field.near.total() <= double{*max_error} &&

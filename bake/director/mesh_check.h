@@ -85,6 +85,11 @@ struct MeshCheck {
     [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 
+/// The solid that was baked of a mesh. A thickness is recorded with every sheet. Sheets that a repair has replaced take that of
+/// the default budget, whatever the bake's: the repaired mesh is compared with the same solid at each.
+/// Errors: those of makeSolid.
+[[nodiscard]] Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh);
+
 /// The same of the mesh as the recorded repair leaves it.
 /// Errors: those of repairMesh and makeSolid; kUnsupported: a repair that takes too long to be made again.
 [[nodiscard]] Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh);

@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// What a triangle of a union keeps out: kNothing where free space on both sides was asked for.
+/// The kinds of triangles of a union by the space that they close off: kNothing where free space on both sides was asked for.
 enum class Wall : std::uint8_t { kSolid, kSheet, kNothing };
 
 /// Free space that leads outside only through a sheet, or through openings that lie between the nodes of a grid and let at

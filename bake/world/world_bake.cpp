@@ -167,7 +167,7 @@ class WorldBaker {
             BakeRequest request = requestOf(request_.bake, names_, mesh);
             request.budget = collider.budget;
             BakeCacheEntry entry{tool_, optionWords(request, request_.compress), {}, "", 0};
-            // What the import's options do is in the mesh already.
+            // The import's options have done their work on the mesh.
             request.import = {};
             request.import_limits = {};
             request.threads.reset();
@@ -295,7 +295,7 @@ class WorldBaker {
             return {};
         }
         const std::string text = worldText(world);
-        // What no reader would take must not be written: a scale or a place that floats do not hold.
+        // A world that no reader would take must not be written: scales or places that floats do not hold.
         const Result<World> read = parseWorld(text);
         if (!read) {
             return fail(read.error().code, level_.name + ": " + read.error().message);

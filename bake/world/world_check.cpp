@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 
-#include "bake/director/director.h"
 #include "bake/import/level.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
@@ -116,11 +115,8 @@ class WorldChecker {
                     "' that no collider of the world was baked from; bake the level again, or give "
                     "--mesh the level that it was baked from");
             }
-            BakeRequest recorded = recorded_[*collider];
-            recorded.budget.reset();
-            recorded.voids = voidsOf(recorded);
             Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
-            const ShapedMesh shaped = RELIEF_TRY(makeSolid(recorded, winding.mesh));
+            const ShapedMesh shaped = RELIEF_TRY(recordedSolid(recorded_[*collider], winding.mesh));
             queries_.push_back(RELIEF_TRY(MeshQuery::build(shaped.mesh)));
             static_cast<void>(queries_.back().prepared().areas());  // before threads do
         }

@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// What the world is, and how wrong. \param accuracy  null without a level.
+/// The contents of the world, and how wrong it is. \param accuracy  null without a level.
 [[nodiscard]] std::string worldCheckText(const WorldField& field, const std::string& name,
                                          const WorldAccuracy* accuracy);
 

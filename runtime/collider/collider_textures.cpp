@@ -75,8 +75,9 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         TableBody& added = placed.emplace_back();
         added.pose = body.pose;
         added.response = glm::vec4(body.pose.scale, body.restitution, 1.0F - body.friction, 0.0F);
-        const auto [same, is_new] = known.try_emplace(body.collider, number);
-        if (body.live || is_new) {
+        // A live one has texels of its own.
+        const auto same = body.live ? known.end() : known.find(body.collider);
+        if (same == known.end()) {
             added.box = insideBox(*body.collider);
             added.maps[0] = static_cast<std::int32_t>(maps.size());
             added.maps[1] = static_cast<std::int32_t>(body.collider->maps.size());
@@ -87,8 +88,8 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
             added.box = placed[same->second].box;
             std::copy_n(placed[same->second].maps, 2, added.maps);
         }
-        if (body.live && is_new) {
-            known.erase(same);  // it has texels of its own
+        if (!body.live) {
+            known.try_emplace(body.collider, number);
         }
         added.maps[2] = body.live ? 1 : 0;
         added.maps[3] = std::int32_t{1} << group;
