@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -23,11 +23,11 @@ int exponentOf(const BodyBox& box, float cell_size) {
     if (box.unbounded) {
         return kUnbounded;
     }
-    const glm::vec3 size = box.high - box.low;
-    const glm::vec3 most = glm::max(glm::abs(box.low), glm::abs(box.high));
+    const glm::vec3 extent = box.extent();
+    const glm::vec3 most = glm::abs(box.center) + extent;
+    const float side = 2.0F * std::max({extent.x, extent.y, extent.z});
     const float far = std::max({most.x, most.y, most.z});
-    const float least =
-        std::max({cell_size * size.x, cell_size * size.y, cell_size * size.z, far / kCellsMax, 1e-30F});
+    const float least = std::max({cell_size * side, far / kCellsMax, 1e-30F});
     return static_cast<int>(std::ceil(std::log2(least)));
 }
 
@@ -58,14 +58,69 @@ std::map<int, std::vector<std::uint32_t>> levelsOf(std::span<const BodyBox> boxe
     return levels;
 }
 
-std::uint32_t packed(const glm::uvec3& place) {
-    return place.x | place.y << 8U | place.z << 16U;
-}
+/// The cells of a level that a box meets, as it is turned.
+class MetCells {
+  public:
+    MetCells(const BodyBox& box, float cell_size) : box_(box), cell_size_(cell_size) {
+        for (int i = 0; i < 3; ++i) {
+            const float length = glm::length(box.half[i]);
+            axis_[i] = length > 0.0F ? box.half[i] / length : glm::vec3(0.0F);
+            const float of_cell = glm::dot(glm::abs(axis_[i]), glm::vec3(0.5F * cell_size));
+            reach_[i] = length + box.margin + of_cell;
+        }
+    }
+    /// False where a side of the box parts it from the cell.
+    [[nodiscard]] bool has(const glm::ivec3& cell) const {
+        const glm::vec3 from = (glm::vec3(cell) + 0.5F) * cell_size_ - box_.center;
+        return std::abs(glm::dot(from, axis_[0])) <= reach_[0] &&
+               std::abs(glm::dot(from, axis_[1])) <= reach_[1] &&
+               std::abs(glm::dot(from, axis_[2])) <= reach_[2];
+    }
+    template <class Visit>
+    void forEach(const Visit& visit) const {
+        const glm::ivec3 low(glm::floor((box_.center - box_.extent()) / cell_size_));
+        const glm::ivec3 high(glm::floor((box_.center + box_.extent()) / cell_size_));
+        for (int z = low.z; z <= high.z; ++z) {
+            for (int y = low.y; y <= high.y; ++y) {
+                for (int x = low.x; x <= high.x; ++x) {
+                    if (const glm::ivec3 cell(x, y, z); has(cell)) {
+                        visit(cell);
+                    }
+                }
+            }
+        }
+    }
 
-struct Placed {
-    std::uint32_t list;
-    BodyGrid::Entry entry;
+  private:
+    const BodyBox& box_;
+    float cell_size_;
+    glm::vec3 axis_[3];
+    float reach_[3] = {};
 };
+
+/// Adds a level of these entries. \param lists  how many, a power of two.
+void addLevel(BodyGrid& grid, float cells_per_unit, std::uint32_t lists,
+              std::span<const BodyGrid::Entry> entries) {
+    const BodyGrid::Level level{cells_per_unit, static_cast<std::uint32_t>(grid.lists.size()), lists - 1};
+    const auto listOf = [&](const BodyGrid::Entry& entry) -> BodyGrid::List& {
+        return grid.lists[level.first + (entry.hash & level.mask)];
+    };
+    grid.lists.resize(grid.lists.size() + lists);
+    for (const BodyGrid::Entry& entry : entries) {
+        ++listOf(entry).end;
+    }
+    auto end = static_cast<std::uint32_t>(grid.entries.size());
+    for (std::size_t i = level.first; i < grid.lists.size(); ++i) {
+        const std::uint32_t count = grid.lists[i].end;
+        grid.lists[i] = {end, end};
+        end += count;
+    }
+    grid.entries.resize(end);
+    for (const BodyGrid::Entry& entry : entries) {
+        grid.entries[listOf(entry).end++] = entry;
+    }
+    grid.levels.push_back(level);
+}
 
 }  // namespace
 
@@ -78,59 +133,27 @@ std::uint32_t cellHash(const glm::ivec3& cell) {
     return h ^ (h >> 13U);
 }
 
-glm::uvec3 placeInCell(const glm::vec3& p, float cells_per_unit, const glm::ivec3& cell) {
-    // Each step rises with p, and a power of 2 scales without rounding: what lies between two points stays between them.
-    return glm::uvec3(glm::clamp(256.0F * (p * cells_per_unit - glm::vec3(cell)), 0.0F, 255.0F));
-}
-
 BodyGrid BodyGrid::of(std::span<const BodyBox> boxes, float cell_size) {
     BodyGrid grid;
+    std::vector<Entry> entries;
     for (const auto& [exponent, indices] : levelsOf(boxes, cell_size)) {
-        Level level;
-        level.first = static_cast<std::uint32_t>(grid.lists.size());
+        entries.clear();
         const bool bounded = exponent != kUnbounded;
-        level.cells_per_unit = bounded ? std::ldexp(1.0F, -exponent) : 0.0F;
-        std::vector<Placed> placed;
         for (const std::uint32_t index : indices) {
-            const BodyBox& box = boxes[index];
-            const auto cellOf = [&](const glm::vec3& p) {
-                return bounded ? glm::ivec3(glm::floor(p * level.cells_per_unit)) : glm::ivec3(0);
-            };
-            const glm::ivec3 low = cellOf(box.low);
-            const glm::ivec3 high = cellOf(box.high);
-            for (int z = low.z; z <= high.z; ++z) {
-                for (int y = low.y; y <= high.y; ++y) {
-                    for (int x = low.x; x <= high.x; ++x) {
-                        const glm::ivec3 cell(x, y, z);
-                        const auto place = [&](const glm::vec3& p) {
-                            return packed(placeInCell(p, level.cells_per_unit, cell));
-                        };
-                        placed.push_back({0,
-                                          {box.body, bounded ? place(box.low) : 0,
-                                           bounded ? place(box.high) : 0xffffffU, cellHash(cell)}});
-                    }
-                }
+            const std::uint32_t body = boxes[index].body;
+            if (bounded) {
+                MetCells(boxes[index], std::ldexp(1.0F, exponent)).forEach([&](const glm::ivec3& cell) {
+                    entries.push_back({body, cellHash(cell)});
+                });
+            } else {
+                entries.push_back({body, cellHash(glm::ivec3(0))});
             }
         }
-        while (bounded && level.mask + 1 < kListsPerEntry * placed.size()) {
-            level.mask = 2 * level.mask + 1;
+        std::uint32_t lists = 1;
+        while (bounded && lists < kListsPerEntry * entries.size()) {
+            lists *= 2;
         }
-        for (Placed& one : placed) {
-            one.list = one.entry.hash & level.mask;
-        }
-        std::stable_sort(placed.begin(), placed.end(),
-                         [](const Placed& a, const Placed& b) { return a.list < b.list; });
-        grid.lists.resize(level.first + level.mask + 1);
-        for (std::size_t k = 0; k < placed.size();) {
-            const std::uint32_t list = placed[k].list;
-            List& range = grid.lists[level.first + list];
-            range.first = static_cast<std::uint32_t>(grid.entries.size());
-            for (; k < placed.size() && placed[k].list == list; ++k) {
-                grid.entries.push_back(placed[k].entry);
-            }
-            range.end = static_cast<std::uint32_t>(grid.entries.size());
-        }
-        grid.levels.push_back(level);
+        addLevel(grid, bounded ? std::ldexp(1.0F, -exponent) : 0.0F, lists, entries);
     }
     return grid;
 }

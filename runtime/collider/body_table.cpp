@@ -11,13 +11,20 @@
 namespace relief {
 namespace {
 
+static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
 static_assert(sizeof(BlockBody) == kWorldBodyTexels * sizeof(glm::uvec4));
 static_assert(2 * kGridLevelsMax <= kWorldLevels);
 
 /// How much larger boxes are than they should be, for the rounding of poses and rows: of their coordinates.
 constexpr float kSlack = 1e-5F;
-/// Cells of the grid of bodies that move are larger: it is uploaded at each step.
+/// Cells of the grids (BodyGrid::of). Of many bodies they are larger, for the memory, and of those that move, since all are
+/// uploaded at each step.
+constexpr float kCells = 0.25F;
+constexpr float kCellsOfMany = 0.5F;
+constexpr std::size_t kMany = 16'384;
 constexpr float kMovingCells = 1.4F;
+/// The body of a list without entries.
+constexpr std::uint32_t kNoBody = 0xffffffffU;
 /// Room for the grid of bodies that move, in shares of what it needs.
 constexpr std::size_t kRoom = 2;
 
@@ -25,42 +32,56 @@ BodyBox boxOf(const TableBody& body, std::uint32_t index, float reach) {
     if (!body.box) {
         return {.body = index, .unbounded = true};
     }
-    const glm::mat3 turn = glm::mat3_cast(body.pose.rotation);
-    const glm::vec3 center = toWorld(body.pose, body.box->center());
-    const glm::vec3 half = 0.5F * body.pose.scale * glm::max(body.box->size(), glm::vec3(0.0F));
-    const glm::vec3 far = body.pose.scale * glm::max(glm::abs(body.box->min), glm::abs(body.box->max));
-    glm::vec3 extent = half.x * glm::abs(turn[0]) + half.y * glm::abs(turn[1]) + half.z * glm::abs(turn[2]);
-    extent += reach + kSlack * (std::max({far.x, far.y, far.z}) + glm::abs(body.pose.position) + reach);
-    return {center - extent, center + extent, index, false};
-}
-
-bool sameRows(const BlockBody& block) {
-    return std::equal(std::begin(block.row), std::end(block.row), std::begin(block.before));
+    const Pose& pose = body.pose;
+    const glm::mat3 turn = glm::mat3_cast(pose.rotation);
+    const glm::vec3 half = 0.5F * pose.scale * glm::max(body.box->size(), glm::vec3(0.0F));
+    const glm::vec3 far = pose.scale * glm::max(glm::abs(body.box->min), glm::abs(body.box->max)) +
+                          glm::abs(pose.position) + reach;
+    return {toWorld(pose, body.box->center()),
+            glm::mat3(half.x * turn[0], half.y * turn[1], half.z * turn[2]),
+            reach + kSlack * std::max({far.x, far.y, far.z}), index, false};
 }
 
 }  // namespace
 
-BodyTable::BodyTable(std::span<const std::byte> maps, std::vector<TableBody> bodies)
+BodyTable::BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, WorldKind kind)
     : bodies_(std::move(bodies)), moves_(bodies_.size(), 0), settles_(bodies_.size(), 0) {
-    first_body_ = maps.size() / sizeof(glm::uvec4);
+    const bool placed = kind == WorldKind::kPlaced;
+    first_body_ = kWorldMapTexels * (placed ? bodies_.size() : maps.size());
     words_.resize(first_body_ + kWorldBodyTexels * bodies_.size());
-    std::memcpy(words_.data(), maps.data(), maps.size());
+    if (placed) {
+        maps_ = std::move(maps);
+    } else {
+        std::memcpy(words_.data(), maps.data(), maps.size() * sizeof(BlockMap));
+    }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const TableBody& body = bodies_[i];
-        BlockBody block{};
-        writeRows(body.pose, block.row);
-        writeRows(body.pose, block.before);
-        block.response = body.response;
-        std::copy(std::begin(body.maps), std::end(body.maps), std::begin(block.maps));
-        std::memcpy(&words_[first_body_ + kWorldBodyTexels * i], &block, sizeof(block));
+        place(i, bodies_[i].pose);
     }
     arrange();
+}
+
+void BodyTable::place(std::size_t index, const Pose& before) {
+    const TableBody& body = bodies_[index];
+    const bool placed = !maps_.empty();
+    if (placed) {
+        const BlockMap map = placedMap(maps_[body.first_map], body.pose);
+        std::memcpy(&words_[kWorldMapTexels * index], &map, sizeof(map));
+    }
+    BlockBody block{
+        {static_cast<std::int32_t>(placed ? index : body.first_map), static_cast<std::int32_t>(body.maps),
+         body.live ? 1 : 0, std::int32_t{1} << body.group},
+        {body.pose.scale, body.restitution, 1.0F - body.friction, before == body.pose ? 0.0F : 1.0F},
+        {},
+        {}};
+    writeRows(body.pose, block.row);
+    writeMove(before, body.pose, block.move);
+    std::memcpy(&words_[first_body_ + kWorldBodyTexels * index], &block, sizeof(block));
 }
 
 std::vector<BodyBox> BodyTable::boxes(bool moving) const {
     std::vector<BodyBox> boxes;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        if ((moves_[i] != 0) == moving && bodies_[i].maps[1] > 0) {
+        if ((moves_[i] != 0) == moving && bodies_[i].maps > 0) {
             boxes.push_back(boxOf(bodies_[i], static_cast<std::uint32_t>(i), reach_));
         }
     }
@@ -80,19 +101,24 @@ std::size_t BodyTable::write(const BodyGrid& grid, std::size_t first, std::vecto
     }
     const std::size_t first_entry = first + grid.lists.size();
     for (std::size_t i = 0; i < grid.lists.size(); ++i) {
-        words_[first + i] =
-            glm::uvec4(first_entry + grid.lists[i].first, first_entry + grid.lists[i].end, 0, 0);
+        // The first one is beside the range of the others, which saves most points a look.
+        const BodyGrid::List& list = grid.lists[i];
+        const bool any = list.first < list.end;
+        const BodyGrid::Entry entry = any ? grid.entries[list.first] : BodyGrid::Entry{kNoBody, 0};
+        words_[first + i] = glm::uvec4(first_entry + list.first + (any ? 1 : 0), first_entry + list.end,
+                                       entry.body, entry.hash);
     }
     for (std::size_t i = 0; i < grid.entries.size(); ++i) {
         const BodyGrid::Entry& entry = grid.entries[i];
-        words_[first_entry + i] = glm::uvec4(entry.body, entry.low, entry.high, entry.hash);
+        words_[first_entry + i] = glm::uvec4(entry.body, entry.hash, 0, 0);
     }
     return end;
 }
 
 void BodyTable::arrange() {
     words_.resize(first_body_ + kWorldBodyTexels * bodies_.size());
-    first_moving_ = write(BodyGrid::of(boxes(false)), words_.size(), still_levels_);
+    const float cells = bodies_.size() <= kMany ? kCells : kCellsOfMany;
+    first_moving_ = write(BodyGrid::of(boxes(false), cells), words_.size(), still_levels_);
     const std::size_t end = write(BodyGrid::of(boxes(true), kMovingCells), first_moving_, moving_levels_);
     const std::size_t room = first_moving_ + kRoom * (end - first_moving_);
     log2_width_ = 0;
@@ -125,14 +151,9 @@ bool BodyTable::setPoses(std::span<const Pose> poses) {
         if (!moved && settles_[i] == 0) {
             continue;
         }
-        bodies_[i].pose = moved ? poses[i] : bodies_[i].pose;
-        BlockBody block;
-        glm::uvec4* const words = &words_[first_body_ + kWorldBodyTexels * i];
-        std::memcpy(&block, words, sizeof(block));
-        std::copy(std::begin(block.row), std::end(block.row), std::begin(block.before));
-        writeRows(bodies_[i].pose, block.row);
-        std::memcpy(words, &block, sizeof(block));
-        settles_[i] = sameRows(block) ? 0 : 1;
+        const Pose before = std::exchange(bodies_[i].pose, moved ? poses[i] : bodies_[i].pose);
+        place(i, before);
+        settles_[i] = moved ? 1 : 0;
         anew = anew || (moved && moves_[i] == 0);
         moves_[i] = moved ? 1 : moves_[i];
         moved_any = moved_any || moved;
@@ -142,6 +163,9 @@ bool BodyTable::setPoses(std::span<const Pose> poses) {
     }
     if (first < end) {
         changes_.push_back({first_body_ + kWorldBodyTexels * first, first_body_ + kWorldBodyTexels * end});
+        if (!maps_.empty()) {
+            changes_.push_back({kWorldMapTexels * first, kWorldMapTexels * end});
+        }
     }
     if (anew) {
         arrange();

@@ -20,15 +20,20 @@ namespace relief {
 /// A body and its place in the table.
 struct TableBody {
     Pose pose;
-    glm::vec4 response{0.0F};             ///< as world.glsl has it
-    std::int32_t maps[4] = {0, 0, 0, 0};  ///< the same
-    std::optional<Bounds> box;            ///< insideBox of its collider
+    float restitution = 1.0F;
+    float friction = 0.0F;
+    std::uint32_t first_map = 0;  ///< of those that the table is made with
+    std::uint32_t maps = 0;
+    bool live = false;
+    std::uint32_t group = 0;
+    std::optional<Bounds> box;  ///< insideBox of its collider
 };
 
 class BodyTable {
   public:
-    /// \param maps  blockMaps of all.
-    BodyTable(std::span<const std::byte> maps, std::vector<TableBody> bodies);
+    /// \param maps  blockMaps of all; bodies may share some.
+    /// \param kind  not kNone.
+    BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, WorldKind kind);
 
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     [[nodiscard]] const TableBody& operator[](std::size_t body) const { return bodies_[body]; }
@@ -58,11 +63,14 @@ class BodyTable {
 
   private:
     [[nodiscard]] std::vector<BodyBox> boxes(bool moving) const;
+    /// Writes a body, and its map where that is placed. \param before  its pose at the beginning of the step.
+    void place(std::size_t body, const Pose& before);
     void arrange();
     void placeMoving();
     /// Writes a grid from this texel on. \return the texel after it.
     std::size_t write(const BodyGrid& grid, std::size_t first, std::vector<glm::ivec4>& levels);
 
+    std::vector<BlockMap> maps_;  // where they are placed
     std::vector<TableBody> bodies_;
     std::vector<std::uint8_t> moves_;    // has moved since it was made
     std::vector<std::uint8_t> settles_;  // moved in the last call

@@ -10,14 +10,6 @@
 namespace relief {
 namespace {
 
-/// The shader's ReliefMap, std140.
-struct BlockMap {
-    glm::vec4 row[3];
-    glm::vec4 column[3];
-    glm::vec4 object_per_map;
-    std::int32_t place[4];
-    std::int32_t info[4];
-};
 static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
 
 std::int32_t flagsOf(const PlacedMap& placed) {
@@ -88,35 +80,59 @@ void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
     }
 }
 
+void writeMove(const Pose& from, const Pose& to, glm::vec4 (&rows)[3]) {
+    // In double: the two translations nearly cancel.
+    const double scale = double{to.scale} / double{from.scale};
+    const glm::dmat3 turn =
+        scale * glm::mat3_cast(glm::dquat(to.rotation) * glm::conjugate(glm::dquat(from.rotation)));
+    const glm::dvec3 shift = glm::dvec3(to.position) - turn * glm::dvec3(from.position);
+    for (int i = 0; i < 3; ++i) {
+        rows[i] = glm::vec4(glm::dvec4(turn[0][i], turn[1][i], turn[2][i], shift[i]));
+    }
+}
+
+BlockMap placedMap(const BlockMap& map, const Pose& pose) {
+    const glm::dmat3 turn = glm::mat3_cast(glm::dquat(pose.rotation));
+    const double scale = pose.scale;
+    BlockMap placed = map;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 row = turn * glm::dvec3(map.row[i]) / scale;
+        placed.row[i] =
+            glm::vec4(glm::dvec4(row, double{map.row[i].w} - glm::dot(row, glm::dvec3(pose.position))));
+        placed.column[i] = glm::vec4(glm::vec3(scale * (turn * glm::dvec3(map.column[i]))), map.column[i].w);
+    }
+    placed.object_per_map.x *= pose.scale;
+    return placed;
+}
+
 glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout) {
     return {static_cast<int>(maps.size()), layout.textures[kFloatTexels].log2Width(),
             layout.textures[kFixedTexels].log2Width(), layout.textures[kFrontBackTexels].log2Width()};
 }
 
-std::vector<std::byte> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout) {
-    std::vector<std::byte> bytes(maps.size() * sizeof(BlockMap));
+std::vector<BlockMap> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout) {
+    std::vector<BlockMap> block;
     for (std::size_t m = 0; m < maps.size(); ++m) {
-        const BlockMap map = blockMap(maps[m], layout.places[m]);
-        std::memcpy(bytes.data() + m * sizeof(BlockMap), &map, sizeof(BlockMap));
+        block.push_back(blockMap(maps[m], layout.places[m]));
     }
-    return bytes;
+    return block;
 }
 
 std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapLayout& layout) {
     const glm::ivec4 head = blockHead(maps, layout);
-    std::vector<std::byte> block(sizeof(head));
+    const std::vector<BlockMap> of_maps = blockMaps(maps, layout);
+    std::vector<std::byte> block(sizeof(head) + of_maps.size() * sizeof(BlockMap));
     std::memcpy(block.data(), &head, sizeof(head));
-    const std::vector<std::byte> bytes = blockMaps(maps, layout);
-    block.insert(block.end(), bytes.begin(), bytes.end());
+    std::memcpy(block.data() + sizeof(head), of_maps.data(), of_maps.size() * sizeof(BlockMap));
     return block;
 }
 
-std::string colliderDefines(bool world, std::span<const PlacedMap> maps, const MapLayout& layout) {
+std::string colliderDefines(WorldKind world, std::span<const PlacedMap> maps, const MapLayout& layout) {
     std::string defines;
     const auto define = [&](const std::string& name, const std::string& value = {}) {
         defines += "#define RELIEF_" + name + " " + value + "\n";
     };
-    if (!world) {
+    if (world == WorldKind::kNone) {
         define("MAP_CAPACITY", std::to_string(maps.size()));
     }
     const auto log2Width = [&](TexelKind kind) { return std::to_string(layout.textures[kind].log2Width()); };
@@ -125,10 +141,11 @@ std::string colliderDefines(bool world, std::span<const PlacedMap> maps, const M
     if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& one) { return one.live; })) {
         define("LIVE", "1");
     }
-    if (world) {
-        define("BODIES", "1");
-    } else {
+    if (world == WorldKind::kNone) {
         define("VOTES", unrolledVotes(maps));
+    } else {
+        define("BODIES", "1");
+        define("PLACED", world == WorldKind::kPlaced ? "1" : "0");
     }
     std::int32_t all = ~0;
     for (const PlacedMap& one : maps) {

@@ -37,6 +37,13 @@ Result<void> checkMapCount(std::size_t maps, bool world) {
     return {};
 }
 
+WorldKind worldKind(std::span<const PlacedMap> maps, std::span<const TableBody> bodies) {
+    const bool placed = std::all_of(bodies.begin(), bodies.end(), [&](const TableBody& body) {
+        return body.maps == 1 && maps[body.first_map].map->format == MapFormat::kPatches;
+    });
+    return bodies.empty() ? WorldKind::kNone : placed ? WorldKind::kPlaced : WorldKind::kAny;
+}
+
 }  // namespace
 
 Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
@@ -74,25 +81,27 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         }
         TableBody& added = placed.emplace_back();
         added.pose = body.pose;
-        added.response = glm::vec4(body.pose.scale, body.restitution, 1.0F - body.friction, 0.0F);
+        added.restitution = body.restitution;
+        added.friction = body.friction;
+        added.live = body.live;
+        added.group = group;
         // A live one has texels of its own.
         const auto same = body.live ? known.end() : known.find(body.collider);
         if (same == known.end()) {
             added.box = insideBox(*body.collider);
-            added.maps[0] = static_cast<std::int32_t>(maps.size());
-            added.maps[1] = static_cast<std::int32_t>(body.collider->maps.size());
+            added.first_map = static_cast<std::uint32_t>(maps.size());
+            added.maps = static_cast<std::uint32_t>(body.collider->maps.size());
             for (const DepthMap& map : body.collider->maps) {
                 maps.push_back({&map, body.live});
             }
         } else {
             added.box = placed[same->second].box;
-            std::copy_n(placed[same->second].maps, 2, added.maps);
+            added.first_map = placed[same->second].first_map;
+            added.maps = placed[same->second].maps;
         }
         if (!body.live) {
             known.try_emplace(body.collider, number);
         }
-        added.maps[2] = body.live ? 1 : 0;
-        added.maps[3] = std::int32_t{1} << group;
     }
     return upload(maps, std::move(placed));
 }
@@ -127,11 +136,16 @@ void ColliderTextures::updateWorld() const {
                                         GL_UNSIGNED_INT, words.data());
     } else {
         useTexture(0, world_->texture);
+        glBindBuffer(GL_PIXEL_UNPACK_BUFFER, world_->upload.name());
         for (const auto& [first, end] : changes) {
+            // By way of a new buffer: the step before may still read the texture, and this must not wait for it.
+            const std::span<const glm::uvec4> rows = words.subspan(first * width, (end - first) * width);
+            glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(rows.size_bytes()), rows.data(),
+                         GL_STREAM_DRAW);
             glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(first), static_cast<GLsizei>(width),
-                            static_cast<GLsizei>(end - first), GL_RGBA_INTEGER, GL_UNSIGNED_INT,
-                            words.subspan(first * width).data());
+                            static_cast<GLsizei>(end - first), GL_RGBA_INTEGER, GL_UNSIGNED_INT, nullptr);
         }
+        glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     }
     std::vector<glm::ivec4> block = bodies.block();
     block.insert(block.begin(), world_->head);
@@ -149,7 +163,8 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     ColliderTextures result;
     result.places_ = layout.places;
     result.map_count_ = static_cast<int>(maps.size());
-    result.defines_ = colliderDefines(world, maps, layout);
+    const WorldKind world_kind = worldKind(maps, bodies);
+    result.defines_ = colliderDefines(world_kind, maps, layout);
 
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     forgetGlErrors();
@@ -165,8 +180,11 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     }
     result.block_ = makeBuffer();
     if (world) {
-        result.world_ = std::make_unique<World>(
-            World{BodyTable(blockMaps(maps, layout), std::move(bodies)), blockHead(maps, layout), {}});
+        result.world_ =
+            std::make_unique<World>(World{BodyTable(blockMaps(maps, layout), std::move(bodies), world_kind),
+                                          blockHead(maps, layout),
+                                          {},
+                                          makeBuffer()});
         result.updateWorld();
     } else {
         const std::vector<std::byte> block = colliderBlock(maps, layout);
@@ -180,11 +198,11 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
 
 std::vector<LiveSlot> ColliderTextures::liveSlots(std::size_t body) const {
     std::vector<LiveSlot> slots;
-    if (body >= bodyCount() || world_->bodies[body].maps[2] == 0) {
+    if (body >= bodyCount() || !world_->bodies[body].live) {
         return slots;
     }
-    const auto first = static_cast<std::size_t>(world_->bodies[body].maps[0]);
-    for (std::size_t m = first; m < first + static_cast<std::size_t>(world_->bodies[body].maps[1]); ++m) {
+    const std::size_t first = world_->bodies[body].first_map;
+    for (std::size_t m = first; m < first + world_->bodies[body].maps; ++m) {
         const MapPlace& place = places_[m];
         slots.push_back({&textures_[place.kind], place.texels.x, place.texels.y, &textures_[kFloatTexels],
                          place.motion.x, place.motion.y});

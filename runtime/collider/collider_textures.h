@@ -113,6 +113,7 @@ class ColliderTextures {
         BodyTable bodies;
         glm::ivec4 head{0};  // of the block
         GlTexture texture;
+        GlBuffer upload;
     };
     /// Takes over what has changed in world_.
     void updateWorld() const;

@@ -127,7 +127,7 @@ Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max) {
     }
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, side_max));
     return GpuImage{mapTextures(maps, layout), colliderBlock(maps, layout),
-                    colliderDefines(false, maps, layout)};
+                    colliderDefines(WorldKind::kNone, maps, layout)};
 }
 
 }  // namespace relief

@@ -1,13 +1,16 @@
 // The data of a world, as body_table.h writes it: all in one texture of words, texel i at (i mod width, i / width), since a
 // block of uniforms is too small for more than a few bodies, and OpenGL ES 3.0 has no other buffers.
 //
-//     from texel 0                   ReliefMap of each map, in RELIEF_WORLD_MAP_TEXELS texels
-//     u_relief_world_place.y         bodies, in RELIEF_WORLD_BODY_TEXELS texels: world to object space at the end of the step (a
-//                                    rotation, divided by scale) and at its beginning, three rows each; scale (world units of
-//                                    an object unit), restitution, 1 - friction, 0; the first map, how many, 1 if they are
-//                                    live, the bit of its group in ParticleType::collides
-//     as u_relief_levels have it     lists of the broad phase (body_grid.h): their first and last but one entry; 0; 0
-//     as the lists have it           entries: body, box and cell of BodyGrid::Entry
+//     from texel 0                   ReliefMap of each map, in RELIEF_WORLD_MAP_TEXELS texels. With RELIEF_PLACED each body has one
+//                                    of patches, placed: map i is of body i, and its object space is the world
+//     u_relief_world_place.y         bodies, in RELIEF_WORLD_BODY_TEXELS texels: the first map, how many, 1 if they are live, the
+//                                    bit of its group in ParticleType::collides; scale (world units of an object unit),
+//                                    restitution, 1 - friction, 1 if it moves in the step; world to object space at the end
+//                                    of the step (a rotation, divided by scale), three rows; what takes a point of the body in
+//                                    the world from the beginning of the step to its end, three rows
+//     as u_relief_levels have it     lists of the broad phase (body_grid.h): the second entry; the one after the last; the
+//                                    body, below 0 if there is none, and the hash of the first entry
+//     as the lists have it           entries: body and hash; 0; 0
 layout(std140) uniform ReliefCollider {
     ivec4 u_relief_count;        // maps in use; then RELIEF_LOG2_WIDTHS
     ivec4 u_relief_world_place;  // log2 of the width; the first texel of body 0; bodies; levels
@@ -42,17 +45,17 @@ ivec4 reliefMapInfo(int i) {
 vec4 reliefBodyFloats(int body, int k) {
     return uintBitsToFloat(reliefWords(u_relief_world_place.y + RELIEF_WORLD_BODY_TEXELS * body + k));
 }
-vec4 reliefBodyRow(int body, int k) {
-    return reliefBodyFloats(body, k);
-}
-vec4 reliefBodyRowBefore(int body, int k) {
-    return reliefBodyFloats(body, 3 + k);
+ivec4 reliefBodyMaps(int body) {
+    return ivec4(reliefWords(u_relief_world_place.y + RELIEF_WORLD_BODY_TEXELS * body));
 }
 vec4 reliefBodyResponse(int body) {
-    return reliefBodyFloats(body, 6);
+    return reliefBodyFloats(body, 1);
 }
-ivec4 reliefBodyMaps(int body) {
-    return ivec4(reliefWords(u_relief_world_place.y + RELIEF_WORLD_BODY_TEXELS * body + 7));
+vec4 reliefBodyRow(int body, int k) {
+    return reliefBodyFloats(body, 2 + k);
+}
+vec4 reliefBodyMove(int body, int k) {
+    return reliefBodyFloats(body, 5 + k);
 }
 int reliefBodyCount() {
     return u_relief_world_place.z;

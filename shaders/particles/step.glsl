@@ -31,7 +31,7 @@ struct Solid {
     vec3 normal;
     int map;
     int body;
-    vec3 motion;  // inside a live body: of its surface in this step, in its object space; or zero
+    vec3 motion;  // inside a live body: of its surface in this step; or zero
 };
 
 // True if a ball about p, where the step began, was in the body of s at that time: its centre, or its point nearest to the

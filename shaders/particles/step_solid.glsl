@@ -1,6 +1,5 @@
 // For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is the floor alone; with RELIEF_BODIES there are
-// bodies that have a pose at the step's beginning and one at its end, and may be live; else one collider in its own object
-// space.
+// bodies that may move in the step, and may be live; else one collider in its own object space.
 #if !defined(RELIEF_BODIES)
 #define RELIEF_BODIES 0
 #endif
@@ -60,7 +59,7 @@ Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
     vec3 motion = vec3(0.0);
     if (inside) {
         // A ball touches with its rim.
-        motion = reliefBodyMotion(body, field.map, reliefBodyNow(body, p - radius * field.normal), field.normal);
+        motion = reliefBodyMotion(body, field.map, p - radius * field.normal, field.normal);
     }
     return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
 }
@@ -75,25 +74,24 @@ Solid solid(vec3 p, float radius) {
 // that it met, and tested at the end: exact where all of the surface near it moves alike, as it does but for second order in
 // the distance of a step.
 bool insideBefore(vec3 p, float radius, Solid s) {
-    vec3 q = reliefBodyBefore(s.body, p) + s.motion;
+    vec3 q = reliefMoved(s.body, p) + s.motion;
     bool inside = reliefInside(reliefBodyField(s.body, q, 0.0, false));
 #if defined(RELIEF_RADIUS)
-    vec3 towards = reliefBodyNow(s.body, radius * s.normal) - reliefBodyNow(s.body, vec3(0.0));
-    inside = inside || reliefInside(reliefBodyField(s.body, q - towards, 0.0, false));
+    inside = inside || reliefInside(reliefBodyField(s.body, q - radius * s.normal, 0.0, false));
 #endif
     return inside;
 }
 
 vec3 pointBefore(Solid s, vec3 p) {
-    return reliefWorldBefore(s.body, reliefBodyNow(s.body, p) - s.motion);
+    return reliefMovedBack(s.body, p - s.motion);
 }
 
 vec3 pointNow(int body, vec3 p) {
     vec3 now = p;
     // A particle that stopped on a body of colliders that are no longer set stays where it is.
     if (body < reliefBodyCount()) {
-        vec3 q = reliefBodyBefore(body, p);
-        now = reliefWorldNow(body, q + reliefNearestMotion(body, q));
+        now = reliefMoved(body, p);
+        now += reliefNearestMotion(body, now);
     }
     return now;
 }
