@@ -1,17 +1,13 @@
 #include "formats/fields/json.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "formats/base/text.h"
 
 namespace relief {
 
 Json jsonNumber(float value) {
-    double number = 0.0;
-    const std::string text = shortest(value);
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
+    return parseDouble(shortest(value)).value_or(0.0);
 }
 
 std::string jsonText(const Json& json) {

@@ -132,6 +132,15 @@ void appendLines(std::string& text, const char* name, const std::vector<T>& all)
 
 }  // namespace
 
+std::optional<std::size_t> findBody(const World& world, std::string_view node, std::size_t first) {
+    for (std::size_t i = first; i < world.bodies.size(); ++i) {
+        if (world.bodies[i].node == node) {
+            return i;
+        }
+    }
+    return std::nullopt;
+}
+
 bool looksLikeWorld(std::string_view bytes) {
     const std::size_t first = bytes.find_first_not_of(" \t\r\n");
     return first != std::string_view::npos && bytes[first] == '{';

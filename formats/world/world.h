@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -123,6 +124,10 @@ void fields(Visitor& visit, W& world) {
            .rules = kRequired,
            .items = {1.0, double{kWorldBodiesMax}}});
 }
+
+/// The number of the first body of a node, from `first` on; nullopt: there is none.
+[[nodiscard]] std::optional<std::size_t> findBody(const World& world, std::string_view node,
+                                                  std::size_t first = 0);
 
 /// Whether bytes begin as a world does, and as no container: with a brace, after any white space.
 [[nodiscard]] bool looksLikeWorld(std::string_view bytes);

@@ -84,7 +84,8 @@ Result<void> checkTogether(const SimCommand& command) {
     const PlayerOptions& player = command.player;
     const SceneOverrides& scene = player.overrides;
     if (player.input.empty()) {
-        return fail(ErrorCode::kUsage, "name a scene (.toml) or a collider (.relief); see relief-sim --help");
+        return fail(ErrorCode::kUsage,
+                    "name a scene (.toml), a collider (.relief) or a world.json; see relief-sim --help");
     }
     if ((scene.first_frame || scene.last_frame || scene.frame_every) && player.frames.empty() &&
         player.dump_frames.empty()) {
@@ -160,10 +161,11 @@ void defineSim(CLI::App& app, SimCommand& command) {
     setUpHelp(app);
     app.description(
         "Plays a scene against a baked collider\n\n"
-        "Headless: particles fall, collide and rest. Given a collider alone it lets snow fall on it.");
+        "Headless: particles fall, collide and rest. Given a collider or a world alone it lets snow fall on "
+        "it.");
     app.footer("relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply");
-    app.add_option("INPUT", command.player.input, "Scene (.toml) or collider (.relief)")
-        ->type_name("SCENE.toml|COLLIDER.relief");
+    app.add_option("INPUT", command.player.input, "Scene (.toml), collider (.relief) or world (world.json)")
+        ->type_name("SCENE.toml|COLLIDER.relief|WORLD.json");
     app.add_option("--steps", command.player.overrides.steps, "Steps to play, instead of the scene's")
         ->option_text("N")
         ->transform(wholeNumber(0, kStepsMax));

@@ -4,6 +4,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
+#include "formats/collider.h"
+
 namespace relief {
 
 /// world = position + scale · rotation · object
@@ -16,6 +18,17 @@ struct Pose {
 
 [[nodiscard]] inline glm::vec3 toWorld(const Pose& pose, const glm::vec3& p) {
     return pose.position + pose.scale * (pose.rotation * p);
+}
+
+/// The box, along the world's axes, of a box of object space.
+[[nodiscard]] inline Bounds toWorld(const Pose& pose, const Bounds& box) {
+    Bounds world;
+    for (int corner = 0; corner < 8; ++corner) {
+        world.add(toWorld(pose, glm::vec3((corner & 1) != 0 ? box.max.x : box.min.x,
+                                          (corner & 2) != 0 ? box.max.y : box.min.y,
+                                          (corner & 4) != 0 ? box.max.z : box.min.z)));
+    }
+    return world;
 }
 
 [[nodiscard]] inline glm::vec3 toObject(const Pose& pose, const glm::vec3& p) {

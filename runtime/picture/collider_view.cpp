@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "formats/patch_tree.h"
 #include "runtime/gl/gl_functions.h"
@@ -38,6 +40,18 @@ float finestTexel(const Collider& collider) {
         }
     }
     return std::max({finest, longest / 2048.0F, 1e-9F});
+}
+
+ColliderView worldView(const LoadedWorld& world, const ColliderTextures& textures) {
+    std::vector<float> texels;
+    for (const Collider& collider : world.colliders) {
+        texels.push_back(finestTexel(collider));
+    }
+    ColliderView view{&textures, worldBounds(world.world), std::numeric_limits<float>::max()};
+    for (const WorldBody& body : world.world.bodies) {
+        view.texel = std::min(view.texel, body.scale * texels[body.collider]);
+    }
+    return view;
 }
 
 glm::vec3 sunDirection() {

@@ -6,6 +6,7 @@
 
 #include "formats/collider.h"
 #include "runtime/collider/collider_textures.h"
+#include "runtime/collider/world_bodies.h"
 
 namespace relief {
 
@@ -19,6 +20,10 @@ struct ColliderView {
 /// The side, in object units, of the finest texel among the maps, but no less than 1/2048 of the longest
 /// side.
 [[nodiscard]] float finestTexel(const Collider& collider);
+
+/// A world as the renderers see it while its bodies are in the box of where they stand at the beginning; those that move out of
+/// it need larger bounds. \param textures  of worldBodies(world); must outlive the renderers.
+[[nodiscard]] ColliderView worldView(const LoadedWorld& world, const ColliderTextures& textures);
 
 /// Unit vector towards the sun of all pictures: from the upper left, in front.
 [[nodiscard]] glm::vec3 sunDirection();

@@ -52,7 +52,7 @@ void fields(Visitor& visit, Options& options) {
 enum class DumpFormat : std::uint8_t { kPly, kVdb };
 
 struct PlayerOptions {
-    /// A scene (.toml) or a collider (.relief), for which the default scene is played.
+    /// A scene (.toml), or a collider (.relief) or a world (.json), for which the default scene is played.
     std::filesystem::path input;
     SceneOverrides overrides;
     /// Knows what else the program reads and writes, a report on standard output for one.

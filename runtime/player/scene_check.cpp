@@ -1,5 +1,6 @@
 #include "runtime/player/scene_check.h"
 
+#include <set>
 #include <system_error>
 
 #include "formats/base/file_io.h"
@@ -12,6 +13,9 @@ namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// In the line for people; worlds have thousands.
+constexpr std::size_t kFilesShown = 12;
 
 CheckedFile checkedFile(const fs::path& path, const char* kind) {
     std::error_code error;  // read a moment ago; a pipe has no size
@@ -31,13 +35,21 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     }
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     CheckReport report;
-    if (options.input != loaded.scene.colliders.front().path) {
+    const fs::path& world = loaded.scene.world;
+    if (options.input != world && options.input != loaded.scene.colliders.front().path) {
         report.files.push_back(checkedFile(options.input, "scene"));
     }
+    if (!world.empty()) {
+        report.files.push_back(checkedFile(world, "world"));
+        report.world_bodies = loaded.world.bodies.size();
+    }
+    std::set<const Collider*> known;
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& from = loaded.scene.colliders[i];
-        report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
-        report.collider_maps += loaded.colliders[i]->maps.size();
+        if (known.insert(loaded.colliders[i].get()).second) {
+            report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
+            report.collider_maps += loaded.colliders[i]->maps.size();
+        }
     }
     if (loaded.scene.flow) {
         report.files.push_back(checkedFile(loaded.scene.flow->path, "flow"));
@@ -58,8 +70,14 @@ std::string checkText(const CheckReport& report) {
     std::string text = quotedPath(report.files.front().path) + " is valid: " + std::to_string(report.steps) +
                        " steps of up to " + std::to_string(report.capacity) + " particles, " +
                        std::to_string(report.collider_maps) + " maps";
-    for (std::size_t i = 1; i < report.files.size(); ++i) {
+    if (report.world_bodies > 0) {
+        text += ", " + std::to_string(report.world_bodies) + " bodies of a world";
+    }
+    for (std::size_t i = 1; i < std::min(report.files.size(), kFilesShown); ++i) {
         text += ", " + report.files[i].kind + " " + quotedPath(report.files[i].path);
+    }
+    if (report.files.size() > kFilesShown) {
+        text += " and " + std::to_string(report.files.size() - kFilesShown) + " more files";
     }
     return text + "\n";
 }

@@ -16,12 +16,13 @@ namespace relief {
 
 struct CheckedFile {
     std::filesystem::path path;
-    std::string kind;         ///< "scene", "collider", "flow", "atlas" or "mesh"
+    std::string kind;         ///< "scene", "world", "collider", "flow", "atlas" or "mesh"
     std::uint64_t bytes = 0;  ///< on disk
 };
 
 struct CheckReport {
     std::vector<CheckedFile> files;  ///< the input first
+    std::size_t world_bodies = 0;    ///< of the scene's world
     std::size_t collider_maps = 0;
     std::uint32_t steps = 0;
     std::uint32_t capacity = 0;
@@ -41,7 +42,7 @@ template <class Visitor, FieldsOf<CheckedFile> F>
 void fields(Visitor& visit, F& file) {
     visit("file", file.path, {"Path"});
     visit("kind", file.kind,
-          {.help = "Purpose", .words = kWords<"scene", "collider", "flow", "atlas", "mesh">});
+          {.help = "Purpose", .words = kWords<"scene", "world", "collider", "flow", "atlas", "mesh">});
     visit("bytes", file.bytes, {"Size", "bytes"});
 }
 
@@ -50,6 +51,7 @@ void fields(Visitor& visit, R& report) {
     visit("valid", true, {.help = "The scene is valid", .words = kWords<"true">});
     visit("steps", report.steps, {"Steps to play"});
     visit("capacity", report.capacity, {"Particles, at most"});
+    visit("bodies", report.world_bodies, {"Bodies of the world"});
     visit("maps", report.collider_maps, {"Maps of all colliders"});
     visit("files", report.files, {"The input and the files that it names"});
     visit("warnings", report.warnings, {"Probable mistakes, one line each"});

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <map>
+#include <set>
 
 #include "formats/base/file_io.h"
 #include "formats/nearest_surface.h"
@@ -70,14 +72,14 @@ struct Fastest {
     float radius = 0.0F;
 };
 
-/// Of what meets a body.
-Fastest fastestAt(std::size_t body, const LoadedScene& loaded, std::span<const Birth> births) {
+/// Of what meets the bodies of a group, a bit of ParticleType::collides.
+Fastest fastestAt(std::size_t group, const LoadedScene& loaded, std::span<const Birth> births) {
     Fastest fastest;
     for (const Birth& birth : births) {
         const ParticleType type = birth.type < loaded.scene.types.size()
                                       ? ParticleType(loaded.scene.types[birth.type])
                                       : ParticleType{};
-        const bool meets = (type.collides >> body & 1U) != 0;
+        const bool meets = (type.collides >> group & 1U) != 0;
         const float speed = meets ? speedAtBodies(birth, type, loaded) : 0.0F;
         if (speed > fastest.speed) {
             fastest = {speed, type.radius};
@@ -124,16 +126,28 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
         births.insert(births.end(), more.begin(), more.end());
     }
     std::vector<std::string> warnings;
+    std::vector<Fastest> of_groups;
+    for (std::size_t i = 0; i < std::min<std::size_t>(loaded.colliders.size(), ColliderTextures::kGroups);
+         ++i) {
+        of_groups.push_back(fastestAt(i, loaded, births));
+    }
+    std::map<const Collider*, std::optional<float>> thicknesses;
+    std::set<std::string> warned;  // names of files: a world has a file many times
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
-        const Fastest fastest = fastestAt(i, loaded, births);
+        const Fastest fastest = of_groups[std::min(i, of_groups.size() - 1)];
         const float speed = fastest.speed;
         const float step = scene.collision.sweep > 0.0F
                                ? std::min(speed * scene.time.dt, scene.collision.sweep)
                                : speed * scene.time.dt;
-        const auto thickness = body.live ? std::nullopt : typicalThickness(*loaded.colliders[i]);
+        const Collider& collider = *loaded.colliders[i];
+        const auto known = thicknesses.find(&collider);
+        const auto thickness = known != thicknesses.end() ? known->second
+                               : body.live                ? std::nullopt
+                                                          : typicalThickness(collider);
+        thicknesses.emplace(&collider, thickness);
         const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
-        if (thickness && step > thick) {
+        if (thickness && step > thick && warned.insert(body.path.string()).second) {
             warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +
                                number(double{step}) + " long, and " + quotedPath(body.path.filename()) +
                                " mostly " + number(double{thick}) +

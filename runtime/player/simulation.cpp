@@ -79,7 +79,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, 
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
     made.poses_ = posesAt(scene, 0.0);
     auto textures = RELIEF_TRY(inFront(
-        quotedPath(scene.colliders.front().path),
+        quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
         watched(watchdog, "uploading the collider", [&] { return makeTextures(scene, loaded.colliders); })));
     made.textures_ = std::make_unique<ColliderTextures>(std::move(textures));
     RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));

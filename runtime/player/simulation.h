@@ -26,7 +26,7 @@ class Simulation {
     /// \param watchdog  may be null.
     /// \param checkpoint  called between steps before time 0; what it throws comes out of here. May be empty.
     /// Fails as ColliderTextures, LiveCollider, WobblePass and ParticleSystem do. An error of the textures names the scene's
-    /// first collider.
+    /// world, or its first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, StepPath path,
                                                    Watchdog* watchdog,
                                                    const std::function<void()>& checkpoint = {});

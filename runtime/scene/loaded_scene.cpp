@@ -13,6 +13,7 @@
 #include "formats/container.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/scene/scene_parser.h"
+#include "runtime/scene/scene_world.h"
 
 namespace relief {
 namespace {
@@ -32,15 +33,42 @@ Result<Scene> openScene(const fs::path& input, const fs::path& root) {
         scene.colliders.front().path = input;
         return scene;
     }
+    if (extension == ".json") {
+        Scene scene;
+        scene.world = input;
+        return scene;
+    }
     RELIEF_TRY(refuseMeshName(input));
     return fail(ErrorCode::kUsage,
-                quotedPath(input) + " is neither a scene nor a collider; name a .toml or a .relief file");
+                quotedPath(input) +
+                    " is no scene, no collider and no world; name a .toml, a .relief or a world.json file");
 }
 
 Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& limits) {
     auto collider = loadCollider(from.path, limits);
     return from.origin.empty() ? std::move(collider)
                                : inFront(from.origin + ": collider.file", std::move(collider));
+}
+
+using Colliders = std::map<fs::path, std::shared_ptr<const Collider>>;
+
+/// Reads the scene's world, and places its bodies. \return its colliders, by their paths.
+Result<Colliders> openWorld(Scene& scene, World& world, const ContainerLimits& limits) {
+    Colliders colliders;
+    if (scene.world.empty()) {
+        return colliders;
+    }
+    auto read = loadWorld(scene.world, limits);
+    auto loaded =
+        RELIEF_TRY(scene.world_origin.empty() ? std::move(read)
+                                              : inFront(scene.world_origin + ": world", std::move(read)));
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        colliders[containerOf(scene, loaded.world.colliders[i])] =
+            std::make_shared<const Collider>(std::move(loaded.colliders[i]));
+    }
+    world = std::move(loaded.world);
+    RELIEF_TRY(placeBodies(scene, world));
+    return colliders;
 }
 
 bool withinLengths(const Bounds& bounds) {
@@ -51,7 +79,7 @@ bool withinLengths(const Bounds& bounds) {
 }  // namespace
 
 std::vector<fs::path> filesOf(const Scene& scene) {
-    std::vector<fs::path> files;
+    std::vector<fs::path> files{scene.world};
     for (const SceneCollider& collider : scene.colliders) {
         files.push_back(collider.path);
     }
@@ -91,7 +119,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         emitter.seed = overrides.seed.value_or(emitter.seed);
     }
     LoadedScene loaded;
-    std::map<fs::path, std::shared_ptr<const Collider>> known;
+    Colliders known = RELIEF_TRY(openWorld(scene, loaded.world, overrides.limits));
     for (const SceneCollider& from : scene.colliders) {
         loaded.live.emplace_back();
         if (from.live) {

@@ -10,6 +10,7 @@
 #include "formats/base/result.h"
 #include "formats/collider.h"
 #include "formats/container_limits.h"
+#include "formats/world/world.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_live.h"
 
@@ -26,12 +27,13 @@ struct SceneOverrides {
     std::optional<std::uint32_t> frame_every;
     /// A folder whose files the scene may name beside those of its own; empty: none.
     std::filesystem::path root;
-    ContainerLimits limits;  ///< of each collider
+    ContainerLimits limits;  ///< of each collider, and of those of a world together
 };
 
 /// A scene and everything it names, read and complete: all that a Simulation plays.
 struct LoadedScene {
     Scene scene;  ///< overridden by the options, every default filled in
+    World world;  ///< without bodies: the scene has none
     /// Those of the scene, in its order; a file that it names several times, once.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// As many: the meshes of those that deform, whose colliders have maps without texels.
@@ -43,8 +45,8 @@ struct LoadedScene {
 /// Every file that a scene names, sorted; without the scene itself.
 [[nodiscard]] std::vector<std::filesystem::path> filesOf(const Scene& scene);
 
-/// Reads a scene (.toml) or a collider (.relief), for which the default scene is made, and every file that it
-/// names. Needs no context.
+/// Reads a scene (.toml), or a collider (.relief) or a world (.json), for which the default scene is made, and every file
+/// that it names. Needs no context.
 /// Fails as the readers of these files and makeEmitters() do; errors of files that a scene names begin with its line and column.
 [[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
                                           const SceneOverrides& overrides);

@@ -58,10 +58,13 @@ std::optional<FieldFault> checkFrames(const Scene& scene) {
 
 /// render.mesh is drawn in its own space, and only once.
 std::optional<FieldFault> checkMesh(const Scene& scene) {
-    const SceneCollider& first = scene.colliders.front();
     if (scene.render.mesh.empty()) {
         return std::nullopt;
     }
+    if (!scene.world.empty()) {
+        return FieldFault{"render.mesh", "is drawn for a single collider, and not for a world; remove it"};
+    }
+    const SceneCollider& first = scene.colliders.front();
     if (scene.colliders.size() > 1 || !first.keys.empty() || !(first.pose == Pose{})) {
         return FieldFault{"render.mesh",
                           "is drawn where it was baked, and for a single collider; remove the mesh, or the "
@@ -110,7 +113,6 @@ std::optional<FieldFault> completeTypes(Scene& scene, const GivenFields& given) 
         inherit(".restitution", type.restitution, scene.collision.restitution);
         inherit(".friction", type.friction, scene.collision.friction);
         inherit(".friction_threshold", type.friction_threshold, scene.collision.friction_threshold);
-        type.collides &= bodiesOf(scene);
         if (type.look.stretch > 0.0F && scene.render.sprite == Sprite::kPoint) {
             return FieldFault{nth("type", i, ".stretch"),
                               "does nothing for points; choose render.sprite = \"quad\""};
@@ -187,9 +189,14 @@ std::optional<FieldFault> check(SceneType& type, const GivenFields& given) {
 }
 
 std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
-    if (scene.colliders.empty()) {
+    if (scene.colliders.empty() && scene.world.empty()) {
         return FieldFault{
             "", "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
+    }
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+        if (!scene.colliders[i].node.empty() && scene.world.empty()) {
+            return FieldFault{nth("collider", i, ".node"), "needs world, the world.json with that node"};
+        }
     }
     for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
         const std::uint32_t capacity = scene.particles.capacity;
@@ -270,6 +277,9 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
     const double run = static_cast<double>(scene.time.dt) *
                        (static_cast<double>(scene.time.steps) + static_cast<double>(prewarmSteps(scene)));
+    for (SceneType& type : scene.types) {
+        type.collides &= bodiesOf(scene);
+    }
     RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.particles.capacity));
     if (!scene.forces.gravity) {
         scene.forces.gravity = glm::vec3(0.0F, -3.0F * scale, 0.0F);

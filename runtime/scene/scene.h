@@ -231,7 +231,11 @@ void fields(Visitor& visit, T& type) {
 
 /// A value whose default depends on the collider's size is optional; withDefaults() fills it.
 struct Scene {
-    std::vector<SceneCollider> colliders;  ///< at least one
+    std::filesystem::path world;  ///< resolved; empty: none
+    std::string world_origin;     ///< "scene.toml:3:8" of the key, for messages; empty without a scene file
+    /// Those of the file's tables and, once loaded, behind them the bodies of the world that no table names; then at least
+    /// one.
+    std::vector<SceneCollider> colliders;
     SceneTime time;
     SceneParticles particles;
     std::vector<SceneEmitter> emitters{SceneEmitter{}};  ///< at least one
@@ -249,6 +253,11 @@ struct Scene {
 
 template <class Visitor, FieldsOf<Scene> S>
 void fields(Visitor& visit, S& scene) {
+    visit("world", FieldFile{scene.world, scene.world_origin},
+          leftOut({"The world.json whose bodies particles collide with, beside the colliders",
+                   {},
+                   {},
+                   "none, and then a collider is required"}));
     visit(
         "collider", scene.colliders,
         {"What particles collide with", {}, {}, {}, {.most = ColliderTextures::kBodiesMax, .single = true}});

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <glm/glm.hpp>
-#include <limits>
 #include <span>
 
 namespace relief {
@@ -44,16 +43,33 @@ std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& give
         return FieldFault{
             "mesh", "needs collider.deform; for a mesh at rest give collider.file, baked with 'relief bake'"};
     }
+    if (given("node")) {
+        if (collider.node.empty()) {
+            return FieldFault{"node", "is empty; name a node of the world"};
+        }
+        for (const char* key : {"scale", "restitution", "friction"}) {
+            if (given(key)) {
+                return FieldFault{key, "of a body is the world's; remove it here"};
+            }
+        }
+        collider.posed = true;
+        return checkKeys(collider.given_keys, "a position");
+    }
     if (collider.path.empty()) {
         return FieldFault{
             "", "needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
     }
+    collider.posed =
+        collider.posed || collider.given_pose.position || collider.given_pose.angle || given("key");
+    completePoses(collider, {.scale = collider.scale});
+    return checkKeys(collider.given_keys, "a position");
+}
+
+void completePoses(SceneCollider& collider, const Pose& rest) {
     ScenePose pose = collider.given_pose;
-    collider.posed = collider.posed || pose.position || pose.angle || given("key");
-    collider.pose = completePose(pose, {.scale = collider.scale});
+    collider.pose = completePose(pose, rest);
     collider.given_pose = collider.posed ? pose : ScenePose{};
     collider.keys = completeKeys(collider.given_keys, collider.pose);
-    return checkKeys(collider.given_keys, "a position");
 }
 
 Pose poseAt(const SceneCollider& collider, double time) {
@@ -63,17 +79,11 @@ Pose poseAt(const SceneCollider& collider, double time) {
 Bounds worldBounds(const SceneCollider& collider, const Bounds& object) {
     // A turn between two keys is cut finely enough to be off by no more than a thousandth of its radius.
     constexpr int kCuts = 64;
-    Bounds world{glm::vec3(std::numeric_limits<float>::max()),
-                 glm::vec3(std::numeric_limits<float>::lowest())};
+    Bounds world;
     const auto add = [&](const Pose& pose) {
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::vec3 p((corner & 1) != 0 ? object.max.x : object.min.x,
-                              (corner & 2) != 0 ? object.max.y : object.min.y,
-                              (corner & 4) != 0 ? object.max.z : object.min.z);
-            const glm::vec3 q = toWorld(pose, p);
-            world.min = glm::min(world.min, q);
-            world.max = glm::max(world.max, q);
-        }
+        const Bounds box = toWorld(pose, object);
+        world.add(box.min);
+        world.add(box.max);
     };
     add(poseAt(collider, 0.0));
     for (std::size_t i = 0; i + 1 < collider.keys.size(); ++i) {

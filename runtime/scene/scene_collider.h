@@ -79,6 +79,7 @@ void fields(Visitor& visit, L& live) {
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;          ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
+    std::string node;            ///< of a body of the scene's world, which completes the rest; empty: none
     ScenePose given_pose;
     float scale = 1.0F;
     float restitution = 1.0F;        ///< factor of the particles' own
@@ -86,7 +87,7 @@ struct SceneCollider {
     std::optional<SceneLive> live;   ///< wobbles: `path` is a mesh, not a container
     std::uint32_t resolution = 256;  ///< of its maps
     std::vector<SceneKey> given_keys;
-    // Filled by check(), which also completes the pose and the keys above:
+    // Filled by check() (of a body by placeBodies()), which also completes the pose and the keys above:
     /// Any key of the table but its file is given: else the particles live in the collider's own object space.
     bool posed = false;
     Pose pose;
@@ -104,6 +105,12 @@ void fields(Visitor& visit, C& c) {
         "mesh", FieldMaybe{path, live},
         leftOut(
             {"An .obj or .ply file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}}));
+    visit("node", c.node,
+          leftOut({"Name of a node of the scene's world, to place or move its body; needs world",
+                   {},
+                   {},
+                   "none",
+                   {.instead_of = "file mesh"}}));
     visit("deform", c.live, leftOut({"How the mesh wobbles", {}, {}, "required by mesh", {.needs = "mesh"}}));
     visit(
         "resolution", c.resolution,
@@ -118,6 +125,9 @@ void fields(Visitor& visit, C& c) {
     visit("key", c.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given);
+
+/// Completes the pose and the keys. \param rest  where it is without a pose of its own.
+void completePoses(SceneCollider& collider, const Pose& rest);
 
 /// The pose of a collider; before the first key and after the last it rests.
 [[nodiscard]] Pose poseAt(const SceneCollider& collider, double time);

@@ -91,6 +91,9 @@ void readField(const TomlValue& from, CollidesList<std::uint32_t> list, const Fi
     while (top.find("collider[" + std::to_string(colliders) + "]")) {
         ++colliders;
     }
+    if (top.find("world")) {
+        colliders = ColliderTextures::kBodiesMax;  // its bodies are counted when it is read
+    }
     list.bits = 0;
     for (std::size_t i = 0; i < from.array()->size(); ++i) {
         const TomlValue one = from[i];

@@ -1,0 +1,29 @@
+// The bodies of a world (formats/world) as ColliderTextures takes them.
+//
+//     const LoadedWorld level = *loadWorld("level/world.json");
+//     ColliderTextures textures = *ColliderTextures::create(worldBodies(level));
+//     std::vector<Pose> poses = worldPoses(level.world);
+//     poses[*findBody(level.world, "door")].position.y += 0.1F;   // before each step while the door moves, and once more
+//     textures.setPoses(poses);                                   // when it has stopped
+#pragma once
+
+#include <vector>
+
+#include "formats/world/world.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/collider/pose.h"
+
+namespace relief {
+
+[[nodiscard]] Pose poseOf(const WorldBody& body);
+
+/// In the world's order, each with its pose and response. They point to the colliders of `world`, which must stay until they
+/// are uploaded.
+[[nodiscard]] std::vector<ColliderBody> worldBodies(const LoadedWorld& world);
+/// The poses of all bodies, in the world's order.
+[[nodiscard]] std::vector<Pose> worldPoses(const World& world);
+
+/// The box that holds all bodies where they are.
+[[nodiscard]] Bounds worldBounds(const World& world);
+
+}  // namespace relief

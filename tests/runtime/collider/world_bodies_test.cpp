@@ -1,0 +1,52 @@
+// A world of a file as bodies for the GPU.
+#include "runtime/collider/world_bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace relief {
+namespace {
+
+/// Three bodies of two colliders, of which the second is turned and scaled.
+LoadedWorld threeBodies() {
+    World world;
+    world.colliders = {{"floor.relief", "", "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}},
+                       {"door.relief", "", "door", {glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 0.1F)}}};
+    world.bodies = {{.collider = 0, .node = "floor"},
+                    {.collider = 1,
+                     .node = "door",
+                     .position = {3.0F, 0.5F, 1.0F},
+                     .rotation = {0.0F, 0.6F, 0.0F, 0.8F},
+                     .scale = 2.0F,
+                     .restitution = 0.25F,
+                     .friction = 0.75F},
+                    {.collider = 1, .node = "gate", .position = {-3.0F, 0.0F, 0.0F}}};
+    return {world, std::vector<Collider>(2)};
+}
+
+TEST(WorldBodies, BodiesPosesAndBoxAreThoseOfTheWorld) {
+    const LoadedWorld loaded = threeBodies();
+    const std::vector<ColliderBody> bodies = worldBodies(loaded);
+    ASSERT_EQ(bodies.size(), 3U);
+    EXPECT_EQ(bodies[1].collider, &loaded.colliders[1]);
+    EXPECT_EQ(bodies[2].collider, bodies[1].collider) << "uploaded once";
+    EXPECT_EQ(bodies[1].friction, 0.75F);
+    const std::vector<Pose> poses = worldPoses(loaded.world);
+    ASSERT_EQ(poses.size(), 3U);
+    EXPECT_EQ(poses[1], bodies[1].pose);
+    const std::size_t door = findBody(loaded.world, "door").value_or(9);
+    EXPECT_EQ(door, 1U);
+    EXPECT_FALSE(findBody(loaded.world, "door", 2));
+    const Bounds box = worldBounds(loaded.world);
+    EXPECT_EQ(box.min, glm::vec3(-9.0F));
+    EXPECT_EQ(box.max, glm::vec3(9.0F));
+    // A quarter and a bit about y, twice as large: a corner of the door.
+    const glm::vec3 corner = toWorld(poses[1], glm::vec3(1.0F, 2.0F, 0.0F));
+    EXPECT_NEAR(corner.x, 3.0F + 2.0F * 0.28F, 1e-6F);
+    EXPECT_NEAR(corner.y, 4.5F, 1e-6F);
+    EXPECT_NEAR(corner.z, 1.0F - 2.0F * 0.96F, 1e-6F);
+}
+
+}  // namespace
+}  // namespace relief
