@@ -24,6 +24,7 @@ class WorldField {
     explicit WorldField(LoadedWorld loaded);
 
     [[nodiscard]] const World& world() const { return loaded_.world; }
+    [[nodiscard]] const LoadedWorld& loaded() const { return loaded_; }
     [[nodiscard]] const std::vector<Collider>& colliders() const { return loaded_.colliders; }
     [[nodiscard]] const Collider& colliderOf(std::size_t body) const {
         return loaded_.colliders[world().bodies[body].collider];

@@ -39,7 +39,7 @@ extern "C" {
 /* What this header describes. A library has relief_api_version() >= the header's, and the same major number, or must not be
  * used with it. */
 #define RELIEF_API_MAJOR 1
-#define RELIEF_API_MINOR 1
+#define RELIEF_API_MINOR 2
 #define RELIEF_API_VERSION (RELIEF_API_MAJOR * 1000 + RELIEF_API_MINOR)
 int relief_api_version(void);
 const char* relief_version(void); /* of the library: "0.1.0" */
@@ -76,16 +76,51 @@ void relief_collider_query(const relief_collider* collider, const float* points,
 void relief_collider_nearest(const relief_collider* collider, const float* points, size_t count,
                              relief_sample* samples);
 
+/* --- worlds, on the CPU. Since 1.2 --- */
+
+typedef struct relief_world relief_world;
+
+/* A world.json of `relief bake LEVEL --world`, with the colliders that it names: up to 65536 bodies of 4096 colliders. Lengths
+ * are world units. A body is a number, from 0, in the file's order. */
+relief_world* relief_world_load(const char* world_path);
+void relief_world_free(relief_world* world);
+
+size_t relief_world_body_count(const relief_world* world);
+/* The first body of the node of this name; that there is none is an error. */
+int64_t relief_world_find(const relief_world* world, const char* node);
+const char* relief_world_node(const relief_world* world, size_t body); /* as long as the world */
+/* The box that holds all bodies. */
+void relief_world_bounds(const relief_world* world, float min[3], float max[3]);
+
+typedef struct relief_pose {
+    float position[3]; /* of the collider's origin */
+    float rotation[4]; /* a unit quaternion x, y, z, w; of length 1 to a thousandth */
+} relief_pose;
+
+/* Where the file places a body. */
+int relief_world_pose(const relief_world* world, size_t body, relief_pose* pose);
+
+/* As relief_collider_query(), of all bodies where the file places them; `map` is the body that decides, -1: none votes. Takes
+ * time by the number of bodies. */
+void relief_world_query(const relief_world* world, const float* points, size_t count, relief_sample* samples);
+
 /* --- colliders, on the GPU (GL) --- */
 
 typedef struct relief_textures relief_textures;
 
 relief_textures* relief_textures_create(const relief_collider* collider);
+/* Of all bodies of a world, which may be freed at once. Since 1.2. */
+relief_textures* relief_textures_create_world(const relief_world* world);
 void relief_textures_free(relief_textures* textures);
+/* Moves bodies of a world: poses[i] is that of bodies[i] at the end of the next step, and the others stay; where a body was after
+ * the call before is its place at the step's beginning. Call it before each step while anything moves, and once more, with a
+ * count of 0 perhaps, when all has stopped. Scales stay. A body that is named twice has its last pose. Since 1.2. */
+int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
+                              const relief_pose* poses, size_t count);
 /* What a shader of your own begins with, behind its #version and precision lines: defines and collider.glsl, which has
- * reliefEvaluate(vec3). Valid as long as the textures. */
+ * reliefEvaluate(vec3), of a world in its space. Valid as long as the textures. */
 const char* relief_textures_glsl(const relief_textures* textures);
-/* Sets the samplers of a linked program to units first_unit … first_unit + 2 and its block to uniform_block; once a program.
+/* Sets the samplers of a linked program to units first_unit … first_unit + 2 (+ 3 of a world) and its block to uniform_block; once a program.
  * Leaves the program in use. */
 void relief_textures_attach(const relief_textures* textures, uint32_t program, int first_unit,
                             int uniform_block);
@@ -165,8 +200,8 @@ typedef struct relief_view {
     int32_t srgb;          /* 1: it takes sRGB values, as a window does; 0: linear light */
 } relief_view;
 
-/* `textures` and the `collider` that they are of light the particles; both NULL: they lie in the open. The collider may be
- * freed at once. */
+/* `textures` and the `collider` that they are of light the particles; both NULL: they lie in the open. Of a world's textures the
+ * collider is NULL, and light is that of the box where the file places its bodies. The collider may be freed at once. */
 relief_picture* relief_picture_create(const relief_textures* textures, const relief_collider* collider);
 void relief_picture_free(relief_picture* picture);
 /* Over what is there, hidden where its depth is nearer. `options` may be NULL: all 0. */

@@ -1,7 +1,9 @@
-/* relief.h from C99: everything once. c_api POINTS.csv COLLIDER.relief prints x,y,z,f,nx,ny,nz,map of the points. */
+/* relief.h from C99: everything once. c_api POINTS.csv COLLIDER.relief WORLD.json prints x,y,z,f,nx,ny,nz,map of the
+ * points. */
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
+#include <math.h>
 #include <relief.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -139,8 +141,47 @@ static void simulate(const relief_collider* collider) {
     relief_textures_free(textures);
 }
 
+/* The level of tests/cli/level.py: a box, of which the second node is twice as large, is lifted out of the way. */
+static void simulateWorld(const char* file) {
+    CHECK(relief_world_load("no such world.json") == NULL && strstr(relief_error(), "no such world.json") != NULL);
+    relief_world* world = relief_world_load(file);
+    CHECK(world != NULL && relief_world_body_count(world) == 5);
+    const int64_t second = relief_world_find(world, "second");
+    CHECK(second == 2 && strcmp(relief_world_node(world, 2), "second") == 0 && relief_world_find(world, "none") < 0);
+    float min[3], max[3];
+    relief_world_bounds(world, min, max);
+    CHECK(min[0] < -19.0F && max[1] > 1.9F);
+    relief_pose pose;
+    CHECK(relief_world_pose(world, (size_t)second, &pose) == 0 && pose.position[0] == 5.0F);
+    const float above[3] = {5.0F, 1.9F, 5.0F};
+    relief_sample sample;
+    relief_world_query(world, above, 1, &sample);
+    CHECK(sample.map == (int)second && sample.distance < 0.0F && sample.distance > -0.2F);
+
+    relief_textures* textures = relief_textures_create_world(world);
+    CHECK(textures != NULL);
+    relief_particles_options options = {.size = sizeof(options), .capacity = 8, .gravity = {0.0F, -10.0F, 0.0F}};
+    for (int lifted = 0; lifted < 2; ++lifted) {
+        const uint32_t body = (uint32_t)second;
+        pose.position[1] = lifted ? 10.0F : 0.0F;
+        CHECK(relief_textures_set_poses(textures, &body, &pose, 1) == 0);
+        CHECK(relief_textures_set_poses(textures, NULL, NULL, 0) == 0);
+        relief_particles* particles = relief_particles_create(textures, &options);
+        const relief_birth birth = {.position = {5.0F, 3.0F, 5.0F}, .lifetime = 100.0F};
+        CHECK(relief_particles_spawn(particles, &birth, 1) == 1);
+        for (int step = 0; step < 240; ++step) {
+            CHECK(relief_particles_step(particles, 1.0F / 60.0F) == 0);
+        }
+        relief_particle at;
+        CHECK(relief_particles_read(particles, &at, 1) == 1 && fabsf(at.position[1] - (lifted ? 0.0F : 2.0F)) < 0.1F);
+        relief_particles_free(particles);
+    }
+    relief_textures_free(textures);
+    relief_world_free(world);
+}
+
 int main(int argc, char** argv) {
-    CHECK(argc == 3 && relief_api_version() >= RELIEF_API_VERSION && relief_version()[0] != 0);
+    CHECK(argc == 4 && relief_api_version() >= RELIEF_API_VERSION && relief_version()[0] != 0);
     checkMistakes();
     relief_collider* collider = relief_collider_load(argv[2]);
     CHECK(collider != NULL && relief_collider_map_count(collider) > 0 && relief_collider_unit(collider) != NULL);
@@ -148,6 +189,7 @@ int main(int argc, char** argv) {
     printSamples(collider, argv[1]);
     makeContext();
     simulate(collider);
+    simulateWorld(argv[3]);
     relief_collider_free(collider);
     return 0;
 }

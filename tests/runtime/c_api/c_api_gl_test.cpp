@@ -13,6 +13,8 @@
 #include <string>
 #include <thread>
 
+#include "runtime/collider/world_bodies.h"
+#include "runtime/particles/particle_system.h"
 #include "tests/runtime/c_api/stage.h"
 #include "tests/seeds.h"
 
@@ -29,14 +31,17 @@ const std::set<std::pair<std::string, std::string>> kMayBeNull{
     {"relief_collider_free", "collider"},    {"relief_textures_free", "textures"},
     {"relief_particles_free", "particles"},  {"relief_picture_free", "picture"},
     {"relief_particles_create", "textures"}, {"relief_particles_create", "options"},
-    {"relief_picture_draw", "options"},
+    {"relief_picture_draw", "options"},      {"relief_world_free", "world"},
 };
 const std::set<std::string> kNeedNoContext{
     "relief_api_version",   "relief_version",          "relief_error",
     "relief_error_count",   "relief_collider_load",    "relief_collider_read",
     "relief_collider_free", "relief_collider_bounds",  "relief_collider_map_count",
     "relief_collider_unit", "relief_collider_query",   "relief_collider_nearest",
-    "relief_textures_glsl", "relief_particles_counts", "relief_particles_spawn"};
+    "relief_textures_glsl", "relief_particles_counts", "relief_particles_spawn",
+    "relief_world_load",    "relief_world_free",       "relief_world_body_count",
+    "relief_world_find",    "relief_world_node",       "relief_world_bounds",
+    "relief_world_pose",    "relief_world_query"};
 
 class CApi : public testing::Test {
   protected:
@@ -90,7 +95,7 @@ class CApi : public testing::Test {
 };
 
 TEST_F(CApi, TheTableIsWholeAndEveryFunctionWorks) {
-    EXPECT_GE(kFunctions.size(), 27U);
+    EXPECT_GE(kFunctions.size(), 37U);
     for (const Function& function : kFunctions) {
         expectGood(function);
     }
@@ -150,7 +155,7 @@ TEST_F(CApi, EveryHandleMayBeFreedOrNone) {
         expectGood(function);
         ++at_all;
     });
-    EXPECT_GE(at_all, 23);
+    EXPECT_GE(at_all, 32);
 }
 
 TEST_F(CApi, OtherSizesAreRefused) {
@@ -182,7 +187,7 @@ TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
         eachReader(structure, [&](const Function& function, std::size_t i) {
             std::byte* bytes = stage_.structure(structure.name);
             ASSERT_NE(bytes, nullptr) << structure.name;
-            const bool one_of_many = structure.name == "relief_birth";
+            const bool one_of_many = structure.name == "relief_birth" || structure.name == "relief_pose";
             for (const Field& field : structure.fields) {
                 for (std::size_t k = 0; field.name != "size" && k < field.count; ++k) {
                     std::byte* number = bytes + field.offset + k * field.bytes;
@@ -208,7 +213,7 @@ TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
             expectGood(function);
         });
     }
-    EXPECT_GE(at_all, 13 + 13 + 8 + 5 + 36);
+    EXPECT_GE(at_all, 13 + 13 + 8 + 5 + 36 + 7);
 }
 
 TEST_F(CApi, EveryNumberAmongTheArgumentsIsLookedAt) {
@@ -421,6 +426,104 @@ TEST_F(CApi, RandomCallsFailWhereAHandleIsWrong) {
         }
     }
     EXPECT_GT(refused, 60);
+}
+
+// A world of four boxes is what C++ makes of the same bodies, bit for bit, while one of them moves and once it rests.
+TEST_F(CApi, AWorldIsThatOfItsBodies) {
+    ASSERT_EQ(relief_world_body_count(stage_.world), kItems);
+    EXPECT_EQ(relief_world_find(stage_.world, "box 3"), 3);
+    EXPECT_EQ(relief_world_find(stage_.world, "box 4"), -1);
+    EXPECT_NE(std::string(relief_error()).find("'box 4'"), std::string::npos) << relief_error();
+    EXPECT_STREQ(relief_world_node(stage_.world, 2), "box 2");
+    relief_pose pose;
+    ASSERT_EQ(relief_world_pose(stage_.world, 1, &pose), 0);
+    EXPECT_EQ(pose.position[0], 2.0F);
+    EXPECT_EQ(pose.rotation[1], 0.6F);
+    EXPECT_EQ(relief_world_pose(stage_.world, kItems, &pose), -1);
+    EXPECT_TRUE(std::isnan(pose.position[0]) && std::isnan(pose.rotation[3]));
+    relief_world_bounds(stage_.world, stage_.low, stage_.high);
+    EXPECT_NEAR(stage_.low[0], -0.4F, 1e-6F);
+    EXPECT_NEAR(stage_.high[0], 6.4F, 1e-6F);
+    EXPECT_NEAR(stage_.high[1], 0.4F, 1e-6F) << "of the second, which is twice as large";
+
+    const float points[] = {0.0F, 0.1F, 0.0F, 2.0F, 0.3F, 0.0F, 6.0F, 0.5F, 0.0F};
+    relief_sample samples[3];
+    relief_world_query(stage_.world, points, 3, samples);
+    EXPECT_NEAR(samples[0].distance, -0.1F, 1e-4F);
+    EXPECT_NEAR(samples[1].distance, -0.1F, 1e-4F);
+    EXPECT_NEAR(samples[2].distance, 0.3F, 1e-4F);
+    for (std::int32_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(samples[i].map, i == 2 ? 3 : i) << "the body";
+        EXPECT_NEAR(samples[i].normal[1], 1.0F, 1e-3F);
+    }
+
+    const LoadedWorld loaded = loadWorld(stage_.worldPath()).value();
+    ColliderTextures textures = ColliderTextures::create(worldBodies(loaded)).value();
+    ParticleSystem system = ParticleSystem::create({.capacity = 64}).value();
+    ASSERT_TRUE(system.setCollider(&textures));
+    const ParticleType type{};
+    ASSERT_TRUE(system.setTypes(std::span(&type, 1)));
+    ASSERT_TRUE(system.setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F, 0.0F}));
+    relief_particles* particles = relief_particles_create(stage_.world_textures, &stage_.options);
+    relief_picture* picture = relief_picture_create(stage_.world_textures, nullptr);
+    ASSERT_TRUE(particles != nullptr && picture != nullptr) << relief_error();
+    std::vector<Birth> births;
+    for (std::size_t i = 0; i < kItems; ++i) {
+        relief_birth& birth = stage_.births[i];
+        birth.position[0] = 2.0F * static_cast<float>(i);
+        birth.position[1] = 1.2F;
+        births.push_back({{birth.position[0], 1.2F, 0.0F}, {}, birth.lifetime, 0});
+    }
+    ASSERT_EQ(relief_particles_spawn(particles, stage_.births, kItems), kItems);
+    ASSERT_EQ(system.spawn(births).value(), kItems);
+    std::vector<Pose> poses = worldPoses(loaded.world);
+    const std::uint32_t body = 3;
+    for (int step = 0; step < 180; ++step) {
+        if (step < 60) {  // it goes aside, and nothing is below the last particle
+            poses[body].position.x += 0.05F;
+            const relief_pose to{{poses[body].position.x, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
+            ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, &body, &to, 1), 0) << relief_error();
+        } else {
+            ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, nullptr, nullptr, 0), 0)
+                << relief_error();
+        }
+        textures.setPoses(poses);
+        ASSERT_EQ(relief_particles_step(particles, 1.0F / 60.0F), 0) << relief_error();
+        ASSERT_TRUE(system.step(1.0F / 60.0F));
+    }
+    ASSERT_EQ(relief_particles_read(particles, stage_.states, kItems), static_cast<std::int64_t>(kItems));
+    const auto states = system.readState().value();
+    ASSERT_EQ(states.size(), kItems);
+    for (std::size_t i = 0; i < kItems; ++i) {
+        EXPECT_EQ(std::memcmp(stage_.states[i].position, &states[i].position, sizeof(states[i].position)), 0)
+            << i;
+        EXPECT_EQ(stage_.states[i].collisions, states[i].collisions) << i;
+        EXPECT_EQ(stage_.states[i].collisions > 0, i != body) << "a body that has moved aside stops nothing";
+    }
+    EXPECT_EQ(relief_picture_draw(picture, particles, nullptr, &stage_.view), 0) << relief_error();
+    relief_picture_free(picture);
+    relief_particles_free(particles);
+}
+
+TEST_F(CApi, PosesThatCannotBeAreRefused) {
+    const auto refused = [&](const std::string& says) {
+        EXPECT_EQ(relief_textures_set_poses(stage_.world_textures, stage_.bodies, stage_.poses, kItems), -1)
+            << says;
+        const std::string message = relief_error();
+        EXPECT_EQ(message.find("relief_textures_set_poses(): " + says), 0U) << message;
+        stage_.fill();
+    };
+    stage_.bodies[kWrong] = kItems;
+    refused("bodies[2] is 4; it must be from 0 to 3");
+    stage_.poses[kWrong].rotation[1] = 0.9F;
+    refused("poses[2].rotation has a length of 1.2");
+    EXPECT_EQ(relief_textures_set_poses(stage_.textures, stage_.bodies, stage_.poses, kItems), -1);
+    EXPECT_NE(std::string(relief_error()).find("single collider"), std::string::npos);
+    EXPECT_EQ(relief_picture_create(stage_.world_textures, stage_.collider), nullptr);
+    EXPECT_NE(std::string(relief_error()).find("collider is given"), std::string::npos);
+    EXPECT_EQ(relief_world_load("no such world.json"), nullptr);
+    EXPECT_NE(std::string(relief_error()).find("no such world.json"), std::string::npos);
+    EXPECT_EQ(relief_world_load(stage_.good<const char*>("path")), nullptr) << "a container is no world";
 }
 
 // Threads that make, ask and free colliders of their own and ask one that all share.

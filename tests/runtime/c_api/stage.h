@@ -15,7 +15,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
 #include "formats/container.h"
+#include "formats/world/world.h"
 #include "runtime/c_api/relief.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
@@ -27,7 +30,7 @@ namespace relief::c_api {
 inline constexpr std::size_t kItems = 4;  // births, points, …
 inline constexpr std::size_t kWrong = 2;  // the one of them that is made wrong
 
-/// A collider, textures, particles and a picture that work, and memory for all that is read and written.
+/// A collider, textures, particles, a picture and a world that work, and memory for all that is read and written.
 class Stage {
   public:
     Stage() {
@@ -42,6 +45,7 @@ class Stage {
         const auto bytes = writeContainer(box);
         EXPECT_TRUE(bytes);
         bytes_.assign(bytes->begin(), bytes->end());
+        writeWorld(box);
         auto program = makeProgram("base/quad.vert", "particles/rebase.frag");
         EXPECT_TRUE(program);
         program_ = std::move(*program);
@@ -56,8 +60,11 @@ class Stage {
         relief_picture_free(picture);
         relief_particles_free(particles);
         relief_textures_free(textures);
+        relief_textures_free(world_textures);
         relief_collider_free(collider);
+        relief_world_free(world);
         std::filesystem::remove(path_);
+        std::filesystem::remove(world_path_);
     }
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
@@ -68,7 +75,10 @@ class Stage {
         textures = textures != nullptr ? textures : relief_textures_create(collider);
         particles = particles != nullptr ? particles : relief_particles_create(textures, &options);
         picture = picture != nullptr ? picture : relief_picture_create(textures, collider);
-        ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr && picture != nullptr)
+        world = world != nullptr ? world : relief_world_load(world_path_.c_str());
+        world_textures = world_textures != nullptr ? world_textures : relief_textures_create_world(world);
+        ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr &&
+                    picture != nullptr && world != nullptr && world_textures != nullptr)
             << relief_error();
     }
     /// Good values of everything that a test may have changed.
@@ -85,6 +95,10 @@ class Stage {
             for (std::size_t k = 0; k < 3; ++k) {
                 points[3 * i + k] = 0.1F * static_cast<float>(i + k);
             }
+        }
+        for (std::uint32_t i = 0; i < kItems; ++i) {
+            bodies[i] = i;
+            poses[i] = {{0.0F, 0.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}};
         }
         picture_options = {};
         picture_options.size = sizeof(picture_options);
@@ -105,11 +119,11 @@ class Stage {
     template <class T>
     T good(const std::string& name) {
         if constexpr (std::is_same_v<T, const char*>) {
-            return path_.c_str();
+            return name == "node" ? "box 1" : name == "world_path" ? world_path_.c_str() : path_.c_str();
         } else if constexpr (std::is_same_v<T, const void*>) {
             return bytes_.data();
         } else if constexpr (std::is_same_v<T, size_t>) {
-            return name == "size" ? bytes_.size() : kItems;
+            return name == "size" ? bytes_.size() : name == "body" ? 1 : kItems;
         } else if constexpr (std::is_same_v<T, float>) {
             return 0.01F;
         } else if constexpr (std::is_same_v<T, uint32_t>) {
@@ -118,6 +132,8 @@ class Stage {
             return 0;
         } else if constexpr (std::is_same_v<T, float*>) {
             return name == "min" ? low : high;
+        } else if constexpr (std::is_same_v<T, relief_textures*>) {
+            return name == "world_textures" ? world_textures : textures;
         } else {
             return pointer(T{});
         }
@@ -126,6 +142,7 @@ class Stage {
     std::byte* structure(const std::string& name) {
         void* found = name == "relief_particles_options" ? static_cast<void*>(&options)
                       : name == "relief_birth"           ? &births[kWrong]
+                      : name == "relief_pose"            ? &poses[kWrong]
                       : name == "relief_picture_options" ? &picture_options
                       : name == "relief_view"            ? static_cast<void*>(&view)
                                                          : nullptr;
@@ -137,6 +154,7 @@ class Stage {
         return names("collider")    ? reinterpret_cast<std::uintptr_t>(collider)
                : names("textures")  ? reinterpret_cast<std::uintptr_t>(textures)
                : names("particles") ? reinterpret_cast<std::uintptr_t>(particles)
+               : names("world")     ? reinterpret_cast<std::uintptr_t>(world)
                                     : reinterpret_cast<std::uintptr_t>(picture);
     }
     /// It has been freed: revive() makes another.
@@ -148,14 +166,20 @@ class Stage {
         drop(textures);
         drop(particles);
         drop(picture);
+        drop(world);
     }
 
     relief_collider* collider = nullptr;
     relief_textures* textures = nullptr;
     relief_particles* particles = nullptr;
     relief_picture* picture = nullptr;
+    relief_world* world = nullptr;
+    relief_textures* world_textures = nullptr;
     relief_particles_options options;
     relief_birth births[kItems];
+    std::uint32_t bodies[kItems];
+    relief_pose poses[kItems];
+    relief_pose pose;  // that is read
     relief_picture_options picture_options;
     relief_view view;
     relief_particle states[kItems];
@@ -164,12 +188,35 @@ class Stage {
     float low[3];
     float high[3];
 
+    [[nodiscard]] const std::filesystem::path& worldPath() const { return world_path_; }
+
   private:
+    /// As many boxes as there are items, two units apart; the second is turned and twice as large.
+    void writeWorld(const Collider& box) {
+        World file;
+        file.colliders = {{path_.filename().string(), xxh3_128Hex(bytes_), "box", box.bounds}};
+        for (std::uint32_t i = 0; i < kItems; ++i) {
+            file.bodies.push_back({.collider = 0,
+                                   .node = "box " + std::to_string(i),
+                                   .position = {2.0F * static_cast<float>(i), 0.0F, 0.0F}});
+        }
+        file.bodies[1].rotation = {0.0F, 0.6F, 0.0F, 0.8F};
+        file.bodies[1].scale = 2.0F;
+        world_path_ = path_;
+        world_path_.replace_extension(".json");
+        const std::string text = worldText(file);
+        EXPECT_TRUE(writeFile(world_path_, std::as_bytes(std::span(text))));
+    }
+
     // One for each type of pointer: another in relief.h does not compile.
     const relief_collider* pointer(const relief_collider* /*type*/) { return collider; }
     relief_collider* pointer(relief_collider* /*type*/) { return collider; }
     const relief_textures* pointer(const relief_textures* /*type*/) { return textures; }
-    relief_textures* pointer(relief_textures* /*type*/) { return textures; }
+    const relief_world* pointer(const relief_world* /*type*/) { return world; }
+    relief_world* pointer(relief_world* /*type*/) { return world; }
+    const std::uint32_t* pointer(const std::uint32_t* /*type*/) { return bodies; }
+    const relief_pose* pointer(const relief_pose* /*type*/) { return poses; }
+    relief_pose* pointer(relief_pose* /*type*/) { return &pose; }
     const relief_particles* pointer(const relief_particles* /*type*/) { return particles; }
     relief_particles* pointer(relief_particles* /*type*/) { return particles; }
     relief_picture* pointer(relief_picture* /*type*/) { return picture; }
@@ -183,6 +230,7 @@ class Stage {
 
     std::unique_ptr<GlContext> context_;
     std::filesystem::path path_;
+    std::filesystem::path world_path_;
     std::vector<std::byte> bytes_;
     GlProgram program_;
     GlTexture color_;
@@ -201,6 +249,9 @@ inline void release(relief_textures* made) {
 }
 inline void release(relief_particles* made) {
     relief_particles_free(made);
+}
+inline void release(relief_world* made) {
+    relief_world_free(made);
 }
 inline void release(relief_picture* made) {
     relief_picture_free(made);
@@ -230,7 +281,7 @@ struct Argument {
         const std::string bare =
             type.substr(type.find("relief_") == std::string::npos ? 0 : type.find("relief_"));
         return bare == "relief_collider*" || bare == "relief_textures*" || bare == "relief_particles*" ||
-               bare == "relief_picture*";
+               bare == "relief_picture*" || bare == "relief_world*";
     }
 };
 

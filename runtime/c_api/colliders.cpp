@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "formats/container.h"
+#include "formats/nearest_surface.h"
+#include "runtime/c_api/objects.h"
+#include "runtime/gl/gl_functions.h"
+
+using namespace relief;  // NOLINT: what C sees has C's names
+
+namespace {
+
+/// Of a FieldSample or a SurfaceSample.
+template <class Sample>
+relief_sample sampleOf(const Sample& from) {
+    relief_sample sample{from.distance, {}, from.map};
+    put(from.normal, sample.normal);
+    return sample;
+}
+
+/// The binding of the collider in a program's own shader.
+Result<ColliderTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
+                                            int uniform_block) {
+    const int units = textures.world ? 4 : 3;
+    RELIEF_TRY(call.number(first_unit, {0.0, static_cast<double>(textures.units - units)}, {"first_unit"}));
+    RELIEF_TRY(
+        call.number(uniform_block, {0.0, static_cast<double>(textures.blocks - 1)}, {"uniform_block"}));
+    return ColliderTextures::Binding{first_unit, uniform_block, first_unit + 3};
+}
+
+}  // namespace
+
+int relief_api_version() {
+    return RELIEF_API_VERSION;
+}
+
+const char* relief_version() {
+    return RELIEF_VERSION;
+}
+
+const char* relief_error() {
+    callErrors().read();
+    return callErrors().last();
+}
+
+uint64_t relief_error_count() {
+    return callErrors().count();
+}
+
+// --- colliders, on the CPU
+
+relief_collider* relief_collider_load(const char* path) {
+    return create<relief_collider>(__func__, [&](const Call& call) -> Result<std::shared_ptr<Collider>> {
+        RELIEF_TRY(call.notNull(path, "path"));
+        return std::make_shared<Collider>(RELIEF_TRY(loadCollider(path)));
+    });
+}
+
+relief_collider* relief_collider_read(const void* bytes, size_t size) {
+    return create<relief_collider>(__func__, [&](const Call& call) -> Result<std::shared_ptr<Collider>> {
+        const auto* first = static_cast<const std::byte*>(bytes);
+        RELIEF_TRY(call.array(first, "bytes", size, "size"));
+        return std::make_shared<Collider>(RELIEF_TRY(readContainer({first, size})));
+    });
+}
+
+void relief_collider_free(relief_collider* collider) {
+    release(__func__, collider, "collider");
+}
+
+void relief_collider_bounds(const relief_collider* collider, float min[3], float max[3]) {
+    writeBounds(__func__, min, max, [&](const Call& call) -> Result<Bounds> {
+        return RELIEF_TRY(call.object(collider, "collider"))->bounds;
+    });
+}
+
+size_t relief_collider_map_count(const relief_collider* collider) {
+    return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
+        return RELIEF_TRY(call.object(collider, "collider"))->maps.size();
+    });
+}
+
+const char* relief_collider_unit(const relief_collider* collider) {
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        return RELIEF_TRY(call.object(collider, "collider"))->unit.c_str();
+    });
+}
+
+void relief_collider_query(const relief_collider* collider, const float* points, size_t count,
+                           relief_sample* samples) {
+    query(__func__, collider, "collider", points, count, samples,
+          [](const Collider& field, const glm::vec3& point) { return sampleOf(evaluate(field, point)); });
+}
+
+void relief_collider_nearest(const relief_collider* collider, const float* points, size_t count,
+                             relief_sample* samples) {
+    query(
+        __func__, collider, "collider", points, count, samples,
+        [](const Collider& field, const glm::vec3& point) { return sampleOf(nearestSurface(field, point)); });
+}
+
+// --- colliders, on the GPU
+
+relief_textures* relief_textures_create(const relief_collider* collider) {
+    return create<relief_textures>(
+        __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
+            const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
+            RELIEF_TRY(call.context());
+            auto textures = RELIEF_TRY(ColliderTextures::create(field));
+            return std::make_shared<TexturesObject>(RELIEF_TRY(texturesObject(std::move(textures))));
+        });
+}
+
+void relief_textures_free(relief_textures* textures) {
+    release(__func__, textures, "textures");
+}
+
+const char* relief_textures_glsl(const relief_textures* textures) {
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        return RELIEF_TRY(call.object(textures, "textures"))->glsl.c_str();
+    });
+}
+
+void relief_textures_attach(const relief_textures* textures, uint32_t program, int first_unit,
+                            int uniform_block) {
+    answer(__func__, false, [&](const Call& call) -> Result<bool> {
+        const TexturesObject& from = *RELIEF_TRY(call.object(textures, "textures"));
+        RELIEF_TRY(call.context());
+        const auto binding = RELIEF_TRY(bindingOf(call, from, first_unit, uniform_block));
+        GLint linked = GL_FALSE;
+        if (glIsProgram(program) == GL_TRUE) {
+            glGetProgramiv(program, GL_LINK_STATUS, &linked);
+        }
+        if (linked != GL_TRUE) {
+            return call.refuse("program is " + std::to_string(program) +
+                               ", which is no program of the context that is linked");
+        }
+        from.textures.attach(program, binding);
+        return true;
+    });
+}
+
+void relief_textures_bind(const relief_textures* textures, int first_unit, int uniform_block) {
+    answer(__func__, false, [&](const Call& call) -> Result<bool> {
+        const TexturesObject& from = *RELIEF_TRY(call.object(textures, "textures"));
+        RELIEF_TRY(call.context());
+        from.textures.bind(RELIEF_TRY(bindingOf(call, from, first_unit, uniform_block)));
+        return true;
+    });
+}

@@ -1,0 +1,159 @@
+// The objects behind the handles of relief.h, and what its functions share.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/base/finite.h"
+#include "formats/world/world_field.h"
+#include "runtime/c_api/call.h"
+#include "runtime/c_api/relief.h"
+#include "runtime/collider/collider_textures.h"
+#include "runtime/particles/particle_system.h"
+#include "runtime/picture/particle_renderer.h"
+
+namespace relief {
+
+struct TexturesObject {
+    ColliderTextures textures;
+    std::string glsl;
+    GLint units = 0;                   // texture units of the context
+    GLint blocks = 0;                  // uniform block bindings
+    std::optional<Bounds> world = {};  // of bodies, where they were placed; nullopt: of a single collider
+    float texel = 0.0F;                // the finest of a world
+    std::vector<Pose> poses = {};      // of its bodies, at the end of the next step
+};
+
+struct ParticlesObject {
+    std::shared_ptr<const TexturesObject> textures;  // outlives the system, which points to it; may be null
+    ParticleSystem system;
+    std::vector<Birth> births;  // of a call, kept for its memory
+};
+
+struct PictureObject {
+    std::shared_ptr<const TexturesObject> textures;  // as above
+    ParticleRenderer renderer;
+    float diameter = 0.01F;
+};
+
+struct WorldObject {
+    WorldField field;
+};
+
+template <>
+struct HandleType<relief_textures> {
+    using Object = TexturesObject;
+    static constexpr HandleKind kKind = HandleKind::kTextures;
+    static constexpr const char* kName = "relief_textures";
+};
+template <>
+struct HandleType<relief_particles> {
+    using Object = ParticlesObject;
+    static constexpr HandleKind kKind = HandleKind::kParticles;
+    static constexpr const char* kName = "relief_particles";
+};
+template <>
+struct HandleType<relief_picture> {
+    using Object = PictureObject;
+    static constexpr HandleKind kKind = HandleKind::kPicture;
+    static constexpr const char* kName = "relief_picture";
+};
+template <>
+struct HandleType<relief_world> {
+    using Object = WorldObject;
+    static constexpr HandleKind kKind = HandleKind::kWorld;
+    static constexpr const char* kName = "relief_world";
+};
+
+// As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (isLost()).
+inline constexpr FieldRange kAny{-1e15, 1e15};
+inline constexpr FieldRange kNotNegative{0.0, 1e15};
+inline constexpr FieldRange kShare{0.0, 1.0};
+inline constexpr FieldRange kLifetime{0.0, 1e15, false};
+inline constexpr FieldRange kStep{0.0, 1e9, false};
+inline constexpr FieldRange kPixels{0.0, 65536.0};
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+inline glm::vec3 vec(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+inline void put(const glm::vec3& v, float (&out)[3]) {
+    std::copy_n(&v.x, 3, out);
+}
+
+inline glm::vec3 pointAt(const float* points, std::size_t i) {
+    return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
+}
+
+/// Frees an object. The context must be current if GL names go with it: all but colliders and worlds have some.
+template <class H>
+void release(const char* function, H* handle, const char* argument) noexcept {
+    answer(function, false, [&](const Call& call) -> Result<bool> {
+        if (handle != nullptr) {
+            [[maybe_unused]] const auto* object = RELIEF_TRY(call.object(handle, argument));
+            if (HandleType<H>::kKind != HandleKind::kCollider && HandleType<H>::kKind != HandleKind::kWorld) {
+                RELIEF_TRY(call.context());
+            }
+            [[maybe_unused]] const auto last =
+                handleTable().remove(HandleType<H>::kKind, reinterpret_cast<std::uintptr_t>(handle));
+        }
+        return true;
+    });
+}
+
+/// Answers each point by sampleAt(object, point), a relief_sample; where that cannot be, by NaN.
+/// \param argument  the handle's name.
+template <class H, class F>
+void query(const char* function, const H* handle, const char* argument, const float* points,
+           std::size_t count, relief_sample* samples, const F& sampleAt) {
+    const auto unknown = [&](std::size_t i) { samples[i] = {kNan, {0.0F, 0.0F, 0.0F}, -1}; };
+    answer(function, false, [&](const Call& call) -> Result<bool> {
+        RELIEF_TRY(call.array(samples, "samples", count, "count"));
+        for (std::size_t i = 0; i < count; ++i) {
+            unknown(i);
+        }
+        RELIEF_TRY(call.array(points, "points", count, "count"));
+        const auto& field = *RELIEF_TRY(call.object(handle, argument));
+        std::size_t wrong = count;
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec3 point = pointAt(points, i);
+            if (!isFinite(point)) {
+                wrong = std::min(wrong, i);
+                continue;
+            }
+            samples[i] = sampleAt(field, point);
+        }
+        if (wrong < count) {
+            return call.refuse("points[" + std::to_string(wrong) + "] is not finite");
+        }
+        return true;
+    });
+}
+
+/// Writes the result of boundsOf(call); where it fails, NaN.
+template <class F>
+void writeBounds(const char* function, float* min, float* max, const F& boundsOf) {
+    answer(function, false, [&](const Call& call) -> Result<bool> {
+        for (float* out : {min, max}) {
+            if (out != nullptr) {
+                std::fill_n(out, 3, kNan);
+            }
+        }
+        const Bounds bounds = RELIEF_TRY(boundsOf(call));
+        RELIEF_TRY(call.notNull(min, "min"));
+        RELIEF_TRY(call.notNull(max, "max"));
+        std::copy_n(&bounds.min.x, 3, min);
+        std::copy_n(&bounds.max.x, 3, max);
+        return true;
+    });
+}
+
+/// Textures with all that calls about them need. Needs a current context.
+[[nodiscard]] Result<TexturesObject> texturesObject(ColliderTextures textures);
+
+}  // namespace relief

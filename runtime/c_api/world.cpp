@@ -1,0 +1,142 @@
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "formats/base/text.h"
+#include "runtime/c_api/objects.h"
+#include "runtime/collider/world_bodies.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/gl_object.h"
+#include "runtime/picture/collider_view.h"
+
+using namespace relief;  // NOLINT: what C sees has C's names
+
+namespace {
+
+/// As relief.h and the format have them.
+constexpr FieldRange kRotation = within(1.001);
+constexpr float kUnitTolerance = 1e-3F;
+
+Result<const WorldBody*> bodyOf(const Call& call, const relief_world* world, std::size_t body) {
+    const auto& bodies = RELIEF_TRY(call.object(world, "world"))->field.world().bodies;
+    RELIEF_TRY(call.number(body, {0.0, static_cast<double>(bodies.size() - 1)}, {"body"}));
+    return &bodies[body];
+}
+
+/// \param rest  whose scale stays.
+Result<Pose> poseOf(const Call& call, const relief_pose& given, std::size_t i, const Pose& rest) {
+    RELIEF_TRY(call.number(given.position, kAny, {"poses", i, "position"}));
+    RELIEF_TRY(call.number(given.rotation, kRotation, {"poses", i, "rotation"}));
+    const glm::quat turn(given.rotation[3], given.rotation[0], given.rotation[1], given.rotation[2]);
+    if (!(std::abs(glm::length(turn) - 1.0F) <= kUnitTolerance)) {
+        return call.refuse(NumberName{"poses", i, "rotation"}.text() + " has a length of " +
+                           shortest(glm::length(turn)) +
+                           ", a unit quaternion one of 1; scale it, or give 0, 0, 0, 1");
+    }
+    return Pose{vec(given.position), glm::normalize(turn), rest.scale};
+}
+
+}  // namespace
+
+relief_world* relief_world_load(const char* world_path) {
+    return create<relief_world>(__func__, [&](const Call& call) -> Result<std::shared_ptr<WorldObject>> {
+        RELIEF_TRY(call.notNull(world_path, "world_path"));
+        return std::make_shared<WorldObject>(WorldObject{WorldField(RELIEF_TRY(loadWorld(world_path)))});
+    });
+}
+
+void relief_world_free(relief_world* world) {
+    release(__func__, world, "world");
+}
+
+size_t relief_world_body_count(const relief_world* world) {
+    return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
+        return RELIEF_TRY(call.object(world, "world"))->field.world().bodies.size();
+    });
+}
+
+int64_t relief_world_find(const relief_world* world, const char* node) {
+    return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
+        const World& all = RELIEF_TRY(call.object(world, "world"))->field.world();
+        RELIEF_TRY(call.notNull(node, "node"));
+        const auto body = findBody(all, node);
+        if (!body) {
+            return call.refuse("node is '" + cleanUtf8(node) +
+                               "', and no body of the world is of one named so");
+        }
+        return static_cast<int64_t>(*body);
+    });
+}
+
+const char* relief_world_node(const relief_world* world, size_t body) {
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        return RELIEF_TRY(bodyOf(call, world, body))->node.c_str();
+    });
+}
+
+void relief_world_bounds(const relief_world* world, float min[3], float max[3]) {
+    writeBounds(__func__, min, max, [&](const Call& call) -> Result<Bounds> {
+        return worldBounds(RELIEF_TRY(call.object(world, "world"))->field.world());
+    });
+}
+
+int relief_world_pose(const relief_world* world, size_t body, relief_pose* pose) {
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        RELIEF_TRY(call.notNull(pose, "pose"));
+        std::fill_n(pose->position, 3, kNan);
+        std::fill_n(pose->rotation, 4, kNan);
+        const WorldBody& from = *RELIEF_TRY(bodyOf(call, world, body));
+        put(from.position, pose->position);
+        std::copy_n(from.rotation.begin(), 4, pose->rotation);
+        return 0;
+    });
+}
+
+void relief_world_query(const relief_world* world, const float* points, size_t count,
+                        relief_sample* samples) {
+    query(__func__, world, "world", points, count, samples,
+          [](const WorldObject& of, const glm::vec3& point) {
+              const WorldSample from = of.field.evaluate(point);
+              relief_sample sample{from.body < 0 ? kFarOutside : from.distance, {}, from.body};
+              put(from.normal, sample.normal);
+              return sample;
+          });
+}
+
+relief_textures* relief_textures_create_world(const relief_world* world) {
+    return create<relief_textures>(
+        __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
+            const LoadedWorld& loaded = RELIEF_TRY(call.object(world, "world"))->field.loaded();
+            RELIEF_TRY(call.context());
+            auto textures = RELIEF_TRY(ColliderTextures::create(worldBodies(loaded)));
+            auto made = RELIEF_TRY(texturesObject(std::move(textures)));
+            const ColliderView view = worldView(loaded, made.textures);
+            made.world = view.bounds;
+            made.texel = view.texel;
+            made.poses = worldPoses(loaded.world);
+            return std::make_shared<TexturesObject>(std::move(made));
+        });
+}
+
+int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
+                              const relief_pose* poses, size_t count) {
+    return answer(__func__, -1, [&](const Call& call) -> Result<int> {
+        TexturesObject& to = *RELIEF_TRY(call.object(world_textures, "world_textures"));
+        RELIEF_TRY(call.array(bodies, "bodies", count, "count"));
+        RELIEF_TRY(call.array(poses, "poses", count, "count"));
+        if (!to.world) {
+            return call.refuse(
+                "world_textures is of a single collider, which has no pose; make it of a world");
+        }
+        RELIEF_TRY(call.context());
+        std::vector<Pose> wanted = to.poses;
+        for (std::size_t i = 0; i < count; ++i) {
+            RELIEF_TRY(call.number(bodies[i], {0.0, static_cast<double>(wanted.size() - 1)}, {"bodies", i}));
+            wanted[bodies[i]] = RELIEF_TRY(poseOf(call, poses[i], i, wanted[bodies[i]]));
+        }
+        to.poses = std::move(wanted);
+        to.textures.setPoses(to.poses);
+        return 0;
+    });
+}
