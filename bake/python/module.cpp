@@ -24,6 +24,8 @@
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
 #include "formats/validate.h"
+#include "formats/world/world_field.h"
+#include "runtime/collider/world_bodies.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
@@ -133,6 +135,31 @@ py::tuple query(const Collider& collider, const Floats& points, const std::strin
                     ? sampleAll(points, [&](const glm::vec3& p) { return evaluate(collider, p); })
                     : sampleAll(points, [&](const glm::vec3& p) { return nearestSurface(collider, p); });
     return py::make_tuple(s.distance, s.normal, s.map);
+}
+
+/// `map` is the body.
+py::tuple queryWorld(const WorldField& field, const Floats& points) {
+    const Samples s = sampleAll(points, [&](const glm::vec3& p) {
+        const WorldSample sample = field.evaluate(p);
+        return FieldSample{sample.body < 0 ? kFarOutside : sample.distance, sample.normal, sample.body};
+    });
+    return py::make_tuple(s.distance, s.normal, s.map);
+}
+
+/// Each body's value of `kParts` floats.
+template <std::size_t kParts, class Value>
+Floats ofBodies(const WorldField& field, const Value& value) {
+    const std::vector<WorldBody>& bodies = field.world().bodies;
+    Floats out({static_cast<py::ssize_t>(bodies.size()), static_cast<py::ssize_t>(kParts)});
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        std::copy_n(value(bodies[i]), kParts, out.mutable_data() + kParts * i);
+    }
+    return out;
+}
+
+Floats cornersOf(const Bounds& bounds) {
+    const auto& [low, high] = bounds;
+    return Floats({2, 3}, std::array{low.x, low.y, low.z, high.x, high.y, high.z}.data());
 }
 
 /// The stored texels of a map, without a copy: they live as long as the collider.
@@ -429,12 +456,7 @@ PYBIND11_MODULE(_relief, m) {
     g_errors = errors;
 
     py::class_<Collider, SharedCollider>(m, "Collider")
-        .def_property_readonly(
-            "bounds",
-            [](const Collider& c) {
-                const auto& [low, high] = c.bounds;
-                return Floats({2, 3}, std::array{low.x, low.y, low.z, high.x, high.y, high.z}.data());
-            })
+        .def_property_readonly("bounds", [](const Collider& c) { return cornersOf(c.bounds); })
         .def_property_readonly("unit", [](const Collider& c) { return c.unit; })
         .def_property_readonly("mesh_name", [](const Collider& c) { return c.provenance.mesh_name; })
         .def_property_readonly("options", [](const Collider& c) { return c.provenance.optionsText(); })
@@ -444,6 +466,44 @@ PYBIND11_MODULE(_relief, m) {
         .def("map_texels", [](const py::object& self, std::size_t i) { return texelsOf(self, i); })
         .def("map_depth", &depthOf)
         .def("query", &query);
+    py::class_<WorldField, std::shared_ptr<WorldField>>(m, "World")
+        .def_property_readonly("bounds",
+                               [](const WorldField& f) { return cornersOf(worldBounds(f.world())); })
+        .def_property_readonly("unit", [](const WorldField& f) { return f.world().unit; })
+        .def_property_readonly("nodes",
+                               [](const WorldField& f) {
+                                   py::list nodes;
+                                   for (const WorldBody& body : f.world().bodies) {
+                                       nodes.append(textOf(body.node));
+                                   }
+                                   return nodes;
+                               })
+        .def_property_readonly("positions",
+                               [](const WorldField& f) {
+                                   return ofBodies<3>(f,
+                                                      [](const WorldBody& body) { return &body.position.x; });
+                               })
+        .def_property_readonly("rotations",
+                               [](const WorldField& f) {
+                                   return ofBodies<4>(
+                                       f, [](const WorldBody& body) { return body.rotation.data(); });
+                               })
+        .def_property_readonly(
+            "scales", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::scale); })
+        .def_property_readonly(
+            "collider_of", [](const WorldField& f) { return column(f.world().bodies, &WorldBody::collider); })
+        .def("collider",
+             [](const std::shared_ptr<WorldField>& f, std::size_t i) {
+                 const auto& colliders = f->colliders();
+                 return SharedCollider(
+                     f, const_cast<Collider*>(&colliders.at(i)));  // NOLINT: nothing changes one
+             })
+        .def_property_readonly("collider_count", [](const WorldField& f) { return f.colliders().size(); })
+        .def("query", &queryWorld);
+    m.def("load_world", [](const std::filesystem::path& path) {
+        return std::make_shared<WorldField>(
+            need(released([&]() -> Result<WorldField> { return WorldField(RELIEF_TRY(loadWorld(path))); })));
+    });
     m.def("load", [](const std::filesystem::path& path) {
         return std::make_shared<Collider>(need(released([&] { return loadCollider(path); })));
     });

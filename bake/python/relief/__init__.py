@@ -28,7 +28,8 @@ from ._relief import Error, FileError, InputError, LimitError, UnsupportedError,
 
 __version__: str = _relief.version
 __all__ = ["Accuracy", "Collider", "DepthMap", "Error", "FileError", "Hits", "InputError", "LimitError", "ReliefWarning",
-           "Samples", "Simulation", "UnsupportedError", "UsageError", "WorstPlace", "bake", "check", "load"]
+           "Samples", "Simulation", "UnsupportedError", "UsageError", "World", "WorldSamples", "WorstPlace", "bake",
+           "check", "load"]
 
 Path = Union[str, "os.PathLike[str]"]
 Number = Union[int, float, str]
@@ -66,6 +67,17 @@ class Samples(NamedTuple):
     """(n, 3) float32, outwards; zero where no more than "outside" is known; NaN where a point is not finite."""
     map: np.ndarray
     """(n,) int32: the map that decides; -1 where no map says anything."""
+
+
+class WorldSamples(NamedTuple):
+    """A world evaluated at n points."""
+
+    distance: np.ndarray
+    """(n,) float32, as that of Samples, in world units: the least of all bodies."""
+    normal: np.ndarray
+    """(n, 3) float32, as that of Samples, in the world."""
+    body: np.ndarray
+    """(n,) int32: the body that decides; -1 where no body says anything."""
 
 
 class DepthMap:
@@ -159,6 +171,50 @@ class Collider:
 
     def __repr__(self) -> str:
         return f"<Collider of {self._handle.mesh_name or 'a mesh'}: {self._handle.map_count} maps, {self.gpu_bytes} bytes>"
+
+
+class World:
+    """The world.json of `relief bake --world`, with its colliders. Body i is the file's i-th. Nothing changes one: arrays are
+    copies."""
+
+    def __init__(self, path: Path) -> None:
+        self._handle = _relief.load_world(_path(path))
+        self._nodes = list(self._handle.nodes)
+
+    bounds = _of_handle("bounds", "(2, 3): the least and the largest corner of the box that holds all bodies.")
+    unit = _of_handle("unit", 'Of lengths: "m", or "" where the level does not say.')
+    positions = _of_handle("positions", "(n, 3) float32: where each body's collider has its origin.")
+    rotations = _of_handle("rotations", "(n, 4) float32: of each body, a unit quaternion x, y, z, w.")
+    scales = _of_handle("scales", "(n,) float32: world units of a unit of each body's collider.")
+    collider_of = _of_handle("collider_of", "(n,) uint32: the number of each body's collider.")
+
+    @property
+    def nodes(self) -> list[str]:
+        """The name of each body's node; may be empty."""
+        return list(self._nodes)
+
+    @property
+    def colliders(self) -> list[Collider]:
+        """Each different shape once."""
+        return [Collider(self._handle.collider(i)) for i in range(self._handle.collider_count)]
+
+    def find(self, node: str) -> int:
+        """The first body of the node of this name."""
+        if not isinstance(node, str):
+            _wrong_type(node, "node", "text")
+        if node not in self._nodes:
+            raise UsageError(f"node is {node!r}, and no body of the world is of one named so; nodes has all")
+        return self._nodes.index(node)
+
+    def query(self, points: Any) -> WorldSamples:
+        """Evaluates the union of all bodies at points, (n, 3), of the world. Takes time by the number of bodies."""
+        return WorldSamples(*self._handle.query(_coordinates(points, "points")))
+
+    def __len__(self) -> int:
+        return len(self._nodes)
+
+    def __repr__(self) -> str:
+        return f"<World: {len(self)} bodies of {self._handle.collider_count} colliders>"
 
 
 @dataclasses.dataclass(frozen=True)
