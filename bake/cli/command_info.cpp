@@ -1,7 +1,9 @@
-// relief info: what is in a container.
+// relief info: what is in a container, or in a world.
 #include <CLI/CLI.hpp>
 
 #include "bake/cli/command.h"
+#include "bake/cli/command_world.h"
+#include "bake/cli/world_info.h"
 #include "bake/report/collider_report.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"
@@ -75,6 +77,10 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
 }
 
 Result<void> runInfo(const InfoCommand& command) {
+    if (namesWorld(command.file)) {
+        const WorldInfo info = RELIEF_TRY(readWorldInfo(command.file, command.limits));
+        return printOut(command.json ? jsonText(jsonOf(info)) : worldInfoText(info));
+    }
     // Checked as a whole, payloads included.
     const ColliderFile shown = RELIEF_TRY(readColliderFile(command.file, command.limits));
     const ContainerInfo info =
@@ -87,11 +93,15 @@ Result<void> runInfo(const InfoCommand& command) {
 
 void addInfo(CLI::App& app, Action& action) {
     auto command = std::make_shared<InfoCommand>();
-    CLI::App& verb =
-        addVerb(app, command->common, "info", "Shows what is in a collider, and where it comes from",
-                "relief info bunny.relief\n"
-                "relief info bunny.relief --json | jq .maps[0].object_to_map");
-    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
+    CLI::App& verb = addVerb(app, command->common, "info",
+                             "Shows what is in a collider, and where it comes from; or what is in a world",
+                             "relief info bunny.relief\n"
+                             "relief info level/world.json\n"
+                             "relief info bunny.relief --json | jq .maps[0].object_to_map");
+    verb.add_option("FILE", command->file,
+                    "The collider, or a world.json; - for a collider on standard input")
+        ->type_name("")
+        ->required();
     addMemoryOption(verb, command->limits);
     verb.add_flag("--json", command->json, "Print JSON");
     verb.callback([command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });

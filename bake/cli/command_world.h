@@ -25,7 +25,7 @@ void addWorldOption(CLI::App& verb, std::string& folder);
 /// Errors: those of bakeWorld, and of the first collider that failed; kUsage, kIo.
 [[nodiscard]] Result<void> runWorldCommand(const std::string& folder, const WorldCall& call);
 
-/// Whether `relief check` takes a file for a world: by its extension, .json.
+/// Whether `relief check` and `relief info` take a file for a world: by its extension, .json.
 [[nodiscard]] bool namesWorld(const std::string& file);
 
 struct WorldCheckCall {

@@ -1,5 +1,6 @@
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
+#include "bake/cli/world_info.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/report/collider_report.h"
@@ -68,6 +69,8 @@ GeneratedTexts bakeTexts() {
         schemaFile("world", "world.json of relief bake --world", "Placed colliders.", schemaOf(World{})),
         schemaFile("world-bake", "relief bake --world --json", "A bake of a level.",
                    schemaOf(WorldBakeJson{})),
+        schemaFile("world-info", "relief info world.json --json", "The contents of a world.",
+                   schemaOf(WorldInfo{})),
         schemaFile("world-check", "relief check world.json --json", "A world, and how wrong it is.",
                    schemaOf(WorldCheckJson{})),
         schemaFile("recipe", "relief bake --recipe --json", "A run of a recipe.", schemaOf(RecipeJson{})),

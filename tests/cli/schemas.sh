@@ -116,8 +116,9 @@ python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
 "$relief" bake level.gltf --world w --budget 100kB --json >world_again.json
 "$relief" check w/world.json --json >world_file.json
 "$relief" check w/world.json --mesh level.gltf --samples 500 --json >world_check.json
+"$relief" info w/world.json --json >world_info.json
 outputs+=(world:w/world.json world-bake:world_bake.json world-bake:world_again.json)
-outputs+=(world-check:world_file.json world-check:world_check.json)
+outputs+=(world-check:world_file.json world-check:world_check.json world-info:world_info.json)
 
 # A scene with everything in it.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"

@@ -57,9 +57,18 @@ expect 0 "$relief" bake other.gltf --world w --budget 200kB --as shell --thickne
 json stdout "len(d['removed']) == 3 and d['bodies'] == 1"
 [ "$(cat w/mine.relief)" = mine ] || die "a file of somebody else is gone"
 
-# Checks: against the level, and without.
+# The contents.
 level level.gltf
 expect 0 "$relief" bake level.gltf --world w --budget 200kB -q
+expect 0 "$relief" info w/world.json --json
+json stdout "d['file'] == 'w/world.json' and d['unit'] == 'm' and d['bodies'] == 5 and [c['bodies'] for c in d['colliders']] == [1, 3, 1]"
+json stdout "d['bytes'] == sum(__import__('os').path.getsize('w/' + c['file']) for c in d['colliders'])"
+json stdout "d['min'][0] == -20 and abs(d['max'][1] - 2) < 1e-5 and d['colliders'][1]['min'] == [-0.5, 0, -0.25] and 0 < d['gpu_bytes'] <= 200000"
+expect 0 "$relief" info w/world.json
+grep -q '^Relief world of 5 bodies of 3 colliders' stdout && [ "$(wc -l <stdout)" -eq 6 ] || die "info: $(cat stdout)"
+expect_error 2 "none.json" "$relief" info none.json
+
+# Checks: against the level, and without.
 expect 0 "$relief" check w/world.json
 grep -q '^world.json: 5 bodies of 3 colliders' stdout || die "check: $(cat stdout)"
 expect 0 "$relief" check w/world.json --mesh level.gltf --max-error 1 --json
