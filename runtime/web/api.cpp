@@ -24,6 +24,7 @@
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_parser.h"
 #include "runtime/scene/scene_pictures.h"
+#include "runtime/scene/scene_world.h"
 
 namespace relief {
 namespace {
@@ -91,6 +92,7 @@ Json describeBodies(const std::vector<SceneCollider>& colliders, double time) {
         }
         matrix.insert(matrix.end(), {pose.position.x, pose.position.y, pose.position.z, 1.0F});
         bodies.push_back({{"file", collider.path.string()},
+                          {"node", collider.node},
                           {"deforms", collider.live.has_value()},
                           {"moves", !collider.keys.empty()},
                           {"matrix", matrix}});
@@ -183,8 +185,8 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
     for (std::size_t i = 0; i < now.size(); ++i) {
         SceneCollider& body = now[i];
         const SceneCollider& to = wanted[i];
-        if (to.path != body.path || to.live.has_value() != body.live.has_value() || to.keys != body.keys ||
-            to.pose.scale != body.pose.scale || to.restitution != body.restitution ||
+        if (to.path != body.path || to.node != body.node || to.live.has_value() != body.live.has_value() ||
+            to.keys != body.keys || to.pose.scale != body.pose.scale || to.restitution != body.restitution ||
             to.friction != body.friction) {
             return fail(ErrorCode::kUsage,
                         "collider " + std::to_string(i) +
@@ -213,9 +215,14 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
 /// \param emitters  those of the scene begin anew.
 Result<int> changePlayer(Player& player, const char* text, const char* path, bool emitters) {
     Scene& now = player.loaded.scene;
-    Scene wanted = RELIEF_TRY(withDefaults(RELIEF_TRY(readScene(text, path)), player.loaded.bounds));
+    Scene read = RELIEF_TRY(readScene(text, path));
+    if (!read.world.empty()) {
+        RELIEF_TRY(placeBodies(read, player.loaded.world));
+    }
+    Scene wanted = RELIEF_TRY(withDefaults(std::move(read), player.loaded.bounds));
     if (wanted.particles.capacity != now.particles.capacity ||
-        wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size()) {
+        wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size() ||
+        wanted.world != now.world) {
         return fail(ErrorCode::kUsage,
                     "other colliders, another capacity or integrator need a new system; make one");
     }

@@ -30,6 +30,9 @@ export function init(options?: InitOptions): Promise<unknown>;
 /** Fetches and reads a .relief file. */
 export function load(source: Source): Promise<Collider>;
 
+/** Fetches and reads a world.json of `relief bake LEVEL --world`, and the containers that it names, from beside it. */
+export function loadWorld(source: string | URL | Request | Response): Promise<World>;
+
 export interface Bounds {
     min: Vec3;
     max: Vec3;
@@ -98,6 +101,44 @@ export class Collider {
     dispose(): void;
 }
 
+/** A world at n points. */
+export interface WorldAnswers {
+    /** n: the least of all bodies, in world units; as that of Answers. */
+    distance: Float32Array;
+    /** 3 n: of the surface, outwards, in the world; 0 where there is none. */
+    normal: Float32Array;
+    /** n: the body that decides; -1 where none votes. */
+    body: Int32Array;
+}
+
+export interface WorldBody {
+    /** Index of its collider. */
+    collider: number;
+    /** Name of its node in the level; may be empty. */
+    node: string;
+    position: Vec3;
+    /** A unit quaternion x, y, z, w. */
+    rotation: [number, number, number, number];
+    scale: number;
+    restitution: number;
+    friction: number;
+}
+
+/** A level in memory: placed bodies. It needs no WebGL; systems made of it keep what they need of it. */
+export class World {
+    /** @param files world.json and the containers, by the names it has for them; kept. init() must have ended. */
+    constructor(files: Record<string, Collider | Uint8Array | string>);
+    readonly files: Record<string, Collider | Uint8Array | string>;
+    readonly unit: string;
+    readonly colliders: { file: string; hash: string; mesh: string; min: Vec3; max: Vec3 }[];
+    readonly bodies: WorldBody[];
+    /** The box that holds all bodies. */
+    readonly bounds: Bounds;
+    /** On the CPU, where the file places the bodies. Takes time by their number. @param points 3 n numbers. */
+    query(points: Numbers): WorldAnswers;
+    dispose(): void;
+}
+
 /** A collider as textures, for one's own shaders in that context. A lost context takes it along: make a new one. */
 export class GpuCollider {
     constructor(gl: WebGL2RenderingContext, collider: Collider);
@@ -123,6 +164,8 @@ export class GpuCollider {
 export interface ParticleSystemOptions {
     /** The one collider of a scene that names none. */
     collider?: Collider;
+    /** The world of a scene that names none, in place of a collider; as a file it is "world/world.json". */
+    world?: World;
     /** Defaults for whatever it leaves out. As text it is scene.toml itself, and names its colliders. */
     scene?: Scene | string;
     /** The files that the scene names, by their paths in it. */
@@ -174,7 +217,7 @@ export interface SystemInfo {
     camera: { eye: Vec3; target: Vec3; fov: number };
     background: Vec3;
     /** The scene's colliders, each where it stands now: object to world, by columns. One that deforms names its mesh. */
-    bodies: { file: string; deforms: boolean; moves: boolean; matrix: number[] }[];
+    bodies: { file: string; node: string; deforms: boolean; moves: boolean; matrix: number[] }[];
 }
 
 /** A mesh whose vertices move on the GPU, in object space. Item i of a texture lies at (i & ((1 << shift) - 1), i >> shift). */
@@ -202,7 +245,8 @@ export class ParticleSystem {
      * Changes a part of a scene given as an object; not its capacity or integrator, and of its colliders only the pose:
      * `set({ collider: { position, axis, angle } })`, or a list with one for each of several, {} for those that stay. Before
      * each step of a collider that moves: it pushes what it meets on its way there. A single collider moves if the scene gave it
-     * a pose from the beginning, such as `collider: { position: [0, 0, 0] }`.
+     * a pose from the beginning, such as `collider: { position: [0, 0, 0] }`; a body of a world, if the scene named its node, as
+     * in `collider: [{ node: "door" }]`.
      */
     set(patch: Scene): void;
     /** Starts over with nothing alive; also after 'webglcontextrestored'. */
@@ -219,9 +263,11 @@ export class ParticleSystem {
 export const Relief: {
     init: typeof init;
     load: typeof load;
+    loadWorld: typeof loadWorld;
     Collider: typeof Collider;
     GpuCollider: typeof GpuCollider;
     ParticleSystem: typeof ParticleSystem;
     ReliefError: typeof ReliefError;
+    World: typeof World;
 };
 export default Relief;

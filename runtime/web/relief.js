@@ -261,6 +261,124 @@ export async function load(source) {
     }
 }
 
+/** Fetches a world.json, and the containers beside it that it names. */
+export async function loadWorld(source) {
+    const base = new URL(source instanceof Response || source instanceof Request ? source.url : source, globalThis.location?.href);
+    const [text] = await Promise.all([bytesOf(source), init()]);
+    const files = { "world.json": text };
+    await Promise.all(namesOf(text, base).map(async (name) => {
+        files[name] = await bytesOf(new URL(name.split("/").map(encodeURIComponent).join("/"), base));
+    }));
+    try {
+        return new World(files);
+    } catch (error) {
+        throw new ReliefError(`${base}: ${error.message}`);
+    }
+}
+
+/** The files that a world names, which lie in its folder; all else is checked when it is made. */
+function namesOf(text, base) {
+    let colliders;
+    try {
+        ({ colliders } = JSON.parse(new TextDecoder().decode(text)));
+    } catch (error) {
+        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world' (${error.message})`);
+    }
+    const names = Array.isArray(colliders) ? colliders.map((one) => one?.file) : [];
+    const wrong = names.findIndex((name) => typeof name !== "string" || name.split("/").some((part) => ["", ".", ".."].includes(part)));
+    if (names.length === 0 || wrong >= 0) {
+        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world': ` +
+                              (wrong >= 0 ? `colliders[${wrong}] names no file of its folder` : "it has no colliders"));
+    }
+    return [...new Set(names)];
+}
+
+/** A new folder of the WebAssembly, to be given back as a whole. */
+function makeFolder() {
+    const folder = `/scene${folders++}`;
+    wasm.FS.mkdir(folder);
+    wasm.FS.mount(wasm.FS.filesystems.MEMFS, {}, folder);
+    return folder;
+}
+
+function removeFolder(folder) {
+    wasm.FS.unmount(folder);
+    wasm.FS.rmdir(folder);
+}
+
+function writeIn(folder, name, content) {
+    const parts = name.split("/");
+    if (parts.some((part) => part === "" || part === "." || part === "..")) {
+        throw new ReliefError(`'${name}' is no file of the scene's folder`);
+    }
+    if (content instanceof Collider) {
+        content.handle; // throws where it is disposed of
+    } else if (!(content instanceof Uint8Array) && typeof content !== "string") {
+        throw new ReliefError(`the file '${name}' is a Collider, a Uint8Array or a text`);
+    }
+    wasm.FS.mkdirTree([folder, ...parts.slice(0, -1)].join("/"));
+    wasm.FS.writeFile(`${folder}/${name}`, content instanceof Collider ? content.bytes : content);
+}
+
+/** The members of n relief_samples (runtime/c_api/relief.h) that a query writes; the last is named by `which`. */
+function asked(query, handle, points, which) {
+    const xyz = checkFinite("points", numbers("points", points, 3));
+    const count = xyz.length / 3;
+    const samples = new Float32Array(5 * count);
+    call(query, handle, xyz, count, samples);
+    const words = new Int32Array(samples.buffer);
+    const answers = { distance: new Float32Array(count), normal: new Float32Array(3 * count), [which]: new Int32Array(count) };
+    for (let i = 0; i < count; ++i) {
+        answers.distance[i] = samples[5 * i];
+        answers.normal.set(samples.subarray(5 * i + 1, 5 * i + 4), 3 * i);
+        answers[which][i] = words[5 * i + 4];
+    }
+    return answers;
+}
+
+export class World {
+    #handle = 0;
+
+    constructor(files) {
+        instance();
+        this.files = { ...files };
+        const folder = makeFolder();
+        try {
+            for (const [name, content] of Object.entries(this.files)) {
+                writeIn(folder, name, content);
+            }
+            this.#handle = made("relief_world_load", `${folder}/world.json`);
+        } finally {
+            removeFolder(folder);
+        }
+        const text = this.files["world.json"];
+        const { unit, colliders, bodies } = JSON.parse(typeof text === "string" ? text : new TextDecoder().decode(text));
+        Object.assign(this, { unit, colliders, bodies });
+        const low = new Float32Array(3);
+        const high = new Float32Array(3);
+        call("relief_world_bounds", this.#handle, low, high);
+        this.bounds = { min: [...low], max: [...high] };
+    }
+
+    get handle() {
+        if (!this.#handle) {
+            throw new ReliefError("this world is disposed of");
+        }
+        return this.#handle;
+    }
+
+    query(points) {
+        return asked("relief_world_query", this.handle, points, "body");
+    }
+
+    dispose() {
+        if (this.#handle) {
+            wasm._relief_world_free(this.#handle);
+            this.#handle = 0;
+        }
+    }
+}
+
 export class Collider {
     #handle;
 
@@ -284,18 +402,7 @@ export class Collider {
     }
 
     query(points) {
-        const xyz = checkFinite("points", numbers("points", points, 3));
-        const count = xyz.length / 3;
-        const samples = new Float32Array(5 * count); // relief_sample of runtime/c_api/relief.h
-        call("relief_collider_query", this.handle, xyz, count, samples);
-        const maps = new Int32Array(samples.buffer);
-        const answers = { distance: new Float32Array(count), normal: new Float32Array(3 * count), map: new Int32Array(count) };
-        for (let i = 0; i < count; ++i) {
-            answers.distance[i] = samples[5 * i];
-            answers.normal.set(samples.subarray(5 * i + 1, 5 * i + 4), 3 * i);
-            answers.map[i] = maps[5 * i + 4];
-        }
-        return answers;
+        return asked("relief_collider_query", this.handle, points, "map");
     }
 
     texels(map) {
@@ -418,55 +525,53 @@ export class ParticleSystem {
     #shaded;
 
     constructor(gl, options = {}) {
-        const wrong = Object.keys(options).find((key) => !["collider", "files", "scene", "shaded"].includes(key));
+        const wrong = Object.keys(options).find((key) => !["collider", "files", "scene", "shaded", "world"].includes(key));
         if (wrong !== undefined) {
-            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, scene and shaded`);
+            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, scene, shaded and world`);
         }
         if (options.collider) {
             collider("the option 'collider'", options.collider);
         }
+        if (options.world) {
+            if (!(options.world instanceof World)) {
+                throw new ReliefError("the option 'world' needs a World, as loadWorld() gives it; did you forget to await it?");
+            }
+            if (options.collider) {
+                throw new ReliefError("give the option 'world' or 'collider'; more colliders are the scene's, with 'files'");
+            }
+            options.world.handle; // throws where it is disposed of
+        }
         use(gl);
         this.#gl = gl;
         this.#shaded = options.shaded ?? true;
-        this.#folder = `/scene${folders++}`;
-        wasm.FS.mkdir(this.#folder);
-        wasm.FS.mount(wasm.FS.filesystems.MEMFS, {}, this.#folder); // to be given back as a whole
+        this.#folder = makeFolder();
         const files = { ...options.files };
         let scene = options.scene ?? {};
         if (typeof scene !== "string") {
             if (options.collider) {
                 files["collider.relief"] = options.collider;
                 scene = merged({ collider: { file: "collider.relief" } }, scene);
-            } else if (!scene.collider) {
-                throw new ReliefError("a ParticleSystem needs the option 'collider', or a scene that names its colliders");
+            } else if (options.world) {
+                scene = { world: "world/world.json", ...scene };
+            } else if (!scene.collider && !scene.world) {
+                throw new ReliefError("a ParticleSystem needs the option 'collider' or 'world', or a scene that names its colliders");
             }
         } else if (options.collider) {
             throw new ReliefError("a scene given as text names its colliders itself: give them in 'files'");
         }
+        for (const [name, content] of Object.entries(options.world?.files ?? {})) {
+            files[`world/${name}`] = content;
+        }
         this.#scene = scene;
         try {
             for (const [name, content] of Object.entries(files)) {
-                this.#write(name, content);
+                writeIn(this.#folder, name, content);
             }
             this.#create();
         } catch (error) {
             this.dispose();
             throw error;
         }
-    }
-
-    #write(name, content) {
-        const parts = name.split("/");
-        if (parts.some((part) => part === "" || part === "." || part === "..")) {
-            throw new ReliefError(`'${name}' is no file of the scene's folder`);
-        }
-        if (content instanceof Collider) {
-            content.handle; // throws where it is disposed of
-        } else if (!(content instanceof Uint8Array) && typeof content !== "string") {
-            throw new ReliefError(`the file '${name}' is a Collider, a Uint8Array or a text`);
-        }
-        wasm.FS.mkdirTree([this.#folder, ...parts.slice(0, -1)].join("/"));
-        wasm.FS.writeFile(`${this.#folder}/${name}`, content instanceof Collider ? content.bytes : content);
     }
 
     /** The scene's text, and its name in messages. */
@@ -615,12 +720,11 @@ export class ParticleSystem {
     dispose() {
         this.#free();
         if (this.#folder !== null) {
-            wasm.FS.unmount(this.#folder);
-            wasm.FS.rmdir(this.#folder);
+            removeFolder(this.#folder);
         }
         this.#folder = null;
     }
 }
 
-export const Relief = { init, load, Collider, GpuCollider, ParticleSystem, ReliefError };
+export const Relief = { init, load, loadWorld, Collider, GpuCollider, ParticleSystem, ReliefError, World };
 export default Relief;
