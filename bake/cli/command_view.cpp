@@ -12,6 +12,7 @@
 #include <span>
 
 #include "bake/cli/command.h"
+#include "bake/cli/command_world.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
@@ -35,12 +36,14 @@ namespace fs = std::filesystem;
 
 struct ViewCommand {
     CommonOptions common;
-    std::string file;        ///< a container, "-" for standard input, or a scene (.toml)
+    std::string file;        ///< a container, "-" for standard input, a scene (.toml) or a world (.json)
     CheckRequest check;      ///< mesh empty: none
     ContainerLimits limits;  ///< of the container, or of those of a scene
     std::string output;
 
-    [[nodiscard]] bool isScene() const { return lowerCase(fs::path(file).extension().native()) == ".toml"; }
+    [[nodiscard]] bool isScene() const {
+        return namesWorld(file) || lowerCase(fs::path(file).extension().native()) == ".toml";
+    }
 };
 
 std::string textOf(const std::vector<std::byte>& bytes) {
@@ -230,7 +233,9 @@ Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
 
 Result<std::string> scenePage(const ViewCommand& command, Page page) {
     const fs::path file = command.file;
-    page.scene = textOf(RELIEF_TRY(page.read(file)));
+    // The default scene of a world: a string of JSON is one of TOML.
+    page.scene = namesWorld(command.file) ? "world = " + jsonOf(file.filename()).dump() + "\n"
+                                          : textOf(RELIEF_TRY(page.read(file)));
     SceneOverrides overrides;
     overrides.limits = command.limits;
     const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
@@ -264,7 +269,7 @@ Result<std::string> outputOf(const ViewCommand& command) {
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
     if (command.isScene() && !command.check.mesh.empty()) {
         return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(command.file) +
-                                           " is a scene; leave out --mesh, or view the collider");
+                                           " is a scene or a world; leave out --mesh, or view the collider");
     }
     const std::string output = RELIEF_TRY(outputOf(command));
     RELIEF_TRY(files.reads(command.file));
@@ -327,12 +332,13 @@ void addView(CLI::App& app, Action& action) {
         "opens from disk in any browser with WebGL2: the surface as the maps see it,\nevery map, slices, and "
         "live "
         "particles. With --mesh also the mesh, the errors on it and the worst places of `relief check`.\n"
-        "Of a scene: its particles, as relief-sim plays them.",
+        "Of a scene or a world: its particles, as relief-sim plays them.",
         "relief view bunny.relief\n"
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
-        "relief view scene.toml");
+        "relief view scene.toml\n"
+        "relief view level/world.json");
     verb.add_option("FILE", command->file,
-                    "The collider, or a scene (.toml); - for a collider on standard input")
+                    "The collider, a scene (.toml) or a world.json; - for a collider on standard input")
         ->type_name("")
         ->required();
     addMeshOptions(verb, command->check);

@@ -178,3 +178,15 @@ grep -q '<title>web' web.html || die "the build's page is not found"
 sed 's/stub/share/' stub.html >tree/release/share/relief/view.html
 expect 0 tree/release/bin/relief view b.relief -o share.html
 grep -q '<title>share' share.html || die "the installed page is not found"
+
+# A world: its text and colliders, and a scene that names it.
+export RELIEF_VIEW_PAGE=$work/stub.html
+python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
+"$relief" bake level.gltf --world w --budget 200kB -q
+expect 0 "$relief" view w/world.json
+data w/world.html
+json data.json "d['scene'] == 'world = \"world.json\"\\n' and len(d['files']) == 4 and d['shows'] in d['files']"
+holds w/world.json 'd["files"]["world.json"]'
+expect_error 1 "is a scene or a world; leave out --mesh" "$relief" view w/world.json --mesh level.gltf
+rm w/box-*.relief
+expect_error 2 "world.json.*No such file" "$relief" view w/world.json

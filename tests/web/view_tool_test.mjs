@@ -1,11 +1,12 @@
-// Pages as `relief view` makes them: a checked sheet, and a scene of several bodies.
+// Pages as `relief view` makes them: a checked sheet, a scene of several bodies, and a world.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { built, launch, openPage } from "./lib/browser.mjs";
+import { built, launch, openPage, root } from "./lib/browser.mjs";
 import { bunny, run, scratch } from "./lib/native.mjs";
 
 process.env.RELIEF_VIEW_PAGE = path.join(built, "bin/view.html");
@@ -122,6 +123,28 @@ rate = 500.0
     await page.waitForFunction((y) => reliefView.view.bodies[1].model[13] > y + 0.2, before[1], { timeout: 60_000 });
     assert.ok(await page.evaluate("reliefView.particles.system.info.alive") > 100);
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
+    assert.equal(await page.locator("#message p").textContent(), "");
+    assert.deepEqual(said, []);
+});
+
+test("a world's bodies are drawn where they stand, each collider once on the GPU", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("level.gltf"), "floor=6"]);
+    run("relief", "bake", at("level.gltf"), "--world", at("w"), "--budget", "200kB", "-q");
+    run("relief", "view", at("w/world.json"), "-o", at("w.html"));
+    const { page, said } = await opened(t, pathToFileURL(at("w.html")).href);
+    await page.waitForFunction("reliefView.view.bodies.length === 5", undefined, { timeout: 120_000 });
+    const { places, colliders, error } = await page.evaluate(() => {
+        reliefView.particles.paused = true;
+        const { bodies } = reliefView.view;
+        return { places: bodies.map((one) => [...one.model].slice(12, 15)), error: reliefView.pixelsNow().error,
+                 colliders: new Set(bodies.map((one) => (one.body ?? one).collider)).size };
+    });
+    assert.deepEqual(places.map((place) => place.map((x) => Math.round(1000 * x) / 1000)),
+                     [[0, -0.5, 0], [0, 0, 0], [5, 0, 5], [-5, 0.1, 5], [-5, 0, -5]]);
+    assert.equal(colliders, 3);
+    assert.equal(error, 0);
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.deepEqual(said, []);
 });

@@ -73,6 +73,24 @@ export class Body {
     }
 }
 
+/** One of several places of a body. */
+export class BodyPlace {
+    constructor(body) {
+        this.body = body;
+    }
+
+    place(model) {
+        this.model = Float32Array.from(model);
+    }
+
+    draw(values) {
+        const own = this.body.model;
+        this.body.model = this.model;
+        this.body.draw(values);
+        this.body.model = own;
+    }
+}
+
 /** A body that deforms. mesh(): its LiveMesh of relief.d.ts. */
 export class LiveBody {
     constructor(gl, program, mesh) {

@@ -1,6 +1,6 @@
 // The page of `relief view`: what it shows, and the loop that draws it.
 import { init, load } from "relief-particles";
-import { Body, LiveBody } from "./body.js";
+import { Body, BodyPlace, LiveBody } from "./body.js";
 import { Camera, followInput } from "./camera.js";
 import { Geometry } from "./gl.js";
 import { boxOf, transform } from "./math.js";
@@ -108,13 +108,16 @@ class App {
         this.particles.start({ scene: data.scene, files: data.files });
         const { system } = this.particles;
         const { camera, ground, bounds, bodies } = system.info;
-        let own = this.body;
+        const known = new Map([[data.file, this.body]]);
         const placed = [];
         for (const [i, { file, deforms, matrix }] of bodies.entries()) {
-            const isOwn = own && file === data.file;
-            placed.push(deforms ? new LiveBody(gl, view.programs.live, () => system.mesh(i))
-                : isOwn ? own : new Body(gl, await load(data.files[file])));
-            own = isOwn ? null : own;
+            if (deforms) {
+                placed.push(new LiveBody(gl, view.programs.live, () => system.mesh(i)));
+            } else {
+                const body = known.get(file) ?? new Body(gl, await load(data.files[file]));
+                known.set(file, body);
+                placed.push(body === this.body && !placed.includes(body) ? body : new BodyPlace(body));
+            }
             placed[i].place(matrix);
         }
         view.bodies = placed;
