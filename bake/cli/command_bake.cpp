@@ -7,6 +7,7 @@
 #include <span>
 
 #include "bake/cli/command.h"
+#include "bake/cli/command_ground.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/command_world.h"
 #include "bake/director/bake_json.h"
@@ -32,20 +33,6 @@ struct BakeCommand {
     RecipeOptionsOfBake recipe;
     std::string world;  // a folder
 };
-
-Result<void> preflight(const BakeCommand& command, FileGuard& files) {
-    if (!command.outputs.depfile.empty() && (command.outputs.depfile == "-" || command.output == "-")) {
-        return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
-    }
-    RELIEF_TRY(files.reads(command.request.mesh));
-    RELIEF_TRY(files.reads(command.request.plan));
-    if (command.outputs.json) {
-        RELIEF_TRY(files.writes("-", "--json"));
-    }
-    RELIEF_TRY(files.writes(command.output, "-o"));
-    RELIEF_TRY(files.writes(command.request.plan_out, "--plan-out"));
-    return files.writes(command.outputs.depfile, "--depfile");
-}
 
 /// Shows the stages of a bake.
 BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
@@ -119,7 +106,7 @@ Result<void> runBake(BakeCommand& command, FileGuard& files) {
     const Stopwatch total;
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
-    RELIEF_TRY(preflight(command, files));
+    RELIEF_TRY(preflightBake(command.request, command.output, command.outputs, files));
     command.request.repair.examine = command.outputs.json || !command.common.quiet;
     BakeResult result = RELIEF_TRY(bake(command.request, watcherOf(progress, files)));
     Stopwatch writing;
@@ -150,9 +137,11 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"
         "relief bake --recipe colliders.toml -j 4\n"
-        "relief bake level.glb --world level --budget 16MB");
-    verb.add_option("MESH", command->request.mesh,
-                    "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more")
+        "relief bake level.glb --world level --budget 16MB\n"
+        "relief bake heights.png --heights spacing=1,low=0,high=500 -o ground.relief");
+    verb.add_option(
+            "MESH", command->request.mesh,
+            "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; or a height map, see --heights")
         ->type_name("");
     verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
         ->option_text("OUT.relief");
@@ -166,6 +155,10 @@ void addBake(CLI::App& app, Action& action) {
                 return runRecipeCommand(command->recipe,
                                         {verb, command->common, command->output, command->request.threads,
                                          command->outputs.depfile, command->outputs.json, files});
+            }
+            if (!command->request.heights.empty()) {
+                return runGroundCommand(command->world, {command->request, command->outputs, command->common,
+                                                         command->output, files});
             }
             if (!command->world.empty()) {
                 return runWorldCommand(command->world, {command->request, command->outputs, command->common,

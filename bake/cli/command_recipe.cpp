@@ -318,6 +318,21 @@ Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& ca
 
 }  // namespace
 
+Result<void> preflightBake(const BakeRequest& request, const std::string& output, const BakeOutputs& outputs,
+                           FileGuard& files) {
+    if (!outputs.depfile.empty() && (outputs.depfile == "-" || output == "-")) {
+        return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
+    }
+    RELIEF_TRY(files.reads(request.mesh));
+    RELIEF_TRY(files.reads(request.plan));
+    if (outputs.json) {
+        RELIEF_TRY(files.writes("-", "--json"));
+    }
+    RELIEF_TRY(files.writes(output, "-o"));
+    RELIEF_TRY(files.writes(request.plan_out, "--plan-out"));
+    return files.writes(outputs.depfile, "--depfile");
+}
+
 std::vector<RecipeKey> recipeKeys() {
     std::vector<RecipeKey> keys;
     for (const FieldWords& field : fieldsOfAsset()) {

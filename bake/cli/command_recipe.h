@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/cli/command.h"
+#include "bake/director/bake_request.h"
 #include "bake/recipe/recipe_jobs.h"
 #include "formats/base/field.h"
 
@@ -30,6 +31,11 @@ void fields(Visitor& visit, Outputs& outputs) {
           {.help = "Also write which files were read, for Make and Ninja: every input of the output",
            .value = "FILE"});
 }
+
+/// The files that a bake of one mesh reads and writes.
+/// \param output  of -o. Errors: kUsage, kIo.
+[[nodiscard]] Result<void> preflightBake(const BakeRequest& request, const std::string& output,
+                                         const BakeOutputs& outputs, FileGuard& files);
 
 struct RecipeOptionsOfBake {
     std::string recipe;

@@ -21,27 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
-    if (!call.output.empty()) {
-        return fail(ErrorCode::kUsage,
-                    "--output and --world are two ways to name what is written; leave one out");
-    }
-    if (call.request.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
-    }
-    if (folder == "-" || call.outputs.depfile == "-") {
-        return fail(ErrorCode::kUsage,
-                    "--world is a folder, and --depfile a file; neither is standard output");
-    }
-    RELIEF_TRY(call.files.reads(call.request.mesh));
-    if (call.outputs.json) {
-        RELIEF_TRY(call.files.writes("-", "--json"));
-    }
-    RELIEF_TRY(preflightFolder(folder, "--world"));
-    RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world"));
-    return call.files.writes(call.outputs.depfile, "--depfile");
-}
-
 Result<void> writeWorldDepfile(const fs::path& folder, const WorldCall& call, const WorldBakeResult& result) {
     std::vector<std::string> names;
     for (const InputFile& input : result.inputs) {
@@ -79,6 +58,27 @@ Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
 }
 
 }  // namespace
+
+Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
+    if (!call.output.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "--output and --world are two ways to name what is written; leave one out");
+    }
+    if (call.request.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
+    }
+    if (folder == "-" || call.outputs.depfile == "-") {
+        return fail(ErrorCode::kUsage,
+                    "--world is a folder, and --depfile a file; neither is standard output");
+    }
+    RELIEF_TRY(call.files.reads(call.request.mesh));
+    if (call.outputs.json) {
+        RELIEF_TRY(call.files.writes("-", "--json"));
+    }
+    RELIEF_TRY(preflightFolder(folder, "--world"));
+    RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world"));
+    return call.files.writes(call.outputs.depfile, "--depfile");
+}
 
 void addWorldOption(CLI::App& verb, std::string& folder) {
     verb.add_option(

@@ -1,6 +1,7 @@
 // `relief bake --world`: a level becomes a folder of colliders and the file that places them. `relief check` of such a file.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -11,14 +12,17 @@
 
 namespace relief {
 
-/// Options that --world shares with a bake of one mesh.
+/// Options that --world and --heights share with a bake of one mesh.
 struct WorldCall {
     const BakeRequest& request;
     const BakeOutputs& outputs;
     const CommonOptions& common;
-    const std::string& output;  ///< -o; must be empty
+    const std::string& output;  ///< -o; with --world it must be empty
     FileGuard& files;
 };
+
+/// Files that a bake with --world reads and writes. Errors: kUsage, kIo.
+[[nodiscard]] Result<void> preflightWorld(const std::filesystem::path& folder, const WorldCall& call);
 
 void addWorldOption(CLI::App& verb, std::string& folder);
 

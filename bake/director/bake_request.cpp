@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "bake/heights/heights_spec.h"
 #include "bake/plan/map_spec.h"
 #include "formats/base/text.h"
 
@@ -36,8 +37,22 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
     return chosen == nullptr ? MapSource::kPlanner : chosen->source;
 }
 
+/// Options of a mesh beside those of a height map.
+std::string otherThanHeights(const BakeRequest& request) {
+    constexpr std::array<std::string_view, 3> kOfBoth = {"heights", "threads", "time_limit"};
+    for (const FieldWords& field : changedFields(request)) {
+        if (std::ranges::find(kOfBoth, field.name) == kOfBoth.end()) {
+            return optionName(field.name) + " is for meshes, and does nothing with --heights; leave it out";
+        }
+    }
+    return {};
+}
+
 /// The fault of options that do nothing together; empty: there is none.
 std::string conflictOf(const BakeRequest& request, const BakeSettings& settings) {
+    if (!request.heights.empty()) {
+        return otherThanHeights(request);
+    }
     if (!request.plan_out.empty() && settings.source != MapSource::kPlanner) {
         return "--plan-out writes what was planned, but the maps were named; leave it out";
     }
@@ -103,7 +118,8 @@ bool take(std::string_view name, std::string_view value, BakeRequest& request) {
     }
     BakeRequest changed = request;
     if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
-        !wrapAlpha(changed.repair.method) || (name == "map" && !parseMapSpec(value))) {
+        !wrapAlpha(changed.repair.method) || (name == "map" && !parseMapSpec(value)) ||
+        (name == "heights" && !parseHeightsSpec(value))) {
         return false;
     }
     request = std::move(changed);
@@ -121,6 +137,9 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
     const std::string conflict = conflictOf(request, settings);
     if (!conflict.empty()) {
         return fail(ErrorCode::kUsage, conflict);
+    }
+    if (!request.heights.empty()) {
+        static_cast<void>(RELIEF_TRY(parseHeightsSpec(request.heights)));
     }
     RELIEF_TRY(readMaps(request, settings));
     static_cast<void>(RELIEF_TRY(wrapAlpha(request.repair.method)));

@@ -56,6 +56,7 @@ struct BakeRequest {
     std::vector<std::string> as;
     std::optional<Thickness> thickness;
     std::optional<VoidsAs> voids;
+    std::string heights;              ///< HeightsSpec: `mesh` is a height map; empty: it is a mesh
     std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
 };
 
@@ -160,6 +161,21 @@ void fields(Visitor& visit, Request& request) {
                  "or hollow",
          .fallback = "full",
          .recorded = true});
+    visit("heights", request.heights,
+          {.help =
+               "Bake the ground below a height map, in place of a mesh: a grey PNG of 16 or 8 bits, an EXR\n"
+               "image of one channel in metres, whose NaN are holes, or raw samples of 16 bits, "
+               "little-endian.\n"
+               "Heights go along +y, columns along +x, rows along +z. key=value,... with\n"
+               "spacing  metres between samples, 1 by default\n"
+               "low      height of sample 0, not of EXR\n"
+               "high     height of sample 65535, or 255 of 8 bits\n"
+               "hole     sample that is none; squares at holes have no ground\n"
+               "width    samples in a row of a raw file, which else is square\n"
+               "offset   x/y/z: place of the first sample at height 0\n"
+               "tile     with --world, squares along a tile's side, 1024 by default",
+           .value = "SPEC",
+           .recorded = true});
     visit(
         "time_limit", request.time_limit,
         {.help =

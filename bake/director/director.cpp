@@ -118,6 +118,12 @@ class Director {
     /// Before anything large is read.
     Result<void> readOptions(const std::optional<TriangleMesh>& given) {
         result_.settings = RELIEF_TRY(settingsOf(request()));
+        if (!request().heights.empty()) {
+            return fail(
+                ErrorCode::kUnsupported,
+                "--heights is of the command line, which bakes height maps without a mesh; run relief bake " +
+                    shellWord(request().mesh) + " --heights");
+        }
         const std::string import = importOptionOf(request().import, request().import_limits);
         if (given && !import.empty()) {
             return fail(ErrorCode::kUsage, import + " is for a mesh that is read from a file; leave it out");

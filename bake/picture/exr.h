@@ -1,4 +1,4 @@
-// Images of floats and of words as OpenEXR files; the only user of OpenEXR.
+// Images of floats and of words as OpenEXR files, written; bake/heights reads those of heights. The only users of OpenEXR.
 #pragma once
 
 #include <cstddef>

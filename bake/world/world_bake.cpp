@@ -9,7 +9,6 @@
 #include <map>
 #include <mutex>
 #include <numeric>
-#include <set>
 
 #include "bake/director/director.h"
 #include "bake/import/level.h"
@@ -18,6 +17,7 @@
 #include "bake/report/report_text.h"
 #include "bake/shape/shape_options.h"
 #include "bake/world/budget_share.h"
+#include "bake/world/world_files.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
@@ -37,7 +37,6 @@ constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "ti
 /// As a bake of one mesh measures itself.
 constexpr std::uint32_t kCheckPoints = 4000;
 constexpr double kWarnFrom = 5.0;  ///< percent of them on the wrong side
-constexpr std::size_t kStemMax = 64;
 constexpr std::size_t kKeyDigits = 16;
 
 template <class... Arguments>
@@ -54,17 +53,6 @@ double areaOf(const TriangleMesh& mesh) {
         twice += std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
     }
     return 0.5 * twice;
-}
-
-/// A name as a part of a file's: letters, digits and _ - . of ASCII.
-std::string fileStem(const std::string& name) {
-    std::string stem;
-    for (const char c : name.substr(0, kStemMax)) {
-        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                           c == '-' || c == '.' || c == '_';
-        stem += plain ? c : '_';
-    }
-    return stem.empty() || stem.front() == '.' || stem.front() == '-' ? "_" + stem : stem;
 }
 
 /// The words of the options that the bytes depend on.
@@ -294,45 +282,9 @@ class WorldBaker {
         if (result_.countOf(WorldColliderState::kFailed) > 0) {
             return {};
         }
-        const std::string text = worldText(world);
-        // A world that no reader would take must not be written: scales or places that floats do not hold.
-        const Result<World> read = parseWorld(text);
-        if (!read) {
-            return fail(read.error().code, level_.name + ": " + read.error().message);
-        }
-        const fs::path path = request_.folder / kWorldFileName;
-        const std::vector<WorldCollider> before = collidersOf(path);
-        RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
+        result_.removed = RELIEF_TRY(replaceWorld(request_.folder, world, level_.name));
         result_.written = true;
-        removeUnnamed(before);
         return {};
-    }
-
-    static std::vector<WorldCollider> collidersOf(const fs::path& path) {
-        const auto bytes = readFile(path, kWorldBytesMax);
-        if (!bytes) {
-            return {};
-        }
-        Result<World> world = parseWorld({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-        return world ? std::move(world->colliders) : std::vector<WorldCollider>();
-    }
-
-    /// Containers of the world from before that this one does not name, if they still are what that one named.
-    void removeUnnamed(const std::vector<WorldCollider>& before) {
-        std::set<std::string> named;
-        for (const WorldCollider& collider : result_.world.colliders) {
-            named.insert(collider.file);
-        }
-        for (const WorldCollider& old : before) {
-            const fs::path path = request_.folder / old.file;
-            std::error_code error;
-            const bool own = old.file.ends_with(kColliderExtension) &&
-                             !fs::path(old.file).has_parent_path() && !named.contains(old.file) &&
-                             hashOfFile(path) == old.hash;
-            if (own && fs::remove(path, error)) {
-                result_.removed.push_back(old.file);
-            }
-        }
     }
 
     const WorldRequest& request_;

@@ -1,4 +1,4 @@
-// Pictures as PNG bytes. The only file that uses libpng is png.cpp.
+// Pictures as PNG bytes. png.cpp uses libpng; beside it only bake/heights does, for height maps.
 #pragma once
 
 #include <cstddef>

@@ -1,0 +1,253 @@
+#include "bake/ground/ground_bake.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "bake/mesh/loops.h"
+#include "bake/recipe/recipe_jobs.h"
+#include "bake/world/world_files.h"
+#include "formats/base/file_io.h"
+#include "formats/base/hash.h"
+#include "formats/container.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kKeyDigits = 16;
+
+/// A part of a row or a column of squares, and the samples about it.
+struct Stretch {
+    std::uint32_t first = 0;  ///< its first square
+    std::uint32_t begin = 0;  ///< the first sample, a leaf before that
+    std::uint32_t end = 0;    ///< behind the last sample, a leaf beyond its last square
+};
+
+std::vector<Stretch> stretchesOf(std::uint32_t samples, std::uint32_t squares) {
+    std::vector<Stretch> stretches;
+    for (std::uint32_t first = 0; first + 1 < samples; first += squares) {
+        stretches.push_back({first, first - std::min(first, kLeafSquares),
+                             std::min(first + squares + kLeafSquares + 1, samples)});
+    }
+    return stretches;
+}
+
+/// Rows of a height map in their order, those that are done with forgotten.
+class RowBand {
+  public:
+    explicit RowBand(HeightMap& map) : map_(map) {}
+
+    /// \param rows  that begin and end no earlier than those before.
+    Result<void> moveTo(const Stretch& rows) {
+        const std::size_t columns = map_.columns();
+        const std::uint32_t gone = std::min(rows.begin, end_) - begin_;
+        heights_.erase(heights_.begin(), heights_.begin() + static_cast<std::ptrdiff_t>(gone * columns));
+        begin_ += gone;
+        heights_.resize((rows.end - begin_) * columns);
+        for (; end_ < rows.end; ++end_) {
+            RELIEF_TRY(map_.next(std::span(heights_).subspan((end_ - begin_) * columns, columns)));
+        }
+        return {};
+    }
+    [[nodiscard]] HeightGrid cut(const Stretch& columns) const {
+        HeightGrid grid{columns.end - columns.begin, end_ - begin_, {}};
+        grid.heights.reserve(std::size_t{grid.columns} * grid.rows);
+        for (std::size_t row = 0; row < grid.rows; ++row) {
+            const auto at = heights_.begin() + static_cast<std::ptrdiff_t>(row * map_.columns());
+            grid.heights.insert(grid.heights.end(), at + columns.begin, at + columns.end);
+        }
+        return grid;
+    }
+    /// All of it, which is then gone.
+    [[nodiscard]] HeightGrid take() { return {map_.columns(), end_ - begin_, std::move(heights_)}; }
+
+  private:
+    HeightMap& map_;
+    std::uint32_t begin_ = 0;
+    std::uint32_t end_ = 0;
+    std::vector<float> heights_;
+};
+
+/// A tile, and its container. No bytes: it has no ground.
+struct BakedTile {
+    GroundTile tile;
+    std::vector<std::byte> bytes;
+};
+
+class GroundBaker {
+  public:
+    GroundBaker(HeightMap& map, const GroundOptions& options) : map_(map), options_(options) {
+        result_.columns = map.columns();
+        result_.rows = map.rows();
+    }
+
+    Result<GroundResult> run() {
+        RELIEF_TRY(options_.folder.empty() ? bakeWhole() : bakeTiles());
+        warnOfSteep();
+        return std::move(result_);
+    }
+
+  private:
+    [[nodiscard]] const HeightsSpec& heights() const { return options_.heights; }
+
+    void report(double share) const {
+        if (options_.progress) {
+            options_.progress(share);
+        }
+    }
+
+    [[nodiscard]] tl::unexpected<Error> noGround() const {
+        return invalidInput(
+            map_.name() + ": no square has ground, as each has a corner that is a hole; see --heights hole");
+    }
+
+    Result<BakedTile> bakeTile(const HeightGrid& grid, const glm::dvec3& origin) const {
+        Ground ground = RELIEF_TRY(inFront(map_.name(), bakeGround(grid, {heights().spacing, origin})));
+        BakedTile baked;
+        if (ground.squares == 0) {
+            return baked;
+        }
+        HeightsSpec recorded = heights();
+        recorded.tile = options_.folder.empty() ? HeightsSpec().tile : recorded.tile;
+        Collider collider;
+        collider.bounds = ground.bounds;
+        collider.unit = "m";
+        // Of each square both its triangles.
+        collider.provenance = {map_.name(),
+                               map_.hash(),
+                               2 * ground.squares,
+                               "relief " RELIEF_VERSION,
+                               {{"heights", toString(recorded)}}};
+        collider.maps.push_back(std::move(ground.map));
+        baked.bytes =
+            RELIEF_TRY(inFront(map_.name(), writeContainer(collider, {static_cast<int>(options_.compress)})));
+        baked.tile.hash = xxh3_128Hex(baked.bytes);
+        baked.tile.bytes = baked.bytes.size();
+        baked.tile.gpu_bytes = collider.gpuBytes();
+        baked.tile.squares = ground.squares;
+        baked.tile.steep = ground.steep;
+        baked.tile.error_max = ground.error_max;
+        baked.tile.box = ground.bounds;
+        return baked;
+    }
+
+    Result<void> bakeWhole() {
+        RowBand band(map_);
+        RELIEF_TRY(band.moveTo({0, 0, map_.rows()}));
+        report(0.5);
+        BakedTile baked = RELIEF_TRY(bakeTile(band.take(), heights().offset.at));
+        if (baked.bytes.empty()) {
+            return noGround();
+        }
+        result_.container = std::move(baked.bytes);
+        result_.tiles.push_back(std::move(baked.tile));
+        return {};
+    }
+
+    Result<void> bakeTiles() {
+        const std::vector<Stretch> across = stretchesOf(map_.columns(), heights().tile);
+        const std::vector<Stretch> along = stretchesOf(map_.rows(), heights().tile);
+        if (across.size() * along.size() > kWorldCollidersMax) {
+            return fail(ErrorCode::kLimit, map_.name() + ": it makes " +
+                                               std::to_string(across.size() * along.size()) + " tiles, and " +
+                                               std::to_string(kWorldCollidersMax) +
+                                               " are the most; give a larger --heights tile");
+        }
+        World world;
+        world.unit = "m";
+        RowBand band(map_);
+        for (std::size_t row = 0; row < along.size(); ++row) {
+            RELIEF_TRY(band.moveTo(along[row]));
+            RELIEF_TRY(bakeRow(band, across, along[row], row, world));
+            report(static_cast<double>(row + 1) / static_cast<double>(along.size()));
+        }
+        if (world.bodies.empty()) {
+            return noGround();
+        }
+        result_.removed = RELIEF_TRY(replaceWorld(options_.folder, world, map_.name()));
+        return {};
+    }
+
+    Result<void> bakeRow(const RowBand& band, const std::vector<Stretch>& across, const Stretch& along,
+                         std::size_t row, World& world) {
+        std::vector<Result<BakedTile>> tiles(across.size());
+        forEachIndex(0, across.size(), 1, [&](std::size_t i) {
+            const Stretch& columns = across[i];
+            // The tile's own first square is its origin; what lies before it has coordinates below 0.
+            tiles[i] =
+                bakeTile(band.cut(columns),
+                         heights().spacing * glm::dvec3(double(columns.begin) - double(columns.first), 0.0,
+                                                        double(along.begin) - double(along.first)))
+                    .and_then([&](BakedTile&& baked) { return written(std::move(baked), i, row); });
+        });
+        for (std::size_t i = 0; i < tiles.size(); ++i) {
+            GroundTile tile = RELIEF_TRY(std::move(tiles[i])).tile;
+            if (tile.file.empty()) {
+                continue;
+            }
+            WorldBody body;
+            body.collider = static_cast<std::uint32_t>(world.colliders.size());
+            body.node = "tile " + std::to_string(i) + " " + std::to_string(row);
+            body.position = glm::vec3(heights().offset.at +
+                                      heights().spacing * glm::dvec3(across[i].first, 0.0, along.first));
+            world.colliders.push_back({tile.file, tile.hash, map_.name(), tile.box});
+            world.bodies.push_back(std::move(body));
+            result_.tiles.push_back(std::move(tile));
+        }
+        return {};
+    }
+
+    /// Writes a tile's container, if it has ground.
+    [[nodiscard]] Result<BakedTile> written(BakedTile baked, std::size_t column, std::size_t row) const {
+        if (!baked.bytes.empty()) {
+            baked.tile.file = fileStem(fs::path(map_.name()).stem().string()) + "-" + std::to_string(column) +
+                              "-" + std::to_string(row) + "-" + baked.tile.hash.substr(0, kKeyDigits) +
+                              std::string(kColliderExtension);
+            RELIEF_TRY(writeFile(options_.folder / baked.tile.file, std::exchange(baked.bytes, {})));
+        }
+        return baked;
+    }
+
+    void warnOfSteep() {
+        std::uint64_t steep = 0;
+        for (const GroundTile& tile : result_.tiles) {
+            steep += tile.steep;
+        }
+        if (steep > 0) {
+            result_.warnings.push_back(
+                map_.name() + ": " + std::to_string(steep) +
+                " squares are steeper than 71 degrees; walls stand up to 0.15 of a square "
+                "beside their place there");
+        }
+    }
+
+    HeightMap& map_;
+    const GroundOptions& options_;
+    GroundResult result_;
+};
+
+}  // namespace
+
+std::uint64_t GroundResult::gpuBytes() const {
+    std::uint64_t bytes = 0;
+    for (const GroundTile& tile : tiles) {
+        bytes += tile.gpu_bytes;
+    }
+    return bytes;
+}
+
+double GroundResult::errorMax() const {
+    double most = 0.0;
+    for (const GroundTile& tile : tiles) {
+        most = std::max(most, tile.error_max);
+    }
+    return most;
+}
+
+Result<GroundResult> bakeGroundOf(HeightMap& map, const GroundOptions& options) {
+    return GroundBaker(map, options).run();
+}
+
+}  // namespace relief

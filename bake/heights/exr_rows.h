@@ -1,0 +1,17 @@
+// EXR images of one channel, row by row.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "bake/heights/sample_rows.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// \param bytes  untrusted; must outlive the rows.
+/// Errors, without the file's name: kInvalidInput (OpenEXR's words), kUnsupported (several channels).
+[[nodiscard]] Result<std::unique_ptr<SampleRows>> openExrRows(std::span<const std::byte> bytes);
+
+}  // namespace relief

@@ -1,0 +1,52 @@
+// A height map from its file, row by row: PNG, EXR, or raw samples of 16 bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/heights/heights_spec.h"
+#include "bake/heights/sample_rows.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
+
+class HeightMap {
+  public:
+    /// Reads the file, and the image's header; its rows are decoded one by one.
+    /// Errors, with the file in front: those of readFile; kInvalidInput, kUnsupported (no such image); kLimit (more samples
+    /// than kHeightSamplesMax); kUsage (settings that are not for such an image, or are missing).
+    [[nodiscard]] static Result<HeightMap> open(const std::filesystem::path& path, const HeightsSpec& spec);
+
+    [[nodiscard]] std::uint32_t columns() const {
+        return static_cast<std::uint32_t>(rows_->columns());
+    }  ///< 2 or more
+    [[nodiscard]] std::uint32_t rows() const {
+        return static_cast<std::uint32_t>(rows_->rows());
+    }                                                                ///< 2 or more
+    [[nodiscard]] const std::string& name() const { return name_; }  ///< of the file, without its folder
+    [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of its bytes
+
+    /// \param out  columns() heights of the next row, metres; NaN is a hole.
+    /// Errors, with the file in front: kInvalidInput.
+    [[nodiscard]] Result<void> next(std::span<float> out);
+
+  private:
+    std::string shown_;  // the path in quotes
+    std::string name_;
+    std::string hash_;
+    std::vector<std::byte> bytes_;
+    std::unique_ptr<SampleRows> rows_;
+    double low_ = 0.0;   // height of sample 0
+    double unit_ = 1.0;  // height of a sample's step
+    bool has_hole_ = false;
+    float hole_ = 0.0F;  // as the file has it
+};
+
+}  // namespace relief

@@ -1,0 +1,112 @@
+#include "bake/heights/png_rows.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// libpng leaves a function by longjmp: those that call setjmp here have no local object with a destructor.
+class PngRows : public SampleRows {
+  public:
+    explicit PngRows(std::span<const std::byte> bytes) : left_(bytes) {
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, &PngRows::onError, &PngRows::onWarning);
+        info_ = png_ != nullptr ? png_create_info_struct(png_) : nullptr;
+    }
+    ~PngRows() override { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+    Result<void> open() {
+        if (info_ == nullptr || !readHeader()) {
+            return unreadable();
+        }
+        const int colour = png_get_color_type(png_, info_);
+        const int bits = png_get_bit_depth(png_, info_);
+        if (colour != PNG_COLOR_TYPE_GRAY || bits < 8) {
+            const char* const kind = colour == PNG_COLOR_TYPE_GRAY         ? "an image of less than 8 bits"
+                                     : colour == PNG_COLOR_TYPE_GRAY_ALPHA ? "a grey image with alpha"
+                                                                           : "an image in colour";
+            return fail(ErrorCode::kUnsupported,
+                        std::string("it is ") + kind + "; save it as grey of 16 bits, without alpha");
+        }
+        if (png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE) {
+            return fail(ErrorCode::kUnsupported,
+                        "it is interlaced, and so not readable by rows; save it without");
+        }
+        columns_ = png_get_image_width(png_, info_);
+        rows_ = png_get_image_height(png_, info_);
+        most_ = bits == 16 ? 65535 : 255;
+        return {};
+    }
+
+    Result<void> next(std::span<float> out) override {
+        row_.resize(columns_ * (most_ > 255 ? 2 : 1));
+        if (!readRow()) {
+            return unreadable();
+        }
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = most_ > 255 ? static_cast<float>(row_[2 * i] << 8U | row_[2 * i + 1])
+                                 : static_cast<float>(row_[i]);
+        }
+        return {};
+    }
+
+  private:
+    bool readHeader() {
+        if (setjmp(png_jmpbuf(png_)) != 0) {
+            return false;
+        }
+        png_set_read_fn(png_, this, &PngRows::onRead);
+        png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+        png_read_info(png_, info_);
+        return true;
+    }
+
+    bool readRow() {
+        if (setjmp(png_jmpbuf(png_)) != 0) {
+            return false;
+        }
+        png_read_row(png_, row_.data(), nullptr);
+        return true;
+    }
+
+    [[nodiscard]] tl::unexpected<Error> unreadable() const {
+        return invalidInput("it cannot be read as PNG: " + oneCleanLine(message_.data()) + "; save it again");
+    }
+
+    static void onError(png_structp png, png_const_charp message) {
+        auto& self = *static_cast<PngRows*>(png_get_error_ptr(png));
+        std::strncpy(self.message_.data(), message, self.message_.size() - 1);
+        png_longjmp(png, 1);
+    }
+    static void onWarning(png_structp /*png*/, png_const_charp /*message*/) {}
+    static void onRead(png_structp png, png_bytep out, png_size_t size) {
+        auto& self = *static_cast<PngRows*>(png_get_io_ptr(png));
+        if (size > self.left_.size()) {
+            png_error(png, "it is cut off");
+        }
+        std::memcpy(out, self.left_.data(), size);
+        self.left_ = self.left_.subspan(size);
+    }
+
+    std::span<const std::byte> left_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+    std::vector<png_byte> row_;
+    std::array<char, 128> message_{};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes) {
+    auto rows = std::make_unique<PngRows>(bytes);
+    RELIEF_TRY(rows->open());
+    return std::unique_ptr<SampleRows>(std::move(rows));
+}
+
+}  // namespace relief

@@ -1,0 +1,18 @@
+// Grey PNG images row by row, however large they are; beside runtime/files/png.cpp the only user of libpng.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "bake/heights/sample_rows.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// \param bytes  untrusted; must outlive the rows.
+/// Errors, without the file's name: kInvalidInput (libpng's words), kUnsupported (colour, alpha, fewer than 8 bits, interlaced).
+[[nodiscard]] Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes);
+
+}  // namespace relief

@@ -1,0 +1,241 @@
+// Height maps baked into tiles: seams against the exact surface, and drops that fall on them.
+#include "bake/ground/ground_bake.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <map>
+#include <random>
+
+#include "formats/base/file_io.h"
+#include "formats/container.h"
+#include "formats/world/world_field.h"
+#include "tests/bake/ground/height_grids.h"
+#include "tests/runtime/particles/reference_step.h"
+#include "tests/seeds.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLow = -20.0;
+constexpr double kHigh = 44.0;
+
+class GroundBakes : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ =
+            fs::temp_directory_path() /
+            ("relief-ground-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    /// Writes hills as samples of 16 bits. \return the heights that these stand for.
+    HeightGrid writeHills(std::uint32_t columns, std::uint32_t rows) {
+        std::vector<std::uint16_t> samples;
+        HeightGrid grid = gridOf(columns, rows, [&](double x, double z) {
+            const auto code =
+                static_cast<std::uint16_t>(std::lround((hills(x, z) - kLow) / (kHigh - kLow) * 65535.0));
+            samples.push_back(code);
+            return kLow + (kHigh - kLow) / 65535.0 * code;
+        });
+        EXPECT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
+        return grid;
+    }
+
+    GroundResult bake(const std::string& settings, const fs::path& into) {
+        GroundOptions options;
+        options.heights = *parseHeightsSpec("low=-20,high=44," + settings);
+        options.folder = into;
+        Result<HeightMap> map = HeightMap::open(folder_ / "hills.raw", options.heights);
+        EXPECT_TRUE(map) << map.error().message;
+        Result<GroundResult> result = bakeGroundOf(*map, options);
+        EXPECT_TRUE(result) << result.error().message;
+        return std::move(*result);
+    }
+    WorldField bakeWorld(const std::string& settings) {
+        fs::create_directories(folder_ / "world");
+        tiles_ = bake(settings, folder_ / "world");
+        Result<LoadedWorld> loaded = loadWorld(folder_ / "world" / kWorldFileName);
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        return WorldField(std::move(*loaded));
+    }
+    static std::map<std::string, std::vector<std::byte>> filesOf(const fs::path& folder) {
+        std::map<std::string, std::vector<std::byte>> files;
+        for (const auto& entry : fs::directory_iterator(folder)) {
+            files[entry.path().filename().string()] = *readFile(entry.path());
+        }
+        return files;
+    }
+
+    fs::path folder_;
+    GroundResult tiles_;
+};
+
+/// Along x or z, or both: `away` from one of the seams of tiles of 64 squares, at any place along it.
+glm::dvec2 nearSeam(std::mt19937& random, double away, std::uint32_t seams) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    glm::dvec2 at(share(random), share(random));
+    at *= 64.0 * (seams + 1) - 1.0;
+    const auto which = static_cast<unsigned>(random() % 5);
+    for (int axis = 0; axis < 2; ++axis) {
+        if (which == static_cast<unsigned>(axis) || which >= 2) {
+            at[axis] = 64.0 * double(1 + random() % seams) + away * (2.0 * share(random) - 1.0);
+        }
+    }
+    return at;
+}
+
+TEST_F(GroundBakes, NoPointNearASeamIsWrongBeyondTheBound) {
+    for (const double spacing : {1.0, 0.7}) {
+        const HeightGrid grid = writeHills(64 * 4, 64 * 3 + 7);
+        const std::string settings =
+            "width=256,tile=64,offset=-300.5/12/41,spacing=" + std::to_string(spacing);
+        const WorldField field = bakeWorld(settings);
+        EXPECT_EQ(field.world().bodies.size(), 16U);
+        // Floats of a few hundred metres.
+        const double bound = tiles_.errorMax() + 2e-4;
+        std::mt19937 random(seedFrom(31));
+        std::uniform_real_distribution<double> share(-1.0, 1.0);
+        int wrong = 0;
+        int close = 0;
+        for (int i = 0; i < 120'000; ++i) {
+            const bool tight = i % 2 == 0;
+            const double away = tight ? 1e-6 * 300.0 : 0.05;
+            const glm::dvec2 at = nearSeam(random, away / spacing, 2);
+            const double about = i % 4 < 2 ? 3.0 * bound : 5.0;
+            const double surface = *surfaceAt(grid, at.x, at.y) + 12.0;
+            const glm::vec3 p(
+                glm::dvec3(-300.5 + spacing * at.x, surface + about * share(random), 41.0 + spacing * at.y));
+            const double x = (double{p.x} + 300.5) / spacing;
+            const double z = (double{p.z} - 41.0) / spacing;
+            const double height = double{p.y} - 12.0;
+            const double exact = *surfaceAt(grid, x, z);
+            if (std::abs(height - exact) <= bound) {
+                ++close;
+                continue;
+            }
+            wrong += field.evaluate(p).inside() != (height < exact) ? 1 : 0;
+        }
+        EXPECT_EQ(wrong, 0) << spacing;
+        EXPECT_LT(close, 40'000);
+    }
+}
+
+TEST_F(GroundBakes, TilesAreTheSameGroundAsOneCollider) {
+    writeHills(200, 200);
+    const Result<Collider> whole = readContainer(bake("spacing=0.5", {}).container);
+    ASSERT_TRUE(whole);
+    const WorldField field = bakeWorld("spacing=0.5,tile=64");
+    std::mt19937 random(seedFrom(32));
+    std::uniform_real_distribution<float> share(0.0F, 1.0F);
+    for (int i = 0; i < 50'000; ++i) {
+        // Places that both hold exactly, seams among them.
+        const glm::vec3 p(std::floor(796.0F * share(random)) / 8.0F,
+                          std::floor(800.0F * share(random)) / 32.0F - 5.0F,
+                          std::floor(796.0F * share(random)) / 8.0F);
+        ASSERT_EQ(field.evaluate(p).inside(), evaluate(*whole, p).inside())
+            << p.x << " " << p.y << " " << p.z;
+    }
+}
+
+/// Rain on seams, with bounces and friction: none falls through, and none is thrown up.
+TEST_F(GroundBakes, DropsThatFallOnSeamsNeitherFallThroughNorJump) {
+    const HeightGrid grid = writeHills(64 * 3 + 1, 64 * 3 + 1);
+    const WorldField field = bakeWorld("tile=64");
+    ReferenceSettings settings;
+    for (std::size_t i = 0; i < field.world().bodies.size(); ++i) {
+        ReferenceBody body;
+        body.collider = &field.colliderOf(i);
+        body.before.position = body.now.position = field.world().bodies[i].position;
+        settings.bodies.push_back(body);
+    }
+    settings.forces.gravity = {0.0F, -9.81F, 0.0F};
+    settings.type.restitution = 0.3F;
+    settings.type.friction = 0.2F;
+    settings.dt = 1.0F / 120.0F;
+    std::mt19937 random(seedFrom(33));
+    int caught = 0;
+    int collided = 0;
+    for (int drop = 0; drop < 300; ++drop) {
+        const glm::dvec2 at = nearSeam(random, drop % 2 == 0 ? 0.05 : 1e-6, 2);
+        glm::vec3 p(at.x, *surfaceAt(grid, at.x, at.y) + 1.5, at.y);
+        glm::vec3 v(0.0F);
+        float energy = 9.81F * p.y;
+        for (int step = 0; step < 240; ++step) {
+            const ReferenceState after = referenceStep(settings, p, v);
+            caught += after.contact == Contact::kCaught ? 1 : 0;
+            collided += after.contact == Contact::kCollided ? 1 : 0;
+            p = after.position;
+            v = after.velocity;
+            const std::optional<double> surface = surfaceAt(grid, p.x, p.z);
+            if (!surface) {
+                break;  // it has slid off the ground's end
+            }
+            ASSERT_GT(double{p.y}, *surface - 0.1) << "drop " << drop << " step " << step;
+            const float now = 9.81F * p.y + 0.5F * dot(v, v);
+            // A step's own error of a free fall: g² dt² / 2 for each step, and less.
+            ASSERT_LT(now, energy + 0.05F) << "drop " << drop << " step " << step;
+            energy = std::min(energy, now) + 0.0034F;
+        }
+    }
+    EXPECT_GT(collided, 3000);
+    EXPECT_LT(caught, collided / 20);
+}
+
+TEST_F(GroundBakes, ThreadsDoNotChangeAByteAndAnotherBakeLeavesNothingBehind) {
+    writeHills(150, 150);
+    static_cast<void>(bakeWorld("tile=64"));
+    const auto first = filesOf(folder_ / "world");
+    EXPECT_EQ(first.size(), 10U);
+    {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+        static_cast<void>(bakeWorld("tile=64"));
+    }
+    EXPECT_EQ(filesOf(folder_ / "world"), first);
+    EXPECT_TRUE(tiles_.removed.empty());
+    static_cast<void>(bakeWorld("tile=128"));
+    EXPECT_EQ(tiles_.removed.size(), 9U);
+    EXPECT_EQ(filesOf(folder_ / "world").size(), 5U);
+}
+
+TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
+    std::vector<std::uint16_t> samples(129 * 129, 7);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i] = i % 129 > 40 ? 0 : samples[i];
+    }
+    ASSERT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
+    const WorldField field = bakeWorld("tile=64,hole=0");
+    EXPECT_EQ(field.world().bodies.size(), 2U);
+    EXPECT_EQ(tiles_.tiles[0].squares, 40U * 68U);
+    GroundOptions options;
+    options.heights = *parseHeightsSpec("low=0,high=1,hole=7");
+    std::ranges::fill(samples, std::uint16_t{7});
+    ASSERT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
+    for (const fs::path& into : {fs::path(), folder_ / "world"}) {
+        Result<HeightMap> map = HeightMap::open(folder_ / "hills.raw", options.heights);
+        options.folder = into;
+        const Result<GroundResult> none = bakeGroundOf(*map, options);
+        ASSERT_FALSE(none);
+        EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
+        EXPECT_EQ(none.error().message.find("hills.raw: no square has ground"), 0U) << none.error().message;
+    }
+}
+
+TEST_F(GroundBakes, TheContainerRecordsItsSettingsAndNoPath) {
+    writeHills(33, 33);
+    const Result<Collider> whole = readContainer(bake("spacing=2,tile=64", {}).container);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->unit, "m");
+    EXPECT_EQ(whole->provenance.mesh_name, "hills.raw");
+    EXPECT_EQ(whole->provenance.mesh_hash.size(), 32U);
+    EXPECT_EQ(whole->provenance.triangles, 2048U);
+    EXPECT_EQ(whole->provenance.optionsText(), "--heights spacing=2,low=-20,high=44");
+    EXPECT_EQ(whole->bounds.max.x, 64.0F);
+}
+
+}  // namespace
+}  // namespace relief::test

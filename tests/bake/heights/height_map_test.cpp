@@ -1,0 +1,246 @@
+// Settings of height maps, and their files, sound and hostile.
+#include "bake/heights/height_map.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "bake/picture/exr.h"
+#include "formats/base/file_io.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class HeightMaps : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ =
+            fs::temp_directory_path() /
+            ("relief-heights-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path write(const char* name, std::span<const std::byte> bytes) {
+        EXPECT_TRUE(writeFile(folder_ / name, bytes));
+        return folder_ / name;
+    }
+    fs::path writeRaw(const char* name, const std::vector<std::uint16_t>& samples) {
+        return write(name, std::as_bytes(std::span(samples)));
+    }
+    fs::path writePng(const char* name, std::uint32_t format, std::uint32_t width, std::uint32_t height,
+                      const std::vector<std::byte>& pixels) {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        image.width = width;
+        image.height = height;
+        image.format = format;
+        EXPECT_NE(png_image_write_to_file(&image, (folder_ / name).c_str(), 0, pixels.data(), 0, nullptr), 0);
+        return folder_ / name;
+    }
+
+    /// Errors of opening a file, or of reading its rows.
+    static Error errorOf(const fs::path& path, const char* settings) {
+        const Result<HeightsSpec> spec = parseHeightsSpec(settings);
+        EXPECT_TRUE(spec) << spec.error().message;
+        Result<HeightMap> map = HeightMap::open(path, *spec);
+        if (!map) {
+            return map.error();
+        }
+        std::vector<float> row(map->columns());
+        for (std::uint32_t i = 0; i < map->rows(); ++i) {
+            if (const Result<void> read = map->next(row); !read) {
+                return read.error();
+            }
+        }
+        return {ErrorCode::kFailure, "it was read"};
+    }
+
+    static std::vector<float> heightsOf(const fs::path& path, const char* settings) {
+        const Result<HeightsSpec> spec = parseHeightsSpec(settings);
+        EXPECT_TRUE(spec) << spec.error().message;
+        Result<HeightMap> map = HeightMap::open(path, *spec);
+        EXPECT_TRUE(map) << map.error().message;
+        std::vector<float> all;
+        for (std::uint32_t i = 0; map && i < map->rows(); ++i) {
+            std::vector<float> row(map->columns());
+            EXPECT_TRUE(map->next(row));
+            all.insert(all.end(), row.begin(), row.end());
+        }
+        return all;
+    }
+
+    fs::path folder_;
+};
+
+void expectFault(const Error& error, ErrorCode code, const char* words) {
+    EXPECT_EQ(error.code, code) << error.message;
+    EXPECT_NE(error.message.find(words), std::string::npos) << error.message;
+    EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
+}
+
+TEST(HeightsSettings, AreReadAndWrittenBack) {
+    const Result<HeightsSpec> spec =
+        parseHeightsSpec("spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512");
+    ASSERT_TRUE(spec) << spec.error().message;
+    EXPECT_EQ(spec->offset.at, glm::dvec3(-1.0, 0.0, 2.5));
+    EXPECT_EQ(toString(*spec), "spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512");
+    EXPECT_EQ(toString(*parseHeightsSpec("high=1,low=0")), "spacing=1,low=0,high=1");
+    EXPECT_EQ(toString(*parseHeightsSpec(toString(*spec))), toString(*spec));
+}
+
+TEST(HeightsSettings, ThatMakeNoSenseAreRefusedWithACure) {
+    struct Case {
+        const char* text;
+        const char* words;
+    };
+    for (const Case& wrong :
+         {Case{"", "unknown key ''; use one of spacing, low"}, Case{"spacin=1", "did you mean 'spacing'?"},
+          Case{"spacing", "spacing is '' but must be a length"}, Case{"spacing=0", "a length from 0.000001"},
+          Case{"spacing=-1", "a length from"}, Case{"spacing=nan", "is 'nan' but must be"},
+          Case{"spacing=inf", "is 'inf' but must be"}, Case{"low=nan", "a number from -1e9 to 1e9"},
+          Case{"high=1e10", "a number from -1e9"}, Case{"low=5,high=1", "low is 5 but must be below high, 1"},
+          Case{"low=5,high=5", "must be below high"}, Case{"low=1,low=2", "low is given twice"},
+          Case{"hole=x", "hole is 'x'"}, Case{"width=1", "width is '1'"},
+          Case{"offset=1/2", "three numbers x/y/z"}, Case{"offset=1/2/inf", "three numbers"},
+          Case{"tile=66", "a multiple of 4"}, Case{"tile=8", "tile is '8'"}}) {
+        const Result<HeightsSpec> spec = parseHeightsSpec(wrong.text);
+        ASSERT_FALSE(spec) << wrong.text;
+        expectFault(spec.error(), ErrorCode::kUsage, wrong.words);
+        EXPECT_EQ(spec.error().message.find("--heights '"), 0U);
+    }
+}
+
+TEST_F(HeightMaps, OfSixteenAndEightBitsGoFromLowToHigh) {
+    const std::array<std::uint16_t, 6> samples = {0, 65535, 13107, 1, 258, 40000};
+    std::vector<std::byte> words(sizeof(samples));
+    std::memcpy(words.data(), samples.data(), words.size());
+    const fs::path png = writePng("a.png", PNG_FORMAT_LINEAR_Y, 3, 2, words);
+    std::vector<float> wanted;
+    for (const std::uint16_t sample : samples) {
+        wanted.push_back(static_cast<float>(-10.0 + 100.0 / 65535.0 * sample));
+    }
+    EXPECT_EQ(heightsOf(png, "low=-10,high=90"), wanted);
+    EXPECT_EQ(heightsOf(writeRaw("a.raw", {samples.begin(), samples.end()}), "low=-10,high=90,width=3"),
+              wanted);
+    const fs::path bytes =
+        writePng("b.png", PNG_FORMAT_GRAY, 2, 2, {std::byte{0}, std::byte{255}, std::byte{51}, std::byte{7}});
+    const std::vector<float> few = heightsOf(bytes, "low=0,high=5,hole=7");
+    EXPECT_EQ(std::vector<float>(few.begin(), few.begin() + 3), (std::vector<float>{0.0F, 5.0F, 1.0F}));
+    EXPECT_TRUE(std::isnan(few[3]));
+}
+
+TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
+    ExrImage image;
+    image.width = 3;
+    image.height = 2;
+    image.channels.push_back(
+        {"Y", {1.5F, -20.0F, std::numeric_limits<float>::quiet_NaN(), 8848.0F, -9999.0F, 0.1F}});
+    const fs::path path = write("a.exr", *encodeExr(image));
+    const std::vector<float> heights = heightsOf(path, "hole=-9999");
+    EXPECT_EQ(heights[0], 1.5F);
+    EXPECT_EQ(heights[3], 8848.0F);
+    EXPECT_EQ(heights[5], 0.1F);
+    EXPECT_TRUE(std::isnan(heights[2]));
+    EXPECT_TRUE(std::isnan(heights[4]));
+    expectFault(errorOf(path, "low=0,high=1"), ErrorCode::kUsage,
+                "a.exr': --heights low is for images of whole numbers");
+    image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
+    expectFault(errorOf(write("b.exr", *encodeExr(image)), "spacing=1"), ErrorCode::kUnsupported,
+                "several channels");
+    image.channels = {{"Y", std::vector<float>(6, std::numeric_limits<float>::infinity())}};
+    expectFault(errorOf(write("c.exr", *encodeExr(image)), "spacing=1"), ErrorCode::kInvalidInput,
+                "height of inf, beyond 1e9");
+}
+
+TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
+    const fs::path square = writeRaw("a.r16", std::vector<std::uint16_t>(49, 7));
+    EXPECT_EQ(heightsOf(square, "low=0,high=1").size(), 49U);
+    const fs::path cut = writeRaw("b.raw", std::vector<std::uint16_t>(48, 7));
+    expectFault(errorOf(cut, "low=0,high=1"), ErrorCode::kInvalidInput,
+                "b.raw': it has 96 bytes, which are no square of samples of 16 bits; give --heights width=N");
+    expectFault(errorOf(cut, "low=0,high=1,width=7"), ErrorCode::kInvalidInput, "no rows of 7 samples");
+    expectFault(errorOf(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1"),
+                ErrorCode::kInvalidInput, "99 bytes");
+    expectFault(errorOf(write("none.raw", {}), "low=0,high=1"), ErrorCode::kInvalidInput, "0 bytes");
+    expectFault(errorOf(square, "low=0"), ErrorCode::kUsage, "needs high=, the height of sample 65535");
+    expectFault(errorOf(square, "high=0"), ErrorCode::kUsage, "needs low=, the height of sample 0");
+    expectFault(errorOf(square, "low=0,high=1,hole=0.5"), ErrorCode::kUsage, "whole number from 0 to 65535");
+    expectFault(errorOf(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1"), ErrorCode::kUnsupported,
+                "name it .r16");
+    EXPECT_EQ(heightsOf(folder_ / "a.bin", "low=0,high=1,width=2").size(), 4U);
+}
+
+TEST_F(HeightMaps, OfTheWrongSizeOrKindAreRefused) {
+    const std::vector<std::byte> pixels(64);
+    expectFault(errorOf(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1"),
+                ErrorCode::kInvalidInput, "one.png': it has 1x1 samples; a height map has at least 2x2");
+    expectFault(errorOf(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1"),
+                ErrorCode::kInvalidInput, "1x9");
+    expectFault(errorOf(writePng("rgb.png", PNG_FORMAT_RGB, 2, 2, pixels), "low=0,high=1"),
+                ErrorCode::kUnsupported, "rgb.png': it is an image in colour; save it as grey of 16 bits");
+    expectFault(errorOf(writePng("ga.png", PNG_FORMAT_GA, 2, 2, pixels), "low=0,high=1"),
+                ErrorCode::kUnsupported, "with alpha");
+    expectFault(errorOf(folder_ / "none.png", "low=0,high=1"), ErrorCode::kIo, "none.png");
+    const fs::path fine = writePng("fine.png", PNG_FORMAT_GRAY, 8, 8, pixels);
+    expectFault(errorOf(fine, "low=0,high=1,width=8"), ErrorCode::kUsage, "width is for raw samples");
+    expectFault(errorOf(fine, "low=0,high=1,hole=256"), ErrorCode::kUsage, "from 0 to 255");
+}
+
+/// A file of which every part may be missing or changed; and one that claims 10⁹ samples.
+TEST_F(HeightMaps, DamagedImagesAreRefusedInOneLine) {
+    std::vector<std::byte> pixels(2 * 40 * 40);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        pixels[i] = static_cast<std::byte>(i * i >> 3U);
+    }
+    const std::vector<std::byte> png = *readFile(writePng("a.png", PNG_FORMAT_LINEAR_Y, 40, 40, pixels));
+    ExrImage image;
+    image.width = 20;
+    image.height = 20;
+    image.channels.push_back({"Y", std::vector<float>(400, 2.5F)});
+    image.channels[0].values[77] = 3.0F;
+    const std::vector<std::byte> exr = *encodeExr(image);
+    for (const std::vector<std::byte>& whole : {png, exr}) {
+        const char* const right = whole[0] == std::byte{0x89} ? "low=0,high=1" : "spacing=1";
+        for (std::size_t size = 8; size + 12 < whole.size(); size += 1 + whole.size() / 60) {
+            const Error error = errorOf(write("cut", std::span(whole).first(size)), right);
+            EXPECT_EQ(error.code, ErrorCode::kInvalidInput) << size << " " << error.message;
+            EXPECT_EQ(error.message.find('\n'), std::string::npos);
+        }
+        for (std::size_t at = 4; at < whole.size(); at += 1 + whole.size() / 300) {
+            std::vector<std::byte> changed = whole;
+            changed[at] ^= std::byte{0x55};
+            const Error error = errorOf(write("changed", changed), right);
+            EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
+        }
+    }
+    std::vector<std::byte> large = png;
+    for (const std::size_t at : {16U, 20U}) {  // 32768² in IHDR
+        large[at] = large[at + 1] = large[at + 3] = std::byte{0};
+        large[at + 2] = std::byte{0x80};
+    }
+    const auto crc = static_cast<std::uint32_t>([&] {
+        std::uint32_t c = 0xffffffffU;
+        for (std::size_t i = 12; i < 29; ++i) {
+            c ^= std::to_integer<std::uint32_t>(large[i]);
+            for (int k = 0; k < 8; ++k) {
+                c = (c & 1U) != 0 ? 0xedb88320U ^ (c >> 1U) : c >> 1U;
+            }
+        }
+        return ~c;
+    }());
+    for (std::size_t i = 0; i < 4; ++i) {
+        large[29 + i] = static_cast<std::byte>(crc >> (24U - 8U * i) & 0xffU);
+    }
+    expectFault(errorOf(write("large.png", large), "low=0,high=1"), ErrorCode::kLimit,
+                "large.png': it has 32768x32768 samples, and 268435456 are the most; cut it");
+}
+
+}  // namespace
+}  // namespace relief::test
