@@ -120,6 +120,11 @@ python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
 outputs+=(world:w/world.json world-bake:world_bake.json world-bake:world_again.json)
 outputs+=(world-check:world_file.json world-check:world_check.json world-info:world_info.json)
 
+python3 "$RELIEF_SOURCE/tests/cli/heights.py" heights.png 70
+"$relief" bake heights.png --heights low=0,high=9 -o ground.relief --json >ground.json
+"$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json >ground_tiles.json
+outputs+=(ground-bake:ground.json ground-bake:ground_tiles.json)
+
 # A scene with everything in it.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
 echo '0,1,0' >points.csv
