@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "bake/import/import_format.h"
@@ -36,8 +38,12 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const std::string extension = lowerCase(path.extension().string());
     if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
-        return fail(ErrorCode::kUnsupported, quotedPath(path) + ": no mesh format has the extension '" +
-                                                 cleanUtf8(extension) + "'; convert it to glTF, OBJ or PLY");
+        constexpr std::array<std::string_view, 4> kHeightMaps = {".png", ".exr", ".raw", ".r16"};
+        const bool image = std::find(kHeightMaps.begin(), kHeightMaps.end(), extension) != kHeightMaps.end();
+        return fail(ErrorCode::kUnsupported,
+                    quotedPath(path) + ": no mesh format has the extension '" + cleanUtf8(extension) + "'; " +
+                        (image ? "if it is a height map, bake it with relief bake --heights"
+                               : "convert it to glTF, OBJ or PLY"));
     }
     if (bytes.empty()) {
         return fail(ErrorCode::kInvalidInput,

@@ -89,6 +89,7 @@ truncate -s 600000000 large.raw
 bad 6 "large.raw.*30000x10000 samples, and 268435456 are the most; cut it" large.raw low=0,high=1,width=30000
 rm large.raw
 bad 6 "step.png: .*larger spacing" step.png low=0,high=1000000000,spacing=0.000001
+expect_error 5 "hills.png.*no mesh format.*height map, bake it with relief bake --heights" "$relief" bake hills.png -o bad.relief
 expect_error 1 "--budget is for meshes" "$relief" bake hills.png --heights $settings -o bad.relief --budget 1MB
 expect_error 1 "--unit is for meshes" "$relief" bake hills.png --heights $settings -o bad.relief --unit m
 expect_error 1 "two ways" "$relief" bake hills.png --heights $settings -o bad.relief --world v
