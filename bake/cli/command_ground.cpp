@@ -1,13 +1,10 @@
 #include "bake/cli/command_ground.h"
 
 #include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
 
 #include <cstdio>
-#include <optional>
 
 #include "bake/ground/ground_report.h"
-#include "bake/heights/height_map.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
@@ -44,21 +41,12 @@ Result<void> writeOutputs(const std::string& written, const std::string& folder,
 Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) {
     const Stopwatch total;
     static_cast<void>(RELIEF_TRY(settingsOf(call.request)));
-    GroundOptions options;
-    options.heights = RELIEF_TRY(parseHeightsSpec(call.request.heights));
+    const HeightsSpec heights = RELIEF_TRY(parseHeightsSpec(call.request.heights));
     RELIEF_TRY(preflightGround(folder, call));
-    options.folder = folder;
-    options.compress = call.outputs.compress;
     Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
-    options.progress = [&](double share) { progress.set(share); };
-    std::optional<tbb::global_control> control;
-    if (call.request.threads) {
-        control.emplace(tbb::global_control::max_allowed_parallelism, *call.request.threads);
-    }
-    progress.begin("reading the height map");
-    HeightMap map = RELIEF_TRY(HeightMap::open(call.request.mesh, options.heights));
     progress.begin("baking the ground");
-    const GroundResult result = RELIEF_TRY(bakeGroundOf(map, options));
+    const GroundResult result = RELIEF_TRY(bakeGroundOf(
+        call.request, {heights, folder, call.outputs.compress, [&](double share) { progress.set(share); }}));
     progress.finish();
     const std::string written =
         folder.empty() ? call.output : (std::filesystem::path(folder) / kWorldFileName).string();
@@ -68,8 +56,7 @@ Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) 
     }
     const std::string& output = folder.empty() ? call.output : folder;
     if (call.outputs.json) {
-        return printOut(jsonText(jsonOf(GroundJson{
-            result, output, toString(options.heights), {{call.request.mesh, map.hash()}}, total.ms()})));
+        return printOut(jsonText(jsonOf(GroundJson{result, output, toString(heights), total.ms()})));
     }
     if (!call.common.quiet) {
         std::fputs(groundText(result, cleanUtf8(output), total.ms()).c_str(), stderr);

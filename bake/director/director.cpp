@@ -119,10 +119,8 @@ class Director {
     Result<void> readOptions(const std::optional<TriangleMesh>& given) {
         result_.settings = RELIEF_TRY(settingsOf(request()));
         if (!request().heights.empty()) {
-            return fail(
-                ErrorCode::kUnsupported,
-                "--heights is of the command line, which bakes height maps without a mesh; run relief bake " +
-                    shellWord(request().mesh) + " --heights");
+            return fail(ErrorCode::kUsage,
+                        "--heights is for a height map that is read from a file; leave it out");
         }
         const std::string import = importOptionOf(request().import, request().import_limits);
         if (given && !import.empty()) {

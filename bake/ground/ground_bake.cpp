@@ -1,6 +1,9 @@
 #include "bake/ground/ground_bake.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -248,6 +251,19 @@ double GroundResult::errorMax() const {
 
 Result<GroundResult> bakeGroundOf(HeightMap& map, const GroundOptions& options) {
     return GroundBaker(map, options).run();
+}
+
+Result<GroundResult> bakeGroundOf(const BakeRequest& request, GroundOptions options) {
+    static_cast<void>(RELIEF_TRY(settingsOf(request)));
+    options.heights = RELIEF_TRY(parseHeightsSpec(request.heights));
+    std::optional<tbb::global_control> control;
+    if (request.threads) {
+        control.emplace(tbb::global_control::max_allowed_parallelism, *request.threads);
+    }
+    HeightMap map = RELIEF_TRY(HeightMap::open(request.mesh, options.heights));
+    GroundResult result = RELIEF_TRY(bakeGroundOf(map, options));
+    result.inputs.push_back({request.mesh, map.hash()});
+    return result;
 }
 
 }  // namespace relief

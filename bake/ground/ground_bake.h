@@ -15,9 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "bake/director/bake_request.h"
 #include "bake/ground/ground_tree.h"
 #include "bake/heights/height_map.h"
 #include "bake/heights/heights_spec.h"
+#include "bake/recipe/depfile.h"
 #include "formats/base/result.h"
 #include "formats/world/world.h"
 
@@ -37,6 +39,7 @@ struct GroundTile {
 struct GroundResult {
     std::uint32_t columns = 0;  ///< of the height map
     std::uint32_t rows = 0;
+    std::vector<InputFile> inputs;      ///< the height map, of a request
     std::vector<GroundTile> tiles;      ///< those with ground, row by row
     std::vector<std::byte> container;   ///< without a folder
     std::vector<std::string> removed;   ///< containers that only the world from before named
@@ -59,5 +62,10 @@ struct GroundOptions {
 /// Errors, with the file in front: kInvalidInput (a damaged image; no square has ground), kLimit (a tree or a world that is too
 /// large); kIo.
 [[nodiscard]] Result<GroundResult> bakeGroundOf(HeightMap& map, const GroundOptions& options);
+
+/// The same of a request's height map, by as many threads.
+/// \param options  whose heights are the request's.
+/// Errors: also those of settingsOf and HeightMap::open.
+[[nodiscard]] Result<GroundResult> bakeGroundOf(const BakeRequest& request, GroundOptions options);
 
 }  // namespace relief

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bake/ground/ground_bake.h"
-#include "bake/recipe/depfile.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
 #include "formats/fields/field.h"
@@ -33,8 +32,7 @@ void fields(Visitor& visit, T& tile) {
 struct GroundJson {
     const GroundResult& result = kNone<GroundResult>;
     std::string output{};
-    std::string heights{};            ///< the settings
-    std::vector<InputFile> inputs{};  ///< the height map
+    std::string heights{};  ///< the settings
     double ms = 0.0;
 };
 
@@ -53,7 +51,7 @@ void fields(Visitor& visit, R& report) {
           {.help = "Tiles with ground, row by row; without --world the only one", .items = kFromOne});
     visit("removed", r.removed, {"Containers that only the world from before named, and that are gone now"});
     visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
-    visit("inputs", report.inputs, {.help = "All files that it was made from", .items = kFromOne});
+    visit("inputs", r.inputs, {.help = "All files that it was made from", .items = kFromOne});
     visit("warnings", r.warnings, {"Warnings, one line each"});
 }
 

@@ -16,6 +16,7 @@
 
 #include "bake/director/director.h"
 #include "bake/director/mesh_check.h"
+#include "bake/ground/ground_bake.h"
 #include "bake/measure/worst_places.h"
 #include "bake/python/interruptible.h"
 #include "bake/report/parts_report.h"
@@ -259,8 +260,24 @@ py::list describeFields() {
     return described;
 }
 
-/// The collider, and the warnings of its bake. \param mesh  instead of the request's.
+/// The collider of a height map, and the warnings of its bake.
+py::tuple bakeGround(const BakeRequest& request) {
+    FileGuard files;
+    need(files.reads(request.mesh));
+    const GroundResult baked = need(interruptible<GroundResult>(
+        [request](const auto& checkpoint) -> Result<GroundResult> {
+            return bakeGroundOf(request, {{}, {}, 0, [&](double) { checkpoint(); }});
+        },
+        request.time_limit));
+    return py::make_tuple(std::make_shared<Collider>(need(readContainer(baked.container))),
+                          textsOf(baked.warnings));
+}
+
+/// The same of whatever the request is for. \param mesh  instead of the request's.
 py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
+    if (!request.heights.empty() && !mesh) {
+        return bakeGround(request);
+    }
     FileGuard files;
     need(files.reads(request.mesh));
     need(files.reads(request.plan));

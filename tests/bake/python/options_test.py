@@ -148,7 +148,22 @@ def test_no_option_of_the_tool_is_missing():
     assert others < said
     assert {"map" if name == "maps" else name.rstrip("_").replace("_", "-") for name in has} == said - others
     used = set().union(*(arguments for arguments, _ in WAYS))
-    assert has - used == {"plan", "plan_out"}  # the next test's
+    assert has - used == {"plan", "plan_out", "heights"}  # the next tests'
+
+
+def test_height_maps_are_ground(mesh, tmp_path):
+    path = tmp_path / "hills.raw"
+    path.write_bytes(np.arange(40 * 40, dtype="<u2").tobytes())
+    words = "spacing=0.5,low=-1,high=300,hole=77"
+    assert tool("bake", path, "-q", "-o", tmp_path / "a.relief", "--heights", words).returncode == 0
+    ground = relief.bake(path, heights=words, threads=1)
+    assert ground.to_bytes() == (tmp_path / "a.relief").read_bytes()
+    with pytest.raises(relief.UsageError, match="^budget is for meshes"):
+        relief.bake(path, heights=words, budget="1MB")
+    with pytest.raises(relief.InputError, match="scene.obj.*no rows of 7 samples"):
+        relief.bake(mesh, heights=words + ",width=7")
+    with pytest.raises(relief.UsageError, match="read from a file"):
+        relief.bake(np.eye(3), np.array([[0, 1, 2]]), heights=words)
 
 
 def test_plans_are_written_and_read(mesh, tmp_path):
