@@ -37,6 +37,24 @@ json w/world.json "d['bodies'][4]['position'] == [64, 0, 64] and d['colliders'][
 expect 0 "$relief" check w/world.json
 expect 0 "$relief" bake hills.png --heights $settings,tile=64 --world one -j 1 -q
 diff -r w one || die "threads change the world"
+
+# Drops on both sides of the seams at x = 64 and z = 64, in the shaders: none is below the ground, none is thrown up.
+python3 - >scene.toml <<'P'
+import json
+world = json.load(open("w/world.json"))
+print('[time]\nsteps = 180\n[particles]\ncapacity = 4096\n[forces]\ngravity = [0.0, -9.81, 0.0]')
+print('[[type]]\nname = "drop"\non_collision = "bounce"\nrestitution = 0.2\nfriction = 0.6')
+for low, high in (([63.95, 56, 20], [64.05, 58, 120]), ([20, 56, 63.95], [120, 58, 64.05])):
+    print(f'[[emitter]]\ntype = "drop"\nbox_min = {low}\nbox_max = {high}\nrate = 2000\nlifetime = 100')
+for body in world["bodies"]:
+    print(f'[[collider]]\nfile = "w/{world["colliders"][body["collider"]]["file"]}"\nposition = {body["position"]}')
+P
+expect 0 "$relief_sim" scene.toml --dump drops.ply -q
+python3 "$RELIEF_SOURCE/tests/cli/heights.py" --below drops.ply 100 >below
+python3 -c "
+count, below, highest = map(float, open('below').read().split())
+assert count > 2000 and -0.05 < below < 0.05 and highest < 58, (count, below, highest)" || die "drops on seams: $(cat below)"
+
 expect 0 "$relief" bake hills.png --heights $settings,tile=100,offset=5/-3/1 --world w --json
 json stdout "len(d['tiles']) == 4 and len(d['removed']) == 9"
 json w/world.json "d['bodies'][3]['position'] == [105, -3, 101]"

@@ -1,4 +1,7 @@
-"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, flat, step or rgb; by the name of FILE a PNG or raw samples."""
+"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, flat, step or rgb; by the name of FILE a PNG or raw samples.
+
+heights.py --below DUMP.ply HIGH: how far any particle lies below such hills at 1 m, whose sample 65535 is HIGH; and the highest y.
+"""
 import math
 import struct
 import sys
@@ -11,6 +14,29 @@ def sample(kind, x, z):
     if kind == 'step':
         return 1000 if x < 20 else 3000
     return round(20000 + 9000 * math.sin(x / 11) + 6000 * math.cos(z / 7))
+
+
+def surface(x, z):
+    """Bilinear between samples."""
+    i, j = math.floor(x), math.floor(z)
+    s, t = x - i, z - j
+    return ((1 - t) * ((1 - s) * sample('hills', i, j) + s * sample('hills', i + 1, j)) +
+            t * ((1 - s) * sample('hills', i, j + 1) + s * sample('hills', i + 1, j + 1)))
+
+
+def below(dump, high):
+    with open(dump, 'rb') as file:
+        head, body = file.read().split(b'end_header\n', 1)
+    words = [line.split() for line in head.decode().splitlines()]
+    count = next(int(line[2]) for line in words if line[:2] == ['element', 'vertex'])
+    form = '<' + ''.join({'float': 'f', 'int': 'i', 'uint': 'I', 'uchar': 'B'}[line[1]] for line in words if line[0] == 'property')
+    names = [line[2] for line in words if line[0] == 'property']
+    deepest = highest = -math.inf
+    for values in struct.iter_unpack(form, body[:count * struct.calcsize(form)]):
+        at = dict(zip(names, values))
+        deepest = max(deepest, surface(at['x'], at['z']) * float(high) / 65535 - at['y'])
+        highest = max(highest, at['y'])
+    print(count, deepest, highest)
 
 
 def chunk(name, data):
@@ -32,4 +58,4 @@ def main(file, side, kind='hills'):
 
 
 if __name__ == '__main__':
-    main(*sys.argv[1:])
+    below(*sys.argv[2:]) if sys.argv[1] == '--below' else main(*sys.argv[1:])
