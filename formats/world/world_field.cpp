@@ -16,6 +16,16 @@ glm::quat rotationOf(const WorldBody& body) {
     return {body.rotation[3], body.rotation[0], body.rotation[1], body.rotation[2]};
 }
 
+bool isLocal(const Collider& collider) {
+    return collider.maps.size() == 1 && collider.maps[0].format == MapFormat::kPatches &&
+           collider.maps[0].encloses && collider.maps[0].empty_is_outside;
+}
+
+bool holds(const Bounds& box, const glm::vec3& p) {
+    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
+           p.z <= box.max.z;
+}
+
 }  // namespace
 
 WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
@@ -36,6 +46,7 @@ WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
         placed.min -= room;
         placed.max += room;
         boxes_.push_back(placed);
+        local_.push_back(isLocal(colliderOf(i)) ? 1 : 0);
     }
 }
 
@@ -51,7 +62,11 @@ void WorldField::addSample(std::size_t body, const glm::vec3& p, WorldSample& be
 WorldSample WorldField::evaluate(const glm::vec3& p) const {
     WorldSample best;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-        addSample(i, p, best);
+        if (local_[i] == 0 || holds(boxes_[i], p)) {
+            addSample(i, p, best);
+        } else if (best.body < 0) {
+            best = {kFarOutside, glm::vec3(0.0F), static_cast<int>(i)};
+        }
     }
     return best;
 }

@@ -46,6 +46,8 @@ class WorldField {
 
     LoadedWorld loaded_;
     std::vector<Bounds> boxes_;  ///< of the bodies, in the world, with room
+    std::vector<char>
+        local_;  ///< 1: all that the body knows of a point beyond its box is that it is far outside
 };
 
 }  // namespace relief

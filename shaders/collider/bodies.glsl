@@ -140,13 +140,14 @@ ivec4 reliefNextBodies(inout ReliefSearch search, vec3 p, float radius) {
     return found;
 }
 
-// The union of all bodies in the world. The distance is in world units. body is -1 where none votes. Without `whole` those
-// alone whose boxes hold p, which a box grown by the radius does where a ball meets the body: no other is inside. Each lane
-// searches on to its next bodies before any evaluates one, so that all evaluate theirs at once.
+// The union of all bodies in the world. The distance is in world units. body is -1 where none votes. Without `whole`, and of
+// placed bodies, those alone whose boxes hold p, which a box grown by the radius does where a ball meets the body: no other is
+// inside, and of patches no other has a distance. Each lane searches on to its next bodies before any evaluates one, so that
+// all evaluate theirs at once.
 ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
     ReliefField best = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
     body = -1;
-    if (whole) {
+    if (whole && RELIEF_PLACED == 0) {
         for (int b = 0; b < reliefBodyCount(); ++b) {
             reliefJoinBody(best, body, b, p, radius, true);
         }
@@ -157,7 +158,7 @@ ReliefField reliefUnion(vec3 p, float radius, bool whole, out int body) {
             ivec4 next = reliefNextBodies(search, p, radius);
             more = next.w >= 0;
             while (next.x >= 0) {
-                reliefJoinBody(best, body, next.x, p, radius, false);
+                reliefJoinBody(best, body, next.x, p, radius, whole);
                 next = ivec4(next.yzw, -1);
             }
         }

@@ -92,9 +92,12 @@ TEST(ImportFormat, OthersAreReadAsTheirNameSaysOrRefused) {
         }
         EXPECT_EQ(read, 1) << text.substr(0, 20);
     }
-    for (const char* name : {"w.amf", "w.dxf", "w.ac", "w.raw", "w.xyzzy"}) {
+    for (const char* name : {"w.amf", "w.dxf", "w.ac", "w.xyzzy"}) {
         EXPECT_NE(errorOf(load(name, tetrahedronObj())).find("convert it to glTF, OBJ or PLY"),
                   std::string::npos);
+    }
+    for (const char* name : {"w.png", "w.raw"}) {
+        EXPECT_NE(errorOf(load(name, tetrahedronObj())).find("relief bake --heights"), std::string::npos);
     }
 }
 

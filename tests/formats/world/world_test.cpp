@@ -10,6 +10,7 @@
 #include "formats/base/hash.h"
 #include "formats/world/world_field.h"
 #include "tests/formats/analytic_shapes.h"
+#include "tests/formats/random_patches.h"
 #include "tests/formats/sample_colliders.h"
 
 namespace relief {
@@ -232,6 +233,36 @@ TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
     EXPECT_EQ(field.bodiesIn(box), (std::vector<std::uint32_t>{0, 1}));
     EXPECT_EQ(field.bodiesIn({glm::vec3(899.9F, 0.0F, 0.0F), glm::vec3(901.0F)}),
               std::vector<std::uint32_t>{2});
+}
+
+TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
+    std::mt19937 random(12);
+    collider_.maps = {test::randomPatches(random)};
+    collider_.bounds = insideBox(collider_).value();
+    const std::vector<std::byte> bytes = test::written(collider_);
+    ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
+    world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
+    world_.bodies = {{0, "a", {0.0F, 0.0F, 0.0F}},
+                     {0, "b", {2.0F, 1.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
+                     {0, "c", {-1.0F, 0.5F, 3.0F}, {0.5F, 0.5F, 0.5F, 0.5F}, 0.5F}};
+    Result<LoadedWorld> loaded = load();
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    const WorldField field(*std::move(loaded));
+    const std::vector<std::uint32_t> every{0, 1, 2};
+    std::uniform_real_distribution<float> at(-8.0F, 12.0F);
+    int known = 0;
+    int far = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const glm::vec3 p(at(random), at(random), at(random));
+        const WorldSample sample = field.evaluate(p);
+        const WorldSample all = field.evaluate(p, every);
+        ASSERT_EQ(sample.body, all.body);
+        ASSERT_EQ(sample.distance, all.distance);
+        ASSERT_EQ(sample.normal, all.normal);
+        (sample.distance < kFarOutside ? known : far) += 1;
+    }
+    EXPECT_GT(known, 100);
+    EXPECT_GT(far, 100);
 }
 
 TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {

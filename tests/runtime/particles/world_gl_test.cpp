@@ -113,13 +113,77 @@ TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
     EXPECT_GT(inside, 20'000U);
 }
 
+/// Bodies of one map of patches each, which are placed in the world.
+std::vector<ColliderBody> patchWorld(const Colliders& colliders, Pcg32& random, std::uint32_t count,
+                                     float half) {
+    std::vector<ColliderBody> bodies;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        bodies.push_back({&colliders[2 + i % 2], randomPose(random, half), 0.5F, 0.2F});
+    }
+    return bodies;
+}
+
+TEST_P(WorldFieldGlTest, PlacedBodiesAreThoseOfTheCpu) {
+    const Colliders colliders;
+    Pcg32 random(33);
+    std::size_t known = 0;
+    std::size_t inside = 0;
+    std::size_t apart = 0;
+    for (int world = 0; world < 10; ++world) {
+        std::vector<ColliderBody> bodies = patchWorld(colliders, random, 30, world < 5 ? 3.0F : 20.0F);
+        auto textures = ColliderTextures::create(bodies);
+        ASSERT_TRUE(textures) << textures.error().message;
+        EXPECT_NE(textures->defines().find("RELIEF_PLACED 1"), std::string::npos);
+        std::vector<Pose> poses;
+        for (ColliderBody& body : bodies) {
+            body.pose = world % 2 == 0 ? body.pose : randomPose(random, 5.0F);
+            poses.push_back(body.pose);
+        }
+        textures->setPoses(poses);
+        std::vector<glm::vec3> points;
+        for (int i = 0; i < 2'000; ++i) {
+            points.push_back(toWorld(poses[random.next() % poses.size()], randomIn(random, 4.0F)));
+        }
+        auto query = FieldQuery::create(*textures);
+        ASSERT_TRUE(query) << query.error().message;
+        const auto few = query->evaluate(points);
+        textures->reach(kEverywhere);
+        const auto all = query->evaluate(points);
+        ASSERT_TRUE(few && all);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            float best = kFarOutside;
+            for (const ColliderBody& body : bodies) {
+                const FieldSample sample = evaluate(*body.collider, toObject(body.pose, points[i]));
+                if (sample.map >= 0 && sample.distance < kFarOutside) {
+                    best = std::min(best, body.pose.scale * sample.distance);
+                }
+            }
+            ASSERT_EQ((*few)[i].distance, (*all)[i].distance) << "world " << world;
+            const bool far = best == kFarOutside;
+            known += far ? 0 : 1;
+            inside += best < 0.0F ? 1 : 0;
+            // Where a rounding decides between two cells the distances differ.
+            const bool equal = far ? !((*few)[i].distance < kFarOutside)
+                                   : std::abs((*few)[i].distance - best) < 1e-4F * (1.0F + std::abs(best));
+            apart += equal ? 0 : 1;
+        }
+    }
+    EXPECT_GT(inside, 2'000U);
+    EXPECT_GT(known, 5'000U);
+    EXPECT_LT(apart, known / 200);
+}
+
 TEST_P(WorldGlTest, ParticlesAreThoseOfEveryBody) {
     const Colliders colliders;
-    for (const bool balls : {false, true}) {
+    for (const int kind : {0, 1, 2, 3}) {
+        const bool balls = kind % 2 == 1;
         Pcg32 random(4);
         std::vector<ColliderBody> bodies;
         for (std::uint32_t i = 0; i < 60; ++i) {
             bodies.push_back({&colliders[i], randomPose(random, 3.0F), 0.5F, 0.2F});
+        }
+        if (kind >= 2) {
+            bodies = patchWorld(colliders, random, 60, 3.0F);
         }
         std::vector<std::vector<ParticleState>> ends;
         for (const bool all : {false, true}) {
