@@ -89,6 +89,16 @@ std::string hashOf(const TriangleMesh& mesh) {
 
 }  // namespace
 
+std::uint32_t LevelMeshes::add(TriangleMesh mesh) {
+    mesh.content_hash = hashOf(mesh);
+    const auto [found, added] =
+        known_.try_emplace({mesh.content_hash, mesh.marks}, static_cast<std::uint32_t>(meshes_.size()));
+    if (added) {
+        meshes_.push_back(std::move(mesh));
+    }
+    return found->second;
+}
+
 Result<Level> cutLevel(TriangleMesh all) {
     if (!fits(all)) {
         return invalidInput("the importer answers with a level that does not fit together; export it again");
@@ -100,8 +110,8 @@ Result<Level> cutLevel(TriangleMesh all) {
     level.dependencies = std::move(all.dependencies);
     level.dependency_hashes = std::move(all.dependency_hashes);
     level.warnings = std::move(all.warnings);
-    std::map<std::pair<std::string, std::vector<std::uint8_t>>, std::uint32_t> known;  // by hash and marks
-    std::vector<std::optional<std::uint32_t>> places;                                  // of the meshes
+    LevelMeshes meshes;
+    std::vector<std::optional<std::uint32_t>> places;  // of the meshes
     std::size_t position = 0;
     std::size_t triangle = 0;
     for (const LevelMesh& one : all.level_meshes) {
@@ -121,14 +131,9 @@ Result<Level> cutLevel(TriangleMesh all) {
             continue;
         }
         mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
-        mesh.content_hash = hashOf(mesh);
-        const auto [found, added] = known.try_emplace({mesh.content_hash, mesh.marks},
-                                                      static_cast<std::uint32_t>(level.meshes.size()));
-        places.emplace_back(found->second);
-        if (added) {
-            level.meshes.push_back(std::move(mesh));
-        }
+        places.emplace_back(meshes.add(std::move(mesh)));
     }
+    level.meshes = meshes.take();
     std::vector<bool> placed(level.meshes.size(), false);
     for (LevelBody& body : all.level_bodies) {
         if (const std::optional<std::uint32_t> mesh = places[body.mesh]) {

@@ -1,8 +1,11 @@
 // A level: each different mesh of a file once, however many nodes place it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/import/import_job.h"
@@ -24,6 +27,18 @@ struct Level {
     std::vector<std::string> dependencies;  ///< as those of a TriangleMesh, with their hashes
     std::vector<std::string> dependency_hashes;
     std::vector<std::string> warnings;
+};
+
+/// The meshes of a level, equal ones joined.
+class LevelMeshes {
+  public:
+    /// \param mesh  as finishMesh leaves it; its content_hash is made. \return its index.
+    std::uint32_t add(TriangleMesh mesh);
+    [[nodiscard]] std::vector<TriangleMesh> take() { return std::move(meshes_); }
+
+  private:
+    std::vector<TriangleMesh> meshes_;
+    std::map<std::pair<std::string, std::vector<std::uint8_t>>, std::uint32_t> known_;  // by hash and marks
 };
 
 /// importMeshInWorker() of a level: in glTF the meshes of nodes, in OBJ each object or group, a placement each.

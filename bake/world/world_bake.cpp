@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "bake/director/director.h"
-#include "bake/import/level.h"
+#include "bake/import/level_folder.h"
 #include "bake/measure/truth.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/report/report_text.h"
@@ -107,7 +107,7 @@ class WorldBaker {
         names_ = RELIEF_TRY(parseShapeOptions(request_.bake.as)).names();
         ImportOptions options = request_.bake.import;
         options.names = names_;
-        level_ = RELIEF_TRY(importLevelInWorker(request_.bake.mesh, options, request_.bake.import_limits));
+        level_ = RELIEF_TRY(importLevel(request_.bake.mesh, options, request_.bake.import_limits));
         for (std::size_t i = 0; i < level_.dependencies.size(); ++i) {
             if (watcher_.files != nullptr) {
                 RELIEF_TRY(watcher_.files->reads(level_.dependencies[i]));

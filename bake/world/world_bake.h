@@ -76,7 +76,7 @@ struct WorldWatcher {
 
 /// Goes on where a collider fails, and then leaves the world as it was; colliders that were baked are found again by the
 /// next run.
-/// Errors: kUsage (an option that is for one mesh, a budget that is too small), those of importLevelInWorker, kIo.
+/// Errors: kUsage (an option that is for one mesh, a budget that is too small), those of importLevel, kIo.
 [[nodiscard]] Result<WorldBakeResult> bakeWorld(const WorldRequest& request,
                                                 const WorldWatcher& watcher = {});
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "bake/import/level.h"
+#include "bake/import/level_folder.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
 #include "bake/repair/winding.h"
@@ -96,7 +96,7 @@ class WorldChecker {
         }
         ImportOptions options = request_.check.import;
         options.names = RELIEF_TRY(parseShapeOptions(as_)).names();
-        level_ = RELIEF_TRY(importLevelInWorker(request_.check.mesh, options, request_.check.import_limits));
+        level_ = RELIEF_TRY(importLevel(request_.check.mesh, options, request_.check.import_limits));
         result_.warnings = level_.warnings;
         return {};
     }

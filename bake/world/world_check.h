@@ -39,7 +39,7 @@ struct WorldAccuracy {
 };
 
 /// Errors: kLimit (samples), kInvalidInput (a mesh of the level that no collider was baked from), those of
-/// importLevelInWorker, of the shapes and of Embree.
+/// importLevel, of the shapes and of Embree.
 [[nodiscard]] Result<WorldAccuracy> checkWorld(const WorldCheckRequest& request, const WorldField& field);
 
 }  // namespace relief

@@ -92,6 +92,14 @@ expect 0 "$relief" check named/world.json --mesh level.gltf --max-error 2 -q
 expect_error 1 "it names no triangles 'wid'.*did you mean 'wide'" \
     "$relief" bake level.gltf --world named --as wid=shell
 
+# A folder is a level of its files.
+mkdir parts
+cp level.gltf parts/b.gltf
+level parts/a.gltf box=0
+expect 0 "$relief" bake parts --world of_parts --budget 100kB -q
+json of_parts/world.json "[b['node'] for b in d['bodies']] == ['a.gltf', 'b.gltf'] and len(d['colliders']) == 2"
+expect 0 "$relief" check of_parts/world.json --mesh parts --max-error 2 -q
+
 # Bad calls and bad files: one line, and nothing changes.
 for option in --max-error=1 --map=cube:size=32 --paper --plan-out=p.toml --resolution=64 --decode=plane; do
     expect_error 1 "${option%%=*} .*for one mesh|--decode" "$relief" bake level.gltf --world v $option

@@ -1,5 +1,5 @@
 // Levels: each different mesh once, placed by poses where these keep its shape.
-#include "bake/import/level.h"
+#include "bake/import/level_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ class Levels : public testing::Test {
         return folder_ / name;
     }
     Level level(const fs::path& path, const ImportOptions& options = {}) {
-        Result<Level> read = importLevelInWorker(path, options);
+        Result<Level> read = importLevel(path, options);
         EXPECT_TRUE(read) << read.error().message;
         return read ? std::move(*read) : Level();
     }
@@ -150,6 +150,36 @@ TEST_F(Levels, EqualMeshesAreJoinedAndThoseWithoutAreaLeftOut) {
     ASSERT_EQ(read.warnings.size(), 1U);
     EXPECT_NE(read.warnings[0].find("left out the mesh 'flat'"), std::string::npos) << read.warnings[0];
     EXPECT_FALSE(importLevelInWorker(write("m.obj", "v 0 0 0\nv 1 0 0\no flat\nf 1 1 2\n")));
+}
+
+TEST_F(Levels, OfAFolderEachFileIsAMesh) {
+    write("b.obj", tetrahedronObj());
+    write("a.ply", tetrahedronPly());
+    write("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    write("readme.txt", "not a mesh");
+    fs::create_directory(folder_ / "d.obj");
+    const Level read = level(folder_);
+    ASSERT_EQ(read.bodies.size(), 3U);
+    EXPECT_EQ(read.bodies[0].node, "a.ply");
+    EXPECT_EQ(read.bodies[2].node, "c.obj");
+    EXPECT_EQ(read.meshes.at(read.bodies[2].mesh).name, "c");
+    EXPECT_EQ(read.dependencies.size(), 3U);
+    ImportOptions options;
+    options.names = {"a"};
+    EXPECT_EQ(importLevel(folder_, options).error().code, ErrorCode::kUsage);
+    ImportLimits limits;
+    limits.triangles = 9;
+    EXPECT_EQ(importLevel(folder_, {}, limits).error().code, ErrorCode::kLimit) << "12 together";
+    write("e.gltf", tetrahedronGltf());
+    EXPECT_NE(importLevel(folder_).error().message.find("has a unit, unlike files before it; give --unit"),
+              std::string::npos);
+    options.names.clear();
+    options.unit = "m";
+    EXPECT_TRUE(importLevel(folder_, options));
+    for (const char* file : {"a.ply", "b.obj", "c.obj", "e.gltf"}) {
+        fs::remove(folder_ / file);
+    }
+    EXPECT_NE(importLevel(folder_).error().message.find("has no mesh files in it"), std::string::npos);
 }
 
 TEST_F(Levels, TrianglesOfAMeshCountOnce) {
