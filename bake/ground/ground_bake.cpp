@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kKeyDigits = 16;
+constexpr std::uint32_t kRowsBetweenReports = 256;
 
 /// A part of a row or a column of squares, and the samples about it.
 struct Stretch {
@@ -87,6 +88,7 @@ class GroundBaker {
     }
 
     Result<GroundResult> run() {
+        RELIEF_TRY(checkPlace());
         RELIEF_TRY(options_.folder.empty() ? bakeWhole() : bakeTiles());
         warnOfSteep();
         return std::move(result_);
@@ -101,13 +103,25 @@ class GroundBaker {
         }
     }
 
+    [[nodiscard]] Result<void> checkPlace() const {
+        const glm::dvec3 size(heights().spacing * map_.columns(), 0.0, heights().spacing * map_.rows());
+        const glm::dvec3 far = glm::max(glm::abs(heights().offset.at), glm::abs(heights().offset.at + size));
+        if (!(std::max({far.x, far.y, far.z}) < kFloatSteps * heights().spacing)) {
+            return fail(ErrorCode::kLimit, map_.name() +
+                                               ": it lies so far from the origin that floats do not resolve "
+                                               "its squares there; give a nearer "
+                                               "--heights offset, or a larger spacing");
+        }
+        return {};
+    }
+
     [[nodiscard]] tl::unexpected<Error> noGround() const {
         return invalidInput(
             map_.name() + ": no square has ground, as each has a corner that is a hole; see --heights hole");
     }
 
-    Result<BakedTile> bakeTile(const HeightGrid& grid, const glm::dvec3& origin) const {
-        Ground ground = RELIEF_TRY(inFront(map_.name(), bakeGround(grid, {heights().spacing, origin})));
+    Result<BakedTile> bakeTile(const HeightGrid& grid, const GroundPlace& place) const {
+        Ground ground = RELIEF_TRY(inFront(map_.name(), bakeGround(grid, place)));
         BakedTile baked;
         if (ground.squares == 0) {
             return baked;
@@ -138,9 +152,12 @@ class GroundBaker {
 
     Result<void> bakeWhole() {
         RowBand band(map_);
-        RELIEF_TRY(band.moveTo({0, 0, map_.rows()}));
-        report(0.5);
-        BakedTile baked = RELIEF_TRY(bakeTile(band.take(), heights().offset.at));
+        for (std::uint32_t rows = 0; rows < map_.rows();) {
+            rows += std::min(kRowsBetweenReports, map_.rows() - rows);
+            RELIEF_TRY(band.moveTo({0, 0, rows}));
+            report(0.5 * rows / map_.rows());
+        }
+        BakedTile baked = RELIEF_TRY(bakeTile(band.take(), {heights().spacing, heights().offset.at}));
         if (baked.bytes.empty()) {
             return noGround();
         }
@@ -179,11 +196,12 @@ class GroundBaker {
         forEachIndex(0, across.size(), 1, [&](std::size_t i) {
             const Stretch& columns = across[i];
             // The tile's own first square is its origin; what lies before it has coordinates below 0.
-            tiles[i] =
-                bakeTile(band.cut(columns),
-                         heights().spacing * glm::dvec3(double(columns.begin) - double(columns.first), 0.0,
-                                                        double(along.begin) - double(along.first)))
-                    .and_then([&](BakedTile&& baked) { return written(std::move(baked), i, row); });
+            const glm::uvec2 first(columns.first - columns.begin, along.first - along.begin);
+            const GroundPlace place{heights().spacing, -heights().spacing * glm::dvec3(first.x, 0.0, first.y),
+                                    first, glm::uvec2(heights().tile)};
+            tiles[i] = bakeTile(band.cut(columns), place).and_then([&](BakedTile&& baked) {
+                return written(std::move(baked), i, row);
+            });
         });
         for (std::size_t i = 0; i < tiles.size(); ++i) {
             GroundTile tile = RELIEF_TRY(std::move(tiles[i])).tile;

@@ -31,9 +31,9 @@ struct GroundTile {
     std::uint64_t bytes = 0;
     std::uint64_t gpu_bytes = 0;
     std::uint64_t squares = 0;  ///< with ground
-    std::uint64_t steep = 0;    ///< of them those that are steeper than kSteepest
-    double error_max = 0.0;     ///< of its heights, metres
-    Bounds box;                 ///< of its surface, in its own space
+    std::uint64_t steep = 0;  ///< of its own squares, without the rim, those that are steeper than kSteepest
+    double error_max = 0.0;   ///< of its heights, metres
+    Bounds box;               ///< of its surface, in its own space
 };
 
 struct GroundResult {

@@ -125,6 +125,12 @@ class GroundTree {
     Result<void> placeRoots() {
         const double root = cellSize(0);
         const double single = cellSize(kLastLevel);
+        if (!(std::max(std::abs(deepest_), std::abs(high_)) < kFloatSteps * place_.spacing)) {
+            return fail(
+                ErrorCode::kLimit,
+                "its heights are so far from 0 that floats do not resolve its squares there; shift them by "
+                "--heights low and high, or give a larger spacing");
+        }
         if (!(std::max(std::abs(deepest_), std::abs(high_)) < kCellsMax * root &&
               (high_ - deepest_) / single < kCellsMax)) {
             return tooLarge("its heights are so far apart");
@@ -361,8 +367,10 @@ class GroundTree {
             for (std::uint32_t x = 0; x + 1 < grid_.columns; ++x) {
                 const ColumnRange square = ranges_.ofSquares(x, z, 1);
                 ground_.squares += square.ground ? 1 : 0;
-                ground_.steep +=
-                    double{square.high} - double{square.low} > kSteepest * place_.spacing ? 1 : 0;
+                const bool own =
+                    x - place_.first.x < place_.squares.x && z - place_.first.y < place_.squares.y;
+                const bool steep = double{square.high} - double{square.low} > kSteepest * place_.spacing;
+                ground_.steep += own && steep ? 1 : 0;
             }
         }
     }

@@ -19,7 +19,9 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 
 #include "bake/ground/height_grid.h"
 #include "formats/base/result.h"
@@ -32,16 +34,22 @@ inline constexpr double kSteepest = 2.9;
 /// Of a square's side: how far the surface of a steeper square may stand beside its place.
 inline constexpr double kAside = 0.15;
 
+/// The farthest that a square may lie from the origin, in squares: there a sixteenth of it is a step of a float.
+inline constexpr double kFloatSteps = 524'288.0;
+
 struct GroundPlace {
     double spacing = 1.0;    ///< between samples, object units
     glm::dvec3 origin{0.0};  ///< of the first sample at height 0, object space
+    /// The squares whose steepness is counted, from one on: in tiles that overlap each square is of one.
+    glm::uvec2 first{0};
+    glm::uvec2 squares{std::numeric_limits<std::uint32_t>::max()};
 };
 
 struct Ground {
     std::uint64_t squares = 0;  ///< with ground; of none there is no more than this
     DepthMap map;
     Bounds bounds;            ///< of the surface, object space
-    std::uint64_t steep = 0;  ///< of them those that are steeper than kSteepest
+    std::uint64_t steep = 0;  ///< of those to be counted the ones that are steeper than kSteepest
     double error_max = 0.0;   ///< half of the largest step of a leaf, object units
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -50,8 +51,10 @@ class ExrRows : public SampleRows {
 
     Result<void> open() {
         try {
-            // OpenEXR takes memory for whole rows before anything can be asked.
-            Imf::Header::setMaxImageSize(int{kHeightsSideMax}, int{kHeightsSideMax});
+            // OpenEXR takes memory for whole rows before anything can be asked. The limit is of the whole process.
+            static std::once_flag limited;
+            std::call_once(limited,
+                           [] { Imf::Header::setMaxImageSize(int{kHeightsSideMax}, int{kHeightsSideMax}); });
             file_.emplace(stream_);
             const Imf::ChannelList& channels = file_->header().channels();
             std::size_t count = 0;

@@ -1,5 +1,6 @@
 #include "bake/heights/height_map.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -145,7 +146,8 @@ Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const Heigh
         map.unit_ = (*spec.high - *spec.low) / map.rows_->most();
     }
     map.has_hole_ = spec.hole.has_value();
-    map.hole_ = static_cast<float>(spec.hole.value_or(0.0));
+    constexpr double kMost = std::numeric_limits<float>::max();
+    map.hole_ = static_cast<float>(std::clamp(spec.hole.value_or(0.0), -kMost, kMost));
     return map;
 }
 
@@ -158,9 +160,10 @@ Result<void> HeightMap::next(std::span<float> out) {
         }
         sample = static_cast<float>(low_ + unit_ * double{sample});
         if (!(std::abs(double{sample}) <= kHeightMax)) {
-            return invalidInput(
-                shown_ + ": it has a height of " + shortest(sample) +
-                ", beyond 1e9; if it stands for a hole, give --heights hole=" + shortest(sample));
+            return invalidInput(shown_ + ": it has a height of " + shortest(sample) +
+                                ", beyond 1e9; if it stands for a hole, " +
+                                (std::isfinite(sample) ? "give --heights hole=" + shortest(sample)
+                                                       : std::string("save it as NaN")));
         }
     }
     return {};

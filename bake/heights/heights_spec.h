@@ -37,7 +37,8 @@ struct HeightsSpec {
     std::uint32_t tile = 1024;
 };
 
-inline constexpr double kHeightMax = 1e9;  ///< of low, high, offset and heights, either sign; metres
+inline constexpr double kHeightMax = 1e9;         ///< of low, high, offset and heights, either sign; metres
+inline constexpr double kHoleMax = 3.4028235e38;  ///< the largest float, as it is written
 inline constexpr std::uint32_t kHeightsSideMax = 1U << 24;  ///< samples in a row
 
 template <class Visitor, FieldsOf<HeightsSpec> S>
@@ -51,7 +52,10 @@ void fields(Visitor& visit, S& spec) {
            .must = "a length from 0.000001 to 1000000"});
     visit("low", spec.low, number("Height of sample 0, of images of whole numbers"));
     visit("high", spec.high, number("Height of the largest sample, 65535 or 255"));
-    visit("hole", spec.hole, number("Sample that is none, as the file has it"));
+    visit("hole", spec.hole,
+          {.help = "Sample that is none, as the file has it",
+           .range = within(kHoleMax),
+           .must = "a finite number"});
     visit("width", spec.width,
           {.help = "Samples in a row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
     visit("offset", spec.offset,

@@ -185,6 +185,9 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
                                           blockHead(maps, layout),
                                           {},
                                           makeBuffer()});
+        const std::uint64_t width = std::uint64_t{1} << result.world_->bodies.log2Width();
+        RELIEF_TRY(checkTextureSize(width, result.world_->bodies.words().size() / width,
+                                    "the bodies of this world", "place fewer"));
         result.updateWorld();
     } else {
         const std::vector<std::byte> block = colliderBlock(maps, layout);

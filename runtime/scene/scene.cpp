@@ -277,7 +277,16 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
     const float scale = std::max({bounds.longestSide(), 1e-3F * away, 1e-6F});
     const double run = static_cast<double>(scene.time.dt) *
                        (static_cast<double>(scene.time.steps) + static_cast<double>(prewarmSteps(scene)));
-    for (SceneType& type : scene.types) {
+    for (std::size_t i = 0; i < scene.types.size(); ++i) {
+        SceneType& type = scene.types[i];
+        // A scene without a world counts its colliders as it is read.
+        const std::uint32_t absent = type.collides & ~(bodiesOf(scene) | kCollidesWithGround);
+        if (!scene.world.empty() && type.collides != kCollidesWithAll && absent != 0) {
+            return fail(ErrorCode::kInvalidInput,
+                        nth("type", i, ".collides") +
+                            " names a body that the scene does not have; with those of its world there are " +
+                            std::to_string(scene.colliders.size()) + ", numbered from 0");
+        }
         type.collides &= bodiesOf(scene);
     }
     RELIEF_TRY(completeEmitters(scene.emitters, bounds, scale, run, scene.particles.capacity));

@@ -263,8 +263,15 @@ export async function load(source) {
 
 /** Fetches a world.json, and the containers beside it that it names. */
 export async function loadWorld(source) {
-    const base = new URL(source instanceof Response || source instanceof Request ? source.url : source, globalThis.location?.href);
-    const [text] = await Promise.all([bytesOf(source), init()]);
+    // The containers lie beside the file that answers, wherever the way to it was sent on to.
+    const response = source instanceof Response ? source : await fetch(source).catch((error) => {
+        throw new ReliefError(`${source?.url ?? source}: the server does not answer (${error.message})`);
+    });
+    if (!response.url) {
+        throw new ReliefError("loadWorld() has to know where its containers lie, and this Response has no URL; give new World() the files");
+    }
+    const base = new URL(response.url);
+    const [text] = await Promise.all([bytesOf(response), init()]);
     const files = { "world.json": text };
     await Promise.all(namesOf(text, base).map(async (name) => {
         files[name] = await bytesOf(new URL(name.split("/").map(encodeURIComponent).join("/"), base));

@@ -79,6 +79,12 @@ expect 0 "$relief" bake step.png --heights low=0,high=65.535 -o step.relief -q
 expect 0 "$relief" bake step.png --heights low=0,high=655.35 -o step.relief
 grep -q 'warning: step.png: 39 squares are steeper than 71 degrees' stderr || die "no word of cliffs: $(cat stderr)"
 
+# A cliff beside a seam is counted once, and the summary leaves it out.
+heights wide.png 130 step65
+expect 0 "$relief" bake wide.png --heights low=0,high=655.35,tile=64 --world wide
+grep -q 'warning: wide.png: 129 squares are steeper than 71 degrees' stderr || die "another cliff: $(cat stderr)"
+grep -q 'along y but where it is steep; ' stderr || die "a summary without the cliff: $(cat stderr)"
+
 # Bad calls and bad files: one line with the cure, and nothing is written.
 bad() { # bad CODE PATTERN FILE SETTINGS
     expect_error "$1" "$2" "$relief" bake "$3" --heights "$4" -o bad.relief
@@ -106,6 +112,8 @@ bad 6 "large.raw" large.raw low=0,high=1
 truncate -s 600000000 large.raw
 bad 6 "large.raw.*30000x10000 samples, and 268435456 are the most; cut it" large.raw low=0,high=1,width=30000
 rm large.raw
+bad 6 "step.png: it lies so far from the origin" step.png low=0,high=1,spacing=0.3,offset=0/0/5000000
+bad 6 "step.png: its heights are so far from 0" step.png low=6000,high=6000.001,spacing=0.0001
 bad 6 "step.png: .*larger spacing" step.png low=0,high=1000000000,spacing=0.000001
 expect_error 5 "hills.png.*no mesh format.*height map, bake it with relief bake --heights" "$relief" bake hills.png -o bad.relief
 expect_error 1 "--budget is for meshes" "$relief" bake hills.png --heights $settings -o bad.relief --budget 1MB

@@ -1,4 +1,4 @@
-"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, flat, step or rgb; by the name of FILE a PNG or raw samples.
+"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, flat, step (before sample 20), step65 or rgb; by the name of FILE a PNG or raw samples.
 
 heights.py --below DUMP.ply HIGH: how far any particle lies below such hills at 1 m, whose sample 65535 is HIGH; and the highest y.
 """
@@ -11,8 +11,8 @@ import zlib
 def sample(kind, x, z):
     if kind == 'flat':
         return 1234
-    if kind == 'step':
-        return 1000 if x < 20 else 3000
+    if kind in ('step', 'step65'):
+        return 1000 if x < (65 if kind == 'step65' else 20) else 3000
     return round(20000 + 9000 * math.sin(x / 11) + 6000 * math.cos(z / 7))
 
 

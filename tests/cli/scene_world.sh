@@ -84,6 +84,7 @@ scene 3 "node is empty; " 'world = "w/world.json"\n[[collider]]\nnode = ""\n'
 scene 3 "collider.node.*collider.file|collider.file.*collider.node" 'world = "w/world.json"\n[[collider]]\nnode = "first"\nfile = "a.relief"\n'
 scene 3 "render.mesh is drawn for a single collider, and not for a world; " 'world = "w/world.json"\n[render]\nmesh = "a.obj"\n'
 scene 3 "collides" 'world = "w/world.json"\n[[type]]\ncollides = [65536]\n'
+scene 3 "type.0..collides names a body that the scene does not have; .* there are 5, numbered from 0" 'world = "w/world.json"\n[[type]]\ncollides = [9]\n'
 python3 - <<'P'
 import json
 d = json.load(open('w/world.json'))

@@ -156,7 +156,13 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
                 "several channels");
     image.channels = {{"Y", std::vector<float>(6, std::numeric_limits<float>::infinity())}};
     expectFault(errorOf(write("c.exr", *encodeExr(image)), "spacing=1"), ErrorCode::kInvalidInput,
-                "height of inf, beyond 1e9");
+                "height of inf, beyond 1e9; if it stands for a hole, save it as NaN");
+    image.channels = {{"Y", {1.0F, -std::numeric_limits<float>::max(), 2.0F, 3.0F, 4.0F, 5.0F}}};
+    const fs::path lowest = write("d.exr", *encodeExr(image));
+    const std::string message = errorOf(lowest, "spacing=1").message;
+    const std::size_t cure = message.find("hole=");
+    ASSERT_NE(cure, std::string::npos) << message;
+    EXPECT_TRUE(std::isnan(heightsOf(lowest, message.substr(cure).c_str())[1]));
 }
 
 TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
