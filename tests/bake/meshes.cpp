@@ -1,9 +1,6 @@
 #include "tests/bake/meshes.h"
 
-#include <unistd.h>
-
 #include <cmath>
-#include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
 #include <utility>
@@ -214,25 +211,6 @@ glm::dmat3 rotation(const glm::dvec3& axis, double degrees) {
                k * glm::dot(k, v) * (1.0 - std::cos(angle));
     };
     return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
-}
-
-TemporaryFolder::TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "relief-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-        ADD_FAILURE() << "no temporary folder";
-    }
-    path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-}
-
-std::filesystem::path TemporaryFolder::write(const std::string& name, std::string_view contents) const {
-    const std::filesystem::path path = path_ / name;
-    std::ofstream(path, std::ios::binary) << contents;
-    return path;
 }
 
 }  // namespace relief::test

@@ -13,6 +13,7 @@
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 
@@ -51,21 +52,5 @@ namespace relief::test {
 
 /// A rotation by `degrees` about an axis.
 [[nodiscard]] glm::dmat3 rotation(const glm::dvec3& axis, double degrees);
-
-/// A folder that is gone after the test.
-class TemporaryFolder {
-  public:
-    TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder();
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// Writes a file of this name; returns its path.
-    std::filesystem::path write(const std::string& name, std::string_view contents) const;
-
-  private:
-    std::filesystem::path path_;
-};
 
 }  // namespace relief::test

@@ -11,6 +11,7 @@
 
 #include "bake/picture/exr.h"
 #include "formats/base/file_io.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 namespace {
@@ -19,14 +20,6 @@ namespace fs = std::filesystem;
 
 class HeightMaps : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() /
-            ("relief-heights-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     fs::path write(const char* name, std::span<const std::byte> bytes) {
         EXPECT_TRUE(writeFile(folder_ / name, bytes));
         return folder_ / name;
@@ -76,7 +69,8 @@ class HeightMaps : public testing::Test {
         return all;
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 void expectFault(const Error& error, ErrorCode code, const char* words) {

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "bake/import/import_source.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 namespace {
@@ -18,17 +18,7 @@ namespace fs = std::filesystem;
 
 class Levels : public testing::Test {
   protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "relief_level_XXXXXX").native();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path write(const std::string& name, const std::string& text) {
-        std::ofstream(folder_ / name) << text;
-        return folder_ / name;
-    }
+    fs::path write(const std::string& name, const std::string& text) { return temporary_.write(name, text); }
     Level level(const fs::path& path, const ImportOptions& options = {}) {
         Result<Level> read = importLevel(path, options);
         EXPECT_TRUE(read) << read.error().message;
@@ -38,7 +28,8 @@ class Levels : public testing::Test {
         return level(write("l.gltf", tetrahedronGltf({.nodes = nodes, .roots = roots})), options);
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 glm::dvec3 placed(const LevelBody& body, const glm::dvec3& p) {

@@ -12,6 +12,7 @@
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/random_patches.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
@@ -140,9 +141,6 @@ TEST(World, HasLimits) {
 class WorldFolder : public testing::Test {
   protected:
     void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "relief_world_XXXXXX").native();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
         // A sphere of radius ½, seen along z from both sides.
         collider_.bounds = {glm::vec3(-0.5F), glm::vec3(0.5F)};
         collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),
@@ -153,8 +151,6 @@ class WorldFolder : public testing::Test {
         world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
         world_.bodies.resize(1);
     }
-    void TearDown() override { fs::remove_all(folder_); }
-
     Result<LoadedWorld> load() {
         const std::string text = worldText(world_);
         EXPECT_TRUE(writeFile(folder_ / "world.json", std::as_bytes(std::span(text))));
@@ -169,7 +165,8 @@ class WorldFolder : public testing::Test {
         EXPECT_NE(loaded.error().message.find(message), std::string::npos) << loaded.error().message;
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
     Collider collider_;
     World world_;
 };

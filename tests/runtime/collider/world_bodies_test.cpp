@@ -5,28 +5,13 @@
 
 #include <vector>
 
+#include "tests/runtime/collider/three_bodies.h"
+
 namespace relief {
 namespace {
 
-/// Three bodies of two colliders, of which the second is turned and scaled.
-LoadedWorld threeBodies() {
-    World world;
-    world.colliders = {{"floor.relief", "", "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}},
-                       {"door.relief", "", "door", {glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 0.1F)}}};
-    world.bodies = {{.collider = 0, .node = "floor"},
-                    {.collider = 1,
-                     .node = "door",
-                     .position = {3.0F, 0.5F, 1.0F},
-                     .rotation = {0.0F, 0.6F, 0.0F, 0.8F},
-                     .scale = 2.0F,
-                     .restitution = 0.25F,
-                     .friction = 0.75F},
-                    {.collider = 1, .node = "gate", .position = {-3.0F, 0.0F, 0.0F}}};
-    return {world, std::vector<Collider>(2)};
-}
-
 TEST(WorldBodies, BodiesPosesAndBoxAreThoseOfTheWorld) {
-    const LoadedWorld loaded = threeBodies();
+    const LoadedWorld loaded = {test::threeBodies(), std::vector<Collider>(2)};
     const std::vector<ColliderBody> bodies = worldBodies(loaded);
     ASSERT_EQ(bodies.size(), 3U);
     EXPECT_EQ(bodies[1].collider, &loaded.colliders[1]);

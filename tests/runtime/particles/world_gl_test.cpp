@@ -162,7 +162,7 @@ TEST_P(WorldFieldGlTest, PlacedBodiesAreThoseOfTheCpu) {
             const bool far = best == kFarOutside;
             known += far ? 0 : 1;
             inside += best < 0.0F ? 1 : 0;
-            // Where a rounding decides between two cells the distances differ.
+            // Distances differ if a rounding decides between two cells.
             const bool equal = far ? !((*few)[i].distance < kFarOutside)
                                    : std::abs((*few)[i].distance - best) < 1e-4F * (1.0F + std::abs(best));
             apart += equal ? 0 : 1;

@@ -4,32 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "runtime/collider/world_bodies.h"
+#include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_error.h"
 
 namespace relief {
 namespace {
 
-/// Three bodies of two colliders, of which the second is turned and scaled.
-World threeBodies() {
-    World world;
-    world.colliders = {{"floor.relief", "", "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}},
-                       {"door.relief", "", "door", {glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 0.1F)}}};
-    world.bodies = {{.collider = 0, .node = "floor"},
-                    {.collider = 1,
-                     .node = "door",
-                     .position = {3.0F, 0.5F, 1.0F},
-                     .rotation = {0.0F, 0.6F, 0.0F, 0.8F},
-                     .scale = 2.0F,
-                     .restitution = 0.25F,
-                     .friction = 0.75F},
-                    {.collider = 1, .node = "gate", .position = {-3.0F, 0.0F, 0.0F}}};
-    return world;
-}
-
 Scene placed(const std::string& text) {
     auto scene = parseScene("world = \"level/world.json\"\n" + text, "dir/scene.toml");
     EXPECT_TRUE(scene) << scene.error().message;
-    const auto done = placeBodies(*scene, threeBodies());
+    const auto done = placeBodies(*scene, test::threeBodies());
     EXPECT_TRUE(done) << done.error().message;
     return *scene;
 }
@@ -43,7 +27,7 @@ TEST(SceneWorld, BodiesAreCollidersAsTheWorldPlacesThem) {
     EXPECT_EQ(door.path, std::filesystem::path("dir/level/door.relief"));
     EXPECT_EQ(door.node, "door");
     EXPECT_TRUE(door.posed);
-    EXPECT_EQ(door.pose, poseOf(threeBodies().bodies[1])) << "to the bit";
+    EXPECT_EQ(door.pose, poseOf(test::threeBodies().bodies[1])) << "to the bit";
     EXPECT_EQ(door.restitution, 0.25F);
     EXPECT_EQ(door.friction, 0.75F);
     EXPECT_EQ(scene.colliders[2].node, "gate");
@@ -58,7 +42,7 @@ TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
     ASSERT_EQ(scene.colliders.size(), 4U);
     EXPECT_EQ(scene.colliders[0].path, std::filesystem::path("dir/own.relief"));
     const SceneCollider& door = scene.colliders[1];
-    const Pose rest = poseOf(threeBodies().bodies[1]);
+    const Pose rest = poseOf(test::threeBodies().bodies[1]);
     EXPECT_EQ(door.pose, rest);
     ASSERT_EQ(door.keys.size(), 2U);
     EXPECT_EQ(door.keys[0].pose, rest);
@@ -82,7 +66,7 @@ TEST(SceneWorld, MistakesAreNamed) {
     expectSceneError("world = \"/etc/world.json\"\n", "dir/scene.toml:1:9: ", "world");
     auto scene = parseScene(world + "[collider]\nnode = \"window\"\n", "dir/scene.toml");
     ASSERT_TRUE(scene);
-    const auto none = placeBodies(*scene, threeBodies());
+    const auto none = placeBodies(*scene, test::threeBodies());
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().message,
               "dir/scene.toml:1:9: collider[0].node = 'window' is the name of no body of 'dir/w.json'; take "

@@ -1,0 +1,25 @@
+// A world for tests of what places it.
+#pragma once
+
+#include "formats/world/world.h"
+
+namespace relief::test {
+
+/// Three bodies of two colliders, of which the second is turned and scaled.
+inline World threeBodies() {
+    World world;
+    world.colliders = {{"floor.relief", "", "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}},
+                       {"door.relief", "", "door", {glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 0.1F)}}};
+    world.bodies = {{.collider = 0, .node = "floor"},
+                    {.collider = 1,
+                     .node = "door",
+                     .position = {3.0F, 0.5F, 1.0F},
+                     .rotation = {0.0F, 0.6F, 0.0F, 0.8F},
+                     .scale = 2.0F,
+                     .restitution = 0.25F,
+                     .friction = 0.75F},
+                    {.collider = 1, .node = "gate", .position = {-3.0F, 0.0F, 0.0F}}};
+    return world;
+}
+
+}  // namespace relief::test
