@@ -57,6 +57,18 @@ Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
     return {};
 }
 
+/// Reads the containers that a world's readers take for a while.
+Result<void> checkCoarse(const World& world, const std::string& file, const ContainerLimits& limits) {
+    for (std::size_t i = 0; i < world.colliders.size(); ++i) {
+        if (world.colliders[i].coarse) {
+            static_cast<void>(RELIEF_TRY(inFront(
+                quotedPath(file),
+                loadWorldCollider(world, i, WorldDetail::kCoarse, fs::path(file).parent_path(), limits))));
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
@@ -129,6 +141,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
                                            " is for one collider; leave it out for a world");
     }
     const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
+    RELIEF_TRY(checkCoarse(field.world(), file, call.limits));
     std::optional<WorldAccuracy> accuracy;
     if (!call.request.mesh.empty()) {
         accuracy = RELIEF_TRY(checkWorld({call.request, call.within}, field));

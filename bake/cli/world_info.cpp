@@ -29,10 +29,9 @@ Result<WorldInfo> readWorldInfo(const std::string& file, const ContainerLimits& 
         const std::uintmax_t bytes =
             fs::file_size(fs::path(file).parent_path() / world.colliders[i].file, error);
         const Collider& collider = loaded.colliders[i];
-        info.colliders.push_back(
-            {world.colliders[i], 0, collider.maps.size(), error ? 0 : bytes, collider.gpuBytes()});
+        info.colliders.push_back({world.colliders[i], 0, collider.maps.size(), error ? 0 : bytes});
         info.bytes += info.colliders.back().bytes;
-        info.gpu_bytes += info.colliders.back().gpu_bytes;
+        info.gpu_bytes += info.colliders.back().named.gpu_bytes;
     }
     for (const WorldBody& body : world.bodies) {
         ++info.colliders[body.collider].bodies;
@@ -51,7 +50,7 @@ std::string worldInfoText(const WorldInfo& info) {
         const WorldColliderInfo& collider = info.colliders[i];
         rows.push_back({std::to_string(i), cleanUtf8(collider.named.mesh), cleanUtf8(collider.named.file),
                         std::to_string(collider.bodies), std::to_string(collider.maps),
-                        bytesText(collider.bytes), bytesText(collider.gpu_bytes),
+                        bytesText(collider.bytes), bytesText(collider.named.gpu_bytes),
                         boxText(collider.named.box)});
     }
     return text + table(rows);

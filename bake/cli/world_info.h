@@ -15,8 +15,7 @@ struct WorldColliderInfo {
     WorldCollider named;
     std::size_t bodies = 0;  ///< that place it
     std::size_t maps = 0;
-    std::uint64_t bytes = 0;  ///< of its file, as is the next of its texels on the GPU
-    std::uint64_t gpu_bytes = 0;
+    std::uint64_t bytes = 0;  ///< of its file
 };
 
 template <class Visitor, FieldsOf<WorldColliderInfo> C>
@@ -25,7 +24,6 @@ void fields(Visitor& visit, C& collider) {
     visit("bodies", collider.bodies, {"Bodies that place it"});
     visit("maps", collider.maps, {"Its maps"});
     visit("bytes", collider.bytes, {"Size of its file", "bytes"});
-    visit("gpu_bytes", collider.gpu_bytes, {"Bytes that it takes on the GPU", "bytes"});
 }
 
 /// `relief info world.json --json`

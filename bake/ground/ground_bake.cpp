@@ -213,7 +213,7 @@ class GroundBaker {
             body.node = "tile " + std::to_string(i) + " " + std::to_string(row);
             body.position = glm::vec3(heights().offset.at +
                                       heights().spacing * glm::dvec3(across[i].first, 0.0, along.first));
-            world.colliders.push_back({tile.file, tile.hash, map_.name(), tile.box});
+            world.colliders.push_back({{tile.file, tile.hash, tile.gpu_bytes}, map_.name(), tile.box, {}});
             world.bodies.push_back(std::move(body));
             result_.tiles.push_back(std::move(tile));
         }

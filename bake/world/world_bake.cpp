@@ -274,7 +274,8 @@ class WorldBaker {
         World& world = result_.world;
         world.unit = level_.unit;
         for (const WorldColliderResult& collider : result_.colliders) {
-            world.colliders.push_back({collider.file, collider.hash, collider.mesh, collider.box});
+            world.colliders.push_back(
+                {{collider.file, collider.hash, collider.gpu_bytes}, collider.mesh, collider.box, {}});
         }
         for (const LevelBody& body : level_.bodies) {
             world.bodies.push_back(bodyOf(body));

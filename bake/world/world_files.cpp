@@ -15,23 +15,30 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kStemMax = 64;
 
-std::vector<WorldCollider> collidersOf(const fs::path& path) {
-    const auto bytes = readFile(path, kWorldBytesMax);
-    if (!bytes) {
-        return {};
+std::vector<WorldFile> filesOf(const std::vector<WorldCollider>& colliders) {
+    std::vector<WorldFile> files;
+    for (const WorldCollider& collider : colliders) {
+        files.push_back(collider);
+        if (collider.coarse) {
+            files.push_back(*collider.coarse);
+        }
     }
-    Result<World> world = parseWorld({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
-    return world ? std::move(world->colliders) : std::vector<WorldCollider>();
+    return files;
 }
 
-std::vector<std::string> removeUnnamed(const fs::path& folder, const std::vector<WorldCollider>& before,
+std::vector<WorldFile> filesOf(const fs::path& path) {
+    const Result<World> world = loadWorldFile(path);
+    return world ? filesOf(world->colliders) : std::vector<WorldFile>();
+}
+
+std::vector<std::string> removeUnnamed(const fs::path& folder, const std::vector<WorldFile>& before,
                                        const World& world) {
     std::set<std::string> named;
-    for (const WorldCollider& collider : world.colliders) {
-        named.insert(collider.file);
+    for (const WorldFile& file : filesOf(world.colliders)) {
+        named.insert(file.file);
     }
     std::vector<std::string> removed;
-    for (const WorldCollider& old : before) {
+    for (const WorldFile& old : before) {
         const fs::path path = folder / old.file;
         std::error_code error;
         const bool own = old.file.ends_with(kColliderExtension) && !fs::path(old.file).has_parent_path() &&
@@ -61,7 +68,7 @@ Result<std::vector<std::string>> replaceWorld(const fs::path& folder, const Worl
     // A world that no reader would take must not be written: scales or places that floats do not hold.
     static_cast<void>(RELIEF_TRY(inFront(name, parseWorld(text))));
     const fs::path path = folder / kWorldFileName;
-    const std::vector<WorldCollider> before = collidersOf(path);
+    const std::vector<WorldFile> before = filesOf(path);
     RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
     return removeUnnamed(folder, before, world);
 }

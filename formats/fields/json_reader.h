@@ -108,6 +108,8 @@ class JsonReader {
             readNumbers(from, value, 3, info);
         } else if constexpr (requires { std::tuple_size<T>::value; }) {
             readNumbers(from, value, std::tuple_size_v<T>, info);
+        } else if constexpr (kIsForm<std::optional, T>) {
+            read(from, value.emplace(), info);
         } else if constexpr (kIsForm<std::vector, T>) {
             from.needArray(info.items);
             value.clear();

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A body has 15 values, a collider 12.
+/// A body has 15 values, a collider 17.
 constexpr std::size_t kValuesMax = 20 * (kWorldBodiesMax + kWorldCollidersMax) + 100;
 constexpr std::size_t kDepthMax = 8;
 /// Deviation of a rotation's length from 1 that decimals of a few digits have.
@@ -34,26 +34,34 @@ bool isHash(const std::string& text) {
     return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
+/// \param files  of the colliders before.
+Result<void> checkFile(const WorldFile& file, const std::string& place, std::set<std::string>& files) {
+    if (!isHash(file.hash)) {
+        return invalidInput(place + ".hash must be 32 digits of 0 to 9 and a to f" + kBakeAgain);
+    }
+    if (file.file.find('\0') != std::string::npos) {
+        return invalidInput(place + ".file holds a zero byte; remove it");
+    }
+    const fs::path path(file.file);
+    if (file.file.empty() || path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end()) {
+        return invalidInput(place + ".file = " + quotedPath(path) +
+                            " must be a path inside the world's folder; put the file there");
+    }
+    if (!files.insert(path.lexically_normal().string()).second) {
+        return invalidInput(place + ".file = " + quotedPath(path) +
+                            " is that of another collider too; name each once, and place it by bodies");
+    }
+    return {};
+}
+
 Result<void> checkColliders(const std::vector<WorldCollider>& colliders) {
     std::set<std::string> files;
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const WorldCollider& collider = colliders[i];
         const std::string place = placeOf("colliders", i);
-        if (!isHash(collider.hash)) {
-            return invalidInput(place + ".hash must be 32 digits of 0 to 9 and a to f" + kBakeAgain);
-        }
-        if (collider.file.find('\0') != std::string::npos) {
-            return invalidInput(place + ".file holds a zero byte; remove it");
-        }
-        const fs::path path(collider.file);
-        if (collider.file.empty() || path.is_absolute() ||
-            std::find(path.begin(), path.end(), "..") != path.end()) {
-            return invalidInput(place + ".file = " + quotedPath(path) +
-                                " must be a path inside the world's folder; put the file there");
-        }
-        if (!files.insert(path.lexically_normal().string()).second) {
-            return invalidInput(place + ".file = " + quotedPath(path) +
-                                " is that of another collider too; name each once, and place it by bodies");
+        RELIEF_TRY(checkFile(collider, place, files));
+        if (collider.coarse) {
+            RELIEF_TRY(checkFile(*collider.coarse, place + ".coarse", files));
         }
         for (int axis = 0; axis < 3; ++axis) {
             if (!(collider.box.min[axis] <= collider.box.max[axis])) {
@@ -105,19 +113,9 @@ Result<void> checkVersion(const nlohmann::json& json) {
     return {};
 }
 
-Result<Collider> loadColliderOf(const WorldCollider& from, const std::string& place, const fs::path& folder,
-                                const ContainerLimits& limits) {
-    const fs::path path = RELIEF_TRY(inFront(place + ".file", resolveInside(folder, from.file, "world")));
-    const auto bytes = RELIEF_TRY(inFront(place, readFile(path, containerSizeMax(limits))));
-    const std::string named = place + " (" + quotedPath(from.file) + ")";
-    if (xxh3_128Hex(bytes) != from.hash) {
-        return invalidInput(named + " has other contents than its hash has" + kBakeAgain);
-    }
-    Collider collider = RELIEF_TRY(inFront(named, readContainer(bytes, limits)));
-    if (!(collider.bounds == from.box)) {
-        return invalidInput(named + " has another box than its min and max have" + kBakeAgain);
-    }
-    return collider;
+std::string placeOf(const World& world, std::size_t collider, WorldDetail detail) {
+    const bool coarse = detail == WorldDetail::kCoarse && world.colliders[collider].coarse;
+    return placeOf("colliders", collider) + (coarse ? ".coarse" : "");
 }
 
 template <class T>
@@ -175,17 +173,50 @@ Result<World> parseWorld(std::string_view text) {
     return world;
 }
 
-Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limits) {
+const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail) {
+    return detail == WorldDetail::kCoarse && collider.coarse ? *collider.coarse : collider;
+}
+
+Result<World> loadWorldFile(const fs::path& path) {
     const auto bytes = RELIEF_TRY(readFile(path, kWorldBytesMax));
-    const std::string shown = quotedPath(path);
+    return inFront(quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+}
+
+Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldDetail detail,
+                                   std::span<const std::byte> bytes, const ContainerLimits& limits) {
+    const WorldCollider& of = world.colliders[index];
+    const WorldFile& from = fileOf(of, detail);
+    const std::string named = placeOf(world, index, detail) + " (" + quotedPath(from.file) + ")";
+    if (xxh3_128Hex(bytes) != from.hash) {
+        return invalidInput(named + " has other contents than its hash has" + kBakeAgain);
+    }
+    Collider collider = RELIEF_TRY(inFront(named, readContainer(bytes, limits)));
+    if (!(collider.bounds == of.box)) {
+        return invalidInput(named + " has another box than its min and max have" + kBakeAgain);
+    }
+    if (collider.gpuBytes() != from.gpu_bytes) {
+        return invalidInput(named + " takes " + std::to_string(collider.gpuBytes()) +
+                            " bytes on the GPU, and not " + std::to_string(from.gpu_bytes) + kBakeAgain);
+    }
+    return collider;
+}
+
+Result<Collider> loadWorldCollider(const World& world, std::size_t index, WorldDetail detail,
+                                   const fs::path& folder, const ContainerLimits& limits) {
+    const std::string place = placeOf(world, index, detail);
+    const fs::path path = RELIEF_TRY(inFront(
+        place + ".file", resolveInside(folder, fileOf(world.colliders[index], detail).file, "world")));
+    const auto bytes = RELIEF_TRY(inFront(place, readFile(path, containerSizeMax(limits))));
+    return readWorldCollider(world, index, detail, bytes, limits);
+}
+
+Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limits, WorldDetail detail) {
     LoadedWorld loaded;
-    loaded.world =
-        RELIEF_TRY(inFront(shown, parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
+    loaded.world = RELIEF_TRY(loadWorldFile(path));
     ContainerLimits left = limits;
     for (std::size_t i = 0; i < loaded.world.colliders.size(); ++i) {
-        Collider collider =
-            RELIEF_TRY(inFront(shown, loadColliderOf(loaded.world.colliders[i], placeOf("colliders", i),
-                                                     path.parent_path(), left)));
+        Collider collider = RELIEF_TRY(
+            inFront(quotedPath(path), loadWorldCollider(loaded.world, i, detail, path.parent_path(), left)));
         left.texel_bytes -= std::min(left.texel_bytes, collider.texelBytes());
         loaded.colliders.push_back(std::move(collider));
     }

@@ -2,7 +2,7 @@
 //
 //     {
 //       "format": "relief-world", "version": 1, "unit": "m",
-//       "colliders": [{"file": "chair-0123456789abcdef.relief", "hash": "…", "mesh": "chair", …}],
+//       "colliders": [{"file": "chair-0123456789abcdef.relief", "hash": "…", "gpu_bytes": 65536, "mesh": "chair", …}],
 //       "bodies": [{"collider": 0, "node": "chair.001", "position": [3, 0, 1], "rotation": [0, 0, 0, 1], "scale": 1, …}]
 //     }
 //
@@ -15,8 +15,10 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "formats/base/field.h"
@@ -34,22 +36,38 @@ inline constexpr std::string_view kWorldFormat = "relief-world";
 /// The name of the file in the folder of a world.
 inline constexpr const char* kWorldFileName = "world.json";
 inline constexpr double kWorldCoordinateMax = double{1e15F};
+inline constexpr double kWorldFileBytesMax = 2147483648.0;  ///< all texels of a container
 
-struct WorldCollider {
+/// A container of a world.
+struct WorldFile {
     std::string file;
     std::string hash;
+    std::uint64_t gpu_bytes = 0;
+};
+
+template <class Visitor, FieldsOf<WorldFile> F>
+void fields(Visitor& visit, F& file) {
+    visit("file", file.file,
+          {.help = "Its container, relative to the folder of the world and inside it", .rules = kRequired});
+    visit("hash", file.hash,
+          {.help = "XXH3-128 of that file's bytes, in hexadecimal",
+           .rules = kRequired,
+           .pattern = "^[0-9a-f]{32}$"});
+    visit("gpu_bytes", file.gpu_bytes,
+          {.help = "Bytes that its maps take on the GPU",
+           .range = {1.0, kWorldFileBytesMax},
+           .rules = kRequired});
+}
+
+struct WorldCollider : WorldFile {
     std::string mesh;
     Bounds box{glm::vec3(0.0F), glm::vec3(0.0F)};
+    std::optional<WorldFile> coarse;
 };
 
 template <class Visitor, FieldsOf<WorldCollider> C>
 void fields(Visitor& visit, C& collider) {
-    visit("file", collider.file,
-          {.help = "Its container, relative to the folder of the world and inside it", .rules = kRequired});
-    visit("hash", collider.hash,
-          {.help = "XXH3-128 of that file's bytes, in hexadecimal",
-           .rules = kRequired,
-           .pattern = "^[0-9a-f]{32}$"});
+    fields(visit, static_cast<std::conditional_t<std::is_const_v<C>, const WorldFile, WorldFile>&>(collider));
     visit("mesh", collider.mesh, {.help = "Name of its mesh in the level; may be empty", .rules = kRequired});
     visit("min", collider.box.min,
           {.help = "Lower corner of its box",
@@ -61,7 +79,15 @@ void fields(Visitor& visit, C& collider) {
            .unit = "object units",
            .range = within(kWorldCoordinateMax),
            .rules = kRequired});
+    visit("coarse", collider.coarse,
+          leftOut({.help = "The same shape in fewer bytes, for as long as the other is not on the GPU; "
+                           "without one that always "
+                           "is"}));
 }
+
+/// Of a collider its own container, or its coarse one where it has that.
+enum class WorldDetail : std::uint8_t { kFine, kCoarse };
+[[nodiscard]] const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail);
 
 /// world = position + scale · rotation · object
 struct WorldBody {
@@ -144,11 +170,25 @@ struct LoadedWorld {
     std::vector<Collider> colliders;  ///< of world.colliders
 };
 
-/// A world with its colliders, whose hashes and boxes are compared with the file's.
+/// A world with its colliders, whose hashes, sizes and boxes are compared with the file's.
 /// \param limits  texel_bytes: of all colliders together.
 /// Errors, with the file in front: those of parseWorld, readFile and readContainer; kInvalidInput: a path that leads out of
-/// the folder, a hash or a box that differs; kIo: a container that is missing.
+/// the folder, a hash, a size or a box that differs; kIo: a container that is missing.
 [[nodiscard]] Result<LoadedWorld> loadWorld(const std::filesystem::path& path,
-                                            const ContainerLimits& limits = {});
+                                            const ContainerLimits& limits = {},
+                                            WorldDetail detail = WorldDetail::kFine);
+
+/// The world alone. Errors: as loadWorld.
+[[nodiscard]] Result<World> loadWorldFile(const std::filesystem::path& path);
+
+/// One of its colliders.
+/// \param folder  of the world. Errors: as loadWorld, with the collider's place in front.
+[[nodiscard]] Result<Collider> loadWorldCollider(const World& world, std::size_t collider, WorldDetail detail,
+                                                 const std::filesystem::path& folder,
+                                                 const ContainerLimits& limits = {});
+/// The same of the bytes of its container.
+[[nodiscard]] Result<Collider> readWorldCollider(const World& world, std::size_t collider, WorldDetail detail,
+                                                 std::span<const std::byte> bytes,
+                                                 const ContainerLimits& limits = {});
 
 }  // namespace relief

@@ -23,7 +23,7 @@ World smallWorld() {
     World world;
     world.unit = "m";
     world.colliders.push_back(
-        {"chair.relief", std::string(32, 'a'), "chair", {glm::vec3(0.0F), glm::vec3(1.0F)}});
+        {{"chair.relief", std::string(32, 'a'), 4096}, "chair", {glm::vec3(0.0F), glm::vec3(1.0F)}, {}});
     world.bodies.push_back(
         {0, "chair.001", {1.0F, 0.1F, -3.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F, 0.5F, 0.25F});
     world.bodies.push_back({});
@@ -45,7 +45,7 @@ TEST(World, IsReadAsItWasWrittenAndEveryLineIsOneThing) {
   "version": 1,
   "unit": "m",
   "colliders": [
-    {"file":"chair.relief","hash":"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa","mesh":"chair","min":[0.0,0.0,0.0],"max":[1.0,1.0,1.0]}
+    {"file":"chair.relief","hash":"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa","gpu_bytes":4096,"mesh":"chair","min":[0.0,0.0,0.0],"max":[1.0,1.0,1.0]}
   ],
   "bodies": [
     {"collider":0,"node":"chair.001","position":[1.0,0.1,-3.0],"rotation":[0.0,0.6,0.0,0.8],"scale":2.0,"restitution":0.5,"friction":0.25},
@@ -98,6 +98,19 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
              {"chair.relief", "", "must be a path inside"},
              {"chair.relief", "a\\u0000b", "holds a zero byte"},
              {"aaaa", "AAAA", "colliders[0].hash must be 32 digits"},
+             {"\"gpu_bytes\":4096", "\"gpu_bytes\":0", "colliders[0].gpu_bytes = 0 is out of range"},
+             {"\"gpu_bytes\":4096,", "", "colliders[0] has no gpu_bytes"},
+             {"\"max\":[1.0,1.0,1.0]", "\"max\":[1.0,1.0,1.0],\"coarse\":{}",
+              "colliders[0].coarse has no file"},
+             {"\"max\":[1.0,1.0,1.0]", "\"max\":[1.0,1.0,1.0],\"coarse\":null", "colliders[0].coarse "},
+             {"\"max\":[1.0,1.0,1.0]",
+              "\"max\":[1.0,1.0,1.0],\"coarse\":{\"file\":\"chair.relief\",\"hash\":"
+              "\"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\",\"gpu_bytes\":256}",
+              "colliders[0].coarse.file = 'chair.relief' is that of another"},
+             {"\"max\":[1.0,1.0,1.0]",
+              "\"max\":[1.0,1.0,1.0],\"coarse\":{\"file\":\"../c.relief\",\"hash\":"
+              "\"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\",\"gpu_bytes\":256}",
+              "colliders[0].coarse.file = '../c.relief' must be a path inside"},
              {"\"min\":[0.0", "\"min\":[2.0", "colliders[0].min is above its max"},
              {"relief-world", "relief-cache", "is no world"},
              {"\"version\": 1", "\"version\": 2", "newer than this program"},
@@ -148,13 +161,16 @@ class WorldFolder : public testing::Test {
                                         MapFormat::kFrontBackFixed, Compare::kBoth, 64, 64)};
         const std::vector<std::byte> bytes = test::written(collider_);
         ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
-        world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
+        world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
         world_.bodies.resize(1);
     }
-    Result<LoadedWorld> load() {
+    [[nodiscard]] WorldFile fileOf(const char* name, std::span<const std::byte> bytes) const {
+        return {name, xxh3_128Hex(bytes), collider_.gpuBytes()};
+    }
+    Result<LoadedWorld> load(WorldDetail detail = WorldDetail::kFine) {
         const std::string text = worldText(world_);
         EXPECT_TRUE(writeFile(folder_ / "world.json", std::as_bytes(std::span(text))));
-        return loadWorld(folder_ / "world.json");
+        return loadWorld(folder_ / "world.json", {}, detail);
     }
     void expectRefused(const char* message, ErrorCode code = ErrorCode::kInvalidInput) {
         const Result<LoadedWorld> loaded = load();
@@ -185,6 +201,9 @@ TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
     world_.colliders[0].box.max.x += 1.0F;
     expectRefused("another box");
     SetUp();
+    world_.colliders[0].gpu_bytes += 8;
+    expectRefused("bytes on the GPU");
+    SetUp();
     fs::remove(folder_ / "a.relief");
     expectRefused("a.relief", ErrorCode::kIo);
     SetUp();
@@ -193,6 +212,30 @@ TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
                        folder_ / "a.relief");
     expectRefused("leads out of the world's folder");
     fs::remove(folder_.parent_path() / (folder_.filename().string() + ".relief"));
+}
+
+TEST_F(WorldFolder, ACoarseColliderIsReadInPlaceOfTheOther) {
+    const Collider fine = collider_;
+    collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),
+                                    test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {1.01, 1.01, 1.01}),
+                                    MapFormat::kFrontBackFixed, Compare::kBoth, 16, 16)};
+    const std::vector<std::byte> bytes = test::written(collider_);
+    ASSERT_TRUE(writeFile(folder_ / "c.relief", bytes));
+    world_.colliders[0].coarse = fileOf("c.relief", bytes);
+    Result<LoadedWorld> loaded = load();
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_EQ(loaded->colliders[0], fine);
+    EXPECT_EQ(worldText(loaded->world), worldText(world_));
+    fs::remove(folder_ / "a.relief");
+    loaded = load(WorldDetail::kCoarse);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_EQ(loaded->colliders[0], collider_);
+    world_.colliders[0].coarse->hash[0] = world_.colliders[0].coarse->hash[0] == '0' ? '1' : '0';
+    loaded = load(WorldDetail::kCoarse);
+    ASSERT_FALSE(loaded);
+    EXPECT_NE(loaded.error().message.find("colliders[0].coarse ('c.relief') has other contents"),
+              std::string::npos)
+        << loaded.error().message;
 }
 
 TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
@@ -238,7 +281,7 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
     collider_.bounds = insideBox(collider_).value();
     const std::vector<std::byte> bytes = test::written(collider_);
     ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
-    world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
+    world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
     world_.bodies = {{0, "a", {0.0F, 0.0F, 0.0F}},
                      {0, "b", {2.0F, 1.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "c", {-1.0F, 0.5F, 3.0F}, {0.5F, 0.5F, 0.5F, 0.5F}, 0.5F}};
@@ -266,7 +309,7 @@ TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {
     collider_.bounds.min.y = 0.4F;  // the mesh is the top of the solid
     const std::vector<std::byte> bytes = test::written(collider_);
     ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
-    world_.colliders = {{"a.relief", xxh3_128Hex(bytes), "a", collider_.bounds}};
+    world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
     Result<LoadedWorld> loaded = load();
     ASSERT_TRUE(loaded) << loaded.error().message;
     const WorldField field(*std::move(loaded));

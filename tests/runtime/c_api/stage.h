@@ -194,7 +194,8 @@ class Stage {
     /// As many boxes as there are items, two units apart; the second is turned and twice as large.
     void writeWorld(const Collider& box) {
         World file;
-        file.colliders = {{path_.filename().string(), xxh3_128Hex(bytes_), "box", box.bounds}};
+        file.colliders = {
+            {{path_.filename().string(), xxh3_128Hex(bytes_), box.gpuBytes()}, "box", box.bounds, {}}};
         for (std::uint32_t i = 0; i < kItems; ++i) {
             file.bodies.push_back({.collider = 0,
                                    .node = "box " + std::to_string(i),

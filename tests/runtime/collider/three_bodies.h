@@ -8,8 +8,8 @@ namespace relief::test {
 /// Three bodies of two colliders, of which the second is turned and scaled.
 inline World threeBodies() {
     World world;
-    world.colliders = {{"floor.relief", "", "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}},
-                       {"door.relief", "", "door", {glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 0.1F)}}};
+    world.colliders = {{{"floor.relief", "", 0}, "floor", {glm::vec3(-9.0F), glm::vec3(9.0F)}, {}},
+                       {{"door.relief", "", 0}, "door", {glm::vec3(0.0F), glm::vec3(1.0F, 2.0F, 0.1F)}, {}}};
     world.bodies = {{.collider = 0, .node = "floor"},
                     {.collider = 1,
                      .node = "door",
