@@ -3,6 +3,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -74,11 +77,47 @@ class RowBand {
     std::vector<float> heights_;
 };
 
-/// A tile, and its container. No bytes: it has no ground.
+/// A tile, and its containers. No bytes: it has no ground, or no coarse likeness.
 struct BakedTile {
     GroundTile tile;
     std::vector<std::byte> bytes;
+    std::vector<std::byte> coarse;
 };
+
+/// Squares along the side of a coarse one.
+constexpr std::uint32_t kCoarse = 4;
+static_assert(kLeafSquares % kCoarse == 0, "or coarse squares of tiles would not meet");
+
+/// A sample that is ground, as near to a place as there is one within a coarse square; a hole where there is none.
+float nearestGround(const HeightGrid& grid, std::uint32_t column, std::uint32_t row) {
+    float nearest = grid.at(column, row);
+    std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+    const auto from = [](std::uint32_t at) { return at - std::min(at, kCoarse - 1); };
+    for (std::uint32_t y = from(row);
+         std::isnan(grid.at(column, row)) && y < std::min(row + kCoarse, grid.rows); ++y) {
+        for (std::uint32_t x = from(column); x < std::min(column + kCoarse, grid.columns); ++x) {
+            const std::uint32_t away = (x - column) * (x - column) + (y - row) * (y - row);
+            if (!std::isnan(grid.at(x, y)) && away < least) {
+                least = away;
+                nearest = grid.at(x, y);
+            }
+        }
+    }
+    return nearest;
+}
+
+HeightGrid coarseOf(const HeightGrid& grid) {
+    const auto samples = [](std::uint32_t fine) { return (fine - 1 + kCoarse - 1) / kCoarse + 1; };
+    HeightGrid coarse{samples(grid.columns), samples(grid.rows), {}};
+    coarse.heights.reserve(std::size_t{coarse.columns} * coarse.rows);
+    for (std::uint32_t row = 0; row < coarse.rows; ++row) {
+        for (std::uint32_t column = 0; column < coarse.columns; ++column) {
+            coarse.heights.push_back(nearestGround(grid, std::min(kCoarse * column, grid.columns - 1),
+                                                   std::min(kCoarse * row, grid.rows - 1)));
+        }
+    }
+    return coarse;
+}
 
 class GroundBaker {
   public:
@@ -120,6 +159,10 @@ class GroundBaker {
             map_.name() + ": no square has ground, as each has a corner that is a hole; see --heights hole");
     }
 
+    Result<std::vector<std::byte>> containerOf(const Collider& collider) const {
+        return inFront(map_.name(), writeContainer(collider, {static_cast<int>(options_.compress)}));
+    }
+
     Result<BakedTile> bakeTile(const HeightGrid& grid, const GroundPlace& place) const {
         Ground ground = RELIEF_TRY(inFront(map_.name(), bakeGround(grid, place)));
         BakedTile baked;
@@ -138,8 +181,7 @@ class GroundBaker {
                                "relief " RELIEF_VERSION,
                                {{"heights", toString(recorded)}}};
         collider.maps.push_back(std::move(ground.map));
-        baked.bytes =
-            RELIEF_TRY(inFront(map_.name(), writeContainer(collider, {static_cast<int>(options_.compress)})));
+        baked.bytes = RELIEF_TRY(containerOf(collider));
         baked.tile.hash = xxh3_128Hex(baked.bytes);
         baked.tile.bytes = baked.bytes.size();
         baked.tile.gpu_bytes = collider.gpuBytes();
@@ -147,7 +189,24 @@ class GroundBaker {
         baked.tile.steep = ground.steep;
         baked.tile.error_max = ground.error_max;
         baked.tile.box = ground.bounds;
+        if (!options_.folder.empty() && baked.tile.gpu_bytes > kCoarseFrom) {
+            RELIEF_TRY(bakeCoarse(grid, place, std::move(collider), baked));
+        }
         return baked;
+    }
+
+    /// \param collider  that of the tile.
+    Result<void> bakeCoarse(const HeightGrid& grid, const GroundPlace& place, Collider collider,
+                            BakedTile& baked) const {
+        const Bounds& box = baked.tile.box;
+        const GroundPlace coarse{.spacing = kCoarse * place.spacing,
+                                 .origin = place.origin,
+                                 .leaf_level = kLeafLevel - std::countr_zero(kCoarse),
+                                 .heights = glm::dvec2(box.min.y, box.max.y)};
+        collider.maps = {RELIEF_TRY(inFront(map_.name(), bakeGround(coarseOf(grid), coarse))).map};
+        baked.coarse = RELIEF_TRY(containerOf(collider));
+        baked.tile.coarse = {"", xxh3_128Hex(baked.coarse), collider.gpuBytes()};
+        return {};
     }
 
     Result<void> bakeWhole() {
@@ -157,7 +216,8 @@ class GroundBaker {
             RELIEF_TRY(band.moveTo({0, 0, rows}));
             report(0.5 * rows / map_.rows());
         }
-        BakedTile baked = RELIEF_TRY(bakeTile(band.take(), {heights().spacing, heights().offset.at}));
+        BakedTile baked =
+            RELIEF_TRY(bakeTile(band.take(), {.spacing = heights().spacing, .origin = heights().offset.at}));
         if (baked.bytes.empty()) {
             return noGround();
         }
@@ -197,8 +257,10 @@ class GroundBaker {
             const Stretch& columns = across[i];
             // The tile's own first square is its origin; what lies before it has coordinates below 0.
             const glm::uvec2 first(columns.first - columns.begin, along.first - along.begin);
-            const GroundPlace place{heights().spacing, -heights().spacing * glm::dvec3(first.x, 0.0, first.y),
-                                    first, glm::uvec2(heights().tile)};
+            const GroundPlace place{.spacing = heights().spacing,
+                                    .origin = -heights().spacing * glm::dvec3(first.x, 0.0, first.y),
+                                    .first = first,
+                                    .squares = glm::uvec2(heights().tile)};
             tiles[i] = bakeTile(band.cut(columns), place).and_then([&](BakedTile&& baked) {
                 return written(std::move(baked), i, row);
             });
@@ -213,20 +275,27 @@ class GroundBaker {
             body.node = "tile " + std::to_string(i) + " " + std::to_string(row);
             body.position = glm::vec3(heights().offset.at +
                                       heights().spacing * glm::dvec3(across[i].first, 0.0, along.first));
-            world.colliders.push_back({{tile.file, tile.hash, tile.gpu_bytes}, map_.name(), tile.box, {}});
+            world.colliders.push_back(
+                {{tile.file, tile.hash, tile.gpu_bytes}, map_.name(), tile.box, tile.coarse});
             world.bodies.push_back(std::move(body));
             result_.tiles.push_back(std::move(tile));
         }
         return {};
     }
 
-    /// Writes a tile's container, if it has ground.
+    /// Writes a tile's containers, if it has ground.
     [[nodiscard]] Result<BakedTile> written(BakedTile baked, std::size_t column, std::size_t row) const {
+        const auto write = [&](std::vector<std::byte>& bytes, const std::string& hash, const char* kind) {
+            const std::string file = fileStem(fs::path(map_.name()).stem().string()) + "-" +
+                                     std::to_string(column) + "-" + std::to_string(row) + kind + "-" +
+                                     hash.substr(0, kKeyDigits) + std::string(kColliderExtension);
+            return writeFile(options_.folder / file, std::exchange(bytes, {})).map([&] { return file; });
+        };
         if (!baked.bytes.empty()) {
-            baked.tile.file = fileStem(fs::path(map_.name()).stem().string()) + "-" + std::to_string(column) +
-                              "-" + std::to_string(row) + "-" + baked.tile.hash.substr(0, kKeyDigits) +
-                              std::string(kColliderExtension);
-            RELIEF_TRY(writeFile(options_.folder / baked.tile.file, std::exchange(baked.bytes, {})));
+            baked.tile.file = RELIEF_TRY(write(baked.bytes, baked.tile.hash, ""));
+        }
+        if (baked.tile.coarse) {
+            baked.tile.coarse->file = RELIEF_TRY(write(baked.coarse, baked.tile.coarse->hash, "-coarse"));
         }
         return baked;
     }

@@ -5,13 +5,15 @@
 //      tile 1                     |----------------------|
 //
 // Each tile goes a leaf beyond its own squares. Where tiles overlap their leaves are the same, bit by bit, so that the union of both
-// is the surface of either, and no point of a seam lies outside of all. Containers are named by their contents: a bake
+// is the surface of either, and no point of a seam lies outside of all. The coarse likeness of a tile has every fourth sample, and
+// the same roots. Containers are named by their contents: a bake
 // never replaces one that the world from before still names.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,11 +32,15 @@ struct GroundTile {
     std::string hash;  ///< XXH3-128 of the container
     std::uint64_t bytes = 0;
     std::uint64_t gpu_bytes = 0;
-    std::uint64_t squares = 0;  ///< with ground
+    std::optional<WorldFile> coarse;  ///< of a tile of more than kCoarseFrom bytes
+    std::uint64_t squares = 0;        ///< with ground
     std::uint64_t steep = 0;  ///< of its own squares, without the rim, those that are steeper than kSteepest
     double error_max = 0.0;   ///< of its heights, metres
     Bounds box;               ///< of its surface, in its own space
 };
+
+/// Of a tile on the GPU: where less than that is saved, it has no coarse likeness.
+inline constexpr std::uint64_t kCoarseFrom = 65'536;
 
 struct GroundResult {
     std::uint32_t columns = 0;  ///< of the height map

@@ -21,6 +21,8 @@ void fields(Visitor& visit, T& tile) {
     visit("hash", tile.hash, {.help = "XXH3-128 of the container", .pattern = kHashPattern});
     visit("bytes", tile.bytes, {"Size of the container", "bytes"});
     visit("gpu_bytes", tile.gpu_bytes, {"Bytes that it takes on the GPU", "bytes"});
+    visit("coarse", tile.coarse,
+          {"Container that stands in for it while it is not on the GPU; null where that would save little"});
     visit("squares", tile.squares, {"Squares with ground", {}, kFromOne});
     visit("steep_squares", tile.steep, {"Those of them that are steeper than 71 degrees"});
     visit("error_max", tile.error_max,

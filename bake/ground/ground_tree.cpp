@@ -13,11 +13,6 @@
 namespace relief {
 namespace {
 
-/// Splits from a root down to a leaf of kLeafSquares, to a single square, and to half the side of a steep one.
-constexpr unsigned kLeafLevel = 4;
-constexpr unsigned kSquareLevel = kLeafLevel + 2;
-constexpr unsigned kLastLevel = kSquareLevel + 1;
-constexpr std::uint32_t kRootSquares = kLeafSquares << kLeafLevel;
 /// The ground below the lowest point, of the longest side.
 constexpr double kGroundDepth = 0.05;
 /// Patches hold heights within so much of the bottom of their cell, of its side, and a little more.
@@ -47,7 +42,13 @@ struct Cell {
 class GroundTree {
   public:
     GroundTree(const HeightGrid& grid, const GroundPlace& place)
-        : grid_(grid), place_(place), ranges_(grid, kLeafLevel + 1) {}
+        : grid_(grid),
+          place_(place),
+          leaf_level_(place.leaf_level),
+          square_level_(leaf_level_ + 2),
+          last_level_(square_level_ + 1),
+          root_squares_(kLeafSquares << leaf_level_),
+          ranges_(grid, leaf_level_ + 1) {}
 
     Result<Ground> run() {
         if (!findRange()) {
@@ -61,16 +62,16 @@ class GroundTree {
 
   private:
     [[nodiscard]] double cellSize(unsigned level) const {
-        return place_.spacing * kRootSquares / static_cast<double>(1U << level);
+        return place_.spacing * root_squares_ / static_cast<double>(1U << level);
     }
     /// Squares along the side of a cell; of half a square 1, as there are no more heights in it.
-    [[nodiscard]] static std::uint32_t squaresOf(unsigned level) {
-        return std::max(kRootSquares >> level, 1U);
+    [[nodiscard]] std::uint32_t squaresOf(unsigned level) const {
+        return std::max(root_squares_ >> level, 1U);
     }
 
     /// \param x, z  cells of a level from the first sample.
     [[nodiscard]] double heightAt(unsigned level, std::size_t x, std::size_t z) const {
-        if (level <= kSquareLevel) {
+        if (level <= square_level_) {
             return grid_.at(x * squaresOf(level), z * squaresOf(level));
         }
         const auto at = [&](std::size_t i, std::size_t j) { return double{grid_.at(i, j)}; };
@@ -80,10 +81,10 @@ class GroundTree {
     }
 
     [[nodiscard]] ColumnRange columnOf(unsigned level, std::uint32_t x, std::uint32_t z) const {
-        if (level <= kLeafLevel) {
-            return ranges_.at(kLeafLevel - level, x, z);
+        if (level <= leaf_level_) {
+            return ranges_.at(leaf_level_ - level, x, z);
         }
-        if (level <= kSquareLevel) {
+        if (level <= square_level_) {
             return ranges_.ofSquares(std::size_t{x} * squaresOf(level), std::size_t{z} * squaresOf(level),
                                      squaresOf(level));
         }
@@ -100,9 +101,9 @@ class GroundTree {
     /// \return whether any square has ground.
     bool findRange() {
         ColumnRange all;
-        for (std::uint32_t z = 0; z < ranges_.depth(kLeafLevel); ++z) {
-            for (std::uint32_t x = 0; x < ranges_.width(kLeafLevel); ++x) {
-                const ColumnRange column = ranges_.at(kLeafLevel, x, z);
+        for (std::uint32_t z = 0; z < ranges_.depth(leaf_level_); ++z) {
+            for (std::uint32_t x = 0; x < ranges_.width(leaf_level_); ++x) {
+                const ColumnRange column = ranges_.at(leaf_level_, x, z);
                 if (column.ground) {
                     all.low = all.ground ? std::min(all.low, column.low) : column.low;
                     all.high = all.ground ? std::max(all.high, column.high) : column.high;
@@ -113,8 +114,8 @@ class GroundTree {
         if (!all.ground) {
             return false;
         }
-        low_ = all.low;
-        high_ = all.high;
+        low_ = place_.heights ? std::min(double{all.low}, place_.heights->x) : double{all.low};
+        high_ = place_.heights ? std::max(double{all.high}, place_.heights->y) : double{all.high};
         const glm::dvec3 size(place_.spacing * (grid_.columns - 1), 0.0, place_.spacing * (grid_.rows - 1));
         ground_.bounds.min = glm::vec3(place_.origin + glm::dvec3(0.0, low_, 0.0));
         ground_.bounds.max = glm::vec3(place_.origin + glm::dvec3(size.x, high_, size.z));
@@ -124,7 +125,7 @@ class GroundTree {
 
     Result<void> placeRoots() {
         const double root = cellSize(0);
-        const double single = cellSize(kLastLevel);
+        const double single = cellSize(last_level_);
         if (!(std::max(std::abs(deepest_), std::abs(high_)) < kFloatSteps * place_.spacing)) {
             return fail(
                 ErrorCode::kLimit,
@@ -137,8 +138,8 @@ class GroundTree {
         }
         bottom_ = static_cast<std::int32_t>(std::floor(deepest_ / root));
         const auto top = static_cast<std::int32_t>(std::floor(high_ / root)) + 1;
-        roots_ = {ranges_.width(kLeafLevel), static_cast<std::uint32_t>(top - bottom_),
-                  ranges_.depth(kLeafLevel)};
+        roots_ = {ranges_.width(leaf_level_), static_cast<std::uint32_t>(top - bottom_),
+                  ranges_.depth(leaf_level_)};
         const std::uint64_t count = std::uint64_t{roots_.x} * roots_.y * roots_.z;
         if (std::max({roots_.x, roots_.y, roots_.z}) > 0xffffU || count >= kPatchTexelsMax) {
             return tooLarge("it has so many samples");
@@ -162,11 +163,11 @@ class GroundTree {
         const bool fits = double{column.high} - double{column.low} <= kSteepest * size;
         // The next leaf below the surface has its heights too, or what enters it would meet the plane of many leaves.
         const double margin =
-            cell.level == kLastLevel && !fits ? 0.0 : cellSize(std::max(unsigned{cell.level}, kLeafLevel));
+            cell.level == last_level_ && !fits ? 0.0 : cellSize(std::max(unsigned{cell.level}, leaf_level_));
         if (!column.hole && double{column.low} >= size * (cell.y + 1.0) + margin) {
             return PatchRecord::Kind::kInside;
         }
-        const bool patch = cell.level == kLastLevel || (cell.level >= kLeafLevel && !column.hole && fits);
+        const bool patch = cell.level == last_level_ || (cell.level >= leaf_level_ && !column.hole && fits);
         return patch ? PatchRecord::Kind::kPatch : PatchRecord::Kind::kSplit;
     }
 
@@ -219,7 +220,7 @@ class GroundTree {
     void takeRoom(Cell& cell) {
         std::uint32_t own = kNone;
         std::uint32_t& place =
-            cell.level == kLeafLevel ? shared_[std::size_t{cell.z} * ranges_.width(0) + cell.x] : own;
+            cell.level == leaf_level_ ? shared_[std::size_t{cell.z} * ranges_.width(0) + cell.x] : own;
         cell.owner = place == kNone;
         if (cell.owner) {
             place = height_texels_;
@@ -231,8 +232,9 @@ class GroundTree {
     /// The heights of a patch, from its cell's bottom on in its sides. Those of a column share codes and scale.
     [[nodiscard]] PatchHeights heightsOf(const Cell& cell, bool& steep) const {
         const double size = cellSize(cell.level);
-        const std::uint32_t across = cell.level <= kSquareLevel ? squaresOf(cell.level) : 1;
-        const unsigned samples = std::max(unsigned{cell.level}, kSquareLevel);  // the level of single heights
+        const std::uint32_t across = cell.level <= square_level_ ? squaresOf(cell.level) : 1;
+        const unsigned samples =
+            std::max(unsigned{cell.level}, square_level_);  // the level of single heights
         std::array<double, std::size_t{kPatchSideMax} * kPatchSideMax> heights{};
         double low = std::numeric_limits<double>::max();
         double high = -low;
@@ -399,6 +401,11 @@ class GroundTree {
 
     const HeightGrid& grid_;
     const GroundPlace& place_;
+    /// Splits from a root down to a leaf of kLeafSquares, to a single square, and to half the side of a steep one.
+    unsigned leaf_level_;
+    unsigned square_level_;
+    unsigned last_level_;
+    std::uint32_t root_squares_;
     ColumnRanges ranges_;
     double low_ = 0.0;  // of the surface
     double high_ = 0.0;

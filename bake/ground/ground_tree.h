@@ -22,6 +22,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 
 #include "bake/ground/height_grid.h"
 #include "formats/base/result.h"
@@ -37,12 +38,18 @@ inline constexpr double kAside = 0.15;
 /// The farthest that a square may lie from the origin, in squares: there a sixteenth of it is a step of a float.
 inline constexpr double kFloatSteps = 524'288.0;
 
+inline constexpr unsigned kLeafLevel = 4;
+
 struct GroundPlace {
     double spacing = 1.0;    ///< between samples, object units
     glm::dvec3 origin{0.0};  ///< of the first sample at height 0, object space
     /// The squares whose steepness is counted, from one on: in tiles that overlap each square is of one.
     glm::uvec2 first{0};
     glm::uvec2 squares{std::numeric_limits<std::uint32_t>::max()};
+    /// Splits from a root down to a leaf: fewer for a coarse likeness, whose roots are those of the ground then.
+    unsigned leaf_level = kLeafLevel;
+    /// Heights from the lowest to the highest that the roots hold, whatever the samples are.
+    std::optional<glm::dvec2> heights = {};
 };
 
 struct Ground {

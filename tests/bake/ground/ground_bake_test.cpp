@@ -59,7 +59,10 @@ class GroundBakes : public testing::Test {
     WorldField bakeWorld(const std::string& settings) {
         fs::create_directories(folder_ / "world");
         tiles_ = bake(settings, folder_ / "world");
-        Result<LoadedWorld> loaded = loadWorld(folder_ / "world" / kWorldFileName);
+        return load(WorldDetail::kFine);
+    }
+    [[nodiscard]] WorldField load(WorldDetail detail) const {
+        Result<LoadedWorld> loaded = loadWorld(folder_ / "world" / kWorldFileName, {}, detail);
         EXPECT_TRUE(loaded) << loaded.error().message;
         return WorldField(std::move(*loaded));
     }
@@ -139,6 +142,65 @@ TEST_F(GroundBakes, TilesAreTheSameGroundAsOneCollider) {
                           std::floor(796.0F * share(random)) / 8.0F);
         ASSERT_EQ(field.evaluate(p).inside(), evaluate(*whole, p).inside())
             << p.x << " " << p.y << " " << p.z;
+    }
+}
+
+/// The coarse tiles are the ground of every fourth sample, seams among it, and each in the box of the tile it stands for.
+TEST_F(GroundBakes, CoarseTilesAreTheGroundOfFewerSamples) {
+    const HeightGrid grid = writeHills(64 * 12 - 5, 64 * 8 + 3);
+    HeightGrid fewer{(grid.columns + 2) / 4 + 1, (grid.rows + 2) / 4 + 1, {}};
+    for (std::size_t row = 0; row < fewer.rows; ++row) {
+        for (std::size_t column = 0; column < fewer.columns; ++column) {
+            fewer.heights.push_back(grid.at(std::min<std::size_t>(4 * column, grid.columns - 1),
+                                            std::min<std::size_t>(4 * row, grid.rows - 1)));
+        }
+    }
+    const WorldField fine = bakeWorld("width=763,tile=256");
+    const WorldField coarse = load(WorldDetail::kCoarse);
+    ASSERT_EQ(fine.world().bodies.size(), 9U);
+    std::size_t smaller = 0;
+    for (std::size_t i = 0; i < 9; ++i) {
+        const std::optional<WorldFile>& file = fine.world().colliders[i].coarse;
+        if (file) {
+            ++smaller;
+            EXPECT_LT(10 * file->gpu_bytes, fine.world().colliders[i].gpu_bytes);
+            EXPECT_EQ(insideBox(coarse.colliderOf(i)), insideBox(fine.colliderOf(i)));
+        }
+    }
+    EXPECT_EQ(smaller, 6U) << "the last row is too small for any";
+    std::mt19937 random(seedFrom(34));
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    int below = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        // Of the first two rows of tiles, whole coarse squares alone.
+        const double x = i % 2 == 0 ? 760.0 * share(random) : 256.0 + 0.02 * share(random) - 0.01;
+        const double z = i % 4 < 2 ? 512.0 * share(random) : 256.0 + 0.02 * share(random) - 0.01;
+        const double surface = *surfaceAt(fewer, x / 4.0, z / 4.0);
+        const glm::vec3 p(glm::dvec3(x, surface + 3.0 * (2.0 * share(random) - 1.0), z));
+        const double exact = *surfaceAt(fewer, double{p.x} / 4.0, double{p.z} / 4.0);
+        if (std::abs(double{p.y} - exact) > 0.08) {
+            ++below;
+            ASSERT_EQ(coarse.evaluate(p).inside(), double{p.y} < exact) << p.x << " " << p.y << " " << p.z;
+        }
+    }
+    EXPECT_GT(below, 90'000);
+}
+
+TEST_F(GroundBakes, CoarseTilesHoldSmallHolesAndFineOnesDoNot) {
+    std::vector<std::uint16_t> samples(257 * 257, 30'000);
+    samples[100 * 257 + 100] = 0;  // at a coarse sample
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i] = i % 257 >= 200 && i / 257 >= 200 ? 0 : samples[i];
+    }
+    ASSERT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
+    const WorldField fine = bakeWorld("tile=256,hole=0");
+    const WorldField coarse = load(WorldDetail::kCoarse);
+    const float below = -20.0F + 64.0F / 65535.0F * 30'000.0F - 1.0F;
+    EXPECT_FALSE(fine.evaluate({100.2F, below, 100.2F}).inside());
+    EXPECT_TRUE(coarse.evaluate({100.2F, below, 100.2F}).inside());
+    for (const WorldField* field : {&fine, &coarse}) {
+        EXPECT_TRUE(field->evaluate({90.0F, below, 90.0F}).inside());
+        EXPECT_FALSE(field->evaluate({220.0F, below, 220.0F}).inside());
     }
 }
 
