@@ -16,3 +16,4 @@
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/particle_renderer.h"
+#include "runtime/stream/world_stream.h"

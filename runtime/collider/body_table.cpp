@@ -4,6 +4,7 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/vector_relational.hpp>
 #include <utility>
 
 #include "shaders/collider/constants.h"
@@ -40,6 +41,17 @@ BodyBox boxOf(const TableBody& body, std::uint32_t index, float reach) {
     return {toWorld(pose, body.box->center()),
             glm::mat3(half.x * turn[0], half.y * turn[1], half.z * turn[2]),
             reach + kSlack * std::max({far.x, far.y, far.z}), index, false};
+}
+
+bool contains(const Bounds& outer, const Bounds& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
+}
+
+Bounds unionOf(Bounds box, const Bounds& other) {
+    box.add(other.min);
+    box.add(other.max);
+    return box;
 }
 
 }  // namespace
@@ -175,6 +187,43 @@ bool BodyTable::setPoses(std::span<const Pose> poses) {
     return changed;
 }
 
+bool BodyTable::setMap(std::uint32_t first_map, const BlockMap& map, const std::optional<Bounds>& box) {
+    const bool placed = !maps_.empty();
+    BlockMap before;
+    std::memcpy(&before,
+                placed ? static_cast<const void*>(&maps_[first_map]) : &words_[kWorldMapTexels * first_map],
+                sizeof(before));
+    if (before.info[1] != map.info[1] || before.info[2] != map.info[2]) {
+        return false;
+    }
+    if (placed) {
+        maps_[first_map] = map;
+    } else {
+        std::memcpy(&words_[kWorldMapTexels * first_map], &map, sizeof(map));
+        changes_.push_back({kWorldMapTexels * first_map, kWorldMapTexels * (first_map + 1)});
+    }
+    bool larger = false;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        TableBody& body = bodies_[i];
+        if (body.first_map != first_map || body.maps == 0) {
+            continue;
+        }
+        if (placed) {
+            const BlockMap own = placedMap(map, body.pose);
+            std::memcpy(&words_[kWorldMapTexels * i], &own, sizeof(own));
+            changes_.push_back({kWorldMapTexels * i, kWorldMapTexels * (i + 1)});
+        }
+        if (body.box && !(box && contains(*body.box, *box))) {
+            body.box = box ? std::optional(unionOf(*body.box, *box)) : std::nullopt;
+            larger = true;
+        }
+    }
+    if (larger) {
+        arrange();
+    }
+    return true;
+}
+
 void BodyTable::setReach(float radius) {
     if (radius > reach_) {
         reach_ = radius;
@@ -199,8 +248,15 @@ std::vector<BodyTable::Rows> BodyTable::takeChanges() {
     if (std::exchange(resized_, false)) {
         rows.push_back({0, words_.size() / width});
     } else {
+        std::sort(changes_.begin(), changes_.end(),
+                  [](const Rows& a, const Rows& b) { return a.first < b.first; });
         for (const Rows& texels : changes_) {
-            rows.push_back({texels.first / width, (texels.end + width - 1) / width});
+            const std::size_t end = (texels.end + width - 1) / width;
+            if (!rows.empty() && texels.first / width <= rows.back().end) {
+                rows.back().end = std::max(rows.back().end, end);
+            } else {
+                rows.push_back({texels.first / width, end});
+            }
         }
     }
     changes_.clear();

@@ -42,6 +42,10 @@ class BodyTable {
     /// poses.size() stay.
     /// \return true if something moved.
     bool setPoses(std::span<const Pose> poses);
+    /// Gives all bodies whose first map this is another one in its place.
+    /// \param box  beyond which nothing of it is inside. Where theirs do not hold it, all bodies are sorted into cells anew.
+    /// \return false, and nothing changes: its format or its flags are others, which the shader was not compiled for.
+    [[nodiscard]] bool setMap(std::uint32_t first_map, const BlockMap& map, const std::optional<Bounds>& box);
     /// The radius of the largest ball that is asked about.
     void setReach(float radius);
 
@@ -58,7 +62,7 @@ class BodyTable {
     };
     /// The texture has another size, or other contents throughout, since the last takeChanges().
     [[nodiscard]] bool isNew() const { return resized_; }
-    /// Those that have changed since the last call.
+    /// Those that have changed since the last call, from the first row on.
     [[nodiscard]] std::vector<Rows> takeChanges();
 
   private:

@@ -20,6 +20,19 @@ std::int32_t flagsOf(const PlacedMap& placed) {
            (map.empty_is_outside ? kEmptyIsOutside : 0) | (map.decode == Decode::kPlane ? kDecodesPlane : 0);
 }
 
+/// The first votes of a step, one after another, with what the compiler must know to leave out the other formats' code.
+std::string unrolledVotes(std::span<const PlacedMap> maps) {
+    std::string votes;
+    for (std::size_t i = 0; i < std::min<std::size_t>(maps.size(), kUnrolledMaps); ++i) {
+        votes += "RELIEF_VOTE_OF(" + std::to_string(i) + "," +
+                 std::to_string(static_cast<int>(maps[i].map->format)) + "," +
+                 std::to_string(flagsOf(maps[i])) + ") ";
+    }
+    return votes;
+}
+
+}  // namespace
+
 BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     const DepthMap& map = *placed.map;
     BlockMap block{};
@@ -53,19 +66,6 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     std::memcpy(block.info, info, sizeof(info));
     return block;
 }
-
-/// The first votes of a step, one after another, with what the compiler must know to leave out the other formats' code.
-std::string unrolledVotes(std::span<const PlacedMap> maps) {
-    std::string votes;
-    for (std::size_t i = 0; i < std::min<std::size_t>(maps.size(), kUnrolledMaps); ++i) {
-        votes += "RELIEF_VOTE_OF(" + std::to_string(i) + "," +
-                 std::to_string(static_cast<int>(maps[i].map->format)) + "," +
-                 std::to_string(flagsOf(maps[i])) + ") ";
-    }
-    return votes;
-}
-
-}  // namespace
 
 std::size_t mapsInBlock(std::size_t block_bytes) {
     return (block_bytes - sizeof(glm::ivec4)) / sizeof(BlockMap);

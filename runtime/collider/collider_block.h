@@ -41,6 +41,8 @@ void writeMove(const Pose& from, const Pose& to, glm::vec4 (&rows)[3]);
 /// A map of patches of a body in this pose: its object space is the world. (Other maps have normals of their own space.)
 [[nodiscard]] BlockMap placedMap(const BlockMap& map, const Pose& pose);
 
+[[nodiscard]] BlockMap blockMap(const PlacedMap& map, const MapPlace& at);
+
 /// The shader's u_relief_count.
 [[nodiscard]] glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout);
 [[nodiscard]] std::vector<BlockMap> blockMaps(std::span<const PlacedMap> maps, const MapLayout& layout);

@@ -54,7 +54,8 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     return upload(maps, {});
 }
 
-Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> bodies) {
+Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> bodies,
+                                                  std::size_t room_texels) {
     if (bodies.size() > kBodiesMax) {
         return fail(ErrorCode::kLimit, std::to_string(bodies.size()) + " bodies are more than " +
                                            std::to_string(kBodiesMax) + "; bake some of them into one");
@@ -103,7 +104,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
             known.try_emplace(body.collider, number);
         }
     }
-    return upload(maps, std::move(placed));
+    return upload(maps, std::move(placed), room_texels);
 }
 
 void ColliderTextures::setPoses(std::span<const Pose> poses) {
@@ -111,6 +112,45 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
         revision_ += world_->bodies.setPoses(poses) ? 1 : 0;
         updateWorld();
     }
+}
+
+void ColliderTextures::upload(std::size_t first, std::span<const std::byte> texels) {
+    const std::size_t texel_size = texelFormat(kFrontBackTexels).texel_size;
+    const std::size_t width = std::size_t{1} << room_log2_width_;
+    const std::size_t end = first + texels.size() / texel_size;
+    const PassState state;  // row lengths and skips among it: texels are tightly packed
+    useTexture(0, textures_[kFrontBackTexels]);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, world_->upload.name());
+    glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(texels.size()), texels.data(),
+                 GL_STREAM_DRAW);
+    // The end of a row, whole rows, and the beginning of one.
+    for (std::size_t at = first; at < end;) {
+        const std::size_t x = at % width;
+        const std::size_t rows = x == 0 ? std::max<std::size_t>((end - at) / width, 1) : 1;
+        const std::size_t columns = std::min(width - x, end - at);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(x), static_cast<GLint>(at / width),
+                        static_cast<GLsizei>(columns), static_cast<GLsizei>(rows), GL_RGBA_INTEGER,
+                        GL_UNSIGNED_SHORT, reinterpret_cast<const void*>((at - first) * texel_size));
+        at += rows * columns;
+    }
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+Result<void> ColliderTextures::exchange(std::size_t body, const Collider& collider,
+                                        std::optional<std::size_t> first) {
+    const TableBody& of = world_->bodies[body];
+    const bool patches = collider.maps.size() == 1 && collider.maps[0].format == MapFormat::kPatches;
+    const PlacedMap map{patches ? collider.maps.data() : nullptr, false};
+    MapPlace place = places_[of.first_map];
+    place.first = first.value_or(place.first);
+    if (!patches || of.maps != 1 ||
+        !world_->bodies.setMap(of.first_map, blockMap(map, place), insideBox(collider))) {
+        return fail(ErrorCode::kUnsupported,
+                    "only maps of patches come and go while they are used; bake them anew, with no --layout");
+    }
+    ++revision_;
+    updateWorld();
+    return {};
 }
 
 void ColliderTextures::reach(float radius) const {
@@ -155,13 +195,15 @@ void ColliderTextures::updateWorld() const {
 }
 
 Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> maps,
-                                                  std::vector<TableBody> bodies) {
+                                                  std::vector<TableBody> bodies, std::size_t room_texels) {
     RELIEF_TRY(checkContext());
     const bool world = !bodies.empty();
     RELIEF_TRY(checkMapCount(maps.size(), world));
-    const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, integer(GL_MAX_TEXTURE_SIZE)));
+    const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, integer(GL_MAX_TEXTURE_SIZE), room_texels));
     ColliderTextures result;
     result.places_ = layout.places;
+    result.room_ = layout.room;
+    result.room_log2_width_ = layout.textures[kFrontBackTexels].log2Width();
     result.map_count_ = static_cast<int>(maps.size());
     const WorldKind world_kind = worldKind(maps, bodies);
     result.defines_ = colliderDefines(world_kind, maps, layout);

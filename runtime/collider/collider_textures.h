@@ -73,7 +73,22 @@ class ColliderTextures {
     /// Uploads up to kBodiesMax of them, which share a world; a collider that several have, once. The maps of those that
     /// are live are empty at first. Fails as above, and with kLimit (more bodies) and kUsage (a scale that is not above 0,
     /// a pose that is not finite, a share outside 0…1, a group above 7).
-    [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies);
+    /// \param room_texels  for maps of patches that come later: upload().
+    [[nodiscard]] static Result<ColliderTextures> create(std::span<const ColliderBody> bodies,
+                                                         std::size_t room_texels = 0);
+
+    /// The first texel of that room.
+    [[nodiscard]] std::size_t room() const { return room_; }
+    /// Copies texels of a map of patches into the room, for exchange(). Waits for nothing.
+    /// \param first  texel of the room, counted as room() is.
+    /// \param texels  whole ones, of 8 bytes, or a part of them.
+    void upload(std::size_t first, std::span<const std::byte> texels);
+    /// Gives all bodies that have the collider of a body another map of patches, whose texels lie in the room, or that with which
+    /// they were made.
+    /// \param first  its first texel; none: where the one that they were made with lies.
+    /// Errors: kUnsupported: not a single map of patches, or of other flags than the one before.
+    [[nodiscard]] Result<void> exchange(std::size_t body, const Collider& collider,
+                                        std::optional<std::size_t> first);
 
     /// The poses at the end of the next step; those of the call before become those at its beginning. Call it
     /// before each step while anything moves, and once more when it has stopped. Bodies beyond poses.size() stay. Scales
@@ -108,7 +123,8 @@ class ColliderTextures {
 
   private:
     [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
-                                                         std::vector<TableBody> bodies);
+                                                         std::vector<TableBody> bodies,
+                                                         std::size_t room_texels = 0);
     struct World {
         BodyTable bodies;
         glm::ivec4 head{0};  // of the block
@@ -124,6 +140,8 @@ class ColliderTextures {
     std::array<GlTexture, kTexelKinds> textures_;
     GlBuffer block_;
     int map_count_ = 0;
+    std::size_t room_ = 0;
+    int room_log2_width_ = 0;  // of its texture
     std::size_t bytes_ = 0;
     std::string defines_;
 };

@@ -12,7 +12,7 @@ std::size_t texelCount(const DepthMap& map) {
     return static_cast<std::size_t>(gpuBytes(map)) / texelSize(map.format);
 }
 
-Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max,
+Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max, std::size_t room_texels,
                      std::array<TexelLayout, kTexelKinds>& textures) {
     for (const auto& [map, live] : maps) {
         TexelLayout& texture = textures[texelKindOf(map->format)];
@@ -25,6 +25,7 @@ Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max,
             texture.addPacked(texelCount(*map));
         }
     }
+    textures[kFrontBackTexels].addPacked(room_texels);
     for (TexelLayout& texture : textures) {
         if (!texture.finish(side_max)) {
             return fail(ErrorCode::kLimit, "the collider's maps have " + std::to_string(texture.texels()) +
@@ -97,10 +98,11 @@ TexelKind texelKindOf(MapFormat format) {
     return kFixedTexels;
 }
 
-Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, GLint side_max) {
+Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, GLint side_max,
+                                    std::size_t room_texels) {
     MapLayout layout;
     auto& textures = layout.textures;
-    RELIEF_TRY(reserve(maps, side_max, textures));
+    RELIEF_TRY(reserve(maps, side_max, room_texels, textures));
     // In the order in which they were added, packed texels as well as rectangles.
     std::array<std::size_t, kTexelKinds> packed{};
     std::array<std::size_t, kTexelKinds> rectangles{};
@@ -121,6 +123,7 @@ Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, GLint side_
         }
         layout.places.push_back(place);
     }
+    layout.room = packed[kFrontBackTexels];
     return layout;
 }
 

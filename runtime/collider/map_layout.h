@@ -79,9 +79,14 @@ struct MapLayout {
     std::array<TexelLayout, kTexelKinds> textures;  ///< by TexelKind
     std::vector<MapPlace> places;                   ///< of the maps, in their order
 
+    /// The first texel of the room for more patches, behind those of the maps.
+    std::size_t room = 0;
+
     /// \param side_max  of a texture, texels.
+    /// \param room_texels  for patches that come later.
     /// Fails with kLimit where a texture would have to be larger.
-    [[nodiscard]] static Result<MapLayout> create(std::span<const PlacedMap> maps, GLint side_max);
+    [[nodiscard]] static Result<MapLayout> create(std::span<const PlacedMap> maps, GLint side_max,
+                                                  std::size_t room_texels = 0);
 };
 
 }  // namespace relief

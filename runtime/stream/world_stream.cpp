@@ -1,0 +1,361 @@
+#include "runtime/stream/world_stream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "formats/base/file_io.h"
+#include "formats/base/finite.h"
+#include "formats/base/text.h"
+#include "runtime/collider/world_bodies.h"
+#include "runtime/stream/texel_ranges.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kTexelSize = 8;
+/// Colliders that are loaded or wait for their upload: what they take in memory.
+constexpr std::size_t kUnderWay = 2;
+/// Pairs of a body and a point whose distance an update measures: some tens of microseconds.
+constexpr std::size_t kPairs = 8192;
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+/// A collider that has a coarse likeness.
+struct Streamed {
+    std::size_t body = kNone;          // one that has it; kNone: there is none, or it does not come and go
+    std::size_t texels = 0;            // of its own map
+    Collider coarse;                   // without texels, but for the one that holds its tree's size
+    std::optional<std::size_t> place;  // of its own map's texels
+    std::uint64_t last_wanted = 0;     // number of the choice
+    std::uint64_t refused = kNone;     // number of removals when there was no place for it
+    bool requested = false;            // and not yet uploaded
+    bool failed = false;
+    bool present = false;  // with its own map
+};
+
+struct Upload {
+    std::size_t collider = 0;
+    Collider loaded;
+    std::size_t done = 0;  // texels
+};
+
+bool isStreamable(const Collider& collider) {
+    return collider.maps.size() == 1 && collider.maps[0].format == MapFormat::kPatches;
+}
+
+Result<void> checkPoints(std::span<const PointOfInterest> points) {
+    for (const PointOfInterest& point : points) {
+        if (!isFinite(point.position) || !std::isfinite(point.radius) || !(point.radius > 0.0F)) {
+            return fail(ErrorCode::kUsage, "a point of interest must be finite, and its radius above 0");
+        }
+    }
+    return {};
+}
+
+/// The world before anything has come.
+struct Start {
+    std::vector<Streamed> colliders;   // of the world
+    std::vector<StreamBody> plan;      // bodies whose colliders come and go
+    std::vector<std::size_t> planned;  // the number in it of each body, or kNone
+    std::uint64_t coarse_bytes = 0;    // of all that is always there
+    std::size_t texels = 0;            // of all that comes and goes
+};
+
+Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
+                     std::span<const Collider> coarse) {
+    Start start;
+    start.colliders.resize(world.colliders.size());
+    std::map<const Collider*, std::size_t> own;
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        own[&coarse[i]] = i;
+    }
+    std::set<const Collider*> counted;
+    for (const ColliderBody& body : bodies) {
+        const bool first = counted.insert(body.collider).second;
+        start.coarse_bytes += first || body.live ? body.collider->gpuBytes() : 0;
+        const auto found = body.live ? own.end() : own.find(body.collider);
+        const bool streamed = found != own.end() && world.colliders[found->second].coarse;
+        start.planned.push_back(streamed ? start.plan.size() : kNone);
+        if (!streamed) {
+            continue;
+        }
+        const WorldCollider& named = world.colliders[found->second];
+        start.plan.push_back({static_cast<std::uint32_t>(found->second), named.box, body.pose});
+        Streamed& collider = start.colliders[found->second];
+        if (!first) {
+            continue;
+        }
+        if (!isStreamable(*body.collider)) {
+            return fail(ErrorCode::kUnsupported, quotedPath(named.coarse->file) +
+                                                     ": a collider that comes and goes has one map of "
+                                                     "patches; bake the level anew");
+        }
+        collider.body = start.planned.size() - 1;
+        collider.texels = static_cast<std::size_t>(named.gpu_bytes / kTexelSize);
+        collider.coarse = *body.collider;
+        collider.coarse.maps[0].texels.resize(kTexelSize);
+        collider.coarse.maps[0].texels.shrink_to_fit();
+        start.texels += collider.texels;
+    }
+    return start;
+}
+
+}  // namespace
+
+struct WorldStream::State {
+    ColliderTextures textures;
+    StreamPlan plan;
+    std::vector<std::size_t> planned;  // the number in the plan of each body, or kNone
+    TexelRanges ranges;
+    std::unique_ptr<ColliderSource> source;
+    StreamOptions options;
+    std::vector<Streamed> colliders;         // of the world
+    std::vector<std::string> names;          // of their files
+    std::uint64_t coarse_bytes = 0;          // of all that is always there
+    std::size_t room = 0;                    // texels
+    std::size_t spare = 0;                   // texels of the room that are not chosen for
+    std::vector<std::uint32_t> wanted = {};  // that there is room for together, the most urgent first
+    std::size_t wanted_in_all = 0;
+    std::uint64_t choices = 0;
+    std::uint64_t removals = 0;
+    std::deque<Upload> arrived = {};
+    std::size_t under_way = 0;  // requested, and not in arrived
+    std::uint64_t uploaded = 0;
+    std::vector<std::string> warnings = {};
+
+    void choose();
+    void request();
+    void take(ColliderSource::Arrival arrival);
+    void giveUp(std::size_t collider, const std::string& warning);
+    /// Takes a place for its texels. Colliders that are not wanted go for it, those first that were not for the longest time.
+    Result<bool> makeRoom(Streamed& collider);
+    /// \param bytes  at most.
+    Result<void> upload(std::uint64_t bytes);
+    void finishUpload();
+};
+
+void WorldStream::State::choose() {
+    ++choices;
+    wanted.clear();
+    wanted_in_all = 0;
+    std::size_t texels = 0;
+    for (const std::uint32_t i : plan.wanted()) {
+        Streamed& collider = colliders[i];
+        ++wanted_in_all;
+        if (!collider.failed && (texels == 0 || texels + collider.texels + spare <= room)) {
+            texels += collider.texels;
+            collider.last_wanted = choices;
+            wanted.push_back(i);
+        }
+    }
+}
+
+void WorldStream::State::request() {
+    for (const std::uint32_t i : wanted) {
+        if (under_way + arrived.size() >= kUnderWay) {
+            return;
+        }
+        Streamed& collider = colliders[i];
+        if (!collider.present && !collider.requested && !collider.failed && collider.refused != removals) {
+            collider.requested = true;
+            ++under_way;
+            source->request(i);
+        }
+    }
+}
+
+void WorldStream::State::giveUp(std::size_t index, const std::string& warning) {
+    colliders[index].failed = true;
+    colliders[index].requested = false;
+    warnings.push_back(warning + "; its coarse likeness stays");
+}
+
+void WorldStream::State::take(ColliderSource::Arrival arrival) {
+    --under_way;
+    if (!arrival.loaded) {
+        giveUp(arrival.collider, arrival.loaded.error().message);
+    } else if (!isStreamable(*arrival.loaded) ||
+               arrival.loaded->gpuBytes() != kTexelSize * colliders[arrival.collider].texels) {
+        giveUp(arrival.collider, names[arrival.collider] + " is not the collider that the world names");
+    } else {
+        arrived.push_back({arrival.collider, *std::move(arrival.loaded)});
+    }
+}
+
+Result<bool> WorldStream::State::makeRoom(Streamed& collider) {
+    while (!(collider.place = ranges.take(collider.texels))) {
+        Streamed* oldest = nullptr;
+        for (Streamed& other : colliders) {
+            if (other.present && other.last_wanted != choices &&
+                (oldest == nullptr || other.last_wanted < oldest->last_wanted)) {
+                oldest = &other;
+            }
+        }
+        if (oldest == nullptr) {
+            collider.refused = removals;
+            return false;
+        }
+        RELIEF_TRY(textures.exchange(oldest->body, oldest->coarse, std::nullopt));
+        ranges.give(*oldest->place, oldest->texels);
+        oldest->place.reset();
+        oldest->present = false;
+        ++removals;
+    }
+    return true;
+}
+
+Result<void> WorldStream::State::upload(std::uint64_t bytes) {
+    std::size_t texels = std::max<std::size_t>(bytes / kTexelSize, 1);
+    while (texels > 0 && !arrived.empty()) {
+        Upload& first = arrived.front();
+        Streamed& collider = colliders[first.collider];
+        if (!collider.place && !(collider.last_wanted == choices && RELIEF_TRY(makeRoom(collider)))) {
+            collider.requested = false;
+            arrived.pop_front();
+            continue;
+        }
+        const std::size_t count = std::min(texels, collider.texels - first.done);
+        textures.upload(
+            *collider.place + first.done,
+            std::span(first.loaded.maps[0].texels).subspan(kTexelSize * first.done, kTexelSize * count));
+        first.done += count;
+        texels -= count;
+        uploaded += kTexelSize * count;
+        if (first.done == collider.texels) {
+            finishUpload();
+        }
+    }
+    return {};
+}
+
+void WorldStream::State::finishUpload() {
+    const Upload first = std::move(arrived.front());
+    arrived.pop_front();
+    Streamed& collider = colliders[first.collider];
+    collider.requested = false;
+    if (const Result<void> exchanged = textures.exchange(collider.body, first.loaded, collider.place);
+        !exchanged) {
+        ranges.give(*collider.place, collider.texels);
+        collider.place.reset();
+        giveUp(first.collider, names[first.collider] + ": " + exchanged.error().message);
+        return;
+    }
+    collider.present = true;
+}
+
+WorldStream::WorldStream(std::unique_ptr<State> state) : state_(std::move(state)) {}
+WorldStream::~WorldStream() = default;
+
+Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
+                                                         std::span<const ColliderBody> bodies,
+                                                         std::span<const Collider> coarse,
+                                                         std::unique_ptr<ColliderSource> source,
+                                                         const StreamOptions& options) {
+    auto [colliders, plan, planned, coarse_bytes, texels] = RELIEF_TRY(layOut(world, bodies, coarse));
+    std::vector<std::string> names;
+    for (const WorldCollider& collider : world.colliders) {
+        names.push_back(quotedPath(collider.file));
+    }
+    if (coarse_bytes > options.gpu_bytes) {
+        return fail(ErrorCode::kLimit, "what is always there of this world takes " +
+                                           std::to_string(coarse_bytes) + " bytes of the GPU, more than " +
+                                           std::to_string(options.gpu_bytes) + "; allow more");
+    }
+    const std::size_t room =
+        std::min(texels, static_cast<std::size_t>((options.gpu_bytes - coarse_bytes) / kTexelSize));
+    auto textures = RELIEF_TRY(ColliderTextures::create(bodies, room));
+    const std::size_t first = textures.room();
+    auto state = std::make_unique<State>(State{.textures = std::move(textures),
+                                               .plan = StreamPlan(std::move(plan), colliders.size()),
+                                               .planned = std::move(planned),
+                                               .ranges = TexelRanges(first, room),
+                                               .source = std::move(source),
+                                               .options = options,
+                                               .colliders = std::move(colliders),
+                                               .names = std::move(names),
+                                               .coarse_bytes = coarse_bytes,
+                                               .room = room,
+                                               // Or gaps between others would be too short for the last ones.
+                                               .spare = room < texels ? room / 8 : 0});
+    for (std::size_t i = 0; i < state->colliders.size(); ++i) {
+        if (state->colliders[i].texels > room) {
+            state->giveUp(
+                i, state->names[i] + " takes " + std::to_string(kTexelSize * state->colliders[i].texels) +
+                       " bytes of the GPU, and there is room for " + std::to_string(kTexelSize * room));
+        }
+    }
+    return std::unique_ptr<WorldStream>(new WorldStream(std::move(state)));
+}
+
+Result<std::unique_ptr<WorldStream>> WorldStream::open(const std::filesystem::path& path,
+                                                       const StreamOptions& options,
+                                                       const ContainerLimits& limits) {
+    const LoadedWorld coarse = RELIEF_TRY(loadWorld(path, limits, WorldDetail::kCoarse));
+    auto source = RELIEF_TRY(makeFileSource(coarse.world, path.parent_path(), limits));
+    return inFront(quotedPath(path),
+                   create(coarse.world, worldBodies(coarse), coarse.colliders, std::move(source), options));
+}
+
+const ColliderTextures& WorldStream::textures() const {
+    return state_->textures;
+}
+
+void WorldStream::setPoses(std::span<const Pose> poses) {
+    state_->textures.setPoses(poses);
+    for (std::size_t i = 0; i < std::min(poses.size(), state_->planned.size()); ++i) {
+        if (state_->planned[i] != kNone) {
+            state_->plan.setPose(state_->planned[i], poses[i]);
+        }
+    }
+}
+
+Result<void> WorldStream::update(std::span<const PointOfInterest> points) {
+    RELIEF_TRY(checkPoints(points));
+    State& state = *state_;
+    if (state.plan.look(points, kPairs)) {
+        state.choose();
+    }
+    while (std::optional<ColliderSource::Arrival> arrival = state.source->take()) {
+        state.take(*std::move(arrival));
+    }
+    state.request();
+    return state.upload(state.options.upload_bytes);
+}
+
+Result<void> WorldStream::finish(std::span<const PointOfInterest> points) {
+    RELIEF_TRY(checkPoints(points));
+    State& state = *state_;
+    state.plan.lookAtAll(points);
+    state.choose();
+    while (true) {
+        RELIEF_TRY(state.upload(std::numeric_limits<std::uint64_t>::max()));
+        state.request();
+        std::optional<ColliderSource::Arrival> arrival = state.source->wait();
+        if (!arrival) {
+            return {};
+        }
+        state.take(*std::move(arrival));
+    }
+}
+
+std::vector<std::string> WorldStream::takeWarnings() {
+    return std::exchange(state_->warnings, {});
+}
+
+StreamCounts WorldStream::counts() const {
+    StreamCounts counts{
+        .wanted = state_->wanted_in_all, .gpu_bytes = state_->coarse_bytes, .uploaded = state_->uploaded};
+    for (const Streamed& collider : state_->colliders) {
+        counts.present += collider.present && collider.last_wanted == state_->choices ? 1 : 0;
+        counts.failed += collider.failed ? 1 : 0;
+        counts.gpu_bytes += collider.place ? kTexelSize * collider.texels : 0;
+    }
+    return counts;
+}
+
+}  // namespace relief

@@ -1,0 +1,114 @@
+#include "runtime/stream/stream_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <glm/glm.hpp>
+#include <random>
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kColliders = 40;
+
+std::vector<StreamBody> randomBodies(std::mt19937& random) {
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    const auto vec = [&] { return glm::vec3(unit(random), unit(random), unit(random)); };
+    std::vector<StreamBody> bodies;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+        Bounds box;
+        box.add(vec());
+        box.add(vec());
+        bodies.push_back(
+            {static_cast<std::uint32_t>(random() % kColliders),
+             box,
+             {50.0F * vec(), glm::normalize(glm::quat(unit(random), vec())), 1.5F + unit(random)}});
+    }
+    return bodies;
+}
+
+/// The distance to a body, by samples of its box from all sides: no nearer than the truth, and no farther than `step` more.
+float sampledDistance(const StreamBody& body, const glm::vec3& point, int count) {
+    float least = std::numeric_limits<float>::max();
+    for (int x = 0; x <= count; ++x) {
+        for (int y = 0; y <= count; ++y) {
+            for (int z = 0; z <= count; ++z) {
+                const glm::vec3 at =
+                    body.box.min + glm::vec3(x, y, z) / static_cast<float>(count) * body.box.size();
+                least = std::min(least, glm::distance(point, toWorld(body.pose, at)));
+            }
+        }
+    }
+    return least;
+}
+
+TEST(StreamPlan, WantsWhatReachesIntoABallAndTheNearestFirst) {
+    std::mt19937 random(3);
+    const std::vector<StreamBody> bodies = randomBodies(random);
+    StreamPlan plan(bodies, kColliders);
+    const std::vector<PointOfInterest> points = {{{10.0F, -5.0F, 0.0F}, 12.0F},
+                                                 {{-30.0F, 0.0F, 20.0F}, 25.0F}};
+    plan.lookAtAll(points);
+    std::vector<float> nearest(kColliders, 1e9F);
+    for (const StreamBody& body : bodies) {
+        for (const PointOfInterest& point : points) {
+            nearest[body.collider] =
+                std::min(nearest[body.collider], sampledDistance(body, point.position, 12) / point.radius);
+        }
+    }
+    constexpr float kSampled = 0.05F;  // more than a step of the samples over a radius
+    std::vector<bool> found(kColliders, false);
+    float before = 0.0F;
+    for (const std::uint32_t collider : plan.wanted()) {
+        found[collider] = true;
+        EXPECT_LT(nearest[collider], 1.0F + kSampled);
+        EXPECT_GT(nearest[collider], before - kSampled);
+        before = std::max(before, nearest[collider] - kSampled);
+    }
+    for (std::size_t i = 0; i < kColliders; ++i) {
+        EXPECT_TRUE(found[i] || nearest[i] > 1.0F) << i;
+    }
+    EXPECT_GT(plan.wanted().size(), 5U);
+    EXPECT_LT(plan.wanted().size(), kColliders);
+}
+
+TEST(StreamPlan, APartAtATimeIsTheWholeOfTheFirstPoints) {
+    std::mt19937 random(4);
+    const std::vector<StreamBody> bodies = randomBodies(random);
+    StreamPlan whole(bodies, kColliders);
+    StreamPlan parts(bodies, kColliders);
+    const std::vector<PointOfInterest> points = {{{0.0F, 0.0F, 0.0F}, 20.0F}, {{-30.0F, 0.0F, 20.0F}, 5.0F}};
+    const std::vector<PointOfInterest> later = {{{90.0F, 0.0F, 0.0F}, 20.0F}};
+    whole.lookAtAll(points);
+    ASSERT_FALSE(whole.wanted().empty());
+    int looks = 1;
+    bool fresh = parts.look(points, 100);
+    while (!fresh) {
+        EXPECT_TRUE(parts.wanted().empty());
+        fresh = parts.look(later, 100);
+        ++looks;
+    }
+    EXPECT_EQ(looks, 6) << "300 bodies, 50 at a time";
+    EXPECT_TRUE(std::ranges::equal(parts.wanted(), whole.wanted()));
+    while (!parts.look(later, 100)) {
+    }
+    whole.lookAtAll(later);
+    EXPECT_TRUE(std::ranges::equal(parts.wanted(), whole.wanted()));
+    EXPECT_TRUE(parts.look({}, 1'000'000));
+    EXPECT_TRUE(parts.wanted().empty()) << "nothing without points";
+}
+
+TEST(StreamPlan, FollowsBodiesThatMove) {
+    const Bounds box{glm::vec3(-1.0F), glm::vec3(1.0F)};
+    StreamPlan plan({{0, box, {}}, {1, box, {}}}, 2);
+    const PointOfInterest here{{0.0F, 0.0F, 0.0F}, 5.0F};
+    plan.setPose(1, {{20.0F, 0.0F, 0.0F}});
+    plan.lookAtAll({&here, 1});
+    EXPECT_EQ(plan.wanted().size(), 1U);
+    plan.setPose(1, {{5.5F, 0.0F, 0.0F}});
+    plan.lookAtAll({&here, 1});
+    EXPECT_EQ(plan.wanted().size(), 2U);
+}
+
+}  // namespace
+}  // namespace relief
