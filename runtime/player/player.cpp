@@ -158,6 +158,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     RELIEF_TRY(Run(options, simulation, outputs, report).play());
     RELIEF_TRY(outputs.writeEnd(simulation.particles(), report));
     report.warnings = std::move(warnings);
+    std::ranges::move(simulation.takeWarnings(), std::back_inserter(report.warnings));
     if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
         report.warnings.push_back(std::move(*refused));
     }

@@ -9,6 +9,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "runtime/gl/gl_fault.h"
+#include "runtime/scene/scene_stream.h"
 
 namespace relief {
 namespace {
@@ -17,20 +18,14 @@ namespace {
 // cause must not depend on a clock.
 constexpr int kStepsUnderWay = 1;
 
-/// The colliders on the GPU: a single one without a pose in its own space, others in the world.
-Result<ColliderTextures> makeTextures(const Scene& scene,
-                                      std::span<const std::shared_ptr<const Collider>> colliders) {
-    const SceneCollider& first = scene.colliders.front();
-    if (colliders.size() == 1 && !first.posed && !first.live) {
-        return ColliderTextures::create(*colliders.front());
-    }
+std::vector<ColliderBody> bodiesOf(const LoadedScene& loaded) {
     std::vector<ColliderBody> bodies;
-    for (std::size_t i = 0; i < colliders.size(); ++i) {
-        const SceneCollider& from = scene.colliders[i];
-        bodies.push_back(
-            {colliders[i].get(), poseAt(from, 0.0), from.restitution, from.friction, from.live.has_value()});
+    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+        const SceneCollider& from = loaded.scene.colliders[i];
+        bodies.push_back({loaded.colliders[i].get(), poseAt(from, 0.0), from.restitution, from.friction,
+                          from.live.has_value()});
     }
-    return ColliderTextures::create(bodies);
+    return bodies;
 }
 
 Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
@@ -67,10 +62,25 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 
 }  // namespace
 
+/// The colliders on the GPU: a single one without a pose in its own space, others in the world.
+Result<void> Simulation::makeTextures(const LoadedScene& loaded) {
+    const SceneCollider& first = loaded.scene.colliders.front();
+    if (loaded.scene.stream) {
+        stream_ = RELIEF_TRY(makeStream(loaded, bodiesOf(loaded)));
+        return {};
+    }
+    const bool alone = loaded.colliders.size() == 1 && !first.posed && !first.live;
+    textures_ = std::make_unique<ColliderTextures>(
+        RELIEF_TRY(alone ? ColliderTextures::create(*loaded.colliders.front())
+                         : ColliderTextures::create(bodiesOf(loaded))));
+    return {};
+}
+
 Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, Watchdog* watchdog,
                                       const std::function<void()>& checkpoint) {
     Simulation made;
     const Scene& scene = loaded.scene;
+    made.loaded_ = &loaded;
     made.scene_ = &scene;
     made.emitters_ = loaded.emitters;
     made.types_ = particleTypes(scene);
@@ -78,13 +88,12 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, 
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
     made.poses_ = posesAt(scene, 0.0);
-    auto textures = RELIEF_TRY(inFront(
-        quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
-        watched(watchdog, "uploading the collider", [&] { return makeTextures(scene, loaded.colliders); })));
-    made.textures_ = std::make_unique<ColliderTextures>(std::move(textures));
+    RELIEF_TRY(
+        inFront(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
+                watched(watchdog, "uploading the collider", [&] { return made.makeTextures(loaded); })));
     RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
-                                        [&] { return makeParticles(scene, *made.textures_, path); }));
+                                        [&] { return makeParticles(scene, made.textures(), path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.showLive(made.particles_->time()); }));
@@ -118,6 +127,7 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(takeEvents(kStepsUnderWay));
     RELIEF_TRY(giveBirth(dt));
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
+    RELIEF_TRY(loadFor(particles_->time()));
     RELIEF_TRY(particles_->step(dt));
     if (particles_->eventList() != nullptr) {
         particles_->requestEvents(tag);
@@ -197,9 +207,17 @@ Result<void> Simulation::giveBirth(float dt) {
 
 Result<void> Simulation::moveColliders(double time) {
     if (poses_change_) {
-        textures_->setPoses(posesAt(*scene_, time));
+        if (stream_) {
+            stream_->setPoses(posesAt(*scene_, time));
+        } else {
+            textures_->setPoses(posesAt(*scene_, time));
+        }
     }
     return showLive(time);
+}
+
+Result<void> Simulation::loadFor(double time) {
+    return stream_ ? stream_->finish(streamPoints(*loaded_, motions_, time)) : Result<void>();
 }
 
 Result<void> Simulation::makeLive(const LoadedScene& loaded) {
@@ -224,7 +242,7 @@ Result<void> Simulation::showLive(double time) {
     for (LiveBody& body : live_) {
         body.pass.run(time);
         RELIEF_TRY(body.collider.setPositions(body.pass.buffer().name()));
-        RELIEF_TRY(body.collider.update(*textures_, body.index));
+        RELIEF_TRY(body.collider.update(mutableTextures(), body.index));
     }
     return {};
 }

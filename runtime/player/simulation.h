@@ -15,6 +15,7 @@
 #include "runtime/particles/particle_system.h"
 #include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
+#include "runtime/stream/world_stream.h"
 
 namespace relief {
 
@@ -62,7 +63,13 @@ class Simulation {
     }
 
     [[nodiscard]] const ParticleSystem& particles() const { return *particles_; }
-    [[nodiscard]] const ColliderTextures& textures() const { return *textures_; }
+    [[nodiscard]] const ColliderTextures& textures() const {
+        return stream_ ? stream_->textures() : *textures_;
+    }
+    /// What of a world that is streamed could not be loaded since the last call, one line each.
+    [[nodiscard]] std::vector<std::string> takeWarnings() {
+        return stream_ ? stream_->takeWarnings() : std::vector<std::string>();
+    }
     /// Births of emitters and [[spawn]] that were dropped because the particle system had no room.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     /// The mesh of a collider that deforms, as it is now; null: that one does not.
@@ -75,6 +82,10 @@ class Simulation {
         WobblePass pass;
     };
     Simulation() = default;
+    [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded);
+    [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
+    /// Waits for all that a step from this time on needs of a world that is streamed.
+    [[nodiscard]] Result<void> loadFor(double time);
     [[nodiscard]] Result<void> makeLive(const LoadedScene& loaded);
     /// Deforms all that are live to a time, in seconds, and draws their maps. Before each step, for its end.
     [[nodiscard]] Result<void> showLive(double time);
@@ -88,12 +99,14 @@ class Simulation {
     /// Until the events of at most so many steps are in flight.
     [[nodiscard]] Result<void> takeEvents(int in_flight);
 
-    const Scene* scene_ = nullptr;
+    const LoadedScene* loaded_ = nullptr;
+    const Scene* scene_ = nullptr;  // of those
     bool poses_change_ = false;
     std::vector<Pose> poses_;  // at the beginning
     std::vector<Emitter> emitters_;
     std::vector<EmitterMotion> motions_;          // as many
     std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it
+    std::unique_ptr<WorldStream> stream_;         // in place of them
     std::vector<LiveBody> live_;
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // of a step, kept for its memory

@@ -52,23 +52,20 @@ Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& 
 
 using Colliders = std::map<fs::path, std::shared_ptr<const Collider>>;
 
-/// Reads the scene's world, and places its bodies. \return its colliders, by their paths.
-Result<Colliders> openWorld(Scene& scene, World& world, const ContainerLimits& limits) {
-    Colliders colliders;
+/// Reads the scene's world, if it has one, and places its bodies.
+Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& limits) {
     if (scene.world.empty()) {
-        return colliders;
+        return {};
     }
-    auto read = loadWorld(scene.world, limits);
+    auto read = loadWorld(scene.world, limits, scene.stream ? WorldDetail::kCoarse : WorldDetail::kFine);
     auto loaded =
         RELIEF_TRY(scene.world_origin.empty() ? std::move(read)
                                               : inFront(scene.world_origin + ": world", std::move(read)));
-    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
-        colliders[containerOf(scene, loaded.world.colliders[i])] =
-            std::make_shared<const Collider>(std::move(loaded.colliders[i]));
+    for (Collider& collider : loaded.colliders) {
+        to.world_colliders.push_back(std::make_shared<const Collider>(std::move(collider)));
     }
-    world = std::move(loaded.world);
-    RELIEF_TRY(placeBodies(scene, world));
-    return colliders;
+    to.world = std::move(loaded.world);
+    return placeBodies(scene, to.world);
 }
 
 bool withinLengths(const Bounds& bounds) {
@@ -119,8 +116,17 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         emitter.seed = overrides.seed.value_or(emitter.seed);
     }
     LoadedScene loaded;
-    Colliders known = RELIEF_TRY(openWorld(scene, loaded.world, overrides.limits));
+    const std::size_t own = scene.colliders.size();
+    RELIEF_TRY(openWorld(scene, loaded, overrides.limits));
+    Colliders of_world;
+    for (std::size_t i = 0; i < loaded.world_colliders.size(); ++i) {
+        of_world[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
+    }
+    // A table that names a file means that file, also where the world has a coarse one in its place.
+    Colliders of_tables = scene.stream ? Colliders() : of_world;
     for (const SceneCollider& from : scene.colliders) {
+        const bool named = loaded.colliders.size() < own && from.node.empty();
+        Colliders& known = named ? of_tables : of_world;
         loaded.live.emplace_back();
         if (from.live) {
             loaded.live.back() = RELIEF_TRY(loadLiveMesh(from));

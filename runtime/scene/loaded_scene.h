@@ -34,6 +34,8 @@ struct SceneOverrides {
 struct LoadedScene {
     Scene scene;  ///< overridden by the options, every default filled in
     World world;  ///< without bodies: the scene has none
+    /// Those of the world, coarse ones if the scene streams it.
+    std::vector<std::shared_ptr<const Collider>> world_colliders;
     /// Those of the scene, in its order; a file that it names several times, once.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// As many: the meshes of those that deform, whose colliders have maps without texels.

@@ -193,6 +193,9 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
         return FieldFault{
             "", "a scene needs collider.file, the .relief file to collide with; bake one with 'relief bake'"};
     }
+    if (scene.stream && scene.world.empty()) {
+        return FieldFault{"stream", "needs world, the world.json whose colliders come and go"};
+    }
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         if (!scene.colliders[i].node.empty() && scene.world.empty()) {
             return FieldFault{nth("collider", i, ".node"), "needs world, the world.json with that node"};

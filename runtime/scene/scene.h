@@ -88,6 +88,24 @@ void fields(Visitor& visit, C& c) {
           {"Longest distance between two tests of a step; 0: only its ends are tested", {}, kLengthRange});
 }
 
+/// What of the world is on the GPU.
+struct SceneStream {
+    float radius = 0.0F;
+    float memory = 256.0F;
+};
+
+template <class Visitor, FieldsOf<SceneStream> T>
+void fields(Visitor& visit, T& stream) {
+    visit("radius", stream.radius,
+          {"Distance from emitters and the camera up to which the world has full detail",
+           {},
+           kSizeRange,
+           {},
+           kRequired});
+    visit("memory", stream.memory,
+          {"Bytes of the GPU that the colliders may take, the coarse ones included", "MB", {0.001, 65536.0}});
+}
+
 struct SceneGround {
     bool enabled = true;
     std::optional<float> height;
@@ -233,6 +251,7 @@ void fields(Visitor& visit, T& type) {
 struct Scene {
     std::filesystem::path world;  ///< resolved; empty: none
     std::string world_origin;     ///< "scene.toml:3:8" of the key, for messages; empty without a scene file
+    std::optional<SceneStream> stream;  ///< none: all of the world is there in full detail
     /// Those of the file's tables and, once loaded, behind them the bodies of the world that no table names; then at least
     /// one.
     std::vector<SceneCollider> colliders;
@@ -261,6 +280,7 @@ void fields(Visitor& visit, S& scene) {
     visit(
         "collider", scene.colliders,
         {"What particles collide with", {}, {}, {}, {.most = ColliderTextures::kBodiesMax, .single = true}});
+    visit("stream", scene.stream, leftOut({"Colliders of the world that are there when they are needed"}));
     visit("time", scene.time, {"Steps"});
     visit("particles", scene.particles, {"Room for particles"});
     visit("emitter", scene.emitters, {"Births", {}, {}, {}, {.most = kEmittersMax, .single = true}});

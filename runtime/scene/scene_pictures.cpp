@@ -91,7 +91,8 @@ ColliderView colliderView(const LoadedScene& loaded, const ColliderTextures& tex
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(*loaded.colliders[i]));
     }
-    return {&textures, loaded.bounds, texel};
+    // The coarse ones have a sixteenth of the bytes.
+    return {&textures, loaded.bounds, loaded.scene.stream ? 0.25F * texel : texel};
 }
 
 ParticleStyle particleStyle(const Scene& scene, const SpriteAtlas* atlas) {

@@ -41,9 +41,9 @@ FieldType fieldType(const CollidesList<Bits>& /*list*/) {
 GeneratedTexts sceneReference() {
     const std::vector<FieldReference> fields = referenceOf(Scene{});
     const std::string readme = "runtime/scene/README.md";
-    static constexpr std::array<std::string_view, 11> kTables = {
-        "time",       "particles", "forces", "attractor", "vortex", "flow",
-        "curl_noise", "collision", "ground", "camera",    "render"};
+    static constexpr std::array<std::string_view, 12> kTables = {
+        "stream", "time",       "particles", "forces", "attractor", "vortex",
+        "flow",   "curl_noise", "collision", "ground", "camera",    "render"};
     GeneratedTexts texts{{readme, "tables", markdownTables(fields, kTables)}};
     for (const std::string_view name : {"collider", "type", "emitter", "spawn"}) {
         texts.push_back({readme, std::string(name), markdownTable(tableOf(fields, name).fields)});

@@ -67,12 +67,12 @@ struct Start {
 };
 
 Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
-                     std::span<const Collider> coarse) {
+                     std::span<const Collider* const> coarse) {
     Start start;
     start.colliders.resize(world.colliders.size());
     std::map<const Collider*, std::size_t> own;
     for (std::size_t i = 0; i < coarse.size(); ++i) {
-        own[&coarse[i]] = i;
+        own[coarse[i]] = i;
     }
     std::set<const Collider*> counted;
     for (const ColliderBody& body : bodies) {
@@ -253,7 +253,7 @@ WorldStream::~WorldStream() = default;
 
 Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
                                                          std::span<const ColliderBody> bodies,
-                                                         std::span<const Collider> coarse,
+                                                         std::span<const Collider* const> coarse,
                                                          std::unique_ptr<ColliderSource> source,
                                                          const StreamOptions& options) {
     auto [colliders, plan, planned, coarse_bytes, texels] = RELIEF_TRY(layOut(world, bodies, coarse));
@@ -296,12 +296,20 @@ Result<std::unique_ptr<WorldStream>> WorldStream::open(const std::filesystem::pa
                                                        const StreamOptions& options,
                                                        const ContainerLimits& limits) {
     const LoadedWorld coarse = RELIEF_TRY(loadWorld(path, limits, WorldDetail::kCoarse));
+    std::vector<const Collider*> colliders;
+    for (const Collider& collider : coarse.colliders) {
+        colliders.push_back(&collider);
+    }
     auto source = RELIEF_TRY(makeFileSource(coarse.world, path.parent_path(), limits));
     return inFront(quotedPath(path),
-                   create(coarse.world, worldBodies(coarse), coarse.colliders, std::move(source), options));
+                   create(coarse.world, worldBodies(coarse), colliders, std::move(source), options));
 }
 
 const ColliderTextures& WorldStream::textures() const {
+    return state_->textures;
+}
+
+ColliderTextures& WorldStream::textures() {
     return state_->textures;
 }
 

@@ -47,12 +47,12 @@ struct StreamCounts {
 class WorldStream {
   public:
     /// Uploads the coarse likenesses. Needs a current context, as all but the const functions do.
-    /// \param bodies  of the world's colliders, which are elements of `coarse`, and others, as ColliderTextures takes them.
-    /// \param coarse  of the world's colliders: loadWorld() with WorldDetail::kCoarse. Not needed later.
+    /// \param bodies  of the world's colliders, by the pointers of `coarse`, and others, as ColliderTextures takes them.
+    /// \param coarse  the world's colliders with WorldDetail::kCoarse, as many as it has. Not needed later.
     /// Errors: those of ColliderTextures::create; kLimit: the coarse likenesses alone take more than gpu_bytes.
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> create(const World& world,
                                                                      std::span<const ColliderBody> bodies,
-                                                                     std::span<const Collider> coarse,
+                                                                     std::span<const Collider* const> coarse,
                                                                      std::unique_ptr<ColliderSource> source,
                                                                      const StreamOptions& options = {});
     /// The world of a file as it stands, by makeFileSource(). Errors: also those of loadWorld.
@@ -63,8 +63,9 @@ class WorldStream {
     WorldStream& operator=(const WorldStream&) = delete;
     ~WorldStream();
 
-    /// Where they lie does not change.
+    /// They stay at one address. Poses are set here, below.
     [[nodiscard]] const ColliderTextures& textures() const;
+    [[nodiscard]] ColliderTextures& textures();
     /// As ColliderTextures::setPoses.
     void setPoses(std::span<const Pose> poses);
 

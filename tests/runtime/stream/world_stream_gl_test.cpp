@@ -97,10 +97,17 @@ class WorldStreamGlTest : public GlTest {
         }
     }
 
+    [[nodiscard]] std::vector<const Collider*> coarseOnes() const {
+        std::vector<const Collider*> all;
+        for (const Collider& collider : coarse_) {
+            all.push_back(&collider);
+        }
+        return all;
+    }
     void open(const StreamOptions& options) {
         auto source = std::make_unique<TestSource>(fine_);
         source_ = source.get();
-        auto made = WorldStream::create(world_, bodies_, coarse_, std::move(source), options);
+        auto made = WorldStream::create(world_, bodies_, coarseOnes(), std::move(source), options);
         ASSERT_TRUE(made) << made.error().message;
         stream_ = *std::move(made);
     }
@@ -273,7 +280,7 @@ TEST_P(WorldStreamGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
 }
 
 TEST_P(WorldStreamGlTest, TooLittleMemoryIsSaid) {
-    auto made = WorldStream::create(world_, bodies_, coarse_, std::make_unique<TestSource>(fine_),
+    auto made = WorldStream::create(world_, bodies_, coarseOnes(), std::make_unique<TestSource>(fine_),
                                     {.gpu_bytes = coarse_bytes_ - 1});
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, ErrorCode::kLimit);
@@ -420,9 +427,9 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
         }
         EXPECT_GT(resting, 1500U) << "the others fall, or come out, where maps have changed";
         EXPECT_LT(deeper, 20U);
-        EXPECT_GT((*world)->counts().uploaded, std::uint64_t{20} * kTileBytes);
         EXPECT_TRUE((*world)->takeWarnings().empty());
         if (finish) {
+            EXPECT_GT((*world)->counts().uploaded, 20 * kTileBytes);
             auto again = WorldStream::open(path, {.gpu_bytes = bytes, .upload_bytes = 800});
             ASSERT_TRUE(again);
             const std::vector<ParticleState> same = flight(**again, true);

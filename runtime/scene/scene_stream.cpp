@@ -1,0 +1,59 @@
+#include "runtime/scene/scene_stream.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "runtime/scene/scene_pictures.h"
+
+namespace relief {
+namespace {
+
+constexpr double kMegabyte = 1e6;
+
+/// A ball that holds all places of birth, in the emitter's space.
+PointOfInterest ballOf(const EmitterSettings& emitter) {
+    Bounds box;
+    switch (emitter.shape) {
+        case EmitterShape::kPoints:
+            for (const glm::vec3& point : emitter.points.positions) {
+                box.add(point);
+            }
+            break;
+        case EmitterShape::kBox:
+        case EmitterShape::kPoint:
+            box = {emitter.box_min, emitter.shape == EmitterShape::kBox ? emitter.box_max : emitter.box_min};
+            break;
+        default:
+            return {emitter.center, emitter.radius};
+    }
+    return {box.center(), 0.5F * glm::length(box.size())};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
+                                                std::span<const ColliderBody> bodies) {
+    const Scene& scene = loaded.scene;
+    auto source = RELIEF_TRY(makeFileSource(loaded.world, scene.world.parent_path()));
+    std::vector<const Collider*> coarse;
+    for (const auto& collider : loaded.world_colliders) {
+        coarse.push_back(collider.get());
+    }
+    const auto bytes = static_cast<std::uint64_t>(kMegabyte * double{scene.stream->memory});
+    return WorldStream::create(loaded.world, bodies, coarse, std::move(source), {.gpu_bytes = bytes});
+}
+
+std::vector<PointOfInterest> streamPoints(const LoadedScene& loaded, std::span<const EmitterMotion> motions,
+                                          double seconds) {
+    const float radius = loaded.scene.stream->radius;
+    std::vector<PointOfInterest> points{{sceneCamera(loaded.scene, loaded.bounds, seconds).eye, radius}};
+    for (std::size_t i = 0; i < loaded.emitters.size(); ++i) {
+        const PointOfInterest ball = ballOf(loaded.emitters[i].settings());
+        Birth middle{.position = ball.position};
+        carry(motions[i], seconds, {&middle, 1});
+        points.push_back({middle.position, ball.radius + radius});
+    }
+    return points;
+}
+
+}  // namespace relief
