@@ -16,14 +16,15 @@ namespace relief {
 using Json = nlohmann::ordered_json;
 
 struct Bench {
-    std::string file;             ///< the collider or the mesh
+    std::string file;             ///< the collider, the mesh or the world
     std::uint32_t particles = 0;  ///< 0: the case's own number
     StepPath path = StepPath::kFragment;
     std::string only;                 ///< a variant of the step; empty: all
     std::vector<std::string> bricks;  ///< files of relief-accuracy --atlas, for the step
-    int rounds = 0;                   ///< 0: the case's own number
-    bool large = false;               ///< sizes for a GPU
-    bool software = false;            ///< the processor plays the GPU
+    std::uint64_t stream_bytes = std::uint64_t{128} << 20;  ///< of the GPU, for stream
+    int rounds = 0;                                         ///< 0: the case's own number
+    bool large = false;                                     ///< sizes for a GPU
+    bool software = false;                                  ///< the processor plays the GPU
 
     [[nodiscard]] std::uint32_t particlesOr(std::uint32_t on_gpu, std::uint32_t on_cpu) const {
         return particles != 0 ? particles : large || !software ? on_gpu : on_cpu;
@@ -60,5 +61,7 @@ void warmUp(const Bench& bench, double ms, const std::function<void()>& run);
 [[nodiscard]] Result<Json> benchStep(const Bench& bench);
 [[nodiscard]] Result<Json> benchPicture(const Bench& bench);
 [[nodiscard]] Result<Json> benchMesh(const Bench& bench);
+/// Its rows are flights: each of 2000 frames, of which the median and the worst are told.
+[[nodiscard]] Result<Json> benchStream(const Bench& bench);
 
 }  // namespace relief

@@ -13,7 +13,7 @@ namespace {
 
 using Case = Result<Json> (*)(const Bench&);
 const std::map<std::string_view, Case> kCases{
-    {"step", benchStep}, {"picture", benchPicture}, {"mesh", benchMesh}};
+    {"step", benchStep}, {"picture", benchPicture}, {"mesh", benchMesh}, {"stream", benchStream}};
 
 Result<void> run(int argc, char** argv) {
     CLI::App app("Times of the runtime's parts, as JSON", "relief-bench");
@@ -21,10 +21,11 @@ Result<void> run(int argc, char** argv) {
     app.footer("relief-bench step bunny.relief --path compute --particles 1048576");
     std::string name;
     Bench bench;
-    app.add_option("CASE", name, "step, picture or mesh")
+    app.add_option("CASE", name, "step, picture, mesh or stream")
         ->required()
-        ->transform(oneOf(kWords<"step", "picture", "mesh">));
-    app.add_option("FILE", bench.file, "The collider of step and picture; the .obj or .ply of mesh")
+        ->transform(oneOf(kWords<"step", "picture", "mesh", "stream">));
+    app.add_option("FILE", bench.file,
+                   "The collider of step and picture; the .obj or .ply of mesh; the world.json of stream")
         ->required();
     app.add_option("--particles", bench.particles, "For step, a multiple of 1024")
         ->option_text("N")
@@ -40,6 +41,9 @@ Result<void> run(int argc, char** argv) {
                    "Files of relief-accuracy --atlas, made of the collider's mesh: variants of step, named "
                    "as they are")
         ->option_text("FILE...");
+    app.add_option("--stream-bytes", bench.stream_bytes, "Of the GPU, for stream")
+        ->option_text("N")
+        ->transform(wholeNumber(1, std::uint64_t{1} << 33U));
     app.add_flag("--large", bench.large, "Sizes for a GPU, even where there is none");
     if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
         return {};

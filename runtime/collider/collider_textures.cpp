@@ -116,7 +116,7 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
 
 void ColliderTextures::upload(std::size_t first, std::span<const std::byte> texels) {
     const std::size_t texel_size = texelFormat(kFrontBackTexels).texel_size;
-    const std::size_t width = std::size_t{1} << room_log2_width_;
+    const std::size_t width = rowTexels();
     const std::size_t end = first + texels.size() / texel_size;
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     useTexture(0, textures_[kFrontBackTexels]);

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "formats/container_reader.h"
 
@@ -37,6 +38,14 @@ class FileSource : public ColliderSource {
         changed_.notify_all();
     }
 
+    void release(Collider used) override {
+        {
+            const std::lock_guard lock(mutex_);
+            released_.push_back(std::move(used));
+        }
+        changed_.notify_all();
+    }
+
     std::optional<Arrival> take() override {
         const std::lock_guard lock(mutex_);
         return takeFirst();
@@ -61,9 +70,16 @@ class FileSource : public ColliderSource {
     void run() {
         std::unique_lock lock(mutex_);
         while (true) {
-            changed_.wait(lock, [this] { return ends_ || !requests_.empty(); });
+            changed_.wait(lock, [this] { return ends_ || !requests_.empty() || !released_.empty(); });
             if (ends_) {
                 return;
+            }
+            if (!released_.empty()) {
+                std::vector<Collider> used = std::exchange(released_, {});
+                lock.unlock();
+                used.clear();
+                lock.lock();
+                continue;
             }
             const std::size_t collider = requests_.front();
             requests_.pop_front();
@@ -85,6 +101,7 @@ class FileSource : public ColliderSource {
     std::condition_variable changed_;
     std::deque<std::size_t> requests_;
     std::deque<Arrival> arrivals_;
+    std::vector<Collider> released_;
     std::size_t under_way_ = 0;
     bool ends_ = false;
     std::thread thread_;  // the last: it uses the others

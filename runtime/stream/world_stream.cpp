@@ -216,25 +216,31 @@ Result<void> WorldStream::State::upload(std::uint64_t bytes) {
         Streamed& collider = colliders[first.collider];
         if (!collider.place && !(collider.last_wanted == choices && RELIEF_TRY(makeRoom(collider)))) {
             collider.requested = false;
+            source->release(std::move(first.loaded));
             arrived.pop_front();
             continue;
         }
-        const std::size_t count = std::min(texels, collider.texels - first.done);
+        std::size_t count = std::min(texels, collider.texels - first.done);
+        if (const std::size_t beyond = (*collider.place + first.done + count) % textures.rowTexels();
+            count < collider.texels - first.done && beyond < count) {
+            count -= beyond;  // up to the end of a row: one copy for the GL, and not two
+        }
         textures.upload(
             *collider.place + first.done,
             std::span(first.loaded.maps[0].texels).subspan(kTexelSize * first.done, kTexelSize * count));
         first.done += count;
         texels -= count;
         uploaded += kTexelSize * count;
-        if (first.done == collider.texels) {
-            finishUpload();
+        if (first.done < collider.texels) {
+            return {};
         }
+        finishUpload();
     }
     return {};
 }
 
 void WorldStream::State::finishUpload() {
-    const Upload first = std::move(arrived.front());
+    Upload first = std::move(arrived.front());
     arrived.pop_front();
     Streamed& collider = colliders[first.collider];
     collider.requested = false;
@@ -243,9 +249,10 @@ void WorldStream::State::finishUpload() {
         ranges.give(*collider.place, collider.texels);
         collider.place.reset();
         giveUp(first.collider, names[first.collider] + ": " + exchanged.error().message);
-        return;
+    } else {
+        collider.present = true;
     }
-    collider.present = true;
+    source->release(std::move(first.loaded));
 }
 
 WorldStream::WorldStream(std::unique_ptr<State> state) : state_(std::move(state)) {}
