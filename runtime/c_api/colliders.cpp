@@ -136,7 +136,7 @@ void relief_textures_attach(const relief_textures* textures, uint32_t program, i
             return call.refuse("program is " + std::to_string(program) +
                                ", which is no program of the context that is linked");
         }
-        from.textures.attach(program, binding);
+        from.textures().attach(program, binding);
         return true;
     });
 }
@@ -145,7 +145,7 @@ void relief_textures_bind(const relief_textures* textures, int first_unit, int u
     answer(__func__, false, [&](const Call& call) -> Result<bool> {
         const TexturesObject& from = *RELIEF_TRY(call.object(textures, "textures"));
         RELIEF_TRY(call.context());
-        from.textures.bind(RELIEF_TRY(bindingOf(call, from, first_unit, uniform_block)));
+        from.textures().bind(RELIEF_TRY(bindingOf(call, from, first_unit, uniform_block)));
         return true;
     });
 }

@@ -7,12 +7,23 @@
 
 namespace relief {
 
-Result<TexturesObject> texturesObject(ColliderTextures textures) {
-    std::string glsl = textures.defines() + RELIEF_TRY(shaderText("collider/collider.glsl"));
-    TexturesObject made{.textures = std::move(textures), .glsl = std::move(glsl)};
+namespace {
+
+Result<TexturesObject> completed(TexturesObject made) {
+    made.glsl = made.textures().defines() + RELIEF_TRY(shaderText("collider/collider.glsl"));
     glGetIntegerv(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, &made.units);
     glGetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &made.blocks);
     return made;
+}
+
+}  // namespace
+
+Result<TexturesObject> texturesObject(ColliderTextures textures) {
+    return completed({.own = std::move(textures)});
+}
+
+Result<TexturesObject> texturesObject(std::unique_ptr<WorldStream> stream) {
+    return completed({.own = {}, .stream = std::move(stream)});
 }
 
 }  // namespace relief

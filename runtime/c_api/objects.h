@@ -15,17 +15,23 @@
 #include "runtime/collider/collider_textures.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
+#include "runtime/stream/world_stream.h"
 
 namespace relief {
 
 struct TexturesObject {
-    ColliderTextures textures;
-    std::string glsl;
+    std::optional<ColliderTextures> own;       // or those of
+    std::unique_ptr<WorldStream> stream = {};  // a world that is streamed
+    std::string glsl = {};
     GLint units = 0;                   // texture units of the context
     GLint blocks = 0;                  // uniform block bindings
     std::optional<Bounds> world = {};  // of bodies, where they were placed; nullopt: of a single collider
     float texel = 0.0F;                // the finest of a world
     std::vector<Pose> poses = {};      // of its bodies, at the end of the next step
+    std::vector<std::string> warnings = {};  // of the stream, not told yet
+    std::string warning = {};                // that was told last
+
+    [[nodiscard]] const ColliderTextures& textures() const { return stream ? stream->textures() : *own; }
 };
 
 struct ParticlesObject {
@@ -155,5 +161,6 @@ void writeBounds(const char* function, float* min, float* max, const F& boundsOf
 
 /// Textures with all that calls about them need. Needs a current context.
 [[nodiscard]] Result<TexturesObject> texturesObject(ColliderTextures textures);
+[[nodiscard]] Result<TexturesObject> texturesObject(std::unique_ptr<WorldStream> stream);
 
 }  // namespace relief

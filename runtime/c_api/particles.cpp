@@ -101,7 +101,7 @@ relief_particles* relief_particles_create(const relief_textures* textures,
             RELIEF_TRY(call.context());
             auto system =
                 RELIEF_TRY(ParticleSystem::create({.capacity = all.capacity == 0 ? 65536 : all.capacity}));
-            RELIEF_TRY(system.setCollider(among ? &among->textures : nullptr));
+            RELIEF_TRY(system.setCollider(among ? &among->textures() : nullptr));
             RELIEF_TRY(apply(all, system));
             return std::make_shared<ParticlesObject>(ParticlesObject{among, std::move(system), {}});
         });
@@ -190,8 +190,8 @@ relief_picture* relief_picture_create(const relief_textures* textures, const rel
         std::optional<ColliderView> view;
         float diameter = 0.01F;
         if (among) {
-            view = world ? ColliderView{&among->textures, *among->world, among->texel}
-                         : ColliderView{&among->textures, field->bounds, finestTexel(*field)};
+            view = world ? ColliderView{&among->textures(), *among->world, among->texel}
+                         : ColliderView{&among->textures(), field->bounds, finestTexel(*field)};
             diameter = 0.01F * view->bounds.longestSide();
         }
         auto renderer = RELIEF_TRY(ParticleRenderer::create(view));

@@ -117,6 +117,24 @@ void relief_textures_free(relief_textures* textures);
  * count of 0 perhaps, when all has stopped. Scales stay. A body that is named twice has its last pose. Since 1.2. */
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
                               const relief_pose* poses, size_t count);
+/* A world with as much of it in full detail as so many bytes of the GPU hold, up to 2^40; 268435456 is a good number. A coarse
+ * collider stands in for each that is not there. Files are read by a thread. Since 1.2. */
+relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes);
+
+typedef struct relief_ball {
+    float center[3]; /* world units, as the radius */
+    float radius;    /* > 0 */
+} relief_ball;
+
+/* Call it before each step with the places that matter, such as the camera and the emitters: what reaches into these balls is loaded, and
+ * what did not for the longest time goes. It copies a little at a time and waits for nothing, unless `waits` is 1 and not 0: then for all that
+ * there is room for, so that runs are alike. Of textures that are not streamed it does nothing.
+ * Returns how many colliders in the balls are not there in full detail; -1: an error. Since 1.2. */
+int64_t relief_textures_stream(relief_textures* world_textures, const relief_ball* balls, size_t count,
+                               int waits);
+/* One line about a collider that could not be loaded, which is told once; "": there is none. Valid until the next call of it. Since 1.2. */
+const char* relief_textures_warning(relief_textures* world_textures);
+
 /* What a shader of your own begins with, behind its #version and precision lines: defines and collider.glsl, which has
  * reliefEvaluate(vec3), of a world in its space. Valid as long as the textures. */
 const char* relief_textures_glsl(const relief_textures* textures);

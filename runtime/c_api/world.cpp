@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -17,6 +18,7 @@ namespace {
 /// As relief.h and the format have them.
 constexpr FieldRange kRotation = within(1.001);
 constexpr float kUnitTolerance = 1e-3F;
+constexpr double kStreamBytesMax = 1099511627776.0;
 
 Result<const WorldBody*> bodyOf(const Call& call, const relief_world* world, std::size_t body) {
     const auto& bodies = RELIEF_TRY(call.object(world, "world"))->field.world().bodies;
@@ -111,7 +113,7 @@ relief_textures* relief_textures_create_world(const relief_world* world) {
             RELIEF_TRY(call.context());
             auto textures = RELIEF_TRY(ColliderTextures::create(worldBodies(loaded)));
             auto made = RELIEF_TRY(texturesObject(std::move(textures)));
-            const ColliderView view = worldView(loaded, made.textures);
+            const ColliderView view = worldView(loaded, made.textures());
             made.world = view.bounds;
             made.texel = view.texel;
             made.poses = worldPoses(loaded.world);
@@ -136,7 +138,65 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
             wanted[bodies[i]] = RELIEF_TRY(poseOf(call, poses[i], i, wanted[bodies[i]]));
         }
         to.poses = std::move(wanted);
-        to.textures.setPoses(to.poses);
+        if (to.stream) {
+            to.stream->setPoses(to.poses);
+        } else {
+            to.own->setPoses(to.poses);
+        }
         return 0;
+    });
+}
+
+relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes) {
+    return create<relief_textures>(
+        __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
+            RELIEF_TRY(call.notNull(world_path, "world_path"));
+            RELIEF_TRY(call.number(static_cast<double>(gpu_bytes), {1.0, kStreamBytesMax}, {"gpu_bytes"}));
+            RELIEF_TRY(call.context());
+            const World world = RELIEF_TRY(loadWorldFile(world_path));
+            auto stream = RELIEF_TRY(WorldStream::open(world_path, {.gpu_bytes = gpu_bytes}));
+            auto made = RELIEF_TRY(texturesObject(std::move(stream)));
+            made.world = worldBounds(world);
+            made.texel = made.world->longestSide() / 2048.0F;
+            made.poses = worldPoses(world);
+            return std::make_shared<TexturesObject>(std::move(made));
+        });
+}
+
+int64_t relief_textures_stream(relief_textures* world_textures, const relief_ball* balls, size_t count,
+                               int waits) {
+    return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
+        TexturesObject& to = *RELIEF_TRY(call.object(world_textures, "world_textures"));
+        RELIEF_TRY(call.array(balls, "balls", count, "count"));
+        RELIEF_TRY(call.number(waits, {0.0, 1.0}, {"waits"}));
+        std::vector<PointOfInterest> points;
+        for (std::size_t i = 0; i < count; ++i) {
+            RELIEF_TRY(call.number(balls[i].center, kAny, {"balls", i, "center"}));
+            RELIEF_TRY(call.number(balls[i].radius, kLifetime, {"balls", i, "radius"}));
+            points.push_back({vec(balls[i].center), balls[i].radius});
+        }
+        RELIEF_TRY(call.context());
+        if (!to.stream) {
+            return 0;
+        }
+        RELIEF_TRY(waits != 0 ? to.stream->finish(points) : to.stream->update(points));
+        const StreamCounts counts = to.stream->counts();
+        return static_cast<int64_t>(counts.wanted - counts.present);
+    });
+}
+
+const char* relief_textures_warning(relief_textures* world_textures) {
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        TexturesObject& of = *RELIEF_TRY(call.object(world_textures, "world_textures"));
+        if (of.stream && of.warnings.empty()) {
+            of.warnings = of.stream->takeWarnings();
+            std::reverse(of.warnings.begin(), of.warnings.end());
+        }
+        of.warning.clear();
+        if (!of.warnings.empty()) {
+            of.warning = std::move(of.warnings.back());
+            of.warnings.pop_back();
+        }
+        return of.warning.c_str();
     });
 }

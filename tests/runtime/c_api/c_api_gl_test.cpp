@@ -13,10 +13,14 @@
 #include <string>
 #include <thread>
 
+#include "formats/base/hash.h"
+#include "formats/container.h"
 #include "runtime/collider/world_bodies.h"
 #include "runtime/particles/particle_system.h"
+#include "tests/formats/random_patches.h"
 #include "tests/runtime/c_api/stage.h"
 #include "tests/seeds.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::c_api {
 namespace {
@@ -41,7 +45,7 @@ const std::set<std::string> kNeedNoContext{
     "relief_textures_glsl", "relief_particles_counts", "relief_particles_spawn",
     "relief_world_load",    "relief_world_free",       "relief_world_body_count",
     "relief_world_find",    "relief_world_node",       "relief_world_bounds",
-    "relief_world_pose",    "relief_world_query"};
+    "relief_world_pose",    "relief_world_query",      "relief_textures_warning"};
 
 class CApi : public testing::Test {
   protected:
@@ -187,7 +191,8 @@ TEST_F(CApi, EveryNumberOfEveryStructureIsLookedAt) {
         eachReader(structure, [&](const Function& function, std::size_t i) {
             std::byte* bytes = stage_.structure(structure.name);
             ASSERT_NE(bytes, nullptr) << structure.name;
-            const bool one_of_many = structure.name == "relief_birth" || structure.name == "relief_pose";
+            const bool one_of_many = structure.name == "relief_birth" || structure.name == "relief_pose" ||
+                                     structure.name == "relief_ball";
             for (const Field& field : structure.fields) {
                 for (std::size_t k = 0; field.name != "size" && k < field.count; ++k) {
                     std::byte* number = bytes + field.offset + k * field.bytes;
@@ -503,6 +508,57 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     EXPECT_EQ(relief_picture_draw(picture, particles, nullptr, &stage_.view), 0) << relief_error();
     relief_picture_free(picture);
     relief_particles_free(particles);
+}
+
+// What is near a ball is there in full detail, and what is missing is told once.
+TEST_F(CApi, AWorldIsStreamed) {
+    std::mt19937 random(5);
+    const test::TemporaryFolder folder;
+    World world;
+    const auto write = [&](const std::string& name) {
+        Collider collider;
+        collider.bounds = {glm::vec3(0.0F), glm::vec3(1.0F)};
+        collider.maps = {test::randomPatches(random)};
+        const std::vector<std::byte> bytes = writeContainer(collider).value();
+        EXPECT_TRUE(writeFile(folder.path() / name, bytes));
+        return WorldFile{name, xxh3_128Hex(bytes), collider.gpuBytes()};
+    };
+    for (const char* name : {"a", "b"}) {
+        const WorldFile fine = write(std::string(name) + ".relief");
+        world.colliders.push_back(
+            {fine, name, {glm::vec3(0.0F), glm::vec3(1.0F)}, write(std::string(name) + "-coarse.relief")});
+        world.bodies.push_back({.collider = static_cast<std::uint32_t>(world.bodies.size()), .node = name});
+        world.bodies.back().position.x = 10.0F * static_cast<float>(world.bodies.size());
+    }
+    const std::string path = folder.write("world.json", worldText(world)).string();
+    std::filesystem::remove(folder.path() / "b.relief");
+
+    relief_textures* textures = relief_textures_stream_world(path.c_str(), 1U << 20U);
+    ASSERT_NE(textures, nullptr) << relief_error();
+    relief_ball ball{{0.0F, 0.0F, 0.0F}, 1.0F};
+    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 0) << "nothing is wanted there";
+    ball.center[0] = 10.0F;
+    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 0);
+    EXPECT_STREQ(relief_textures_warning(textures), "");
+    ball.radius = 30.0F;
+    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 1);
+    EXPECT_NE(std::string(relief_textures_warning(textures)).find("b.relief"), std::string::npos);
+    EXPECT_STREQ(relief_textures_warning(textures), "");
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 0), 1);
+    }
+    const std::uint32_t body = 1;
+    EXPECT_EQ(relief_textures_set_poses(textures, &body, stage_.poses, 1), 0) << relief_error();
+    relief_particles* particles = relief_particles_create(textures, &stage_.options);
+    ASSERT_NE(particles, nullptr) << relief_error();
+    EXPECT_EQ(relief_particles_step(particles, 0.01F), 0);
+    relief_particles_free(particles);
+    relief_textures_free(textures);
+    ball.radius = 0.0F;
+    EXPECT_EQ(relief_textures_stream(stage_.world_textures, &ball, 1, 0), -1);
+    EXPECT_EQ(relief_textures_stream_world(path.c_str(), 0), nullptr);
+    EXPECT_EQ(relief_textures_stream_world(path.c_str(), 64), nullptr);
+    EXPECT_NE(std::string(relief_error()).find("always there"), std::string::npos) << relief_error();
 }
 
 TEST_F(CApi, PosesThatCannotBeAreRefused) {

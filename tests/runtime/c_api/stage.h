@@ -99,6 +99,7 @@ class Stage {
         for (std::uint32_t i = 0; i < kItems; ++i) {
             bodies[i] = i;
             poses[i] = {{0.0F, 0.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}};
+            balls[i] = {{0.0F, 0.0F, 0.0F}, 1.0F};
         }
         picture_options = {};
         picture_options.size = sizeof(picture_options);
@@ -123,7 +124,10 @@ class Stage {
         } else if constexpr (std::is_same_v<T, const void*>) {
             return bytes_.data();
         } else if constexpr (std::is_same_v<T, size_t>) {
-            return name == "size" ? bytes_.size() : name == "body" ? 1 : kItems;
+            return name == "size"        ? bytes_.size()
+                   : name == "body"      ? 1
+                   : name == "gpu_bytes" ? std::size_t{1} << 20
+                                         : kItems;
         } else if constexpr (std::is_same_v<T, float>) {
             return 0.01F;
         } else if constexpr (std::is_same_v<T, uint32_t>) {
@@ -143,6 +147,7 @@ class Stage {
         void* found = name == "relief_particles_options" ? static_cast<void*>(&options)
                       : name == "relief_birth"           ? &births[kWrong]
                       : name == "relief_pose"            ? &poses[kWrong]
+                      : name == "relief_ball"            ? &balls[kWrong]
                       : name == "relief_picture_options" ? &picture_options
                       : name == "relief_view"            ? static_cast<void*>(&view)
                                                          : nullptr;
@@ -179,6 +184,7 @@ class Stage {
     relief_birth births[kItems];
     std::uint32_t bodies[kItems];
     relief_pose poses[kItems];
+    relief_ball balls[kItems];
     relief_pose pose;  // that is read
     relief_picture_options picture_options;
     relief_view view;
@@ -217,6 +223,7 @@ class Stage {
     relief_world* pointer(relief_world* /*type*/) { return world; }
     const std::uint32_t* pointer(const std::uint32_t* /*type*/) { return bodies; }
     const relief_pose* pointer(const relief_pose* /*type*/) { return poses; }
+    const relief_ball* pointer(const relief_ball* /*type*/) { return balls; }
     relief_pose* pointer(relief_pose* /*type*/) { return &pose; }
     const relief_particles* pointer(const relief_particles* /*type*/) { return particles; }
     relief_particles* pointer(relief_particles* /*type*/) { return particles; }
