@@ -3,6 +3,7 @@
 #include <span>
 
 #include "bake/cli/command.h"
+#include "bake/cli/command_ground.h"
 #include "bake/cli/command_view.h"
 #include "bake/cli/command_world.h"
 #include "bake/director/mesh_check_report.h"
@@ -27,6 +28,7 @@ struct CheckCommand {
     std::string file;
     CheckRequest request;
     ContainerLimits limits;
+    std::string heights;
     std::optional<float> within;     // world units
     std::optional<float> max_error;  // percent
     std::string html;
@@ -110,12 +112,17 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
 }
 
 Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
+    const WorldCheckCall world{command.request,   command.within, command.limits,
+                               command.max_error, command.html,   command.json};
+    if (!command.heights.empty() || namesHeightMap(command.request.mesh)) {
+        return runGroundCheck(command.file, {world, command.heights, command.common.quiet});
+    }
     if (namesWorld(command.file)) {
-        return runWorldCheck(command.file, {command.request, command.within, command.limits,
-                                            command.max_error, command.html, command.json});
+        return runWorldCheck(command.file, world);
     }
     if (command.within) {
-        return fail(ErrorCode::kUsage, "--within is for a world; leave it out for one collider");
+        return fail(ErrorCode::kUsage,
+                    "--within is for worlds and ground; leave it out for a collider of a mesh");
     }
     if (command.request.mesh.empty()) {
         return checkFile(command.file, command.json, command.limits);
@@ -163,12 +170,16 @@ void addCheck(CLI::App& app, Action& action) {
         "--repair, the repaired mesh too.\n"
         "Of a world, a file .json that relief bake --world wrote: whether its containers are there and "
         "right, and with "
-        "--mesh\nthe share of points on the wrong side near each body, and the ten worst.",
+        "--mesh\nthe share of points on the wrong side near each body, and the ten worst.\n"
+        "Of ground, a collider or a world that relief bake --heights wrote, with the height map as --mesh: "
+        "the share of points on the wrong side,\nnear seams between tiles too, how far the surface is off "
+        "along y, and the ten worst places.",
         "relief check bunny.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json\n"
-        "relief check level/world.json --mesh level.glb");
+        "relief check level/world.json --mesh level.glb\n"
+        "relief check ground/world.json --mesh heights.png");
     verb.add_option("FILE", command->file, "The collider, or the world; - for standard input")
         ->type_name("")
         ->required();
@@ -180,9 +191,15 @@ void addCheck(CLI::App& app, Action& action) {
         ->transform(percent())
         ->needs(mesh);
     verb.add_option(
-            "--within", command->within,
-            "Of a world: measure at points up to this far from the surface of each body, in world units "
-            "(default: nearly all within 1.5 % of its longest side)")
+            "--heights", command->heights,
+            "--mesh is a height map, and the collider or world its ground. key=value,... as relief bake "
+            "has them, by default those that it was baked with")
+        ->option_text("SPEC")
+        ->needs(mesh);
+    verb.add_option("--within", command->within,
+                    "Of a world or ground: measure at points up to this far from the surface, in world units "
+                    "(default: of a body nearly all within 1.5 % of its longest side, of ground the distance "
+                    "between samples)")
         ->option_text("LENGTH")
         ->check(CLI::Range(1e-6, 1e15))
         ->needs(mesh);

@@ -2,8 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 
+#include "bake/ground/ground_check_report.h"
 #include "bake/ground/ground_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
@@ -36,7 +39,74 @@ Result<void> writeOutputs(const std::string& written, const std::string& folder,
                                         : writeDepfile(call.outputs.depfile, {written}, {call.request.mesh});
 }
 
+/// The world's, or the collider as the only body of one.
+Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limits) {
+    if (namesWorld(file)) {
+        return WorldField(RELIEF_TRY(loadWorld(file, limits)));
+    }
+    LoadedWorld alone;
+    alone.world.colliders.emplace_back();
+    alone.world.bodies.emplace_back();
+    alone.colliders.push_back(RELIEF_TRY(readColliderFile(file, limits)).collider);
+    return WorldField(std::move(alone));
+}
+
+Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
+    const std::string of_import = importOptionOf(call.request.import, call.request.import_limits);
+    const std::string option = !call.html.empty() ? "--html" : call.request.detail ? "--detail" : of_import;
+    if (!option.empty()) {
+        return fail(ErrorCode::kUsage,
+                    option + " is for meshes, and does nothing with a height map; leave it out");
+    }
+    if (file == "-" && call.request.mesh == "-") {
+        return fail(ErrorCode::kUsage,
+                    "the collider and the height map cannot both be standard input; name a file");
+    }
+    return {};
+}
+
 }  // namespace
+
+bool namesHeightMap(const std::string& file) {
+    constexpr std::array<std::string_view, 4> kExtensions = {".png", ".exr", ".raw", ".r16"};
+    const std::string extension = lowerCase(std::filesystem::path(file).extension().string());
+    return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call) {
+    const WorldCheckCall& world = call.world;
+    RELIEF_TRY(checkOptions(file, world));
+    const std::string name = inputName(file);
+    std::optional<HeightsSpec> heights;
+    if (!call.heights.empty()) {
+        heights = RELIEF_TRY(parseHeightsSpec(call.heights));
+    }
+    const WorldField field = RELIEF_TRY(fieldOf(file, world.limits));
+    if (!heights) {
+        heights = RELIEF_TRY(recordedHeights(field, name));
+    }
+    Progress progress({quotedPath(world.request.mesh), !call.quiet, {}});
+    progress.begin("measuring the ground");
+    GroundCheckRequest request{world.request.mesh, *heights, world.request.samples, world.request.seed, {}};
+    request.within = world.within;
+    request.progress = [&](double share) { progress.set(share); };
+    const GroundAccuracy accuracy = RELIEF_TRY(checkGround(request, field, name));
+    progress.finish();
+    for (const std::string& warning : accuracy.warnings) {
+        spdlog::warn(warning);
+    }
+    RELIEF_TRY(printOut(
+        world.json ? jsonText(jsonOf(GroundCheckJson{accuracy, name, toString(*heights), world.max_error}))
+                   : groundCheckText(accuracy, name)));
+    if (world.max_error && accuracy.near.wrong.total() > double{*world.max_error}) {
+        return fail(ErrorCode::kDifference,
+                    shortNumber(accuracy.near.wrong.total()) +
+                        " % of the points near the surface are on the wrong side, more than "
+                        "--max-error " +
+                        shortest(*world.max_error) + " %; bake it again from this height map");
+    }
+    return {};
+}
 
 Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) {
     const Stopwatch total;

@@ -1,4 +1,5 @@
 // `relief bake --heights`: a height map becomes a collider, or with --world a folder of tiles and the file that places them.
+// `relief check` of either against the height map.
 #pragma once
 
 #include <string>
@@ -11,5 +12,18 @@ namespace relief {
 /// \param folder  of --world; empty without it.
 /// Errors: those of settingsOf, HeightMap::open and bakeGroundOf; kUsage, kIo.
 [[nodiscard]] Result<void> runGroundCommand(const std::string& folder, const WorldCall& call);
+
+/// Whether `relief check` takes the file of --mesh for a height map without --heights: by its extension.
+[[nodiscard]] bool namesHeightMap(const std::string& file);
+
+struct GroundCheckCall {
+    const WorldCheckCall& world;  ///< what a check of a world takes, of a collider too
+    const std::string& heights;   ///< HeightsSpec; empty: those that the ground was baked with
+    bool quiet;
+};
+
+/// \param file  the container or the world.
+/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kDifference: more than max_error.
+[[nodiscard]] Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call);
 
 }  // namespace relief

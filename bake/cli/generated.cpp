@@ -3,6 +3,7 @@
 #include "bake/cli/world_info.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/mesh_check_report.h"
+#include "bake/ground/ground_check_report.h"
 #include "bake/ground/ground_report.h"
 #include "bake/report/collider_report.h"
 #include "bake/report/inspect_report.h"
@@ -74,6 +75,8 @@ GeneratedTexts bakeTexts() {
                    schemaOf(WorldInfo{})),
         schemaFile("ground-bake", "relief bake --heights --json", "A bake of a height map.",
                    schemaOf(GroundJson{})),
+        schemaFile("ground-check", "relief check --heights --json", "Ground measured against its height map.",
+                   schemaOf(GroundCheckJson{})),
         schemaFile("world-check", "relief check world.json --json", "A world, and how wrong it is.",
                    schemaOf(WorldCheckJson{})),
         schemaFile("recipe", "relief bake --recipe --json", "A run of a recipe.", schemaOf(RecipeJson{})),

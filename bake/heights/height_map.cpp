@@ -134,11 +134,13 @@ Result<void> checkSettings(const SampleRows& rows, const HeightsSpec& spec) {
 
 Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const HeightsSpec& spec) {
     HeightMap map;
+    map.path_ = path;
+    map.spec_ = spec;
     map.shown_ = path == "-" ? "standard input" : quotedPath(path);
     map.name_ = path == "-" ? "standard input" : cleanUtf8(path.filename().string(), 255);
     map.bytes_ = RELIEF_TRY(readFile(path, kFileMax));
     map.hash_ = xxh3_128Hex(map.bytes_);
-    map.rows_ = RELIEF_TRY(inFront(map.shown_, openRows(path, map.bytes_, spec)));
+    RELIEF_TRY(map.rewind());
     RELIEF_TRY(inFront(map.shown_, checkSize(*map.rows_)));
     RELIEF_TRY(inFront(map.shown_, checkSettings(*map.rows_, spec)));
     if (map.rows_->most() > 0) {
@@ -149,6 +151,12 @@ Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const Heigh
     constexpr double kMost = std::numeric_limits<float>::max();
     map.hole_ = static_cast<float>(std::clamp(spec.hole.value_or(0.0), -kMost, kMost));
     return map;
+}
+
+Result<void> HeightMap::rewind() {
+    rows_.reset();  // they borrow the bytes
+    rows_ = RELIEF_TRY(inFront(shown_, openRows(path_, bytes_, spec_)));
+    return {};
 }
 
 Result<void> HeightMap::next(std::span<float> out) {

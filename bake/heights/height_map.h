@@ -37,7 +37,12 @@ class HeightMap {
     /// Errors, with the file in front: kInvalidInput.
     [[nodiscard]] Result<void> next(std::span<float> out);
 
+    /// Begins again before the first row. Errors: those of open(), with the file in front.
+    [[nodiscard]] Result<void> rewind();
+
   private:
+    std::filesystem::path path_;
+    HeightsSpec spec_;
     std::string shown_;  // the path in quotes
     std::string name_;
     std::string hash_;

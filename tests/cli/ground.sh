@@ -60,6 +60,32 @@ json stdout "len(d['tiles']) == 4 and len(d['removed']) == 9"
 json w/world.json "d['bodies'][3]['position'] == [105, -3, 101]"
 [ "$(find w -type f | wc -l)" -eq 5 ] || die "containers are left over: $(ls w)"
 
+# Against the height map: with the settings that it was baked with, and with others.
+expect 0 "$relief" check ground.relief --mesh hills.png --max-error 1
+grep -q '^ground.relief: ground of hills.png, 150x150 samples; 22201 squares with ground' stdout || die "check: $(cat stdout)"
+expect 0 "$relief" check w/world.json --mesh hills.png --json --samples 20000
+json stdout "d['heights'] == 'spacing=1,low=0,high=100,offset=5/-3/1,tile=100' and d['near']['missing'] == d['seams']['missing'] == 0"
+json stdout "0 < d['seams']['error']['max'] < 0.03 and d['seams']['wrong_percent'] < 1 and d['anywhere']['wrong_percent'] < 0.1"
+json stdout "len(d['worst']) == 10 and d['worst'][0]['node'].startswith('tile ') and d['warnings'] == []"
+expect 7 "$relief" check ground.relief --mesh hills.png --heights $settings,offset=0/0.5/0 --max-error 10
+grep -q 'more than --max-error 10 %; bake it again from' stderr || die "a shift passes: $(cat stderr)"
+expect 0 "$relief" check ground.relief --mesh hills.r16
+grep -q 'warning: hills.r16 is another file than the one that ground.relief was baked from' stderr || die "another file: $(cat stderr)"
+heights larger.png 160
+expect_error 3 "larger.png: its ground lies from .0, 0. to .159, 159. in x and z, and that of ground.relief .* give the height map" \
+    "$relief" check ground.relief --mesh larger.png
+expect_error 2 "none.png" "$relief" check ground.relief --mesh none.png
+head -c 3000 hills.png >cut.png
+expect_error 3 "cut.png.*cannot be read as PNG" "$relief" check ground.relief --mesh cut.png
+expect_error 1 "spacing is 'nan'" "$relief" check ground.relief --mesh hills.png --heights spacing=nan
+expect_error 1 "--html is for meshes" "$relief" check ground.relief --mesh hills.png --html x.html
+expect_error 1 "--unit is for meshes" "$relief" check ground.relief --mesh hills.png --unit m
+expect_error 6 "limit is 10000000" "$relief" check ground.relief --mesh hills.png --samples 10000001
+expect_error 1 "--heights requires --mesh" "$relief" check ground.relief --heights $settings
+cp "$bunny" bunny.obj
+expect 0 "$relief" bake bunny.obj --budget 32kB -o bunny.relief -q
+expect_error 1 "bunny.relief was not baked from a height map; give" "$relief" check bunny.relief --mesh hills.png
+
 # A recipe.
 cat >recipe.toml <<'T'
 version = 1

@@ -111,7 +111,7 @@ expect_error 2 "none.gltf" "$relief" bake none.gltf --world v
 expect_error 1 "is the input" "$relief" bake w/world.json --world w
 expect_error 1 "for one collider" "$relief" check w/world.json --html x.html --mesh level.gltf
 expect_error 1 "for one collider" "$relief" check w/world.json --detail 1 --mesh level.gltf
-expect_error 1 "--within is for a world" "$relief" check "$(ls w/floor-*.relief | head -1)" --within 1 --mesh level.gltf
+expect_error 1 "--within is for worlds and ground" "$relief" check "$(ls w/floor-*.relief | head -1)" --within 1 --mesh level.gltf
 bad() { # bad CODE PATTERN PYTHON: of a world after a change
     mkdir -p bad && rm -rf bad/* && cp w/*.relief bad/
     python3 -c "
