@@ -44,6 +44,10 @@ std::string shownInput(const std::string& file) {
     return file == "-" ? "standard input" : quotedPath(file);
 }
 
+bool namesWorld(const std::string& file) {
+    return lowerCase(std::filesystem::path(file).extension().string()) == ".json";
+}
+
 std::string inputName(const std::string& file) {
     return file == "-" ? "standard input" : cleanUtf8(std::filesystem::path(file).filename().string());
 }

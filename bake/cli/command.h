@@ -36,6 +36,9 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
 /// "standard input", or the name without its folder: for reports.
 [[nodiscard]] std::string inputName(const std::string& file);
 
+/// Whether a file is taken for a world: by its extension, .json.
+[[nodiscard]] bool namesWorld(const std::string& file);
+
 // Each adds a verb. When it is called, `action` becomes what it does.
 void addBake(CLI::App& app, Action& action);
 void addCheck(CLI::App& app, Action& action);

@@ -58,21 +58,6 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
     return {};
 }
 
-/// Before the long work.
-Result<void> prepare(const CheckCommand& command, FileGuard& files) {
-    if (command.html.empty()) {
-        return {};
-    }
-    if (command.html == "-") {
-        return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
-    }
-    RELIEF_TRY(files.reads(command.file));
-    RELIEF_TRY(files.reads(command.request.mesh));
-    const std::filesystem::path page = RELIEF_TRY(findViewPage());
-    RELIEF_TRY(files.reads(page));
-    return files.writes(command.html, "--html");
-}
-
 void addAdvice(const CheckCommand& command, MeshCheck& run) {
     if (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent) {
         return;
@@ -112,8 +97,8 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
 }
 
 Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
-    const WorldCheckCall world{command.request,   command.within, command.limits,
-                               command.max_error, command.html,   command.json};
+    const WorldCheckCall world{command.request, command.within, command.limits, command.max_error,
+                               command.html,    command.json,   files};
     if (!command.heights.empty() || namesHeightMap(command.request.mesh)) {
         return runGroundCheck(command.file, {world, command.heights, command.common.quiet});
     }
@@ -127,7 +112,7 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     if (command.request.mesh.empty()) {
         return checkFile(command.file, command.json, command.limits);
     }
-    RELIEF_TRY(prepare(command, files));
+    RELIEF_TRY(preflightPage(command.file, command.request.mesh, command.html, files));
     auto [container, collider] = RELIEF_TRY(readColliderFile(command.file, command.limits));
     MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
     showCheckWarnings(run);

@@ -12,7 +12,6 @@
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/cli/command_world.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
@@ -231,13 +230,13 @@ Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
     return {};
 }
 
-Result<std::string> scenePage(const ViewCommand& command, Page page) {
-    const fs::path file = command.file;
+Result<std::string> scenePage(const std::string& name, const ContainerLimits& limits, Page page) {
+    const fs::path file = name;
     // The default scene of a world: a string of JSON is one of TOML.
-    page.scene = namesWorld(command.file) ? "world = " + jsonOf(file.filename()).dump() + "\n"
-                                          : textOf(RELIEF_TRY(page.read(file)));
+    page.scene = namesWorld(name) ? "world = " + jsonOf(file.filename()).dump() + "\n"
+                                  : textOf(RELIEF_TRY(page.read(file)));
     SceneOverrides overrides;
-    overrides.limits = command.limits;
+    overrides.limits = limits;
     const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     if (loaded.scene.flow) {
@@ -251,6 +250,31 @@ Result<std::string> scenePage(const ViewCommand& command, Page page) {
     }
     RELIEF_TRY(chooseShown(loaded.scene, file, page));
     return page.make();
+}
+
+/// The report, and what the page needs to show it.
+Result<Json> worldCheckJson(const WorldCheckJson& check) {
+    Json report = jsonOf(check);
+    Json& accuracy = report["accuracy"];
+    accuracy.erase("seconds");  // no two runs have the same
+    const double wrong = check.accuracy->all.total();
+    report["verdict"] = {{"grade", gradeOf(wrong)}, {"text", verdictText(wrong)}};
+    for (std::size_t i = 0; i < check.accuracy->places.size(); ++i) {
+        const std::vector<std::byte> picture =
+            RELIEF_TRY(drawMistakes(*check.accuracy->places[i].slice, check.field->world().unit));
+        accuracy["places"][i]["picture"] = base64(picture);
+    }
+    return report;
+}
+
+Result<std::string> worldPage(const ViewCommand& command, FileGuard& files) {
+    const WorldField field(RELIEF_TRY(loadWorld(command.file, command.limits)));
+    const WorldAccuracy accuracy = RELIEF_TRY(checkWorld({command.check, {}, true}, field));
+    for (const std::string& warning : accuracy.warnings) {
+        spdlog::warn(warning);
+    }
+    return makeWorldPage(command.file, command.limits, {inputName(command.file), &field, &accuracy, {}},
+                         files);
 }
 
 /// Beside FILE unless -o names another place.
@@ -267,17 +291,24 @@ Result<std::string> outputOf(const ViewCommand& command) {
 
 /// The same input gives the same bytes. Files are checked as `relief check` and `relief-sim` do.
 Result<void> runView(const ViewCommand& command, FileGuard& files) {
-    if (command.isScene() && !command.check.mesh.empty()) {
-        return fail(ErrorCode::kUsage, "--mesh is for a collider, and " + quotedPath(command.file) +
-                                           " is a scene or a world; leave out --mesh, or view the collider");
+    const bool measured = !command.check.mesh.empty();
+    if (measured && command.isScene() && !namesWorld(command.file)) {
+        return fail(ErrorCode::kUsage, "--mesh is for a collider or a world, and " +
+                                           quotedPath(command.file) +
+                                           " is a scene; leave out --mesh, or view what it names");
+    }
+    if (measured && namesWorld(command.file) && command.check.detail) {
+        return fail(ErrorCode::kUsage, "--detail is for one collider; leave it out for a world");
     }
     const std::string output = RELIEF_TRY(outputOf(command));
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.check.mesh));
     RELIEF_TRY(files.writes(output, "-o"));
     Page page{files, inputName(command.file)};
-    const std::string html = RELIEF_TRY(command.isScene() ? scenePage(command, std::move(page))
-                                                          : colliderPage(command, std::move(page)));
+    const std::string html =
+        RELIEF_TRY(measured && namesWorld(command.file) ? worldPage(command, files)
+                   : command.isScene() ? scenePage(command.file, command.limits, std::move(page))
+                                       : colliderPage(command, std::move(page)));
     return writeFile(output, std::as_bytes(std::span(html)));
 }
 
@@ -305,9 +336,35 @@ Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte
     return checkPage({files, name, std::move(container)}, check, max_error);
 }
 
+Result<void> preflightPage(const std::string& file, const std::string& mesh, const std::string& html,
+                           FileGuard& files) {
+    if (html.empty()) {
+        return {};
+    }
+    if (html == "-") {
+        return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
+    }
+    RELIEF_TRY(files.reads(file));
+    RELIEF_TRY(files.reads(mesh));
+    const fs::path page = RELIEF_TRY(findViewPage());
+    RELIEF_TRY(files.reads(page));
+    return files.writes(html, "--html");
+}
+
+Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,
+                                  const WorldCheckJson& check, FileGuard& files) {
+    Page page{files, inputName(file)};
+    for (const std::string& named : check.accuracy->dependencies) {
+        RELIEF_TRY(files.reads(named));
+    }
+    page.check = RELIEF_TRY(worldCheckJson(check));
+    return scenePage(file, limits, std::move(page));
+}
+
 CLI::Option* addMeshOptions(CLI::App& verb, CheckRequest& request) {
     CLI::Option* mesh =
-        verb.add_option("--mesh", request.mesh, "The mesh that it was baked from")->option_text("MESH");
+        verb.add_option("--mesh", request.mesh, "The mesh or the level that it was baked from")
+            ->option_text("MESH");
     FieldOptions visitor(verb);
     measurementFields(visitor, request);
     for (CLI::Option* option : visitor.options()) {
@@ -332,11 +389,13 @@ void addView(CLI::App& app, Action& action) {
         "opens from disk in any browser with WebGL2: the surface as the maps see it,\nevery map, slices, and "
         "live "
         "particles. With --mesh also the mesh, the errors on it and the worst places of `relief check`.\n"
-        "Of a scene or a world: its particles, as relief-sim plays them.",
+        "Of a scene or a world: its particles, as relief-sim plays them; of a world each body's name, and "
+        "with "
+        "--mesh,\nthe level, the bodies coloured by what is wrong near them, and pictures of the ten worst.",
         "relief view bunny.relief\n"
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
         "relief view scene.toml\n"
-        "relief view level/world.json");
+        "relief view level/world.json --mesh level.glb");
     verb.add_option("FILE", command->file,
                     "The collider, a scene (.toml) or a world.json; - for a collider on standard input")
         ->type_name("")

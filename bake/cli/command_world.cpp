@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <span>
 
+#include "bake/cli/command_view.h"
 #include "bake/report/report_text.h"
 #include "bake/world/world_bake.h"
 #include "bake/world/world_check_report.h"
@@ -131,23 +133,33 @@ Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& ca
     return {};
 }
 
-bool namesWorld(const std::string& file) {
-    return lowerCase(fs::path(file).extension().string()) == ".json";
+namespace {
+
+Result<void> writePage(const std::string& file, const WorldCheckCall& call, const WorldField& field,
+                       const WorldAccuracy& accuracy) {
+    const std::string page = RELIEF_TRY(
+        makeWorldPage(file, call.limits, {inputName(file), &field, &accuracy, call.max_error}, call.files));
+    return writeFile(call.html, std::as_bytes(std::span(page)));
 }
 
+}  // namespace
+
 Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) {
-    if (!call.html.empty() || call.request.detail) {
-        return fail(ErrorCode::kUsage, std::string(call.html.empty() ? "--detail" : "--html") +
-                                           " is for one collider; leave it out for a world");
+    if (call.request.detail) {
+        return fail(ErrorCode::kUsage, "--detail is for one collider; leave it out for a world");
     }
+    RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
     const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
     RELIEF_TRY(checkCoarse(field.world(), file, call.limits));
     std::optional<WorldAccuracy> accuracy;
     if (!call.request.mesh.empty()) {
-        accuracy = RELIEF_TRY(checkWorld({call.request, call.within}, field));
+        accuracy = RELIEF_TRY(checkWorld({call.request, call.within, !call.html.empty()}, field));
         for (const std::string& warning : accuracy->warnings) {
             spdlog::warn(warning);
         }
+    }
+    if (!call.html.empty()) {
+        RELIEF_TRY(writePage(file, call, field, *accuracy));
     }
     const std::string name = inputName(file);
     const WorldAccuracy* const measured = accuracy ? &*accuracy : nullptr;

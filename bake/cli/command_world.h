@@ -29,19 +29,17 @@ void addWorldOption(CLI::App& verb, std::string& folder);
 /// Errors: those of bakeWorld, and of the first collider that failed; kUsage, kIo.
 [[nodiscard]] Result<void> runWorldCommand(const std::string& folder, const WorldCall& call);
 
-/// Whether `relief check` and `relief info` take a file for a world: by its extension, .json.
-[[nodiscard]] bool namesWorld(const std::string& file);
-
 struct WorldCheckCall {
     const CheckRequest& request;  ///< without a mesh: the files alone are checked
     std::optional<float> within;
     const ContainerLimits& limits;
     std::optional<float> max_error;  ///< percent
-    const std::string& html;         ///< must be empty
+    const std::string& html;         ///< --html; empty: no page
     bool json;
+    FileGuard& files;
 };
 
-/// Errors: those of loadWorld and checkWorld; kUsage; kDifference: more than max_error.
+/// Errors: those of loadWorld, checkWorld and makeWorldPage; kUsage; kDifference: more than max_error.
 [[nodiscard]] Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call);
 
 }  // namespace relief

@@ -11,7 +11,9 @@
 #include "bake/repair/winding.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape_options.h"
+#include "bake/world/placed_mesh.h"
 #include "bake/world/world_bake.h"
+#include "bake/world/world_places.h"
 #include "formats/base/stopwatch.h"
 
 namespace relief {
@@ -22,33 +24,6 @@ constexpr std::uint64_t kPointsMin = 100;  ///< of a body
 constexpr std::size_t kWorst = 10;
 /// Standard deviation of the points, in units of the longest side: that of AccuracyOptions.
 constexpr double kSigma = AccuracyOptions().sigma_share;
-
-/// A node of the level.
-struct Placed {
-    const LevelBody* body;
-    const MeshQuery* query;
-    glm::dvec3 low;  ///< its box in the world
-    glm::dvec3 high;
-
-    [[nodiscard]] glm::dvec3 turn(const glm::dvec3& p, double sign) const {
-        const glm::dvec3 v = sign * glm::dvec3(body->rotation[0], body->rotation[1], body->rotation[2]);
-        const glm::dvec3 t = 2.0 * glm::cross(v, p);
-        return p + body->rotation[3] * t + glm::cross(v, t);
-    }
-    [[nodiscard]] glm::dvec3 position() const {
-        return {body->position[0], body->position[1], body->position[2]};
-    }
-    [[nodiscard]] glm::dvec3 toWorld(const glm::dvec3& p) const {
-        return position() + body->scale * turn(p, 1.0);
-    }
-    [[nodiscard]] glm::dvec3 toObject(const glm::dvec3& p) const {
-        return turn(p - position(), -1.0) / body->scale;
-    }
-    [[nodiscard]] bool inside(const glm::dvec3& p) const {
-        return glm::all(glm::lessThanEqual(low, p)) && glm::all(glm::lessThanEqual(p, high)) &&
-               query->inside(glm::vec3(toObject(p)));
-    }
-};
 
 glm::dvec3 inBall(MersenneRandom& random) {
     for (;;) {
@@ -98,6 +73,7 @@ class WorldChecker {
         options.names = RELIEF_TRY(parseShapeOptions(as_)).names();
         level_ = RELIEF_TRY(importLevel(request_.check.mesh, options, request_.check.import_limits));
         result_.warnings = level_.warnings;
+        result_.dependencies = level_.dependencies;
         return {};
     }
 
@@ -138,8 +114,8 @@ class WorldChecker {
 
     void place() {
         for (const LevelBody& body : level_.bodies) {
-            Placed placed{&body, &queries_[body.mesh], glm::dvec3(std::numeric_limits<double>::max()),
-                          glm::dvec3(std::numeric_limits<double>::lowest())};
+            PlacedMesh placed{&body, &queries_[body.mesh], glm::dvec3(std::numeric_limits<double>::max()),
+                              glm::dvec3(std::numeric_limits<double>::lowest())};
             const Bounds& box = placed.query->mesh().bounds;
             for (int corner = 0; corner < 8; ++corner) {
                 const glm::dvec3 at =
@@ -156,14 +132,20 @@ class WorldChecker {
     void comparePoses() {
         const std::vector<WorldBody>& bodies = field_.world().bodies;
         std::size_t other = 0;
+        moved_.assign(placed_.size(), false);
         for (std::size_t i = 0; i < std::min(bodies.size(), placed_.size()); ++i) {
             const LevelBody& body = *placed_[i].body;
-            bool same = static_cast<float>(body.scale) == bodies[i].scale;
+            double turn = 0.0;  // a quaternion and its negative are one rotation
+            for (std::size_t k = 0; k < 4; ++k) {
+                turn += body.rotation[k] * double{bodies[i].rotation[k]};
+            }
+            bool same = static_cast<float>(body.scale) == bodies[i].scale && std::abs(turn) > 1.0 - 1e-6;
             for (int k = 0; k < 3; ++k) {
                 same = same && static_cast<float>(body.position[static_cast<std::size_t>(k)]) ==
                                    bodies[i].position[k];
             }
             other += same ? 0 : 1;
+            moved_[i] = !same;
         }
         if (bodies.size() != placed_.size() || other > 0) {
             result_.warnings.push_back(
@@ -197,6 +179,10 @@ class WorldChecker {
             return result_.bodies[a].wrong.total() > result_.bodies[b].wrong.total();
         });
         worst.resize(std::min(worst.size(), kWorst));
+        for (const std::size_t i : worst) {
+            result_.places.push_back(
+                worldPlace({placed_, field_, i, result_.bodies[i].place, moved_[i]}, request_.pictures));
+        }
     }
 
     struct BodyCounts {
@@ -206,18 +192,18 @@ class WorldChecker {
 
     BodyCounts measureBody(std::size_t index, std::uint64_t points) {
         enum Verdict : std::uint8_t { kRight, kFalseInside, kFalseOutside };
-        const Placed& placed = placed_[index];
+        const PlacedMesh& placed = placed_[index];
         std::vector<glm::vec3> positions(points);
         std::vector<std::uint8_t> verdicts(points);
         forEachIndex(0, points, 64,
                      [&](std::size_t i) { positions[i] = glm::vec3(draw(placed, index * points + i)); });
         const Bounds box = boundsOf(positions);
         const std::vector<std::uint32_t> bodies = field_.bodiesIn(box);
-        const std::vector<const Placed*> others = placedIn(box);
+        const std::vector<const PlacedMesh*> others = placedIn(placed_, box.min, box.max);
         forEachIndex(0, points, 64, [&](std::size_t i) {
             const glm::dvec3 p(positions[i]);
             const bool truth =
-                std::ranges::any_of(others, [&p](const Placed* one) { return one->inside(p); });
+                std::ranges::any_of(others, [&p](const PlacedMesh* one) { return one->inside(p); });
             const bool inside = field_.evaluate(positions[i], bodies).inside();
             verdicts[i] = inside == truth ? kRight : inside ? kFalseInside : kFalseOutside;
         });
@@ -246,20 +232,8 @@ class WorldChecker {
         return counts;
     }
 
-    /// The nodes whose boxes meet a box.
-    [[nodiscard]] std::vector<const Placed*> placedIn(const Bounds& box) const {
-        std::vector<const Placed*> found;
-        for (const Placed& placed : placed_) {
-            if (glm::all(glm::lessThanEqual(placed.low, glm::dvec3(box.max))) &&
-                glm::all(glm::greaterThanEqual(placed.high, glm::dvec3(box.min)))) {
-                found.push_back(&placed);
-            }
-        }
-        return found;
-    }
-
     /// A point near the surface of a body, in the world.
-    [[nodiscard]] glm::dvec3 draw(const Placed& placed, std::uint64_t number) const {
+    [[nodiscard]] glm::dvec3 draw(const PlacedMesh& placed, std::uint64_t number) const {
         MersenneRandom random(request_.check.seed, number);
         const TriangleMesh& mesh = placed.query->mesh();
         const SurfaceDraw surface =
@@ -280,7 +254,8 @@ class WorldChecker {
     std::vector<std::string> as_;                      // NAME=KIND of all colliders
     Level level_;
     std::vector<MeshQuery> queries_;  // of its meshes
-    std::vector<Placed> placed_;
+    std::vector<PlacedMesh> placed_;
+    std::vector<bool> moved_;  // of them: the world has it elsewhere
 };
 
 }  // namespace

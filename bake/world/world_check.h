@@ -10,6 +10,7 @@
 
 #include "bake/director/mesh_check.h"
 #include "bake/measure/accuracy.h"
+#include "bake/world/world_places.h"
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
 #include "formats/world/world_field.h"
@@ -19,6 +20,7 @@ namespace relief {
 struct WorldCheckRequest {
     CheckRequest check;  ///< of which `mesh` is the level; `samples` are shared by its bodies; no detail
     std::optional<float> within;  ///< world units; nullopt: as relief check measures one collider
+    bool pictures = false;        ///< slices through the places
 };
 
 /// The points near the surface of one body.
@@ -34,7 +36,9 @@ struct WorldAccuracy {
     WrongShare all;                    ///< of the points of all bodies, as many of each
     std::vector<BodyAccuracy> bodies;  ///< in the order of the level
     std::vector<std::size_t> worst;    ///< bodies with points on the wrong side, at most ten, the worst first
+    std::vector<WorldPlace> places;    ///< of those, in the same order
     std::vector<std::string> warnings;
+    std::vector<std::string> dependencies;  ///< files that the level's file refers to
     double seconds = 0.0;
 };
 

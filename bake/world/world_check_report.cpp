@@ -1,5 +1,12 @@
 #include "bake/world/world_check_report.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "bake/report/check_report.h"
+#include "formats/base/text.h"
+#include "formats/fields/text.h"
+
 namespace relief {
 
 std::uint64_t gpuBytesOf(const WorldField& field) {
@@ -9,6 +16,53 @@ std::uint64_t gpuBytesOf(const WorldField& field) {
     }
     return bytes;
 }
+
+std::string WorldPlaceReport::advice() const {
+    if (body().wrong.total() <= kGoodPercent) {
+        return "";
+    }
+    switch (place().cause) {
+        case WorldCause::kMoved:
+            return "the world has it elsewhere than the level: bake the level again";
+        case WorldCause::kTexel:
+            return "it is finer than the texels: bake with --budget " +
+                   bytesWord(roundBudget(2 * gpuBytesOf(*field))) +
+                   ", which makes them about 0.7 times as wide";
+        case WorldCause::kMesh:
+            break;
+    }
+    return "more than texels are wide: its mesh may be open there, or faces cross; mend it, or name what it "
+           "is by "
+           "--as " +
+           shellQuoted((body().node.empty() ? body().mesh : body().node) + "=solid") + ", shell or terrain";
+}
+
+namespace {
+
+/// What to do, each sentence once, behind the bodies that it is for.
+std::string adviceLines(const WorldField& field, const WorldAccuracy& accuracy) {
+    std::vector<std::pair<std::string, std::string>> lines;  // advice, bodies
+    for (std::size_t i = 0; i < accuracy.places.size(); ++i) {
+        const std::string advice = WorldPlaceReport{&field, accuracy, i}.advice();
+        if (advice.empty()) {
+            continue;
+        }
+        const std::string body = std::to_string(accuracy.worst[i]);
+        const auto line = std::ranges::find(lines, advice, &std::pair<std::string, std::string>::first);
+        if (line == lines.end()) {
+            lines.emplace_back(advice, body);
+        } else {
+            line->second += ", " + body;
+        }
+    }
+    std::string text;
+    for (const auto& [advice, bodies] : lines) {
+        text += (text.empty() ? "\n" : "") + bodies + ": " + advice + "\n";
+    }
+    return text;
+}
+
+}  // namespace
 
 std::string worldCheckText(const WorldField& field, const std::string& name, const WorldAccuracy* accuracy) {
     std::string text = name + ": " + countText(field.world().bodies.size(), "body", "bodies") + " of " +
@@ -26,13 +80,18 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
     if (accuracy->worst.empty()) {
         return text;
     }
-    std::vector<std::vector<std::string>> rows = {{"worst body", "node", "mesh", "wrong>", "for example at"}};
-    for (const std::size_t i : accuracy->worst) {
-        const BodyAccuracy& body = accuracy->bodies[i];
-        rows.push_back({std::to_string(i), body.node, body.mesh, percentText(body.wrong.total()),
-                        positionText(body.place)});
+    std::vector<std::vector<std::string>> rows = {
+        {"worst body", "node", "mesh", "wrong>", "for example at", "off by>", "texels>"}};
+    const std::string& unit = field.world().unit;
+    for (std::size_t i = 0; i < accuracy->worst.size(); ++i) {
+        const BodyAccuracy& body = accuracy->bodies[accuracy->worst[i]];
+        const WorldPlace& place = accuracy->places[i];
+        rows.push_back({std::to_string(accuracy->worst[i]), body.node, body.mesh,
+                        percentText(body.wrong.total()), positionText(body.place),
+                        lengthText(place.distance, unit),
+                        place.texel > 0.0 ? lengthText(place.texel, unit) : "-"});
     }
-    return text + "\n" + table(rows);
+    return text + "\n" + table(rows) + adviceLines(field, *accuracy);
 }
 
 }  // namespace relief

@@ -187,6 +187,6 @@ expect 0 "$relief" view w/world.json
 data w/world.html
 json data.json "d['scene'] == 'world = \"world.json\"\\n' and len(d['files']) == 4 and d['shows'] in d['files']"
 holds w/world.json 'd["files"]["world.json"]'
-expect_error 1 "is a scene or a world; leave out --mesh" "$relief" view w/world.json --mesh level.gltf
+expect_error 1 "for a collider or a world, and .*is a scene; leave out --mesh" "$relief" view scene.toml --mesh level.gltf
 rm w/box-*.relief
 expect_error 2 "world.json.*No such file" "$relief" view w/world.json

@@ -75,10 +75,22 @@ expect 0 "$relief" check w/world.json --mesh level.gltf --max-error 1 --json
 cp stdout check.json
 json check.json "d['accuracy']['wrong_percent'] < 0.5 and [b['node'] for b in d['accuracy']['bodies']] == ['ground', 'first', 'second', 'third', 'wide']"
 expect 0 "$relief" check w/world.json --mesh level.gltf --within 0.5 -q
+# What to do about each place, and its picture in a page, which relief view makes as well.
+json check.json "len(d['accuracy']['places']) == len(d['accuracy']['worst']) and all(p['distance'] < p['texel'] and p['cause'] == 'texel' for p in d['accuracy']['places'])"
+json check.json "all(p['advice'] == '' for p in d['accuracy']['places'])"
+printf '<script type="application/json" id="relief-page-data">null</script>' >template.html
+export RELIEF_VIEW_PAGE=$PWD/template.html
+expect 0 "$relief" check w/world.json --mesh level.gltf --html page.html --samples 5000
+expect 0 "$relief" view w/world.json --mesh level.gltf -o view.html --samples 5000
+cmp page.html view.html || die "check and view make different pages"
+sed 's/.*page-data">//; s/<.script>.*//' page.html >page.json
+json page.json "d['check']['verdict']['grade'] == 'good' and all(p['picture'].startswith('iVBORw0KGgo') for p in d['check']['accuracy']['places'])"
+expect_error 1 "--detail is for one collider" "$relief" view w/world.json --mesh level.gltf --detail 1
 # A node that moved is wrong where it was and where it is, and the message has it.
 level moved.gltf x=3
 expect 7 "$relief" check w/world.json --mesh moved.gltf --max-error 1
 grep -q 'warning: moved.gltf: 1 node of it stand elsewhere' stderr || die "moved: $(cat stderr)"
+grep -q '^1: the world has it elsewhere than the level: bake the level again' stdout || die "no advice: $(cat stdout)"
 grep -qE '^  1 +first' stdout || die "the moved node is not the worst: $(cat stdout)"
 level higher.gltf high=1.01
 expect_error 3 "higher.gltf has a mesh 'box' that no collider of the world was baked from; bake" \
@@ -109,7 +121,8 @@ expect_error 1 "excludes" "$relief" bake --recipe r.toml --world v
 expect_error 1 "too few for 3 colliders; give at least 24576" "$relief" bake level.gltf --world v --budget 10kB
 expect_error 2 "none.gltf" "$relief" bake none.gltf --world v
 expect_error 1 "is the input" "$relief" bake w/world.json --world w
-expect_error 1 "for one collider" "$relief" check w/world.json --html x.html --mesh level.gltf
+expect_error 1 "is the input" "$relief" check w/world.json --html level.gltf --mesh level.gltf
+expect_error 1 "--html requires --mesh" "$relief" check w/world.json --html x.html
 expect_error 1 "for one collider" "$relief" check w/world.json --detail 1 --mesh level.gltf
 expect_error 1 "--within is for worlds and ground" "$relief" check "$(ls w/floor-*.relief | head -1)" --within 1 --mesh level.gltf
 bad() { # bad CODE PATTERN PYTHON: of a world after a change

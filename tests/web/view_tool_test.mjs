@@ -149,6 +149,95 @@ test("a world's bodies are drawn where they stand, each collider once on the GPU
     assert.deepEqual(said, []);
 });
 
+test("a click picks a body; a check colours all, shows the worst, and keys fly", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    const at = (name) => path.join(folder, name);
+    execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("level.gltf"), "floor=6"]);
+    execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("moved.gltf"), "floor=6", "x=1"]);
+    run("relief", "bake", at("level.gltf"), "--world", at("w"), "--budget", "200kB", "-q");
+    run("relief", "view", at("w/world.json"), "--mesh", at("moved.gltf"), "-q", "--samples", "5000", "-o", at("w.html"));
+    const { page, said } = await opened(t, pathToFileURL(at("w.html")).href);
+    await page.waitForFunction("reliefView.bodies?.placed.length === 5", undefined, { timeout: 120_000 });
+    await page.setViewportSize({ width: 900, height: 500 }); // the panel is at its side
+    await page.evaluate(() => {
+        reliefView.particles.stop();
+        reliefView.camera.look([16, 26, 32], [0, 0.5, 0]);
+        reliefView.pixelsNow();
+    });
+    const click = async (place) => {
+        const [x, y] = await page.evaluate((p) => {
+            reliefView.worldPanel.pick(-1); // its card may lie before the place
+            const { clientWidth: width, clientHeight: height } = document.getElementById("canvas");
+            const m = reliefView.camera.matrices(width, height).camera;
+            const [a, b, , w] = [0, 1, 2, 3].map((i) => m[i] * p[0] + m[4 + i] * p[1] + m[8 + i] * p[2] + m[12 + i]);
+            return [(0.5 + 0.5 * a / w) * width, (0.5 - 0.5 * b / w) * height];
+        }, place);
+        await page.mouse.click(x, y);
+        return [x, y];
+    };
+    const picked = () => page.evaluate("document.getElementById('picked').hidden ? '' : document.getElementById('picked-name').textContent");
+    const middle = (i) => page.evaluate((n) => {
+        const { model, body, box } = reliefView.bodies.placed[n];
+        const c = (body?.box ?? box).center;
+        return [0, 1, 2].map((k) => model[k] * c[0] + model[4 + k] * c[1] + model[8 + k] * c[2] + model[12 + k]);
+    }, i);
+    for (const [i, name] of ["ground", "first", "second", "third", "wide"].entries()) {
+        await click(i === 0 ? [-1.5, 0, 0.5] : await middle(i));
+        assert.equal(await picked(), name);
+    }
+    await click(await middle(1));
+    const facts = await page.locator("#picked-facts").textContent();
+    assert.match(facts, /^meshboxcolliderbox-[0-9a-f]+\.reliefsize[0-9.]+ kBscale1at0, 0, 0wrong near it[1-9][0-9.]+ %$/);
+    // Dragging turns, and picks nothing; the sky is no body.
+    const [x, y] = await click(await middle(1));
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 30, y);
+    await page.mouse.up();
+    assert.equal(await picked(), "first");
+    await page.evaluate(() => {
+        reliefView.look.floor = null;
+        reliefView.camera.look([8, 3, 16], [0, 6, 0]);
+        reliefView.pixelsNow();
+    });
+    await page.mouse.click(300, 60);
+    assert.equal(await picked(), "");
+
+    // The node that moved is red, the others are not; the errors are those of relief check, with a picture of each.
+    assert.ok(await page.isChecked("#wrong"));
+    const [first, wide] = await page.evaluate("[1, 4].map((i) => reliefView.bodies.color(i))");
+    assert.ok(first[0] > 0.8 && first[1] < 0.3 && wide[0] < 0.5, `${first} ${wide}`);
+    const check = JSON.parse(run("relief", "check", at("w/world.json"), "--mesh", at("moved.gltf"), "--samples", "5000", "--json"));
+    assert.equal(await page.locator("#bodies li").count(), check.accuracy.worst.length);
+    await page.click("#bodies li:first-child button");
+    assert.equal(await picked(), "first");
+    assert.ok(await page.evaluate("document.querySelector('#bodies img').naturalWidth") > 300);
+    assert.match(await page.locator("#bodies .place >> nth=0").textContent(), /The world has it elsewhere than the level: bake the level again\.$/);
+    await page.click("#wrong + span");
+    assert.equal(await page.evaluate("reliefView.bodies.color(4)"), undefined);
+
+    // W flies ahead, D to the right; a drag then turns the eye on its place.
+    const eye = () => page.evaluate(() => {
+        const { eye, target, distance } = reliefView.camera;
+        return { eye, ahead: target.map((v, k) => (v - eye[k]) / distance) };
+    });
+    const before = await eye();
+    await page.keyboard.down("KeyW");
+    await page.waitForFunction((from) => Math.hypot(...reliefView.camera.eye.map((v, k) => v - from[k])) > 0.2, before.eye, { timeout: 60_000 });
+    await page.keyboard.up("KeyW");
+    const after = await eye();
+    const way = after.eye.map((v, k) => v - before.eye[k]);
+    const along = way.reduce((sum, v, k) => sum + v * before.ahead[k], 0);
+    assert.ok(along > 0.999 * Math.hypot(...way), `${way} is not ahead, ${before.ahead}`);
+    await page.evaluate("reliefView.camera.orbit(0.5, 0)");
+    const turned = await eye();
+    assert.ok(Math.hypot(...turned.eye.map((v, k) => v - after.eye[k])) < 0.1, "a flight turns on its place");
+    assert.ok(turned.ahead.reduce((sum, v, k) => sum + v * after.ahead[k], 0) < 0.95);
+    assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
+    assert.equal(await page.locator("#message p").textContent(), "");
+    assert.deepEqual(said, []);
+});
+
 test("a body that deforms is drawn as it is at each step", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);

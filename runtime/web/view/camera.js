@@ -2,6 +2,9 @@
 import { add, boxOf, clamp, cross, length, lookAt, multiply, normalize, perspective, scale, sub } from "./math.js";
 
 const kFov = 36 * Math.PI / 180;
+const kSpeed = 0.12; // of flight, in radii of the box a second
+const kHurry = 5; // times as fast, with Shift
+const kArm = 0.005; // from the eye of a flight to what it turns round, in radii
 
 export class Camera {
     constructor(changed) {
@@ -9,11 +12,13 @@ export class Camera {
         this.box = boxOf({ min: [-1, -1, -1], max: [1, 1, 1] });
         this.fov = kFov;
         this.shift = [0, 0]; // of the picture's middle, for what lies under a panel
+        this.flying = false;
     }
 
     /** Round a box. room: what is free of the picture, its shorter side over the picture's height. */
     frame(box, room = 1) {
         this.box = box;
+        this.flying = false;
         const half = Math.atan(Math.tan(kFov / 2) * Math.min(1, room));
         this.fov = kFov;
         this.target = [...box.center];
@@ -23,6 +28,7 @@ export class Camera {
 
     /** From an eye to a target, as in a scene. */
     look(eye, target, fov) {
+        this.flying = false;
         const away = sub(eye, target);
         this.distance = length(away) || 1;
         this.yaw = Math.atan2(away[0], away[2]);
@@ -41,7 +47,7 @@ export class Camera {
     matrices(width, height) {
         const view = lookAt(this.eye, this.target, [0, 1, 0]);
         const reach = this.distance + 12 * this.box.radius;
-        const near = Math.max(this.distance - 3 * this.box.radius, this.distance * 0.01, reach * 2e-4);
+        const near = Math.max(this.distance - 3 * this.box.radius, this.distance * 0.01, reach * (this.flying ? 4e-5 : 2e-4));
         const projection = perspective(this.fov, width / height, near, reach);
         projection[8] = this.shift[0];
         projection[9] = this.shift[1];
@@ -55,7 +61,26 @@ export class Camera {
     }
 
     zoom(factor) {
+        if (this.flying) {
+            this.fly([0, 0, -Math.log(factor)], 1);
+            return;
+        }
         this.distance = clamp(this.distance * factor, 0.02 * this.box.radius, 20 * this.box.radius);
+        this.changed();
+    }
+
+    /** On, by seconds. way: to the right, upwards and ahead, each from −1 to 1. Then the camera turns round its own place. */
+    fly(way, seconds) {
+        const { eye } = this;
+        const back = normalize(sub(eye, this.target));
+        if (!this.flying) {
+            this.flying = true;
+            this.distance = kArm * this.box.radius;
+            this.target = sub(eye, scale(back, this.distance));
+        }
+        const right = normalize(cross([0, 1, 0], back));
+        const step = kSpeed * this.box.radius * seconds;
+        this.target = add(this.target, add(add(scale(right, step * way[0]), [0, step * way[1], 0]), scale(back, -step * way[2])));
         this.changed();
     }
 
@@ -71,6 +96,7 @@ export class Camera {
     /** At a place, from its normal's side. */
     lookAt(place, normal, distance) {
         const n = normalize(normal);
+        this.flying = false;
         this.yaw = Math.hypot(n[0], n[2]) > 0.2 ? Math.atan2(n[0], n[2]) : this.yaw;
         this.pitch = clamp(Math.asin(clamp(n[1], -1, 1)), -1.3, 1.3);
         this.distance = distance;
@@ -81,9 +107,44 @@ export class Camera {
 
 const kArrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-/** Mouse, pen and fingers on the canvas, and keys. */
-export function followInput(canvas, camera) {
+const kFlights = { KeyD: [1, 0, 0], KeyA: [-1, 0, 0], KeyE: [0, 1, 0], KeyQ: [0, -1, 0], KeyW: [0, 0, 1], KeyS: [0, 0, -1] };
+
+/** The keys that are held to fly, by their places on the keyboard. */
+export class FlightKeys {
+    #held = new Set();
+    #hurry = false;
+
+    constructor(camera) {
+        this.camera = camera;
+        addEventListener("keydown", (event) => {
+            this.#hurry = event.shiftKey;
+            if (this.on && kFlights[event.code] && !event.ctrlKey && !event.metaKey && !event.altKey) {
+                this.#held.add(event.code);
+                camera.changed();
+            }
+        });
+        addEventListener("keyup", (event) => {
+            this.#hurry = event.shiftKey;
+            this.#held.delete(event.code);
+        });
+        addEventListener("blur", () => this.#held.clear());
+    }
+
+    /** With each frame. */
+    advance(seconds) {
+        if (this.#held.size > 0) {
+            const way = [...this.#held].reduce((sum, code) => add(sum, kFlights[code]), [0, 0, 0]);
+            this.camera.fly(scale(way, this.#hurry ? kHurry : 1), seconds);
+        }
+    }
+}
+
+const kTap = 5; // pixels that a pointer may move while it picks
+
+/** Mouse, pen and fingers on the canvas, and keys. tap(x, y): a click, in shares of the canvas from its lower left. */
+export function followInput(canvas, camera, tap) {
     const down = new Map();
+    let pressed = null; // where, until it moves
     const spread = () => {
         const [a, b] = [...down.values()];
         return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) || 1 };
@@ -91,12 +152,16 @@ export function followInput(canvas, camera) {
     canvas.addEventListener("pointerdown", (event) => {
         canvas.setPointerCapture(event.pointerId);
         down.set(event.pointerId, { x: event.clientX, y: event.clientY });
+        pressed = down.size === 1 && event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
         canvas.classList.add("held");
     });
     canvas.addEventListener("pointermove", (event) => {
         const last = down.get(event.pointerId);
         if (!last) {
             return;
+        }
+        if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > kTap) {
+            pressed = null;
         }
         const height = canvas.clientHeight;
         const before = down.size === 2 ? spread() : null;
@@ -117,7 +182,14 @@ export function followInput(canvas, camera) {
         down.delete(event.pointerId);
         canvas.classList.toggle("held", down.size > 0);
     };
-    canvas.addEventListener("pointerup", up);
+    canvas.addEventListener("pointerup", (event) => {
+        up(event);
+        if (pressed) {
+            pressed = null;
+            const { left, bottom, width, height } = canvas.getBoundingClientRect();
+            tap((event.clientX - left) / width, (bottom - event.clientY) / height);
+        }
+    });
     canvas.addEventListener("pointercancel", up);
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("wheel", (event) => {

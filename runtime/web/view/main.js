@@ -1,7 +1,8 @@
 // The page of `relief view`: what it shows, and the loop that draws it.
 import { init, load } from "relief-particles";
+import { Bodies } from "./bodies.js";
 import { Body, BodyPlace, LiveBody } from "./body.js";
-import { Camera, followInput } from "./camera.js";
+import { Camera, FlightKeys, followInput } from "./camera.js";
 import { Geometry } from "./gl.js";
 import { boxOf, transform } from "./math.js";
 import { readPageData, readWasm } from "./page_data.js";
@@ -9,6 +10,7 @@ import { $, Panel } from "./panel.js";
 import { Particles, weather } from "./particles.js";
 import { Quality } from "./quality.js";
 import { View } from "./view.js";
+import { WorldPanel } from "./world_panel.js";
 
 const canvas = $("canvas");
 const kLost = "The GPU was reset; the page begins anew when the browser gives it back.";
@@ -28,6 +30,8 @@ class App {
         this.pin = null; // a place that is marked
         this.placed = false; // are a scene's bodies
         this.camera = new Camera(() => this.changed());
+        this.flight = new FlightKeys(this.camera);
+        this.bodies = null; // bodies.js's, of a scene
         this.quality = new Quality();
         this.lastChange = 0;
         this.lastFrame = 0;
@@ -52,7 +56,7 @@ class App {
     }
 
     async start() {
-        followInput(canvas, this.camera);
+        followInput(canvas, this.camera, (x, y) => this.attempt(() => this.#pick(x, y)));
         canvas.addEventListener("webglcontextlost", (event) => {
             event.preventDefault();
             say(kLost);
@@ -122,11 +126,24 @@ class App {
         }
         view.bodies = placed;
         this.placed = true;
+        this.bodies = new Bodies(gl, placed, bodies, data);
+        this.look.color = (i) => this.bodies.color(i);
+        this.flight.on = true;
+        this.worldPanel = new WorldPanel(this);
+        this.worldPanel.refresh();
         this.ground = ground;
         this.look.box = boxOf(bounds);
         this.setFloor(true);
         this.camera.look(camera.eye, camera.target, camera.fov * Math.PI / 180);
-        this.panel.show("particles");
+        this.panel.show(data.check ? "errors" : "particles");
+    }
+
+    /** Of a scene the body under the pointer. x, y: shares of the picture from its lower left. */
+    #pick(x, y) {
+        if (this.bodies && this.view.kept) {
+            const { width, height } = canvas;
+            this.worldPanel.pick(this.bodies.at(this.view.kept, this.camera.matrices(width, height), x, y));
+        }
     }
 
     /** Places moving bodies where they are now. */
@@ -198,6 +215,7 @@ class App {
             this.view.dirty = true;
         }
         this.camera.shift = this.panel.shift();
+        this.flight.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
         this.particles.advance(Math.min((now - this.lastFrame) / 1000, 0.1));
         this.lastFrame = now;
         if (this.placed && this.particles.steps !== this.movedAt) {

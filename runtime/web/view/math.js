@@ -5,6 +5,7 @@ export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const mix = (a, b, t) => [0, 1, 2].map((k) => a[k] + t * (b[k] - a[k]));
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 export const clamp = (v, low, high) => Math.min(Math.max(v, low), high);
 export const identity = () => new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
@@ -22,6 +23,22 @@ export function multiply(a, b) {
         }
     }
     return r;
+}
+
+/** Of a matrix that has one: Gauss-Jordan with pivots. */
+export function inverse(m) {
+    const rows = [0, 1, 2, 3].map((i) => [0, 1, 2, 3, 4, 5, 6, 7].map((c) => (c < 4 ? m[4 * c + i] : Number(c - 4 === i))));
+    for (let c = 0; c < 4; ++c) {
+        const pivot = rows.reduce((best, row, i) => (i >= c && Math.abs(row[c]) > Math.abs(rows[best][c]) ? i : best), c);
+        [rows[c], rows[pivot]] = [rows[pivot], rows[c]];
+        rows[c] = rows[c].map((v) => v / rows[c][c]);
+        rows.forEach((row, i) => {
+            if (i !== c) {
+                rows[i] = row.map((v, k) => v - row[c] * rows[c][k]);
+            }
+        });
+    }
+    return [0, 1, 2, 3].flatMap((c) => rows.map((row) => row[4 + c]));
 }
 
 /** Of a vector with w = 1; four numbers. */

@@ -10,7 +10,7 @@ const narrow = matchMedia("(max-width: 720px)");
 const kKinds = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
                  texel: "finer than a texel" };
 
-function element(tag, attributes = {}, ...children) {
+export function element(tag, attributes = {}, ...children) {
     const { onclick, ...rest } = attributes;
     const made = Object.assign(document.createElement(tag), onclick && { onclick });
     Object.entries(rest).forEach(([key, value]) => made.setAttribute(key, value));
@@ -65,7 +65,7 @@ export class Panel {
         for (const section of $("sheets").children) {
             section.hidden = section.id !== `sheet-${tab}`;
         }
-        if (tab === "errors" && !this.#heatSeen) {
+        if (tab === "errors" && this.app.data.mesh && !this.#heatSeen) {
             this.#heatSeen = $("heat").checked = true;
             this.#heat();
         }
@@ -234,9 +234,10 @@ export class Panel {
             (size >= 1e6 ? `${(size / 1e6).toFixed(2)} MB` : `${Math.round(size / 1e3)} kB`) +
             (info.mesh.triangles ? ` from ${info.mesh.triangles.toLocaleString("en")} triangles` : "") +
             `, ${this.#length(body.box.longest)} long`;
-        $("show-field").hidden = $("tab-errors").hidden = !data.mesh;
+        $("show-field").hidden = !data.mesh;
+        $("tab-errors").hidden = !data.check;
         this.#fillMaps();
-        if (data.check) {
+        if (data.check && data.mesh) {
             this.#fillErrors(data.check);
         }
         look.split = $("split-at").value = 0.5 - 0.5 * this.shift()[0];

@@ -76,8 +76,8 @@ export class View {
             if (what === "mesh") {
                 this.#drawMesh(common, theme, look);
             } else {
-                this.bodies.forEach((body) => body.draw({
-                    ...common, u_base: theme.base, u_map: { int: body === this.body ? look.map : -1 } }));
+                this.bodies.forEach((body, i) => body.draw({
+                    ...common, u_base: look.color?.(i) ?? theme.base, u_map: { int: body === this.body ? look.map : -1 } }));
             }
         }
         gl.disable(gl.SCISSOR_TEST);

@@ -1,0 +1,45 @@
+// A picture in memory that is drawn on, in pixels from its upper left corner; the only user of Cairo.
+#pragma once
+
+#include <cairo.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// sRGB, each in [0, 1].
+using Color = glm::dvec3;
+
+/// Of text and contours.
+inline constexpr Color kInk{0.13, 0.14, 0.16};
+
+class Canvas {
+  public:
+    /// White. \param em  size of its text
+    Canvas(double width, double height, double em);
+
+    void fill(double x, double y, double width, double height, const Color& color);
+    /// \param x, y  where its base line begins
+    void text(double x, double y, const std::string& words);
+    [[nodiscard]] double textWidth(const std::string& words) const;
+    void circle(double x, double y, double radius, double line, const Color& color);
+    /// \param color  of a pixel (column, row) of the image, from its upper left. \param zoom  of each, with sharp edges
+    void image(double x, double y, std::uint32_t width, std::uint32_t height, double zoom,
+               const std::function<Color(std::uint32_t, std::uint32_t)>& color);
+    /// Errors: kFailure with Cairo's message.
+    [[nodiscard]] Result<std::vector<std::byte>> png();
+
+  private:
+    std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
+    std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
+};
+
+}  // namespace relief

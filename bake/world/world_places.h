@@ -1,0 +1,45 @@
+// The place where a body of a world is typically wrong: why, and a picture of the union of all bodies there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "bake/picture/mistakes.h"
+#include "bake/world/placed_mesh.h"
+#include "formats/fields/field.h"
+#include "formats/world/world_field.h"
+
+namespace relief {
+
+enum class WorldCause : std::uint8_t {
+    kMoved,  ///< the world has the node elsewhere
+    kTexel,  ///< the point is less than kTexelsOff texels from the surface
+    kMesh,   ///< it is farther: faces that cross, open edges, or a part that is lost
+};
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<WorldCause>{"moved", "texel", "mesh"};
+
+inline constexpr double kTexelsOff = 1.5;
+
+struct WorldPlace {
+    glm::vec3 normal{0.0F};  ///< of the nearest surface of the body's mesh, world space
+    double distance = 0.0;   ///< from that, world units
+    double texel = 0.0;      ///< side of the deciding body's texels there, world units; 0: no body decides
+    WorldCause cause = WorldCause::kMesh;
+    std::optional<MistakesSlice> slice;
+};
+
+struct WorldPlaceQuestion {
+    const std::vector<PlacedMesh>& level;
+    const WorldField& field;
+    std::size_t body = 0;  ///< of the level
+    glm::vec3 place{0.0F};
+    bool moved = false;
+};
+
+[[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuestion& question, bool picture);
+
+}  // namespace relief

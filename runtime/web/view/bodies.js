@@ -1,0 +1,155 @@
+// The bodies of a scene by their names: which one is under the pointer, what is known of it, and what is wrong near it.
+import { bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
+import { inverse, length, mix, shortNumber, sub, transform } from "./math.js";
+
+// Colours of shares that are wrong, percent: as those of the verdict's grades end at 1 and 5.
+const kGood = [0.42, 0.62, 0.45];
+const kFair = [0.93, 0.66, 0.20];
+const kPoor = [0.85, 0.18, 0.13];
+const kPicked = [0.36, 0.60, 0.98];
+const css = (color) => `rgb(${color.map((v) => Math.round(255 * v)).join(" ")})`;
+
+export const kWrongLegend = `linear-gradient(90deg, ${css(kGood)}, ${css(kFair)} 50%, ${css(kPoor)})`;
+export const wrongColor = (percent) => (percent <= 1 ? mix(kGood, kFair, Math.max(percent, 0))
+    : mix(kFair, kPoor, Math.min((percent - 1) / 4, 1)));
+
+export const bytesText = (bytes) => (bytes >= 1e6 ? `${(bytes / 1e6).toFixed(2)} MB` : `${shortNumber(bytes / 1e3)} kB`);
+
+const kDepthFragment = `
+precision highp sampler2D;
+uniform sampler2D u_depth;
+uniform vec2 u_at;
+out vec4 o_color;
+void main() {
+    o_color = vec4(texelFetch(u_depth, ivec2(u_at), 0).r, 0.0, 0.0, 1.0);
+}`;
+
+/** Reads one depth of a picture, which WebGL2 gives to shaders alone. */
+class DepthReader {
+    constructor(gl) {
+        this.gl = gl;
+        this.program = program(gl, kScreenVertex, kDepthFragment);
+        this.pixel = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, this.pixel);
+        gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, 1, 1);
+        gl.bindTexture(gl.TEXTURE_2D, null);
+        this.target = gl.createFramebuffer();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.pixel, 0);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    }
+
+    /** In [0, 1]. picture: a Target; x, y: its pixel, from the bottom left. */
+    read(picture, x, y) {
+        const { gl } = this;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+        gl.viewport(0, 0, 1, 1);
+        gl.disable(gl.BLEND);
+        gl.disable(gl.DEPTH_TEST);
+        bindTexture(gl, 0, picture.depth);
+        this.program.set({ u_depth: { int: 0 }, u_at: [x, y] });
+        drawScreen(gl);
+        bindTexture(gl, 0, null);
+        const value = new Float32Array(4);
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, value);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        return value[0];
+    }
+}
+
+export class Bodies {
+    #picked = -1;
+    #tint = false;
+
+    /** @param placed  the scene's bodies, each in its place @param info  the same, as ParticleSystem has them @param data  of the page */
+    constructor(gl, placed, info, data) {
+        Object.assign(this, { gl, placed, info, data });
+        this.depths = new DepthReader(gl);
+        this.meshes = new Map(); // of the worlds' containers, by the name of their file
+        for (const [name, bytes] of Object.entries(data.files)) {
+            if (name.endsWith(".json")) {
+                JSON.parse(new TextDecoder().decode(bytes)).colliders?.forEach((one) => this.meshes.set(one.file, one.mesh));
+            }
+        }
+        const measured = data.check?.accuracy?.bodies;
+        this.measured = measured?.length === placed.length ? measured : null; // the level has the bodies of the world
+    }
+
+    get picked() {
+        return this.#picked;
+    }
+
+    pick(i) {
+        this.#picked = i;
+    }
+
+    /** Of what is wrong, or not. */
+    tint(on) {
+        this.#tint = on && this.measured !== null;
+    }
+
+    /** A colour in place of the theme's; undefined: none. */
+    color(i) {
+        const wrong = this.#tint ? wrongColor(this.measured[i].wrong_percent) : undefined;
+        return i === this.#picked ? mix(wrong ?? kPicked, kPicked, 0.6) : wrong;
+    }
+
+    /** The body that is drawn at a place of the picture; −1: none. x, y: shares of its sides, from the lower left. */
+    at(picture, matrices, x, y) {
+        const pixel = [x * picture.width, y * picture.height].map((v, k) =>
+            Math.min(Math.max(Math.floor(v), 0), [picture.width, picture.height][k] - 1));
+        const depth = this.depths.read(picture, ...pixel);
+        if (!(depth < 1)) {
+            return -1;
+        }
+        const clip = [2 * (pixel[0] + 0.5) / picture.width - 1, 2 * (pixel[1] + 0.5) / picture.height - 1, 2 * depth - 1];
+        const [a, b, c, w] = transform(inverse(matrices.camera), clip);
+        return this.nearest([a / w, b / w, c / w], 1e-3 * length(sub([a / w, b / w, c / w], matrices.eye)));
+    }
+
+    /** The body whose surface is nearest to a point, if it is nearer than `within`. */
+    nearest(point, within) {
+        let best = -1;
+        let least = within;
+        this.placed.forEach((one, i) => {
+            const { collider, box } = one.body ?? one;
+            if (!collider) {
+                return; // it deforms
+            }
+            const scale = length([...one.model.slice(0, 3)]);
+            const p = transform(inverse(one.model), point).slice(0, 3);
+            const room = Math.max(within / scale, 0.01 * box.longest);
+            if (p.some((v, k) => v < box.min[k] - room || v > box.max[k] + room)) {
+                return;
+            }
+            const distance = Math.abs(collider.query(p).distance[0]) * scale;
+            if (distance < least) {
+                [best, least] = [i, distance];
+            }
+        });
+        return best;
+    }
+
+    /** What is known of a body: pairs of words. */
+    facts(i) {
+        const { file, deforms } = this.info[i];
+        const base = file.split("/").pop();
+        const bytes = this.data.files[file]?.length;
+        const { model } = this.placed[i];
+        const scale = length([...model.slice(0, 3)]);
+        const wrong = this.measured?.[i];
+        return [
+            ["mesh", this.meshes.get(base)],
+            [deforms ? "mesh file" : "collider", base],
+            ["size", bytes && bytesText(bytes)],
+            ["scale", shortNumber(scale)],
+            ["at", [...model.slice(12, 15)].map(shortNumber).join(", ")],
+            ["wrong near it", wrong && `${shortNumber(wrong.wrong_percent)} %`],
+        ].filter(([, value]) => value !== undefined && value !== "");
+    }
+
+    /** Its node, or its file. */
+    name(i) {
+        return this.info[i].node || this.info[i].file.split("/").pop();
+    }
+}

@@ -1,0 +1,81 @@
+// The parts of the panel that are about the bodies of a world: the one that was picked, and the errors of a check.
+import { bytesText, kWrongLegend } from "./bodies.js";
+import { shortNumber } from "./math.js";
+import { $, element } from "./panel.js";
+
+export class WorldPanel {
+    constructor(app) {
+        this.app = app;
+        $("wrong-legend").style.background = kWrongLegend;
+        $("wrong").onchange = () => {
+            app.bodies.tint($("wrong").checked);
+            app.changed();
+        };
+        $("picked-close").onclick = () => this.pick(-1);
+    }
+
+    /** The bodies are there. */
+    refresh() {
+        const { bodies, data } = this.app;
+        $("fly-note").hidden = false;
+        if (bodies.meshes.size > 0) {
+            const files = [...new Set(bodies.info.map(({ file }) => file))];
+            const bytes = files.reduce((sum, file) => sum + (data.files[file]?.length ?? 0), 0);
+            $("facts").textContent = `${bodies.placed.length} bod${bodies.placed.length === 1 ? "y" : "ies"} of ` +
+                `${files.length} collider${files.length === 1 ? "" : "s"}, ${bytesText(bytes)}`;
+        }
+        $("mesh-errors").hidden = Boolean(data.check?.accuracy);
+        if (!bodies.measured && !data.check?.accuracy) {
+            return;
+        }
+        $("world-errors").hidden = false;
+        $("verdict").className = data.check.verdict.grade;
+        $("verdict").textContent = data.check.verdict.text;
+        $("wrong").disabled = !bodies.measured;
+        $("wrong").checked = Boolean(bodies.measured);
+        $("wrong").onchange();
+        const { places } = data.check.accuracy;
+        $("bodies-title").textContent = places.length ? "Worst bodies" : "No body is wrong";
+        $("bodies").replaceChildren(...places.map((place) => element("li", {},
+            element("button", { onclick: () => this.#goTo(place), "aria-expanded": false },
+                    element("b", {}, `${shortNumber(place.wrong_percent)} %`), element("span", {}, place.node || place.mesh)),
+            element("div", { class: "place", hidden: "" },
+                    element("img", { alt: `A slice through (${place.position.map(shortNumber).join(", ")})`,
+                                     src: `data:image/png;base64,${place.picture}` }),
+                    element("p", { class: "hint" }, `At (${place.position.map(shortNumber).join(", ")}), ` +
+                            `${this.#length(place.distance)} off${place.texel > 0 ? `, where texels are ${this.#length(place.texel)} wide` : ""}.`),
+                    ...(place.advice ? [element("p", { class: "hint" }, `${place.advice[0].toUpperCase()}${place.advice.slice(1)}.`)] : [])))));
+    }
+
+    #length(v) {
+        return `${shortNumber(v)}${this.app.data.check.unit ? ` ${this.app.data.check.unit}` : ""}`;
+    }
+
+    #goTo(place) {
+        const { app } = this;
+        [...$("bodies").children].forEach((item, k) => {
+            const open = app.data.check.accuracy.places[k] === place;
+            item.querySelector(".place").hidden = !open;
+            item.querySelector("button").setAttribute("aria-expanded", open);
+        });
+        app.pin = place.position;
+        const body = app.bodies.measured ? app.bodies.placed[place.body] : null;
+        const longest = body ? (body.body ?? body).box.longest * Math.hypot(...body.model.slice(0, 3)) : app.look.box.longest;
+        app.camera.lookAt(place.position, place.normal, 0.5 * longest);
+        app.camera.pitch = Math.max(app.camera.pitch, 0.3); // worlds stand on the ground
+        this.pick(body ? place.body : -1);
+    }
+
+    /** Shows a body's facts; −1: none. */
+    pick(i) {
+        const { bodies } = this.app;
+        bodies.pick(i);
+        $("picked").hidden = i < 0;
+        if (i >= 0) {
+            $("picked-name").textContent = bodies.name(i);
+            $("picked-facts").replaceChildren(...bodies.facts(i).flatMap(([name, value]) =>
+                [element("dt", {}, name), element("dd", {}, value)]));
+        }
+        this.app.changed();
+    }
+}
