@@ -179,9 +179,9 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
 }
 
 /// Common formats of `relief bake`; those that cannot be mistaken for a collider are left out.
-constexpr std::array<std::string_view, 14> kMeshExtensions = {".3ds",  ".b3d",  ".blend", ".dae", ".fbx",
-                                                              ".glb",  ".gltf", ".lwo",   ".obj", ".off",
-                                                              ".ms3d", ".ply",  ".stl",   ".x"};
+constexpr std::array<std::string_view, 16> kMeshExtensions = {
+    ".ac",   ".acc", ".3ds", ".b3d", ".blend", ".dae", ".fbx", ".glb",
+    ".gltf", ".lwo", ".obj", ".off", ".ms3d",  ".ply", ".stl", ".x"};
 
 /// No letter, and not the beginning of any mesh above.
 constexpr std::byte kContainerBegins{ContainerHeader::kSignature[0]};

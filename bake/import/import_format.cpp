@@ -18,6 +18,8 @@ constexpr MeshFormat kRows[] = {
     {.extension = "off", .reader = kOff, .whole = true},
     {.extension = "gltf", .reader = kGltf},
     {.extension = "glb", .reader = kGltf, .signatures = {"glTF\x02"}},
+    {.extension = "ac", .reader = kAc3d, .signatures = {"AC3D"}, .whole = true},
+    {.extension = "acc", .reader = kAc3d, .signatures = {"AC3D"}, .whole = true},  // of TORCS
     {.extension = "fbx", .frame = AssimpFrame::kFbx, .signatures = {"Kaydara FBX Binary", "; FBX "}},
     {.extension = "dae", .frame = AssimpFrame::kDae},
     {.extension = "3ds", .frame = AssimpFrame::k3ds},
@@ -54,16 +56,17 @@ const MeshFormat* meshFormat(std::string_view extension) {
 }
 
 std::optional<std::string> otherFormat(std::string_view extension, std::span<const std::byte> bytes) {
-    for (const MeshFormat& row : kRows) {
-        for (const std::string_view begin : row.signatures) {
-            if (!begin.empty() && textOf(bytes).starts_with(begin)) {
-                return row.extension == extension || isBinaryStl(extension, bytes)
-                           ? std::nullopt
-                           : std::optional(std::string(row.extension));
-            }
-        }
+    const auto begins = [bytes](const MeshFormat& row) {
+        return std::ranges::any_of(row.signatures, [bytes](std::string_view begin) {
+            return !begin.empty() && textOf(bytes).starts_with(begin);
+        });
+    };
+    const MeshFormat* const own = meshFormat(extension);
+    if ((own != nullptr && begins(*own)) || isBinaryStl(extension, bytes)) {
+        return std::nullopt;
     }
-    return std::nullopt;
+    const MeshFormat* const found = std::ranges::find_if(kRows, begins);
+    return found == std::end(kRows) ? std::nullopt : std::optional(std::string(found->extension));
 }
 
 }  // namespace relief

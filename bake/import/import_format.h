@@ -12,7 +12,7 @@
 namespace relief {
 
 /// The code that reads a format (mesh_import.cpp).
-enum class MeshReader : std::uint8_t { kAssimp, kGltf, kObj, kOff, kPly, kStl };
+enum class MeshReader : std::uint8_t { kAssimp, kAc3d, kGltf, kObj, kOff, kPly, kStl };
 
 /// How assimp treats the units and axes of a file (import_assimp.cpp).
 enum class AssimpFrame : std::uint8_t {

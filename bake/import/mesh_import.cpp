@@ -60,6 +60,8 @@ Result<PolygonMesh> readObjOf(const ImportJob& job, ImportFiles& files) {
 
 Result<ImportScene> readScene(const MeshFormat& format, const ImportJob& job, ImportFiles& files) {
     switch (format.reader) {
+        case MeshReader::kAc3d:
+            return readAc3d(job);
         case MeshReader::kGltf:
             return readGltf(job, files);
         case MeshReader::kObj:

@@ -92,7 +92,7 @@ TEST(ImportFormat, OthersAreReadAsTheirNameSaysOrRefused) {
         }
         EXPECT_EQ(read, 1) << text.substr(0, 20);
     }
-    for (const char* name : {"w.amf", "w.dxf", "w.ac", "w.xyzzy"}) {
+    for (const char* name : {"w.amf", "w.dxf", "w.acx", "w.xyzzy"}) {
         EXPECT_NE(errorOf(load(name, tetrahedronObj())).find("convert it to glTF, OBJ or PLY"),
                   std::string::npos);
     }

@@ -1,0 +1,139 @@
+// AC3D: objects as nodes, placed by all that is above them; surfaces of every kind; text as TORCS and people write it.
+#include <gtest/gtest.h>
+
+#include "bake/import/level_folder.h"
+#include "bake/import/mesh_import.h"
+#include "tests/bake/import/import_meshes.h"
+#include "tests/temporary_folder.h"
+
+namespace relief::test {
+namespace {
+
+const std::string kHead =
+    "AC3Db\n"
+    "MATERIAL \"red paint\" rgb 1 0 0  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0\n"
+    "MATERIAL \"\" rgb 1 1 1  amb 1 1 1  emis 0 0 0  spec 0 0 0  shi 10  trans 0\n";
+
+/// A tetrahedron of two materials. \param keys  before its vertices, a line each. \param after  behind 'kids'
+std::string tetrahedron(const std::string& name, const std::string& keys = "",
+                        const std::string& kids = "0") {
+    return "OBJECT poly\nname \"" + name + "\"\n" + keys +
+           "numvert 4\n0 0 0\n1 0 0\n0 2 0\n0 0 3\nnumsurf 4\n"
+           "SURF 0x0\nmat 0\nrefs 3\n0 0 0\n2 0 1\n1 1 0\nSURF 0X30\nmat 1\nrefs 3\n0 0 0\n1 0 1\n3 1 0\n"
+           "SURF 0x20\nmat 0\nrefs 3\n1 0 0\n2 0 1\n3 1 0\nSURF 0x10\nrefs 3\n0 0 0\n3 0 1\n2 1 0\nkids " +
+           kids + "\n";
+}
+
+class Ac3d : public testing::Test {
+  protected:
+    Result<TriangleMesh> read(const std::string& text) const {
+        return importMeshInWorker(folder_.write("a.ac", text));
+    }
+    Level level(const std::string& text) const {
+        Result<Level> result = importLevel(folder_.write("l.acc", text), {}, {});
+        EXPECT_TRUE(result) << result.error().message;
+        return result ? std::move(*result) : Level();
+    }
+    void expectRefused(const std::string& text, const std::string& words) const {
+        const Result<TriangleMesh> mesh = read(text);
+        ASSERT_FALSE(mesh) << words;
+        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
+        EXPECT_NE(mesh.error().message.find(words), std::string::npos) << mesh.error().message;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Ac3d, ObjectsAreBodiesPlacedByAllAboveThem) {
+    // The kids of a shifted object move along; x becomes y by 'rot', whose triples are the images of the axes.
+    const Level read =
+        level(kHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
+              tetrahedron("tower", "loc 0 1 0\nrot 0 1 0 -1 0 0 0 0 1\n", "1") +
+              tetrahedron("flag", "loc 5 0 0\n") + tetrahedron("tree"));
+    ASSERT_EQ(read.bodies.size(), 3U);
+    ASSERT_EQ(read.meshes.size(), 1U);
+    EXPECT_EQ(read.meshes[0].triangles.size(), 4U);
+    EXPECT_EQ(read.unit, "");
+    EXPECT_TRUE(read.warnings.empty());
+    const std::array<std::string, 3> nodes = {"tower", "flag", "tree"};
+    const std::array<std::array<double, 3>, 3> places = {{{10, 1, 0}, {10, 6, 0}, {0, 0, 0}}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(read.bodies[i].node, nodes[i]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(read.bodies[i].position[k], places[i][k], 1e-6) << nodes[i];
+        }
+        EXPECT_NEAR(read.bodies[i].rotation[2], i < 2 ? std::sqrt(0.5) : 0.0, 1e-6);
+    }
+}
+
+TEST_F(Ac3d, SurfacesOfEveryKind) {
+    // A quad as a strip with normals and two textures, joined to another by corners that are there twice; and two lines.
+    const std::string strip =
+        "OBJECT poly\nname plain\ntexture \"a b.rgb\" base\ntexture empty_texture_no_mapping skids\ndata "
+        "13\nOBJECT\nkids 9\n"
+        "crease 45\nnumvert 6\n0 0 0 0 1 0\n0 0 1 0 1 0\n1 0 0 0 1 0\n1 0 1 0 1 0\n3 0 0 0 1 0\n3 0 1 0 1 "
+        "0\nnumsurf 3\n"
+        "SURF 0x14\nmat 0\nrefs 10\n0 0 0 0 0\n1 0 1 0 1\n2 1 0 1 0\n3 1 1 1 1\n3 1 1\n2 1 0\n2 1 0\n3 1 "
+        "1\n4 1 0\n5 1 1\n"
+        "SURF 0x1\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nSURF 0x2\nmat 0\nrefs 2\n0 0 0\n1 0 0\nkids 0\n";
+    const Result<TriangleMesh> mesh = read(kHead + "OBJECT world\r\nkids 1\r\n" + strip);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    ASSERT_EQ(mesh->triangles.size(), 4U);
+    double area = 0.0;
+    for (std::uint32_t t = 0; t < 4; ++t) {
+        const auto [a, b, c] = cornersOf(*mesh, t);
+        const glm::dvec3 normal = glm::cross(glm::dvec3(b - a), glm::dvec3(c - a));
+        EXPECT_GT(normal.y, 0.5) << "triangle " << t;
+        area += 0.5 * normal.y;
+    }
+    EXPECT_NEAR(area, 3.0, 1e-6);
+    ASSERT_EQ(mesh->warnings.size(), 1U);
+    EXPECT_NE(mesh->warnings[0].find("left out 2 lines"), std::string::npos) << mesh->warnings[0];
+}
+
+TEST_F(Ac3d, NamesAndMaterialsCanBeSelected) {
+    const std::string text = kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower");
+    ImportOptions options;
+    options.names = {"red paint", "big tower"};
+    const Result<TriangleMesh> mesh = importMeshInWorker(folder_.write("n.ac", text), options);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->marks, std::vector<std::uint8_t>(4, 2));
+}
+
+TEST_F(Ac3d, OddFilesAreReadWithAWordOrRefusedWithTheirLine) {
+    const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("t");
+    const Result<TriangleMesh> fewer =
+        read(kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
+    ASSERT_TRUE(fewer) << fewer.error().message;
+    ASSERT_EQ(fewer->warnings.size(), 2U);
+    EXPECT_NE(fewer->warnings[0].find("it has 2 objects fewer than its 'kids' announce"), std::string::npos);
+    EXPECT_NE(fewer->warnings[1].find("1 of its objects are shown subdivided"), std::string::npos);
+    for (std::size_t length = kHead.size(); length + 8 < one.size(); length += 7) {
+        const Result<TriangleMesh> cut = read(one.substr(0, length));
+        ASSERT_FALSE(cut) << "of " << length << " bytes";
+    }
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = one;
+        return text.replace(text.find(from), from.size(), to);
+    };
+    expectRefused(with("1 0 0\n", "1 zero 0\n"), "line 10: 'zero' is no number");
+    expectRefused(with("2 0 1\n", "4 0 1\n"), "the vertex '4', but its object has 4, from 0");
+    expectRefused(with("SURF 0x0", "SURF green"), "'green' is no number such as 0x20");
+    expectRefused(with("numvert 4", "numvert 5"), "no number");
+    EXPECT_EQ(read(with("numvert 4", "numvert 99999999999")).error().code, ErrorCode::kLimit);
+    expectRefused(with("kids 1", "kids many"), "'many' is no number of kids");
+    expectRefused(with("refs 3", "refs 4000000000"), "line ");
+    expectRefused(with("\nkids 0", "\n"), "no 'kids'");
+    expectRefused(kHead, "no triangles");
+    expectRefused("AC4D\n", "does not begin with AC3D");
+    std::string deep = kHead;
+    for (int i = 0; i < 1100; ++i) {
+        deep += "OBJECT group\nkids 1\n";
+    }
+    const Result<TriangleMesh> nested = read(deep + tetrahedron("t"));
+    ASSERT_FALSE(nested);
+    EXPECT_EQ(nested.error().code, ErrorCode::kLimit);
+}
+
+}  // namespace
+}  // namespace relief::test
