@@ -34,7 +34,7 @@ class HeightMap {
     [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of its bytes
 
     /// \param out  columns() heights of the next row, metres; NaN is a hole.
-    /// Errors, with the file in front: kInvalidInput.
+    /// Errors, with the file in front: kInvalidInput, kUnsupported.
     [[nodiscard]] Result<void> next(std::span<float> out);
 
     /// Begins again before the first row. Errors: those of open(), with the file in front.

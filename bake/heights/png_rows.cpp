@@ -27,13 +27,12 @@ class PngRows : public SampleRows {
         }
         const int colour = png_get_color_type(png_, info_);
         const int bits = png_get_bit_depth(png_, info_);
-        if (colour != PNG_COLOR_TYPE_GRAY || bits < 8) {
-            const char* const kind = colour == PNG_COLOR_TYPE_GRAY         ? "an image of less than 8 bits"
-                                     : colour == PNG_COLOR_TYPE_GRAY_ALPHA ? "a grey image with alpha"
-                                                                           : "an image in colour";
+        if ((colour & PNG_COLOR_MASK_PALETTE) != 0 || bits < 8) {
+            const char* const kind = bits < 8 ? "an image of less than 8 bits" : "an image with a palette";
             return fail(ErrorCode::kUnsupported,
                         std::string("it is ") + kind + "; save it as grey of 16 bits, without alpha");
         }
+        channels_ = png_get_channels(png_, info_);
         if (png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE) {
             return fail(ErrorCode::kUnsupported,
                         "it is interlaced, and so not readable by rows; save it without");
@@ -45,18 +44,38 @@ class PngRows : public SampleRows {
     }
 
     Result<void> next(std::span<float> out) override {
-        row_.resize(columns_ * (most_ > 255 ? 2 : 1));
+        row_.resize(columns_ * channels_ * (most_ > 255 ? 2 : 1));
         if (!readRow()) {
             return unreadable();
         }
         for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = most_ > 255 ? static_cast<float>(row_[2 * i] << 8U | row_[2 * i + 1])
-                                 : static_cast<float>(row_[i]);
+            const std::uint32_t grey = sampleAt(i * channels_);
+            RELIEF_TRY(checkColour(i, grey));
+            out[i] = static_cast<float>(grey);
         }
+        ++row_number_;
         return {};
     }
 
   private:
+    [[nodiscard]] std::uint32_t sampleAt(std::size_t i) const {
+        return most_ > 255 ? std::uint32_t{row_[2 * i]} << 8U | row_[2 * i + 1] : std::uint32_t{row_[i]};
+    }
+
+    /// Many programs save grey as red, green and blue, all the same, and with an alpha that is opaque.
+    [[nodiscard]] Result<void> checkColour(std::size_t column, std::uint32_t grey) const {
+        const std::size_t first = column * channels_;
+        const bool coloured = channels_ >= 3 && (sampleAt(first + 1) != grey || sampleAt(first + 2) != grey);
+        const bool transparent = channels_ % 2 == 0 && sampleAt(first + channels_ - 1) != most_;
+        if (!coloured && !transparent) {
+            return {};
+        }
+        return fail(ErrorCode::kUnsupported,
+                    std::string("it is ") + (coloured ? "in colour" : "transparent") + " at column " +
+                        std::to_string(column) + " of row " + std::to_string(row_number_) +
+                        "; save it as grey of 16 bits, without alpha");
+    }
+
     bool readHeader() {
         if (setjmp(png_jmpbuf(png_)) != 0) {
             return false;
@@ -98,6 +117,8 @@ class PngRows : public SampleRows {
     png_structp png_ = nullptr;
     png_infop info_ = nullptr;
     std::vector<png_byte> row_;
+    std::size_t channels_ = 1;
+    std::uint64_t row_number_ = 0;
     std::array<char, 128> message_{};
 };
 

@@ -12,7 +12,8 @@
 namespace relief {
 
 /// \param bytes  untrusted; must outlive the rows.
-/// Errors, without the file's name: kInvalidInput (libpng's words), kUnsupported (colour, alpha, fewer than 8 bits, interlaced).
+/// Errors, without the file's name: kInvalidInput (libpng's words), kUnsupported (a palette, fewer than 8 bits, interlaced);
+/// of a row kUnsupported, too (red, green and blue that differ, alpha that is not opaque).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes);
 
 }  // namespace relief

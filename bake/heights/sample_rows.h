@@ -21,7 +21,7 @@ class SampleRows {
     [[nodiscard]] std::uint32_t most() const { return most_; }
 
     /// \param out  columns() samples of the next row; there must be one.
-    /// Errors, without the file's name: kInvalidInput.
+    /// Errors, without the file's name: kInvalidInput, kUnsupported.
     [[nodiscard]] virtual Result<void> next(std::span<float> out) = 0;
 
   protected:

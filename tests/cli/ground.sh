@@ -127,7 +127,7 @@ bad 3 "cut.r16.*30000 bytes, which are no square.*width=N" cut.r16 low=0,high=1
 heights one.png 1
 bad 3 "one.png.*1x1 samples.*at least 2x2" one.png low=0,high=1
 heights colour.png 8 rgb
-bad 5 "colour.png.*in colour; save it as grey" colour.png low=0,high=1
+bad 5 "colour.png.*in colour at column 0 of row 0; save it as grey" colour.png low=0,high=1
 head -c 3000 hills.png >cut.png
 bad 3 "cut.png.*cannot be read as PNG" cut.png low=0,high=1
 bad 3 "flat.png: no square has ground" flat.png low=0,high=1,hole=1234

@@ -177,16 +177,33 @@ TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
     EXPECT_EQ(heightsOf(folder_ / "a.bin", "low=0,high=1,width=2").size(), 4U);
 }
 
+TEST_F(HeightMaps, GreyMayBeSavedInColourAndOpaque) {
+    const auto png = [&](std::uint32_t format, std::initializer_list<unsigned char> values) {
+        const std::span<const unsigned char> all(values.begin(), values.size());
+        return writePng("c.png", format, 2, 2, {std::as_bytes(all).begin(), std::as_bytes(all).end()});
+    };
+    const std::vector<float> heights{1.0F, 2.0F, 3.0F, 250.0F};
+    EXPECT_EQ(heightsOf(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 250, 250}), "low=0,high=255"),
+              heights);
+    EXPECT_EQ(heightsOf(png(PNG_FORMAT_GA, {1, 255, 2, 255, 3, 255, 250, 255}), "low=0,high=255"), heights);
+    EXPECT_EQ(heightsOf(png(PNG_FORMAT_RGBA, {1, 1, 1, 255, 2, 2, 2, 255, 3, 3, 3, 255, 250, 250, 250, 255}),
+                        "low=0,high=255"),
+              heights);
+    expectFault(errorOf(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 251, 250}), "low=0,high=1"),
+                ErrorCode::kUnsupported,
+                "c.png': it is in colour at column 1 of row 1; save it as grey of 16 bits");
+    expectFault(errorOf(png(PNG_FORMAT_RGB, {1, 1, 2, 2, 2, 2, 3, 3, 3, 4, 4, 4}), "low=0,high=1"),
+                ErrorCode::kUnsupported, "in colour at column 0 of row 0");
+    expectFault(errorOf(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), "low=0,high=1"),
+                ErrorCode::kUnsupported, "it is transparent at column 1 of row 0; save it");
+}
+
 TEST_F(HeightMaps, OfTheWrongSizeOrKindAreRefused) {
     const std::vector<std::byte> pixels(64);
     expectFault(errorOf(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1"),
                 ErrorCode::kInvalidInput, "one.png': it has 1x1 samples; a height map has at least 2x2");
     expectFault(errorOf(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1"),
                 ErrorCode::kInvalidInput, "1x9");
-    expectFault(errorOf(writePng("rgb.png", PNG_FORMAT_RGB, 2, 2, pixels), "low=0,high=1"),
-                ErrorCode::kUnsupported, "rgb.png': it is an image in colour; save it as grey of 16 bits");
-    expectFault(errorOf(writePng("ga.png", PNG_FORMAT_GA, 2, 2, pixels), "low=0,high=1"),
-                ErrorCode::kUnsupported, "with alpha");
     expectFault(errorOf(folder_ / "none.png", "low=0,high=1"), ErrorCode::kIo, "none.png");
     const fs::path fine = writePng("fine.png", PNG_FORMAT_GRAY, 8, 8, pixels);
     expectFault(errorOf(fine, "low=0,high=1,width=8"), ErrorCode::kUsage, "width is for raw samples");
