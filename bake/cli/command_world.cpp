@@ -7,6 +7,7 @@
 #include <span>
 
 #include "bake/cli/command_view.h"
+#include "bake/report/recipe_report.h"
 #include "bake/report/report_text.h"
 #include "bake/world/world_bake.h"
 #include "bake/world/world_check_report.h"
@@ -37,10 +38,12 @@ void showMessages(const WorldBakeResult& result) {
     for (const std::string& warning : result.warnings) {
         spdlog::warn(warning);
     }
+    std::vector<OwnWarnings> all;
     for (const WorldColliderResult& collider : result.colliders) {
-        for (const std::string& warning : collider.warnings) {
-            spdlog::warn(warning);
-        }
+        all.push_back({collider.mesh, collider.mesh, collider.warnings});
+    }
+    for (const std::string& warning : warningLines(all, "meshes", true)) {
+        spdlog::warn(warning);
     }
 }
 

@@ -147,39 +147,63 @@ Result<void> RecipeEvents::finish() const {
 
 // --- at the end ---
 
-std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
+namespace {
+
+/// Equal, with join_numbers but for their numbers; or no unit is named in both.
+bool areAlike(std::string_view a, std::string_view b, bool join_numbers) {
+    const auto words = [](std::string_view text) {
+        std::string rest(text);
+        std::erase_if(rest, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+        return rest;
+    };
+    return a == b || (join_numbers && words(a) == words(b)) ||
+           (a.starts_with(kNoUnit) && b.starts_with(kNoUnit));
+}
+
+}  // namespace
+
+std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
+                                      bool join_numbers) {
     constexpr std::size_t kNamed = 3;
     struct Group {
         std::string warning;  // of the first
-        std::vector<std::string> assets;
+        bool same = true;     // as those of the others
+        std::vector<std::string> owners;
     };
     std::vector<Group> groups;
-    for (const AssetResult& asset : assets) {
+    for (const OwnWarnings& own : all) {
         // Warnings begin with the mesh's name, which would tell equal ones apart.
-        const std::string mesh = cleanUtf8(std::filesystem::path(asset.job.mesh).filename().string()) + ": ";
-        for (const std::string& full : asset.warnings) {
+        const std::string mesh = own.mesh + ": ";
+        for (const std::string& full : own.warnings) {
             const std::string warning = full.starts_with(mesh) ? full.substr(mesh.size()) : full;
-            // Only the size of the box differs where no unit is named.
-            auto group = std::ranges::find_if(groups, [&](const Group& one) {
-                return one.warning == warning ||
-                       (one.warning.starts_with(kNoUnit) && warning.starts_with(kNoUnit));
-            });
-            group = group == groups.end() ? groups.insert(group, {warning, {}}) : group;
-            group->assets.push_back(cleanUtf8(asset.job.output));
+            auto group = std::ranges::find_if(
+                groups, [&](const Group& one) { return areAlike(one.warning, warning, join_numbers); });
+            group = group == groups.end() ? groups.insert(group, {warning, true, {}}) : group;
+            group->same = group->same && group->warning == warning;
+            group->owners.push_back(own.owner);
         }
     }
     std::vector<std::string> out;
     for (const Group& group : groups) {
-        const std::size_t count = group.assets.size();
-        const std::vector<std::string_view> named(group.assets.begin(),
-                                                  group.assets.begin() + std::min(count, kNamed));
+        const std::size_t count = group.owners.size();
+        const std::vector<std::string_view> named(group.owners.begin(),
+                                                  group.owners.begin() + std::min(count, kNamed));
         const std::string more = count > kNamed ? ", and " + std::to_string(count - kNamed) + " more" : "";
-        const std::string first = count > 1 && group.warning.starts_with(kNoUnit) ? "of the first: " : "";
-        out.push_back((count == 1 ? group.assets.front()
-                                  : std::to_string(count) + " assets (" + listed(named) + more + ")") +
-                      ": " + first + group.warning);
+        out.push_back((count == 1 ? group.owners.front()
+                                  : std::to_string(count) + " " + std::string(owners) + " (" + listed(named) +
+                                        more + ")") +
+                      ": " + (group.same ? "" : "of the first: ") + group.warning);
     }
     return out;
+}
+
+std::vector<std::string> warningLines(const std::vector<AssetResult>& assets) {
+    std::vector<OwnWarnings> all;
+    for (const AssetResult& asset : assets) {
+        all.push_back({cleanUtf8(asset.job.output),
+                       cleanUtf8(std::filesystem::path(asset.job.mesh).filename().string()), asset.warnings});
+    }
+    return warningLines(all, "assets", false);
 }
 
 }  // namespace relief

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -179,6 +181,15 @@ class RecipeEvents {
     int error_ = 0;
 };
 
+/// Warnings of one of many bakes.
+struct OwnWarnings {
+    std::string owner;  ///< that a line names
+    std::string mesh;   ///< with which a warning may begin
+    std::span<const std::string> warnings;
+};
+/// One line for those that are equal, in the order of the first. \param owners  "assets" \param join_numbers  numbers may differ
+[[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
+                                                    bool join_numbers);
 /// "2 assets (a.relief, b.relief): it is skinned": the warnings, one line each, in the order of the assets; one that several
 /// have is told once, that of a missing unit too, with the size of the first.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);

@@ -52,6 +52,16 @@ TEST(RecipeReport, AForgottenUnitIsToldOnce) {
         std::string::npos);
 }
 
+TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
+    const std::vector<std::string> chair = {"chair: 5.1 % wrong with 4.1 kB"};
+    const std::vector<std::string> lamp = {"lamp: 12 % wrong with 5 kB", "lamp: open"};
+    const std::vector<OwnWarnings> all = {{"chair", "chair", chair}, {"lamp", "lamp", lamp}};
+    EXPECT_EQ(warningLines(all, "meshes", true),
+              (std::vector<std::string>{"2 meshes (chair, lamp): of the first: 5.1 % wrong with 4.1 kB",
+                                        "lamp: open"}));
+    EXPECT_EQ(warningLines(all, "meshes", false).size(), 3U);
+}
+
 TEST(RecipeReport, OnlyAnOlderLogIsEmptied) {
     const std::filesystem::path file =
         std::filesystem::path(testing::TempDir()) / "relief_recipe_report_events";
