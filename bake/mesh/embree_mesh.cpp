@@ -1,6 +1,7 @@
 #include "bake/mesh/embree_mesh.h"
 
 #include <cmath>
+#include <mutex>
 #include <string>
 
 namespace relief {
@@ -33,13 +34,29 @@ tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
     return fail(code, what + ": the ray tracer reports: " + errorWords(error));
 }
 
+/// The device of all meshes that live: each takes one of the thousand thread-local keys of a process, and a level may have
+/// four thousand meshes. Null: Embree's error is that of no device.
+std::shared_ptr<RTCDeviceTy> sharedDevice() {
+    static std::mutex mutex;
+    static std::weak_ptr<RTCDeviceTy> living;
+    const std::scoped_lock lock(mutex);
+    std::shared_ptr<RTCDeviceTy> device = living.lock();
+    if (!device) {
+        if (const RTCDevice made = rtcNewDevice(kEmbreeConfig)) {
+            device = {made, EmbreeMesh::Release()};
+        }
+        living = device;
+    }
+    return device;
+}
+
 }  // namespace
 
 Result<EmbreeMesh> EmbreeMesh::build(const TriangleMesh& mesh) {
     EmbreeMesh tree;
     tree.center = 0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max);
     tree.scale = std::ldexp(1.0, -std::ilogb(mesh.bounds.longestSide()));
-    tree.device.reset(rtcNewDevice(kEmbreeConfig));
+    tree.device = sharedDevice();
     if (!tree.device) {
         return embreeError(rtcGetDeviceError(nullptr), mesh.name);
     }

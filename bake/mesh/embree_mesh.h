@@ -17,7 +17,7 @@ struct EmbreeMesh {
         void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
     };
 
-    std::unique_ptr<RTCDeviceTy, Release> device;
+    std::shared_ptr<RTCDeviceTy> device;  ///< one of all meshes
     /// Robust, with filter functions per ray. Medium quality never splits a triangle: a ray meets each at most once,
     /// so that crossings can be counted.
     std::unique_ptr<RTCSceneTy, Release> scene;
