@@ -51,8 +51,10 @@ void fields(Visitor& visit, R& report) {
         visit_setting("resolution",
                       onlyIf(source == MapSource::kMaps || source == MapSource::kPaper, options.resolution),
                       {"--resolution; null where it has no effect", "texels"});
-        visit_setting("budget", result.plan ? std::optional(result.plan->budget) : std::nullopt,
-                      {"Budget of the plan; null without a plan", "bytes of texels"});
+        visit_setting("budget", result.plan ? result.plan->budget : std::nullopt,
+                      {"Budget of the plan; null without a plan, or of --texel alone", "bytes of texels"});
+        visit_setting("texel", request.texel,
+                      {"--texel; null without it", "object units", {0.0, 1e15, false}});
         visit_setting("quality", options.quality, {"--quality"});
         visit_setting("prefer", options.prefer, {"--prefer"});
         visit_setting("threads", result.threads(), {"Threads used", {}, kFromOne});

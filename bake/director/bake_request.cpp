@@ -18,11 +18,14 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
         bool given;
         MapSource source;
     };
-    const std::array<Chooser, 4> choosers = {{{"--map", !request.map.empty(), MapSource::kMaps},
-                                              {"--paper", request.paper, MapSource::kPaper},
-                                              {"--plan", !request.plan.empty(), MapSource::kPlanFile},
-                                              {request.budget ? "--budget" : "--max-error",
-                                               request.budget || request.max_error, MapSource::kPlanner}}};
+    const std::array<Chooser, 4> choosers = {
+        {{"--map", !request.map.empty(), MapSource::kMaps},
+         {"--paper", request.paper, MapSource::kPaper},
+         {"--plan", !request.plan.empty(), MapSource::kPlanFile},
+         {request.budget  ? "--budget"
+          : request.texel ? "--texel"
+                          : "--max-error",
+          request.budget || request.texel || request.max_error, MapSource::kPlanner}}};
     const Chooser* chosen = nullptr;
     for (const Chooser& chooser : choosers) {
         if (!chooser.given) {
@@ -66,6 +69,12 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
     if (request.resolution && settings.source != MapSource::kMaps && settings.source != MapSource::kPaper) {
         return "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
                "out, set --budget, or choose --map or --paper";
+    }
+    if (request.texel && request.max_error) {
+        return "--texel and --max-error are two ways to choose the bytes; leave one out";
+    }
+    if (request.texel && settings.layout == Layout::kViews) {
+        return "--texel is of patches; leave it out, or --layout views and --holes keep";
     }
     if (request.layout && settings.source != MapSource::kPlanner) {
         return "--layout is of what is planned, but the maps were named; leave it out";
@@ -145,6 +154,7 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
     static_cast<void>(RELIEF_TRY(wrapAlpha(request.repair.method)));
     settings.bake.quality = request.quality.value_or(settings.bake.quality);
     settings.bake.prefer = request.prefer.value_or(settings.bake.prefer);
+    settings.bake.planned_texel = request.texel.value_or(0.0F);
     settings.bake.threads = request.threads.value_or(settings.bake.threads);
     return settings;
 }

@@ -40,6 +40,7 @@ struct BakeRequest {
     bool paper = false;
     std::optional<std::uint64_t> resolution;
     std::optional<std::uint64_t> budget;
+    std::optional<float> texel;  ///< object units
     std::optional<float> max_error;
     std::optional<Layout> layout;
     std::uint32_t max_maps = kPlannedMapsMax;
@@ -65,7 +66,8 @@ void fields(Visitor& visit, Request& request) {
     visit("map", request.map,
           {.help = "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
                    "FORMAT   float, fixed8, front-back, cube or patches\n"
-                   "bytes    of patches, such as 1MB; they have no other key\n"
+                   "bytes    of patches, such as 1MB\n"
+                   "texel    of patches, wanted everywhere, as --texel; they have no other keys\n"
                    "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
                    "up       direction that points upwards in the image: as dir\n"
                    "size     texels, N or WxH (cube: N)\n"
@@ -97,6 +99,17 @@ void fields(Visitor& visit, Request& request) {
            .range = {1.0},
            .fallback = "1MB",
            .recorded = true});
+    visit(
+        "texel", request.texel,
+        {.help = "Plan patches for this texel everywhere, whatever bytes that takes: a cell is split as long "
+                 "as its patch is off by more than a quarter of it and its side is longer than two of it. "
+                 "With --world in the units of the level, at the largest scale of each mesh. With --budget "
+                 "that is the most, and what does not fit gets a larger texel, with a warning",
+         .unit = "object units",
+         .range = {0.0, 1e15, false},
+         .value = "LENGTH",
+         .must = "a length above 0, in the collider's units; with --world, of the level",
+         .recorded = true});
     visit(
         "max_error", request.max_error,
         {.help = "Plan for the least bytes (32kB to 64MB) that leave at most this share of the points near "

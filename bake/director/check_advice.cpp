@@ -46,6 +46,7 @@ class Advisor {
         truth_.near.assign(truth.near.begin(), truth.near.begin() + truth_.options.samples);
         planned_.mesh = mesh_file;
         planned_.map.clear();
+        planned_.texel.reset();
         planned_.budget = roundBudget(run.collider.gpuBytes());
         // A default thickness follows the budget of the next bake.
         if (planned_.thickness && planned_.thickness->by_part) {

@@ -50,8 +50,9 @@ class MapMaker {
         if (plan_ms != nullptr) {
             *plan_ms += watch.ms();
         }
-        report.budget = request_.budget.value_or(kBudgetDefault);
-        PlannedBake planned = RELIEF_TRY(bakePlanned(query, views, report.budget, begin("baking the maps")));
+        report.budget = request_.texel ? request_.budget : request_.budget.value_or(kBudgetDefault);
+        PlannedBake planned =
+            RELIEF_TRY(bakePlanned(query, views, report.budget.value_or(0), begin("baking the maps")));
         report.plan = std::move(planned.plan);
         return std::move(planned.baked);
     }
@@ -151,6 +152,9 @@ class Director {
         }
         for (const PlanFileMap& map : plan.maps) {
             options.maps.push_back(map.spec);
+            if (map.spec.texel > 0.0F) {
+                request().texel = map.spec.texel;  // of which shells are made
+            }
         }
         return {};
     }
@@ -264,6 +268,7 @@ class Director {
         made.repair.method = result_.mesh.report.repair;
         made.as = asWords(result_.shape);
         made.thickness = thicknessOf(result_.shape);
+        made.texel = request().texel;
         made.voids = result_.shape.voids > 0 ? VoidsAs::kFull : request().voids;
         for (const FieldWords& field : changedFields(made)) {
             for (const std::string& word : field.words) {
@@ -308,7 +313,9 @@ class Director {
     [[nodiscard]] std::string cure() {
         const Plan& plan = result_.plan->plan;
         const std::uint64_t budget = request().budget.value_or(kBudgetDefault);
-        std::string more = "--budget " + std::to_string(4 * budget / 1000) + "kB";
+        std::string more = request().texel && !request().budget
+                               ? "--texel " + shortest(0.5F * *request().texel)
+                               : "--budget " + std::to_string(4 * budget / 1000) + "kB";
         if (plan.maps.size() >= request().max_maps && plan.next_gain > kMoreMapsHelp) {
             more += " --max-maps " + std::to_string(2 * plan.maps.size());
         }
@@ -387,7 +394,7 @@ Result<void> writePlanOut(const BakeResult& result) {
     PlanFile file;
     file.quality = result.settings.bake.quality;
     file.prefer = result.settings.bake.prefer;
-    file.budget = plan.budget;
+    file.budget = plan.budget.value_or(0);
     file.thickness = result.shape.default_thickness;
     for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
         file.maps.push_back({result.baked.report.maps[i].spec, plan.plan.maps[i].reason});
@@ -402,10 +409,12 @@ Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mes
     }
     ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));
     options.thickness_by_part = !request.thickness || request.thickness->by_part;
+    options.thickness_by_texel = options.thickness_by_part && request.texel;
     options.voids = request.voids.value_or(VoidsAs::kFull);
     options.thickness =
-        request.thickness
-            ? request.thickness->length
+        request.thickness ? request.thickness->length
+        : request.texel
+            ? thicknessOfTexel(mesh->bounds, double{*request.texel})
             : defaultThickness(mesh->bounds,
                                request.max_error ? kBudgetDefault : request.budget.value_or(kBudgetDefault));
     return shapeMesh(mesh, options);

@@ -283,7 +283,7 @@ std::vector<UnitTriangle> unitTriangles(const TriangleMesh& mesh, const MeshCell
     return unit;
 }
 
-ClippedTriangle clipToUnitCube(const UnitTriangle& triangle) {
+ClippedTriangle clipToUnitCube(const UnitTriangle& triangle, ClippedPolygon* kept) {
     ClippedTriangle clipped;
     const glm::dvec3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
     if (normal == glm::dvec3(0.0)) {
@@ -307,6 +307,10 @@ ClippedTriangle clipToUnitCube(const UnitTriangle& triangle) {
         return {};
     }
     clipped.center /= clipped.area;
+    if (kept != nullptr) {
+        std::copy_n(polygon.begin(), count, kept->corners.begin());
+        kept->count = count;
+    }
     return clipped;
 }
 

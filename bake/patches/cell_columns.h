@@ -39,7 +39,13 @@ struct ClippedTriangle {
     glm::dvec3 center{0.0};
     glm::dvec3 normal{0.0};  ///< of unit length, by the winding
 };
-[[nodiscard]] ClippedTriangle clipToUnitCube(const UnitTriangle& triangle);
+/// Of a triangle within the unit cube.
+struct ClippedPolygon {
+    std::array<glm::dvec3, 9> corners;
+    unsigned count = 0;
+};
+/// \param polygon  filled in, if it is given and the area is not 0.
+[[nodiscard]] ClippedTriangle clipToUnitCube(const UnitTriangle& triangle, ClippedPolygon* polygon = nullptr);
 [[nodiscard]] bool meetsUnitCube(const UnitTriangle& triangle);
 
 /// The eighths of a cell, x fastest.

@@ -1,29 +1,39 @@
-// A tree of patches within a number of bytes: which cells are split, and how many heights each leaf has, by what a byte more
-// would mend there.
+// A tree of patches: which cells are split, and how many heights each leaf has, within a number of bytes by what a byte more
+// would mend there, or by the texel that is wanted everywhere.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 
 #include "bake/mesh/mesh_query.h"
-#include "bake/patches/cell_columns.h"
+#include "bake/patches/leaf_fitter.h"
+#include "formats/base/result.h"
 #include "formats/depth_map.h"
 
 namespace relief {
 
 struct PatchOptions {
-    std::uint64_t bytes = 1'000'000;  ///< kPatchBytesMin to kPatchBytesMax
+    /// kPatchBytesMin to kPatchBytesMax; of a tree by texel the most that it may take.
+    std::uint64_t bytes = 1'000'000;
+    /// Object units; above 0 it decides in place of the bytes: a cell is split as long as its patch is off by more than a quarter
+    /// of the texel, and its side is longer than two of them.
+    double texel = 0.0;
+    bool coarsen = false;  ///< where that takes more bytes, a texel is taken that does not
     MistakeCosts costs{};
-    /// Lines along each side of a cell: to choose by, and for the 5² heights that are kept. Multiples of 4.
-    unsigned lines = 12;
-    unsigned final_lines = 20;
+    LeafLines lines{};
     /// A leaf is split on trial where it has more mistakes than so many bytes are worth: fewer find more, in more time.
     double trial_bytes = 45.0;
     /// Called now and then, from any thread but from one at a time, with the share of the work done; what it throws ends it.
     std::function<void(double)> progress{};
 };
 
-/// A map of MapFormat::kPatches of at most so many bytes. The same for any number of threads.
-[[nodiscard]] DepthMap bakePatches(const MeshQuery& query, const PatchOptions& options);
+struct PatchTree {
+    DepthMap map;        ///< of MapFormat::kPatches
+    double texel = 0.0;  ///< object units: that of the options or, coarsened, a larger one; 0: by bytes
+};
+
+/// The same for any number of threads.
+/// Errors: kUsage (a texel that floats do not resolve), kLimit (one that takes more bytes, without `coarsen`).
+[[nodiscard]] Result<PatchTree> bakePatches(const MeshQuery& query, const PatchOptions& options);
 
 }  // namespace relief

@@ -186,17 +186,18 @@ RefineOptions refineOptions(const TriangleMesh& mesh, const BakeOptions& bake) {
     return options;
 }
 
-PatchOptions patchOptions(const BakeOptions& bake, std::uint64_t bytes) {
+PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
     PatchOptions options;
-    options.bytes = bytes;
+    options.bytes = spec.bytes > 0 ? spec.bytes : kPatchBytesMax;
+    options.texel = double{spec.texel};
+    options.coarsen = spec.bytes > 0;
     options.costs.false_inside = bake.prefer == Prefer::kOutside ? kPreferredCost : 1.0;
     options.costs.false_outside = bake.prefer == Prefer::kInside ? kPreferredCost : 1.0;
     if (bake.quality == Quality::kFast) {
-        options.final_lines = options.lines;
+        options.lines.keep = options.lines.choose;
         options.trial_bytes *= 2.0;
     } else if (bake.quality == Quality::kBest) {
-        options.lines = 16;
-        options.final_lines = 28;
+        options.lines = {.choose = 16, .keep = 28};
         options.trial_bytes *= 0.6;
     }
     return options;
@@ -429,17 +430,23 @@ class Bake {
     Result<void> bakeTree(const Job& job) {
         const TimeAdder watch(baked_.report.fit_ms);
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
-        PatchOptions options = patchOptions(options_, job.spec.bytes);
+        PatchOptions options = patchOptions(options_, job.spec);
         if (options_.progress) {
             options.progress = [&, before = static_cast<double>(done_)](double share) {
                 options_.progress((before + share * static_cast<double>(job.texels())) /
                                   static_cast<double>(texels_));
             };
         }
-        DepthMap map = bakePatches(query, options);
-        const std::uint64_t covered = patchCount(map) > 0 ? job.texels() : 0;
-        add(std::move(map), MapReport{job.spec, covered, job.texels()});
+        PatchTree tree = RELIEF_TRY(bakePatches(query, options));
+        const std::uint64_t covered = patchCount(tree.map) > 0 ? job.texels() : 0;
+        add(std::move(tree.map), MapReport{job.spec, covered, job.texels()});
         finish(job.texels());
+        if (tree.texel > options.texel) {
+            baked_.report.warnings.push_back(
+                mesh_->name + ": its texel is " + shortest(static_cast<float>(tree.texel)) + " where " +
+                shortest(job.spec.texel) + " is wanted, which takes more than its " +
+                std::to_string(job.spec.bytes) + " bytes; give a larger --budget or --texel");
+        }
         return {};
     }
 

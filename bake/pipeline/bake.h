@@ -22,6 +22,8 @@ struct BakeOptions {
     /// Bytes that the maps were planned for, to be recorded; 0: they were not. Maps that take more on the GPU are others
     /// than were planned, and it is not recorded.
     std::uint64_t planned_budget = 0;
+    /// Of planned patches, object units: MapSpec::texel; 0: by the budget.
+    float planned_texel = 0.0F;
     unsigned threads = 0;  ///< 0: all cores. Never changes the result.
     /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1]. It may throw:
     /// what it throws comes out of bake(), and ends it.

@@ -116,10 +116,13 @@ class Search {
 };
 
 Result<PlannedBake> bakeTreePlanned(const MeshQuery& query, std::uint64_t budget_bytes, BakeOptions options) {
-    RELIEF_TRY(checkPlanBudget(budget_bytes));
+    if (budget_bytes > 0) {
+        RELIEF_TRY(checkPlanBudget(budget_bytes));
+    }
     MapSpec spec;
     spec.format = MapFormat::kPatches;
     spec.bytes = std::min(budget_bytes, kPatchBytesMax);
+    spec.texel = options.planned_texel;
     options.maps = {spec};
     Baked baked = RELIEF_TRY(bake(query.prepared(), options));
     const DepthMap& tree = baked.collider.maps.front();

@@ -28,6 +28,7 @@ struct PlannedBake {
 /// than the budget, they are baked again with larger texels.
 /// \param query    of the mesh that the views were chosen for
 /// \param views    nullopt: a tree of patches
+/// \param budget_bytes  0: none, where options.planned_texel decides
 /// \param options  its maps and planned_budget do not count
 /// Errors: those of planSizes and bake.
 [[nodiscard]] Result<PlannedBake> bakePlanned(const MeshQuery& query, const std::optional<ViewChoice>& views,

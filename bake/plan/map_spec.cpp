@@ -16,8 +16,8 @@ namespace relief {
 namespace {
 
 constexpr std::array<std::string_view, 5> kFormatWords = {"float", "fixed8", "front-back", "cube", "patches"};
-constexpr std::array<std::string_view, 9> kKeys = {"dir", "up",    "size",   "compare", "center",
-                                                   "box", "depth", "decode", "bytes"};
+constexpr std::array<std::string_view, 10> kKeys = {"dir", "up",    "size",   "compare", "center",
+                                                    "box", "depth", "decode", "bytes",   "texel"};
 
 /// Least sine of the angle between up and dir: below it, rounding would turn the image.
 constexpr double kUpSineMin = 1e-4;
@@ -144,6 +144,7 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
         return key == "size"    ? setSize(value)
                : key == "box"   ? setBox(value)
                : key == "bytes" ? setBytes(value)
+               : key == "texel" ? setTexel(value)
                                 : setWord(key, value);
     }
     return {};
@@ -151,9 +152,10 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
 
 /// The reason why a key has no effect for the format, and the cure; empty: it has one.
 std::string MapSpecBuilder::uselessness(std::string_view key) const {
-    if ((key == "bytes") != (spec_.format == MapFormat::kPatches)) {
-        return key == "bytes" ? " does nothing but for patches; set size"
-                              : " does nothing for patches; leave it out";
+    const bool of_patches = key == "bytes" || key == "texel";
+    if (of_patches != (spec_.format == MapFormat::kPatches)) {
+        return of_patches ? " does nothing but for patches; set size"
+                          : " does nothing for patches; leave it out";
     }
     if ((key == "dir" || key == "up") && isCube()) {
         return " does nothing for a cube, which looks all round; leave it out";
@@ -215,6 +217,15 @@ Result<void> MapSpecBuilder::setBytes(std::string_view value) {
             std::to_string(kPatchBytesMin) + " to " + std::to_string(kPatchBytesMax) + ", or as 1MB");
     }
     spec_.bytes = *bytes;
+    return {};
+}
+
+Result<void> MapSpecBuilder::setTexel(std::string_view value) {
+    const std::optional<float> texel = parseFloat(value);
+    if (!texel || !(*texel >= 1e-15F && *texel <= 1e15F)) {
+        return badValue("texel", value, "a length above 0, in the collider's units");
+    }
+    spec_.texel = *texel;
     return {};
 }
 
@@ -288,6 +299,9 @@ std::string toString(const MapSpec& spec) {
     if (spec.format == MapFormat::kPatches) {
         if (spec.bytes > 0) {
             add("bytes", std::to_string(spec.bytes));
+        }
+        if (spec.texel > 0.0F) {
+            add("texel", shortest(spec.texel));
         }
         return text;
     }

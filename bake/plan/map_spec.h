@@ -6,10 +6,13 @@
 //     front-back:dir=1/1/1,box=-1/-1/-1/1/1/1   both surfaces along a diagonal, of a part of the object
 //     cube:center=0/0.1/0,compare=less          all round a point in free space
 //     patches:bytes=1MB                         small depth maps in an octree: formats/patch_tree.h
+//     patches:texel=0.01                        the same, as fine as that everywhere
 //
 // clang-format off
 //     key      value               formats             meaning
-//     bytes    1MB, 250000         patches             what the tree may take; patches have no other key
+//     bytes    1MB, 250000         patches             what the tree may take
+//     texel    0.01                patches             object units: the size that is wanted everywhere, whatever bytes that takes,
+//                                                      or a larger one that takes no more than `bytes`; patches have no other keys
 //     dir      +x -x … -z, a/b/c   all but cube        the direction in which the view looks; -y looks down
 //     up       +x -x … -z, a/b/c   all but cube        the direction that points upwards in the image, as far as
 //                                                      it is square to dir; without it, view.h's rule
@@ -58,7 +61,8 @@ struct MapSpec {
     std::optional<Compare> compare;
     std::optional<glm::vec3> center;  ///< cubes only; nullopt: the middle of the box
     std::optional<Bounds> box;        ///< object space; nullopt: tight round the whole mesh
-    std::uint64_t bytes = 0;          ///< patches only; 0: kPatchBytesDefault
+    std::uint64_t bytes = 0;  ///< patches only; 0: kPatchBytesDefault, or with a texel as many as it takes
+    float texel = 0.0F;       ///< patches only, object units; 0: by bytes
 
     friend bool operator==(const MapSpec&, const MapSpec&) = default;
 };
@@ -95,10 +99,11 @@ class MapSpecBuilder {
     Result<void> setSize(std::string_view value);
     Result<void> setBox(std::string_view value);
     Result<void> setBytes(std::string_view value);
+    Result<void> setTexel(std::string_view value);
 
     MapSpecDefaults defaults_;
     MapSpec spec_;
-    std::array<bool, 9> seen_{};  // by key
+    std::array<bool, 10> seen_{};  // by key
 };
 
 /// Errors: kUsage if up is (nearly) parallel to the direction.

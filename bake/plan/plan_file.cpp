@@ -62,7 +62,11 @@ MapSpec readSpec(const TomlValue& map, ErrorCode& code) {
     };
     const TomlValue format = *map.find("format");
     need(builder.setFormat(format.text()), format.node().source());
-    need_key(format.text() == mapFormatName(MapFormat::kPatches) ? "bytes" : "size");
+    if (format.text() != mapFormatName(MapFormat::kPatches)) {
+        need_key("size");
+    } else if (!map.find("texel")) {
+        need_key("bytes");
+    }
     for (const toml::key* key : keysInOrder(*map.node().as_table())) {
         if (!MapSpecBuilder::knows(key->str()) && key->str() != "format") {
             need(builder.set(key->str(), ""), key->source());

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bake/mesh/mesh_query.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -232,7 +233,7 @@ glm::dvec3 defaultUp(const glm::dvec3& direction) {
 
 Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32_t resolution) {
     if (spec.format == MapFormat::kPatches) {
-        spec.bytes = spec.bytes > 0 ? spec.bytes : kPatchBytesDefault;
+        spec.bytes = spec.bytes > 0 || spec.texel > 0.0F ? spec.bytes : kPatchBytesDefault;
         return spec;
     }
     const bool cube = spec.format == MapFormat::kCube8;
@@ -281,7 +282,9 @@ Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh, const Verte
     View view;
     view.format = spec.format;
     if (spec.format == MapFormat::kPatches) {
-        view.width = static_cast<std::uint32_t>(spec.bytes / texelSize(spec.format));
+        // At most, with a texel.
+        view.width = static_cast<std::uint32_t>((spec.bytes > 0 ? spec.bytes : kPatchBytesMax) /
+                                                texelSize(spec.format));
         view.height = 1;
         return view;
     }

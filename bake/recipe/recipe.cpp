@@ -19,10 +19,10 @@ constexpr std::int64_t kRecipeVersion = 1;
 constexpr std::size_t kTextMax = 4096;  // bytes of a value
 constexpr std::array<std::string_view, 3> kTopKeys = {"version", "defaults", "asset"};
 /// Options that choose the maps: an asset with one of them takes none from the defaults.
-constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "plan",  "budget",
+constexpr std::array<std::string_view, 9> kMapChoice = {"map",       "paper",  "plan",  "budget",    "texel",
                                                         "max-error", "decode", "depth", "resolution"};
 /// The first of kMapChoice choose, the others refine the choice.
-constexpr std::size_t kChoosers = 5;
+constexpr std::size_t kChoosers = 6;
 /// The first of them name the maps, which leaves nothing to plan.
 constexpr std::size_t kNamers = 3;
 /// Options about what is planned: an asset that names its maps takes none from the defaults.

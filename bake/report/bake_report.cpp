@@ -78,8 +78,13 @@ std::string careText(const RepairReport& care, bool verbose) {
 std::string planLine(const PlanReport& report, const std::string& unit) {
     const Plan& plan = report.plan;
     const bool patches = plan.maps.front().spec.format == MapFormat::kPatches;
-    std::string line = "planned for " + bytesText(report.budget) + " on the GPU, where the " +
-                       (patches ? "patches" : "maps") + " take " + bytesText(plan.bytes);
+    const float wanted = plan.maps.front().spec.texel;
+    std::string line =
+        "planned for " +
+        (wanted > 0.0F ? "a texel of " + shortNumber(double{wanted}) + " " + unitText(unit) : "") +
+        (wanted > 0.0F && report.budget ? " and at most " : "") +
+        (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + ", where the " +
+        (patches ? "patches" : "maps") + " take " + bytesText(plan.bytes);
     if (patches) {
         line += ": heights at least " + shortNumber(plan.texel) + " " + unitText(unit) + " apart";
     } else {

@@ -28,9 +28,9 @@ struct BakeTimes {
 /// The choice of the maps, if none were named.
 struct PlanReport {
     Plan plan;
-    std::uint64_t budget = 0;         ///< bytes
-    std::optional<double> max_error;  ///< percent; of --max-error, as are the next two
-    double wrong_percent = 0.0;       ///< measured
+    std::optional<std::uint64_t> budget;  ///< bytes; not of --texel alone
+    std::optional<double> max_error;      ///< percent; of --max-error, as are the next two
+    double wrong_percent = 0.0;           ///< measured
     std::vector<BudgetTry> tries;
 };
 
@@ -81,7 +81,7 @@ void fields(Visitor& visit, M& map) {
 template <class Visitor, FieldsOf<PlanReport> R>
 void fields(Visitor& visit, R& report) {
     const Plan& plan = report.plan;
-    visit("budget", report.budget, {"Budget of the plan", "bytes of texels"});
+    visit("budget", report.budget, {"Budget of the plan; null of --texel alone", "bytes of texels"});
     visit("bytes", plan.bytes, {"Size of the plan", "bytes of texels"});
     visit("texel", plan.texel,
           {"Side of a texel; of patches, the least distance of two heights", "object units", kFromZero});

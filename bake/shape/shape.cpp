@@ -524,7 +524,9 @@ class Shaper {
             if (part.role.kind == Kind::kSheet) {
                 const double size = sizeOf(part.sheet);
                 const double thickness =
-                    options_.thickness_by_part ? partThickness(options_.thickness, size) : options_.thickness;
+                    options_.thickness_by_part
+                        ? partThickness(options_.thickness, size, options_.thickness_by_texel)
+                        : options_.thickness;
                 const double right = options_.thickness_by_part ? rightThickness(thickness, size) : thickness;
                 add(part.sheet, thickened(part.sheet, thickness), PartKind::kSheet);
                 for (const std::uint32_t source : part.sheet.sources) {

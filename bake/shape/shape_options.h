@@ -46,6 +46,7 @@ struct ShapeOptions {
     std::vector<NamedShape> named = {};
     /// `thickness` is a default, of which each sheet takes what suits its own size (partThickness).
     bool thickness_by_part = false;
+    bool thickness_by_texel = false;  ///< and suits a texel that is wanted of all: no sheet takes more
     VoidsAs voids = VoidsAs::kFull;
 
     [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in that order

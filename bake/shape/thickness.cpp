@@ -22,12 +22,17 @@ double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
     // Front-back maps along the axes, at eight bytes per texel, and half as many others.
     const double area = 12.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
     const double texel = std::sqrt(area / static_cast<double>(std::max<std::uint64_t>(budget_bytes, 1)));
+    return thicknessOfTexel(bounds, texel);
+}
+
+double thicknessOfTexel(const Bounds& bounds, double texel) {
     // A float, which containers and plans record exactly.
     return double{static_cast<float>(std::min(1.5 * texel, 0.04 * double{bounds.longestSide()}))};
 }
 
-double partThickness(double default_thickness, double part_size) {
-    return std::clamp(default_thickness, kShellLeast * part_size, kShellMost * part_size);
+double partThickness(double default_thickness, double part_size, bool by_texel) {
+    return std::clamp(default_thickness, (by_texel ? kThicknessMin : kShellLeast) * part_size,
+                      kShellMost * part_size);
 }
 
 double rightThickness(double thickness, double part_size) {

@@ -132,8 +132,11 @@ class WorldBaker {
             collider.area = areaOf(level_.meshes[i]);
             shares.push_back({collider.area * collider.largest_scale * collider.largest_scale});
         }
+        if (request_.bake.texel && !request_.bake.budget) {
+            return {};
+        }
         result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
-        RELIEF_TRY(shareBudget(result_.budget, shares));
+        RELIEF_TRY(shareBudget(*result_.budget, shares));
         for (std::size_t i = 0; i < shares.size(); ++i) {
             result_.colliders[i].budget = shares[i].bytes;
         }
@@ -154,6 +157,9 @@ class WorldBaker {
             WorldColliderResult& collider = result_.colliders[i];
             BakeRequest request = requestOf(request_.bake, names_, mesh);
             request.budget = collider.budget;
+            if (request.texel) {
+                request.texel = static_cast<float>(double{*request.texel} / collider.largest_scale);
+            }
             BakeCacheEntry entry{tool_, optionWords(request, request_.compress), {}, "", 0};
             // The import's options have done their work on the mesh.
             request.import = {};
@@ -204,7 +210,12 @@ class WorldBaker {
     Result<void> bakeStale() {
         tell(watcher_.begin, "baking colliders");
         std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
-            return result_.colliders[a].budget > result_.colliders[b].budget;
+            const auto size = [this](std::size_t i) {
+                const WorldColliderResult& collider = result_.colliders[i];
+                return collider.budget ? static_cast<double>(*collider.budget)
+                                       : collider.area * collider.largest_scale * collider.largest_scale;
+            };
+            return size(a) > size(b);
         });
         std::size_t done = level_.meshes.size() - stale_.size();
         std::mutex mutex;
@@ -245,8 +256,10 @@ class WorldBaker {
         collider.warnings = result.baked.report.warnings;
         if (collider.wrong && collider.wrong->total() > kWarnFrom) {
             collider.warnings.push_back(collider.mesh + ": " + shortNumber(collider.wrong->total()) +
-                                        " % wrong near the surface with its share of " +
-                                        bytesText(collider.budget) + "; give the level a larger --budget");
+                                        " % wrong near the surface with its " +
+                                        (collider.budget ? "share of " + bytesText(*collider.budget) +
+                                                               "; give the level a larger --budget"
+                                                         : "texel; give the level a smaller --texel"));
         }
         RELIEF_TRY(writeFile(request_.folder / collider.file, bytes));
         take(result.baked.collider, bytes, collider);

@@ -24,7 +24,7 @@ namespace relief {
 inline constexpr std::uint64_t kWorldBudgetDefault = 16'000'000;  ///< bytes
 
 struct WorldRequest {
-    /// Of each collider, but that `mesh` is the level's file, and `budget` is of all together.
+    /// Of each collider, but that `mesh` is the level's file, `budget` is of all together, and `texel` in units of the level.
     BakeRequest bake;
     std::filesystem::path folder;  ///< is there
     std::uint32_t compress = 0;
@@ -41,11 +41,11 @@ struct WorldColliderResult {
     std::string file;  ///< in the folder
     WorldColliderState state = WorldColliderState::kUpToDate;
     std::uint64_t bodies = 0;
-    double area = 0.0;           ///< of its surface, in its own space
-    double largest_scale = 0.0;  ///< of its bodies
-    std::uint64_t budget = 0;    ///< bytes: its share
-    std::string hash;            ///< XXH3-128 of the container
-    std::uint64_t bytes = 0;     ///< of the container
+    double area = 0.0;                    ///< of its surface, in its own space
+    double largest_scale = 0.0;           ///< of its bodies
+    std::optional<std::uint64_t> budget;  ///< bytes: its share; not of --texel alone
+    std::string hash;                     ///< XXH3-128 of the container
+    std::uint64_t bytes = 0;              ///< of the container
     std::uint64_t gpu_bytes = 0;
     Bounds box;
     std::optional<WrongShare> wrong;    ///< near the surface; of one that was baked
@@ -60,8 +60,8 @@ struct WorldBakeResult {
     std::vector<InputFile> inputs;               ///< the level and the files that it refers to
     std::vector<std::string> warnings;           ///< of the level, one line each
     std::vector<std::string> removed;            ///< containers that only the world from before named
-    std::uint64_t budget = 0;
-    bool written = false;  ///< the world; not if a collider failed
+    std::optional<std::uint64_t> budget;         ///< bytes; not of --texel alone
+    bool written = false;                        ///< the world; not if a collider failed
 
     [[nodiscard]] std::size_t countOf(WorldColliderState state) const;
     [[nodiscard]] std::uint64_t gpuBytes() const;

@@ -16,7 +16,7 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
         {"collider", "bodies>", "area>", "scale>", "share>", "taken>", "wrong>", "state"}};
     for (const WorldColliderResult& c : result.colliders) {
         rows.push_back({c.mesh, std::to_string(c.bodies), shortNumber(c.area), shortNumber(c.largest_scale),
-                        bytesText(c.budget), bytesText(c.gpu_bytes), wrongText(c),
+                        c.budget ? bytesText(*c.budget) : "-", bytesText(c.gpu_bytes), wrongText(c),
                         std::string(wordOf(c.state))});
     }
     const std::size_t baked = result.countOf(WorldColliderState::kBaked);
@@ -24,8 +24,9 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
     std::string text = verbose ? table(rows) : "";
     text += folder + ": " + countText(result.world.bodies.size(), "body", "bodies") + " of " +
             countText(result.colliders.size(), "collider") + ": " + std::to_string(baked) + " baked, " +
-            std::to_string(kept) + " up to date; " + bytesText(result.gpuBytes()) + " of " +
-            bytesText(result.budget) + "; " + shortNumber(ms / 1000.0) + " s\n";
+            std::to_string(kept) + " up to date; " + bytesText(result.gpuBytes()) +
+            (result.budget ? " of " + bytesText(*result.budget) : "") + "; " + shortNumber(ms / 1000.0) +
+            " s\n";
     if (!result.removed.empty()) {
         text += "removed " + countText(result.removed.size(), "container") +
                 " that only the world from before named\n";

@@ -30,7 +30,7 @@ void fields(Visitor& visit, R& report) {
     visit("bodies", c.bodies, {"Nodes that place it", {}, kFromOne});
     visit("area", c.area, {"Area of its surface", "object units squared", kFromZero});
     visit("largest_scale", c.largest_scale, {"Largest scale of its bodies", {}, kFromZero});
-    visit("budget", c.budget, {"Its share of the budget", "bytes"});
+    visit("budget", c.budget, {"Its share of the budget; null of --texel alone", "bytes"});
     visit("bytes", c.bytes, {"Size of the container; 0 if it failed", "bytes"});
     visit("gpu_bytes", c.gpu_bytes, {"Bytes that it takes on the GPU; 0 if it failed", "bytes"});
     visit("hash", c.hash, {.help = "XXH3-128 of the container; empty if it failed", .pattern = kHashPattern});
@@ -59,7 +59,8 @@ void fields(Visitor& visit, R& report) {
     visit("written", r.written, {"Whether its world.json is there; false if a collider failed"});
     visit("unit", r.world.unit, {"Unit of lengths: m, or empty"});
     visit("bodies", r.world.bodies.size(), {"Bodies"});
-    visit("budget", r.budget, {"Bytes that all colliders may take on the GPU", "bytes"});
+    visit("budget", r.budget,
+          {"Bytes that all colliders may take on the GPU; null of --texel alone", "bytes"});
     visit("gpu_bytes", r.gpuBytes(), {"Bytes that they take", "bytes"});
     visit("baked", r.countOf(WorldColliderState::kBaked), {"Colliders that were baked"});
     visit("up_to_date", r.countOf(WorldColliderState::kUpToDate), {"Colliders that were left as they were"});

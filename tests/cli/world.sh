@@ -104,6 +104,30 @@ expect 0 "$relief" check named/world.json --mesh level.gltf --max-error 2 -q
 expect_error 1 "it names no triangles 'wid'.*did you mean 'wide'" \
     "$relief" bake level.gltf --world named --as wid=shell
 
+# By a texel, in units of the level: as fine in the world at any scale, and as many bytes as that takes.
+expect 0 "$relief" bake level.gltf --world by_texel --texel 0.02 --json
+json stdout "d['budget'] is None and all(c['budget'] is None for c in d['colliders'])"
+cp stdout texel.json
+expect 0 "$relief" check by_texel/world.json --mesh level.gltf --max-error 0.5 -q
+expect 0 "$relief" info "by_texel/$(python3 -c "import json; print(json.load(open('texel.json'))['colliders'][1]['file'])")"
+grep -q -- '--texel 0.01' stdout || die "a mesh at scale 2 has another texel: $(cat stdout)"
+expect 0 "$relief" bake level.gltf --world by_texel --texel 0.02
+grep -q '5 bodies of 3 colliders: 0 baked, 3 up to date' stderr || die "by texel, not up to date: $(cat stderr)"
+# With a budget as well, what does not get there is named.
+expect 0 "$relief" bake level.gltf --world by_texel --texel 0.0005 --budget 60kB --json
+json stdout "d['gpu_bytes'] <= 60000"
+grep -q 'warning: box: its texel is .* where 0.00025 is wanted, which takes more than its' stderr || die "not named: $(cat stderr)"
+expect_error 1 "two ways" "$relief" bake level.gltf -o v.relief --texel 0.1 --max-error 1
+expect_error 1 "of patches" "$relief" bake level.gltf --world v --texel 0.1 --layout views
+expect_error 1 "finer than floats resolve there; give at least" "$relief" bake level.gltf -o v.relief --texel 1e-9
+# A plan of it makes the same shells and patches.
+expect 0 "$relief" bake level.gltf -o t.relief --texel 0.05 --as shell --plan-out t.toml -q
+expect 0 "$relief" bake level.gltf -o u.relief --plan t.toml --as shell -q
+python3 - <<'P' || die "a plan by texel makes something else"
+a, b = open('t.relief', 'rb').read(), open('u.relief', 'rb').read()
+raise SystemExit(0 if a == b else 1)
+P
+
 # A folder is a level of its files.
 mkdir parts
 cp level.gltf parts/b.gltf

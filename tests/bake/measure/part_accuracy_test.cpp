@@ -137,6 +137,9 @@ TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {
     EXPECT_DOUBLE_EQ(partThickness(1.0, 100.0), 1.0);
     EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0), 4.0);  // at least 0.4 %
     EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8), 0.2);     // at most a quarter
+    // By a texel that is given, a large part takes no more than it.
+    EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0, true), 1.0);
+    EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8, true), 0.2);
     // A box alone has the default that it always had: a texel and a half, of 0.4 to 4 % of its side.
     Bounds cube;
     cube.add(glm::vec3(0.0F));

@@ -18,7 +18,7 @@ namespace relief::test {
 namespace {
 
 DepthMap checked(const MeshQuery& query, std::uint64_t bytes) {
-    DepthMap map = bakePatches(query, {.bytes = bytes});
+    DepthMap map = bakePatches(query, {.bytes = bytes})->map;
     const Result<void> valid = validateFrame(map).and_then([&] { return validateTexels(map); });
     EXPECT_TRUE(valid) << valid.error().message;
     EXPECT_LE(map.texels.size(), bytes);
@@ -185,6 +185,114 @@ TEST(PatchPlanner, BallsMistakesFallWithTheBytes) {
     EXPECT_LT(before, 0.15);
 }
 
+DepthMap byTexel(const MeshQuery& query, double texel) {
+    Result<PatchTree> tree = bakePatches(query, {.bytes = kPatchBytesMax, .texel = texel});
+    EXPECT_TRUE(tree) << tree.error().message;
+    EXPECT_EQ(tree->texel, texel);
+    const Result<void> valid = validateFrame(tree->map).and_then([&] { return validateTexels(tree->map); });
+    EXPECT_TRUE(valid) << valid.error().message;
+    return std::move(tree->map);
+}
+
+TEST(PatchTexel, ABallIsNowhereOffByMoreThanTheTexelAllows) {
+    // Of its triangles themselves, which are up to 3e-5 within the ball.
+    const MeshQuery query = queryOf(makeIcosphere({0.1, 0.2, 0.3}, 1.0, 7));
+    double before = 1.0;
+    for (const double texel : {0.08, 0.04, 0.02, 0.01}) {
+        const DepthMap map = byTexel(query, texel);
+        std::mt19937 random(4);
+        std::normal_distribution<double> normal;
+        std::uniform_real_distribution<double> off(-0.5, 0.5);
+        double sum = 0.0;
+        constexpr int kPoints = 20'000;
+        for (int i = 0; i < kPoints; ++i) {
+            const glm::dvec3 way = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+            const double away = off(random) * texel;
+            const glm::vec3 p(glm::dvec3(0.1, 0.2, 0.3) + (1.0 + away) * way);
+            const bool wrong = (vote(map, p)->distance < 0.0F) != (away < 0.0);
+            EXPECT_FALSE(wrong && std::abs(away) > 0.3 * texel) << texel << " " << away;
+            sum += wrong ? texel : 0.0;  // of points in a layer of one texel, that is the mean error
+        }
+        // The error goes by the texel; by levels of the octree it does so in steps.
+        EXPECT_LT(sum / kPoints, 0.65 * before) << texel;
+        EXPECT_LT(sum / kPoints, 0.15 * texel) << texel;
+        before = sum / kPoints;
+    }
+}
+
+TEST(PatchTexel, AThinHandleOfALargePlateIsThere) {
+    // A bar of two texels, on two legs, on a plate a hundred times as long as the bar: its volume is 5e-6 of the plate's.
+    constexpr double kTexel = 0.01;
+    struct Box {
+        glm::dvec3 center;
+        glm::dvec3 half;
+        [[nodiscard]] double distance(const glm::dvec3& p) const {
+            const glm::dvec3 d = glm::abs(p - center) - half;
+            return glm::length(glm::max(d, 0.0)) + std::min(0.0, std::max({d.x, d.y, d.z}));
+        }
+    };
+    const Box boxes[] = {{{0, -0.05, 0}, {6, 0.05, 6}},
+                         {{2.37, 0.05, 1.21}, {0.06, 0.01, 0.01}},
+                         {{2.32, 0.02, 1.21}, {0.01, 0.03, 0.01}},
+                         {{2.42, 0.02, 1.21}, {0.01, 0.03, 0.01}}};
+    std::vector<TriangleMesh> parts;
+    for (const Box& box : boxes) {
+        parts.push_back(makeBoxMesh(box.center, box.half));
+    }
+    const auto wound = windOutwards(joined(parts));
+    ASSERT_TRUE(wound);
+    const MeshQuery query = queryOf(wound->mesh);
+    const DepthMap map = byTexel(query, kTexel);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    int inside = 0;
+    for (int i = 0; i < 50'000; ++i) {
+        const glm::dvec3 p =
+            glm::dvec3(2.37, 0.035, 1.21) +
+            glm::dvec3(0.1, 0.05, 0.05) * glm::dvec3(unit(random), unit(random), unit(random));
+        double distance = 1.0;
+        for (const Box& box : boxes) {
+            distance = std::min(distance, box.distance(p));
+        }
+        if (std::abs(distance) > 0.5 * kTexel) {
+            ASSERT_EQ(vote(map, glm::vec3(p))->distance < 0.0F, distance < 0.0)
+                << p.x << " " << p.y << " " << p.z << ": " << distance;
+            inside += distance < 0.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(inside, 500);
+    // The plate's faces cost nothing: most is along its edges, 48 m and 4800 texels.
+    EXPECT_LT(map.texels.size(), 300'000U);
+    const MeshQuery plain = queryOf(makeBoxMesh(boxes[0].center, boxes[0].half));
+    EXPECT_LT(map.texels.size(), byTexel(plain, kTexel).texels.size() + 40'000);
+}
+
+TEST(PatchTexel, WithinABudgetIsAsFineAsThatAllows) {
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 5));
+    PatchOptions options{.bytes = 20'000, .texel = 0.001, .coarsen = true};
+    const Result<PatchTree> tree = bakePatches(query, options);
+    ASSERT_TRUE(tree) << tree.error().message;
+    EXPECT_LE(tree->map.texels.size(), 20'000U);
+    EXPECT_GT(tree->texel, 0.001);
+    // What takes less is not coarsened, and what takes little more than it may is refused.
+    EXPECT_EQ(byTexel(query, tree->texel).texels, tree->map.texels);
+    EXPECT_GT(byTexel(query, 0.9 * tree->texel).texels.size(), 20'000U);
+    options.texel = 2.0 * tree->texel;
+    EXPECT_EQ(bakePatches(query, options)->texel, options.texel);
+    options.coarsen = false;
+    options.texel = 0.9 * tree->texel;
+    const Result<PatchTree> refused = bakePatches(query, options);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
+    options.texel = 1e-7;
+    EXPECT_EQ(bakePatches(query, options).error().code, ErrorCode::kUsage);
+}
+
+TEST(PatchTexel, ALargeTexelLeavesOneCell) {
+    const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 3));
+    EXPECT_LE(byTexel(query, 100.0).texels.size(), 256U);
+}
+
 TEST(PatchPlanner, InsidesThatNoViewSeesAreThere) {
     // A ball in a hollow ball: no ray from outside meets the inner surfaces.
     const MeshQuery query =
@@ -229,14 +337,20 @@ TEST(PatchPlanner, BytesAreKeptDownToTheLeast) {
 TEST(PatchPlanner, SameOnAnyNumberOfThreads) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 48, 24));
     std::vector<DepthMap> maps;
+    std::vector<DepthMap> by_texel;
     for (const int threads : {1, 2, 5}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
         tbb::task_arena arena(threads);
-        arena.execute([&] { maps.push_back(bakePatches(query, {.bytes = 60'000})); });
+        arena.execute([&] {
+            maps.push_back(bakePatches(query, {.bytes = 60'000})->map);
+            by_texel.push_back(byTexel(query, 0.01));
+        });
     }
     EXPECT_EQ(maps[0], maps[1]);
     EXPECT_EQ(maps[0], maps[2]);
+    EXPECT_EQ(by_texel[0], by_texel[1]);
+    EXPECT_EQ(by_texel[0], by_texel[2]);
 }
 
 }  // namespace

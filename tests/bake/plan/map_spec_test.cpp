@@ -14,9 +14,11 @@ TEST(MapSpec, PatchesHaveBytesAndNothingElse) {
     EXPECT_EQ(toString(*spec), "patches:bytes=250000");
     EXPECT_EQ(*parseMapSpec(toString(*spec)), *spec);
     EXPECT_EQ(toString(*parseMapSpec("patches")), "patches");
-    for (const char* wrong : {"patches:size=64", "patches:dir=+x", "patches:decode=plane",
-                              "patches:box=tight", "patches:bytes=1023", "patches:bytes=1GB",
-                              "patches:bytes=many", "cube:bytes=1MB", "front-back:bytes=1MB"}) {
+    EXPECT_EQ(toString(*parseMapSpec("patches:texel=0.01,bytes=1MB")), "patches:bytes=1000000,texel=0.01");
+    for (const char* wrong :
+         {"patches:size=64", "patches:dir=+x", "patches:decode=plane", "patches:box=tight",
+          "patches:bytes=1023", "patches:bytes=1GB", "patches:bytes=many", "patches:texel=0", "cube:texel=1",
+          "cube:bytes=1MB", "front-back:bytes=1MB"}) {
         const Result<MapSpec> refused = parseMapSpec(wrong);
         ASSERT_FALSE(refused) << wrong;
         EXPECT_EQ(refused.error().code, ErrorCode::kUsage) << wrong;

@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Turned, SealedVoids, ::testing::Values(0.0, 33.0));
 TEST(SealedVoid, IsBakedFull) {
     const ShapedMesh shape = shaped(makeRooms());
     const MeshQuery query = queryOf(shape.mesh);
-    const DepthMap map = bakePatches(query, {.bytes = 200'000});
+    const DepthMap map = bakePatches(query, {.bytes = 200'000})->map;
     MersenneRandom random(3);
     for (int i = 0; i < 20'000; ++i) {
         const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};

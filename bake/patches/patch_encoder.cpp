@@ -1,0 +1,162 @@
+#include "bake/patches/patch_encoder.h"
+
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "bake/mesh/loops.h"
+
+namespace relief {
+namespace {
+
+class Encoder {
+  public:
+    Encoder(const MeshQuery& query, const LeafFitter& fitter, const PatchRoots& roots)
+        : query_(query), fitter_(fitter), roots_(roots) {}
+
+    [[nodiscard]] DepthMap encode(std::span<const PatchNode* const> nodes,
+                                  const std::function<void(double)>& progress) const {
+        // Records level by level, and where the children of each begin.
+        std::vector<const PatchNode*> records(nodes.begin(), nodes.end());
+        std::vector<std::uint32_t> first(records.size(), 0);
+        std::uint32_t levels = 0;
+        for (std::size_t at = 0, end = records.size(); at < records.size(); end = records.size()) {
+            bool any = false;
+            for (; at < end; ++at) {
+                first[at] = 1 + static_cast<std::uint32_t>(records.size());
+                if (records[at]->split) {
+                    any = true;
+                    for (const PatchNode& child : *records[at]->children) {
+                        if (child.hasRecord()) {
+                            records.push_back(&child);
+                        }
+                    }
+                    first.resize(records.size(), 0);
+                }
+            }
+            levels += any ? 1 : 0;
+        }
+        std::uint32_t next = 1 + static_cast<std::uint32_t>(records.size());
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            const PatchNode& node = *records[i];
+            if (!node.split && node.hasRecord()) {
+                first[i] = next;
+                next += node.shape().texels();
+            }
+        }
+        std::vector<PatchRecord> texels(next);
+        texels[0] = {roots_.count.x | roots_.count.y << 16U, roots_.count.z | levels << 16U};
+        std::atomic<std::size_t> done = 0;
+        forEachIndex(0, records.size(), 16, [&](std::size_t i) {
+            const PatchNode& node = *records[i];
+            progress(static_cast<double>(++done) / static_cast<double>(records.size()));
+            if (node.split) {
+                texels[1 + i] = splitOf(node, first[i]);
+            } else if (!node.hasRecord()) {
+                texels[1 + i] = flat(node);
+            } else {
+                writeLeaf(node, first[i], texels[1 + i], texels);
+            }
+        });
+        std::vector<std::byte> bytes;
+        for (const PatchRecord& texel : texels) {
+            appendPatchTexel(bytes, texel);
+        }
+        DepthMap map;
+        map.format = MapFormat::kPatches;
+        map.decode = Decode::kPlane;
+        map.object_per_map = glm::vec3(static_cast<float>(roots_.size));
+        for (int axis = 0; axis < 3; ++axis) {
+            map.object_to_map.row[axis] = glm::vec4(0.0F);
+            map.object_to_map.row[axis][axis] = static_cast<float>(1.0 / roots_.size);
+            map.object_to_map.row[axis].w = static_cast<float>(-roots_.origin[axis] / roots_.size);
+        }
+        const PatchMapSize size = patchMapSize(texels.size());
+        map.width = size.width;
+        map.height = size.height;
+        bytes.resize(map.texelBytes());
+        map.texels = std::move(bytes);
+        return map;
+    }
+
+  private:
+    /// A cell without a patch: the nearest surface.
+    [[nodiscard]] PatchRecord flat(const PatchNode& node) const {
+        const glm::dvec3 middle = node.cell.middle();
+        const ClosestPoint closest = query_.closest(glm::vec3(middle));
+        const bool inside = node.inside();
+        glm::dvec3 away = middle - closest.point;
+        away = length(away) > 0.0 ? (inside ? -away : away) : unitNormal(query_.mesh(), closest.triangle);
+        const double distance = closest.distance / roots_.size;
+        return PatchRecord::flat(inside, glm::vec3(unit(away)),
+                                 static_cast<float>(inside ? -distance : distance));
+    }
+
+    [[nodiscard]] PatchRecord splitOf(const PatchNode& node, std::uint32_t first) const {
+        std::uint32_t children = 0;
+        std::uint32_t inside = 0;
+        glm::dvec3 normal(0.0);
+        glm::dvec3 center(0.0);
+        double area = 0.0;
+        for (const ClippedTriangle& piece : clippedTriangles(unitTriangles(query_.mesh(), node.cell))) {
+            normal += piece.area * piece.normal;
+            center += piece.area * piece.center;
+            area += piece.area;
+        }
+        normal = length(normal) > 1e-9 * area ? unit(normal) : glm::dvec3(0.0, 1.0, 0.0);
+        center /= area;
+        int agree = 0;
+        for (unsigned i = 0; i < 8; ++i) {
+            const PatchNode& child = (*node.children)[i];
+            if (child.hasRecord()) {
+                children |= 1U << i;
+                continue;
+            }
+            const glm::dvec3 middle = 0.5 * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U) + 0.25;
+            inside |= child.inside() ? 1U << i : 0U;
+            agree += (dot(normal, middle - center) < 0.0) == child.inside() ? 1 : -1;
+        }
+        normal = agree < 0 ? -normal : normal;  // of meshes that are not wound
+        return PatchRecord::split(children, inside, first, glm::vec3(normal),
+                                  static_cast<float>(dot(normal, glm::dvec3(0.5) - center)));
+    }
+
+    /// Writes a leaf with a surface.
+    /// \param first  the texels that it has beside its record.
+    void writeLeaf(const PatchNode& node, std::uint32_t first, PatchRecord& record,
+                   std::vector<PatchRecord>& texels) const {
+        const auto write = [&](const PatchHeights& heights, std::uint32_t at) {
+            for (std::uint32_t k = 0; k < heightTexels(heights.side); ++k) {
+                texels[at + k] = heights.texel(k);
+            }
+        };
+        if (!node.shape().pair) {
+            const PatchHeights heights = fitter_.heights(node);
+            record = PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
+            write(heights, first);
+            return;
+        }
+        const std::array<PatchHeights, 2> pair = fitter_.pair(node);
+        record = PatchRecord::pair(node.walls, first);
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            // Outside is below the lower surface of a wall, and above that of a gap.
+            const std::uint32_t at = first + 2 + k * heightTexels(pair[k].side);
+            texels[first + k] =
+                PatchRecord::patch(patchFrames()[node.frame.index], (k == 0) == node.walls, pair[k], at);
+            write(pair[k], at);
+        }
+    }
+
+    const MeshQuery& query_;
+    const LeafFitter& fitter_;
+    const PatchRoots& roots_;
+};
+
+}  // namespace
+
+DepthMap encodePatches(const MeshQuery& query, const LeafFitter& fitter, const PatchRoots& roots,
+                       std::span<const PatchNode* const> nodes, const std::function<void(double)>& progress) {
+    return Encoder(query, fitter, roots).encode(nodes, progress);
+}
+
+}  // namespace relief
