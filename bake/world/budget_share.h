@@ -4,7 +4,7 @@
 //
 // The second half gives all the same texel in world units; the first keeps it from taking everything from small parts: of a
 // terrain of 1 km² and fifty props of 8 m² these would get 0.04 %. Shares are rounded down to steps of an eighth of an
-// octave, so that a mesh that changes leaves most others theirs, and they need not be baked again.
+// octave, so that a mesh that changes leaves most others theirs, and they need not be baked again. NOTES.md has other ways.
 #pragma once
 
 #include <cstdint>
