@@ -262,6 +262,10 @@ class Planner {
         const double byte = kByteOfTexel * texel_ * texel_ * texel_;
         const bool held = fitter_.hold(node, kHeldWithin * texel_, byte);
         if (!held && levels > 0) {
+            if (node.cell.triangles.size() >= kManyTriangles) {
+                report(kSearchShare *
+                       rootsDone());  // often enough for what ends it, where all is in one root
+            }
             makeChildren(node);
             node.split = true;
             const auto refineChild = [&](std::size_t i) { refine((*node.children)[i], levels - 1); };
@@ -276,6 +280,10 @@ class Planner {
         } else {
             texels_ += static_cast<std::uint64_t>(node.bytes / kPatchTexelBytes);
         }
+    }
+
+    [[nodiscard]] double rootsDone() const {
+        return static_cast<double>(roots_done_) / static_cast<double>(nodes_.size());
     }
 
     /// Sums up the children of a split node, which is none where they are all alike.
@@ -311,14 +319,11 @@ class Planner {
         makeRoots();
         texels_ = 0;
         texels_most_ = options_.bytes / static_cast<std::uint64_t>(kPatchTexelBytes);
-        std::size_t done = 0;
+        roots_done_ = 0;
         forEachIndex(0, nodes_.size(), 1, [&](std::size_t i) {
             refine(nodes_[i], levels);
-            const std::lock_guard lock(report_);
-            if (options_.progress) {
-                options_.progress(kSearchShare * static_cast<double>(++done) /
-                                  static_cast<double>(nodes_.size()));
-            }
+            ++roots_done_;
+            report(kSearchShare * rootsDone());
         });
         return texels_ <= texels_most_ && takenBytes() <= bytes_;
     }
@@ -376,6 +381,7 @@ class Planner {
     double texel_ = 0.0;                     // that the nodes were chosen by
     std::atomic<std::uint64_t> texels_ = 0;  // of leaves so far, by texel
     std::uint64_t texels_most_ = 0;
+    std::atomic<std::size_t> roots_done_ = 0;
     mutable std::mutex report_;
 };
 

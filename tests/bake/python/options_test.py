@@ -52,6 +52,8 @@ WAYS = [
     (dict(budget=60_000), ["--budget", "60000"]),
     (dict(budget=6e4), ["--budget", "60kB"]),
     (dict(budget=np.int64(60_000)), ["--budget", "60kB"]),
+    (dict(texel=0.02), ["--texel", "0.02"]),
+    (dict(budget="60kB", texel=0.001), ["--budget", "60kB", "--texel", "0.001"]),
     (dict(budget="60kB", layout="views", max_maps=3), ["--budget", "60kB", "--layout", "views", "--max-maps", "3"]),
     (dict(budget="60kB", layout="patches"), ["--budget", "60kB", "--layout", "patches"]),
     (dict(PLANNED, quality="best"), ["--budget", "60kB", "--quality", "best"]),
