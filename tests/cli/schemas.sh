@@ -123,7 +123,9 @@ outputs+=(world-check:world_file.json world-check:world_check.json world-info:wo
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" heights.png 70
 "$relief" bake heights.png --heights low=0,high=9 -o ground.relief --json >ground.json
 "$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json >ground_tiles.json
-outputs+=(ground-bake:ground.json ground-bake:ground_tiles.json)
+"$relief" check ground.relief --mesh heights.png --samples 500 --json >ground_check.json
+"$relief" check g/world.json --mesh heights.png --heights low=0,high=99,tile=64 --samples 500 --max-error 100 --json >ground_far.json
+outputs+=(ground-bake:ground.json ground-bake:ground_tiles.json ground-check:ground_check.json ground-check:ground_far.json)
 
 # A scene with everything in it.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
