@@ -155,6 +155,7 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
     settings.bake.quality = request.quality.value_or(settings.bake.quality);
     settings.bake.prefer = request.prefer.value_or(settings.bake.prefer);
     settings.bake.planned_texel = request.texel.value_or(0.0F);
+    settings.bake.roots_hold = request.roots_hold;
     settings.bake.threads = request.threads.value_or(settings.bake.threads);
     return settings;
 }

@@ -59,6 +59,8 @@ struct BakeRequest {
     std::optional<VoidsAs> voids;
     std::string heights;              ///< HeightsSpec: `mesh` is a height map; empty: it is a mesh
     std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
+    /// Object units: a box that the roots of planned patches hold beside the mesh. No option; it is not recorded.
+    std::optional<Bounds> roots_hold{};
 };
 
 template <class Visitor, FieldsOf<BakeRequest> Request>

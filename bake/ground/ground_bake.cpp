@@ -12,6 +12,7 @@
 
 #include "bake/mesh/loops.h"
 #include "bake/recipe/recipe_jobs.h"
+#include "bake/world/coarse_collider.h"
 #include "bake/world/world_files.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
@@ -189,7 +190,7 @@ class GroundBaker {
         baked.tile.steep = ground.steep;
         baked.tile.error_max = ground.error_max;
         baked.tile.box = ground.bounds;
-        if (!options_.folder.empty() && baked.tile.gpu_bytes > kCoarseFrom) {
+        if (!options_.folder.empty() && hasCoarse(collider)) {
             RELIEF_TRY(bakeCoarse(grid, place, std::move(collider), baked));
         }
         return baked;

@@ -32,15 +32,12 @@ struct GroundTile {
     std::string hash;  ///< XXH3-128 of the container
     std::uint64_t bytes = 0;
     std::uint64_t gpu_bytes = 0;
-    std::optional<WorldFile> coarse;  ///< of a tile of more than kCoarseFrom bytes
+    std::optional<WorldFile> coarse;  ///< where hasCoarse()
     std::uint64_t squares = 0;        ///< with ground
     std::uint64_t steep = 0;  ///< of its own squares, without the rim, those that are steeper than kSteepest
     double error_max = 0.0;   ///< of its heights, metres
     Bounds box;               ///< of its surface, in its own space
 };
-
-/// Of a tile on the GPU: where less than that is saved, it has no coarse likeness.
-inline constexpr std::uint64_t kCoarseFrom = 65'536;
 
 struct GroundResult {
     std::uint32_t columns = 0;  ///< of the height map

@@ -59,8 +59,14 @@ class Planner {
     Planner(const MeshQuery& query, const PatchOptions& options)
         : query_(query),
           options_(options),
+          held_(query.mesh().bounds),
           bytes_(static_cast<double>(options.bytes)),
-          fitter_(query, options.costs, options.lines) {}
+          fitter_(query, options.costs, options.lines) {
+        if (options.roots_hold) {
+            held_.add(options.roots_hold->min);
+            held_.add(options.roots_hold->max);
+        }
+    }
 
     Result<PatchTree> run() {
         if (options_.texel > 0.0) {
@@ -90,12 +96,12 @@ class Planner {
 
     /// Of roots of this size, along each axis.
     [[nodiscard]] glm::dvec3 rootsOf(double size) const {
-        const glm::dvec3 room = glm::dvec3(query_.mesh().bounds.size()) / size * kBesideRoots;
+        const glm::dvec3 room = glm::dvec3(held_.size()) / size * kBesideRoots;
         return glm::max(glm::ceil(room), glm::dvec3(1.0));
     }
 
     [[nodiscard]] double rootSizeByBytes() const {
-        double size = kBesideMesh * static_cast<double>(query_.mesh().bounds.longestSide());
+        double size = kBesideMesh * static_cast<double>(held_.longestSide());
         const auto fits = [&](const glm::dvec3& n) { return n.x * n.y * n.z * kBytesPerRoot <= bytes_; };
         while (fits(rootsOf(0.95 * size))) {
             size *= 0.95;
@@ -104,11 +110,10 @@ class Planner {
     }
 
     void makeRoots() {
-        const Bounds& bounds = query_.mesh().bounds;
-        const glm::dvec3 size = bounds.size();
+        const glm::dvec3 size = held_.size();
         roots_.count = glm::uvec3(rootsOf(roots_.size));
         roots_.origin =
-            glm::dvec3(bounds.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
+            glm::dvec3(held_.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
         nodes_.clear();
         nodes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -371,6 +376,7 @@ class Planner {
 
     const MeshQuery& query_;
     const PatchOptions& options_;
+    Bounds held_;  // of the mesh, and of what the roots are to hold beside it
     double bytes_;
     LeafFitter fitter_;
     PatchRoots roots_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "bake/mesh/mesh_query.h"
 #include "bake/patches/leaf_fitter.h"
@@ -18,7 +19,8 @@ struct PatchOptions {
     /// Object units; above 0 it decides in place of the bytes: a cell is split as long as its patch is off by more than a quarter
     /// of the texel, and its side is longer than two of them.
     double texel = 0.0;
-    bool coarsen = false;  ///< where that takes more bytes, a texel is taken that does not
+    bool coarsen = false;                ///< where that takes more bytes, a texel is taken that does not
+    std::optional<Bounds> roots_hold{};  ///< object units: a box that the roots hold beside the mesh
     MistakeCosts costs{};
     LeafLines lines{};
     /// A leaf is split on trial where it has more mistakes than so many bytes are worth: fewer find more, in more time.

@@ -191,6 +191,7 @@ PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
     options.bytes = spec.bytes > 0 ? spec.bytes : kPatchBytesMax;
     options.texel = double{spec.texel};
     options.coarsen = spec.bytes > 0;
+    options.roots_hold = bake.roots_hold;
     options.costs.false_inside = bake.prefer == Prefer::kOutside ? kPreferredCost : 1.0;
     options.costs.false_outside = bake.prefer == Prefer::kInside ? kPreferredCost : 1.0;
     if (bake.quality == Quality::kFast) {

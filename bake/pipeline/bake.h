@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct BakeOptions {
     std::uint64_t planned_budget = 0;
     /// Of planned patches, object units: MapSpec::texel; 0: by the budget.
     float planned_texel = 0.0F;
-    unsigned threads = 0;  ///< 0: all cores. Never changes the result.
+    std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
+    unsigned threads = 0;                ///< 0: all cores. Never changes the result.
     /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1]. It may throw:
     /// what it throws comes out of bake(), and ends it.
     std::function<void(double)> progress;

@@ -17,6 +17,7 @@
 #include "bake/report/report_text.h"
 #include "bake/shape/shape_options.h"
 #include "bake/world/budget_share.h"
+#include "bake/world/coarse_collider.h"
 #include "bake/world/world_files.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
@@ -171,9 +172,7 @@ class WorldBaker {
             collider.file = fileStem(mesh.name) + "-" +
                             assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
                             std::string(kColliderExtension);
-            const auto found = cache->find(collider.file);
-            const bool fresh = found != cache->end() && isUpToDate(entry, found->second, collider);
-            if (!fresh) {
+            if (!isUpToDate(entry, *cache, collider)) {
                 collider.state = WorldColliderState::kFailed;  // until it is baked
                 stale_.push_back(i);
             }
@@ -183,20 +182,47 @@ class WorldBaker {
         return {};
     }
 
-    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntry& known,
-                                  WorldColliderResult& collider) const {
+    /// The bytes of a container that is as it was baked, by these options from these inputs.
+    [[nodiscard]] std::optional<std::vector<std::byte>> upToDate(const BakeCacheEntry& wanted,
+                                                                 const BakeCacheEntries& cache,
+                                                                 const std::string& file) const {
+        const auto found = cache.find(file);
+        if (found == cache.end()) {
+            return std::nullopt;
+        }
+        const BakeCacheEntry& known = found->second;
         if (known.tool != wanted.tool || known.options != wanted.options || known.inputs != wanted.inputs) {
+            return std::nullopt;
+        }
+        Result<std::vector<std::byte>> bytes = readFile(request_.folder / file);
+        return bytes && xxh3_128Hex(*bytes) == known.output_hash ? std::optional(*std::move(bytes))
+                                                                 : std::nullopt;
+    }
+
+    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntries& cache,
+                                  WorldColliderResult& collider) const {
+        const auto bytes = upToDate(wanted, cache, collider.file);
+        const Result<Collider> there = bytes ? readContainer(*bytes) : Result<Collider>(Collider());
+        if (!bytes || !there) {
             return false;
         }
-        const auto bytes = readFile(request_.folder / collider.file);
-        if (!bytes || xxh3_128Hex(*bytes) != known.output_hash) {
-            return false;
+        take(*there, *bytes, collider);
+        if (!hasCoarse(*there)) {
+            return true;
         }
-        const Result<Collider> there = readContainer(*bytes);
-        if (there) {
-            take(*there, *bytes, collider);
+        const std::string file = coarseFile(collider.file);
+        const auto coarse = upToDate(wanted, cache, file);
+        const Result<Collider> likeness = coarse ? readContainer(*coarse) : Result<Collider>(Collider());
+        if (coarse && likeness) {
+            collider.coarse = WorldFile{file, xxh3_128Hex(*coarse), likeness->gpuBytes()};
+            collider.coarse_bytes = coarse->size();
         }
-        return there.has_value();
+        return collider.coarse.has_value();
+    }
+
+    static std::string coarseFile(const std::string& file) {
+        const std::size_t key = file.size() - kColliderExtension.size() - kKeyDigits;
+        return file.substr(0, key) + "coarse-" + file.substr(key);
     }
 
     static void take(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider) {
@@ -244,7 +270,7 @@ class WorldBaker {
     }
 
     Result<void> tryBake(std::size_t i, WorldColliderResult& collider) {
-        BakeResult result = RELIEF_TRY(bake(requests_[i], {}, std::move(level_.meshes[i])));
+        BakeResult result = RELIEF_TRY(bake(requests_[i], {}, level_.meshes[i]));
         const auto bytes =
             RELIEF_TRY(writeContainer(result.baked.collider, {static_cast<int>(request_.compress)}));
         if (!request_.bake.no_check) {
@@ -263,7 +289,15 @@ class WorldBaker {
         }
         RELIEF_TRY(writeFile(request_.folder / collider.file, bytes));
         take(result.baked.collider, bytes, collider);
-        return {};
+        TriangleMesh mesh = std::move(level_.meshes[i]);
+        if (!hasCoarse(result.baked.collider)) {
+            return {};
+        }
+        const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], result.baked.collider, std::move(mesh)));
+        const auto coarse_bytes = RELIEF_TRY(writeContainer(coarse, {static_cast<int>(request_.compress)}));
+        collider.coarse = WorldFile{coarseFile(collider.file), xxh3_128Hex(coarse_bytes), coarse.gpuBytes()};
+        collider.coarse_bytes = coarse_bytes.size();
+        return writeFile(request_.folder / collider.coarse->file, coarse_bytes);
     }
 
     /// \pre No other thread is in it.
@@ -275,7 +309,12 @@ class WorldBaker {
         BakeCacheEntry entry = entries_[i];
         entry.output_hash = collider.hash;
         entry.output_bytes = collider.bytes;
-        fresh_[collider.file] = std::move(entry);
+        fresh_[collider.file] = entry;
+        if (collider.coarse) {
+            entry.output_hash = collider.coarse->hash;
+            entry.output_bytes = collider.coarse_bytes;
+            fresh_[collider.coarse->file] = std::move(entry);
+        }
         // A killed run loses so much; the last write reports errors.
         if (since_cached_.seconds() > 2.0 && updateBakeCache(request_.folder, fresh_)) {
             fresh_.clear();
@@ -287,8 +326,10 @@ class WorldBaker {
         World& world = result_.world;
         world.unit = level_.unit;
         for (const WorldColliderResult& collider : result_.colliders) {
-            world.colliders.push_back(
-                {{collider.file, collider.hash, collider.gpu_bytes}, collider.mesh, collider.box, {}});
+            world.colliders.push_back({{collider.file, collider.hash, collider.gpu_bytes},
+                                       collider.mesh,
+                                       collider.box,
+                                       collider.coarse});
         }
         for (const LevelBody& body : level_.bodies) {
             world.bodies.push_back(bodyOf(body));

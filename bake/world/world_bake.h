@@ -48,6 +48,8 @@ struct WorldColliderResult {
     std::uint64_t bytes = 0;              ///< of the container
     std::uint64_t gpu_bytes = 0;
     Bounds box;
+    std::optional<WorldFile> coarse;    ///< where hasCoarse()
+    std::uint64_t coarse_bytes = 0;     ///< of that container
     std::optional<WrongShare> wrong;    ///< near the surface; of one that was baked
     std::vector<std::string> warnings;  ///< one line each
     double ms = 0.0;                    ///< of its bake

@@ -33,6 +33,8 @@ void fields(Visitor& visit, R& report) {
     visit("budget", c.budget, {"Its share of the budget; null of --texel alone", "bytes"});
     visit("bytes", c.bytes, {"Size of the container; 0 if it failed", "bytes"});
     visit("gpu_bytes", c.gpu_bytes, {"Bytes that it takes on the GPU; 0 if it failed", "bytes"});
+    visit("coarse", c.coarse,
+          {"Container that stands in for it while it is not on the GPU; null where that would save little"});
     visit("hash", c.hash, {.help = "XXH3-128 of the container; empty if it failed", .pattern = kHashPattern});
     visit("wrong_percent", c.wrong ? std::optional(c.wrong->total()) : std::nullopt,
           {"Share of the points near its surface that are on the wrong side; null unless it was baked and "

@@ -1,0 +1,27 @@
+// Coarse likenesses of a level's colliders, which stand in for them while a program loads these (runtime/stream).
+#pragma once
+
+#include <cstdint>
+
+#include "bake/director/bake_request.h"
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
+#include "formats/collider.h"
+
+namespace relief {
+
+/// Bytes on the GPU: a collider that takes no more has none, as that would save little.
+inline constexpr std::uint64_t kCoarseFrom = 65'536;
+
+/// Whether a collider of a level has one: of a single map of patches, and not a small one.
+[[nodiscard]] bool hasCoarse(const Collider& fine);
+
+/// One of a sixteenth of the bytes, whose box holds that of the fine one, so that a program need not sort its bodies anew when
+/// it takes one for the other. Shells of open sheets are as thick as its texels ask for.
+/// \param request  that `fine` was baked by.
+/// \param mesh     the same that `fine` was baked from.
+/// Errors: those of bake().
+[[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const Collider& fine,
+                                          TriangleMesh mesh);
+
+}  // namespace relief

@@ -1,0 +1,67 @@
+#include "bake/world/coarse_collider.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "bake/director/director.h"
+#include "tests/bake/meshes.h"
+#include "tests/seeds.h"
+
+namespace relief::test {
+namespace {
+
+bool contains(const Bounds& outer, const Bounds& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
+}
+
+TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
+    std::mt19937 random(seedFrom(41));
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (const double radius : {0.5, 30.0}) {
+        const glm::dvec3 center(3.0 * unit(random), 20.0, -7.0);
+        const TriangleMesh mesh = makeIcosphere(center, radius, 5);
+        for (const std::uint64_t budget : {150'000U, 400'000U}) {
+            BakeRequest request;
+            request.budget = budget;
+            request.no_check = true;
+            const Result<BakeResult> fine = bake(request, {}, mesh);
+            ASSERT_TRUE(fine) << fine.error().message;
+            ASSERT_TRUE(hasCoarse(fine->baked.collider));
+            const Result<Collider> coarse = bakeCoarse(request, fine->baked.collider, mesh);
+            ASSERT_TRUE(coarse) << coarse.error().message;
+            EXPECT_LE(16 * coarse->gpuBytes(), fine->baked.collider.gpuBytes());
+            EXPECT_TRUE(contains(insideBox(*coarse).value(), insideBox(fine->baked.collider).value()));
+            EXPECT_EQ(coarse->bounds, fine->baked.collider.bounds);
+            const Result<Collider> again = bakeCoarse(request, fine->baked.collider, mesh);
+            ASSERT_TRUE(again);
+            EXPECT_EQ(*again, *coarse);
+            int known = 0;
+            for (int i = 0; i < 4000; ++i) {
+                const glm::dvec3 p =
+                    center + 1.2 * radius * glm::dvec3(unit(random), unit(random), unit(random));
+                const double away = glm::distance(p, center) - radius;
+                if (std::abs(away) > 0.01 * radius) {
+                    ++known;
+                    ASSERT_EQ(evaluate(*coarse, glm::vec3(p)).inside(), away < 0.0) << away / radius;
+                }
+            }
+            EXPECT_GT(known, 3500);
+        }
+    }
+}
+
+TEST(CoarseCollider, SmallOnesAndOtherMapsHaveNone) {
+    const TriangleMesh mesh = makeIcosphere({0.0, 0.0, 0.0}, 1.0, 3);
+    BakeRequest request;
+    request.budget = 60'000;
+    EXPECT_FALSE(hasCoarse(bake(request, {}, mesh).value().baked.collider));
+    request.budget = 400'000;
+    request.layout = Layout::kViews;
+    EXPECT_FALSE(hasCoarse(bake(request, {}, mesh).value().baked.collider));
+}
+
+}  // namespace
+}  // namespace relief::test
