@@ -19,6 +19,8 @@
 #   cases   more than 500 random inputs of the generators in tests/cases, by the same seed: none is silently wrong, hangs or
 #           crashes
 #   level   a terrain of a kilometre with 200 pieces of furniture (tests/long/level.py): its verdict names what is lost
+#   ground  hills of 4097 x 4097 samples in 64 tiles: points at seams are no worse than others, a million drops fall on the seams,
+#           and none through or up; balls roll over seams as they do elsewhere; and with a tenth of it in memory none falls through.
 #   clang   everything is built by clang too, without a warning, and passes its tests.
 #   load    the release tests pass five times while stress-ng keeps processors, memory and disk busy.
 #   bare    .ci/run, from nothing, in a minimal Debian 12 that mmdebstrap makes; scripts/test.sh there without root; and
@@ -35,7 +37,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 scripts/setup.sh
-all_runs=(sweep rest import mutants gles package headers bytes seeds cases level clang sanitize load bare packages embree4 outputs blender slurm
+all_runs=(sweep rest import mutants gles package headers bytes seeds cases level ground clang sanitize load bare packages embree4 outputs blender slurm
     corpus fuzz)
 runs=("$@")
 [ ${#runs[@]} -gt 0 ] || runs=("${all_runs[@]}")
@@ -303,6 +305,41 @@ P
     # As a world of the same bytes it is right.
     "$bin/relief" bake "$work/level.glb" --world "$work/world" --budget 16MB -q &&
         "$bin/relief" check "$work/world/world.json" --mesh "$work/level.glb" --within 0.5 --max-error 2
+}
+
+ground() {
+    local bin side=4097 drops=1048576 balls=16384 dir=$work/ground name
+    bin=$(scripts/build.sh release relief relief-sim) || return 1
+    hills() { python3 tests/long/ground.py "$@"; }
+    mkdir -p "$dir" && hills write "$dir/hills.r16" $side &&
+        "$bin/relief" bake "$dir/hills.r16" --heights low=0,high=300,tile=512 --world "$dir/w" &&
+        "$bin/relief" check "$dir/w/world.json" --mesh "$dir/hills.r16" | head -7 || return 1
+    hills points "$dir/drops.csv" $side $drops && hills points "$dir/balls.csv" $side $balls &&
+        hills points "$dir/aside.csv" $side $balls --aside 256 &&
+        hills scene w/world.json $side drops drops.csv $drops >"$dir/drops.toml" &&
+        hills scene w/world.json $side drops drops.csv $drops --stream 6 >"$dir/stream.toml" || return 1
+    for name in drops stream; do
+        "$bin/relief-sim" "$dir/$name.toml" --dump "$dir/$name.ply" && hills below "$dir/$name.ply" $side >"$dir/$name" ||
+            return 1
+    done
+    for name in balls aside; do
+        hills scene w/world.json $side balls $name.csv $balls >"$dir/$name.toml" || return 1
+        for steps in 100 300; do
+            "$bin/relief-sim" "$dir/$name.toml" --steps $steps --dump "$dir/$name$steps.ply" -q || return 1
+        done
+        hills kicks "$dir/$name"100.ply "$dir/$name"300.ply >"$dir/$name" || return 1
+    done
+    python3 - "$dir" <<'P'
+import sys
+drops, stream, balls, aside = ([float(word) for word in open(f'{sys.argv[1]}/{name}').read().split()]
+                               for name in ('drops', 'stream', 'balls', 'aside'))
+print(f'ground: {drops[0]:.0f} drops on seams, {drops[1]:.0f} deeper than 5 cm, the deepest {1000 * drops[2]:.0f} mm, the highest '
+      f'{1000 * drops[3]:.0f} mm; with 6 MB the deepest {stream[2]:.2f} m; of balls 999 of 1000 gain at most {balls[1]:.3f} J/kg, beside '
+      f'seams {aside[1]:.3f}, and any at most {balls[2]:.2f} and {aside[2]:.2f}')
+# Coarse tiles, of every fourth sample, are up to 1.5 m off.
+sys.exit(0 if drops[1] == 0 and drops[3] < 0.05 and stream[2] < 1.5 and stream[0] == drops[0] and balls[1] < 0.05 and
+         balls[2] < 1.1 * aside[2] + 0.05 else 1)
+P
 }
 
 clang() {
