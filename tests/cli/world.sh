@@ -37,12 +37,18 @@ level level.gltf x=3 high=1.01
 expect 0 "$relief" bake level.gltf --world w --budget 200kB --json
 json stdout "d['baked'] == 2 and d['up_to_date'] == 1 and len(d['removed']) == 2"
 json stdout "d['colliders'][0]['state'] == 'up to date' and d['colliders'][0]['wrong_percent'] is None"
-[ "$(find w -name '*.relief' | wc -l)" -eq 3 ] || die "containers are left over: $(ls w)"
+# The floor is large enough for a coarse one beside it.
+[ "$(find w -name '*.relief' | wc -l)" -eq 4 ] && [ "$(find w -name 'floor-coarse-*' | wc -l)" -eq 1 ] || die "containers are left over: $(ls w)"
 # A container that was damaged is baked again, with the same bytes.
 containers w >now
 for file in w/box-*.relief; do printf x >>"$file"; done
 expect 0 "$relief" bake level.gltf --world w --budget 200kB
 grep -q ' 2 baked, 1 up to date' stderr || die "damaged containers: $(cat stderr)"
+containers w | diff now - || die "baked again, the bytes differ"
+rm w/floor-coarse-*.relief
+expect_error 2 'colliders\[0\]\.coarse' "$relief" check w/world.json
+expect 0 "$relief" bake level.gltf --world w --budget 200kB
+grep -q ' 1 baked, 2 up to date' stderr || die "a coarse container is missing: $(cat stderr)"
 containers w | diff now - || die "baked again, the bytes differ"
 
 # Where a mesh fails, the world stays, and what was baked is not lost. Others' files are never touched.
@@ -54,7 +60,7 @@ cmp before.json w/world.json || die "a failed bake changes the world"
 expect 0 "$relief" check w/world.json
 level other.gltf box=0
 expect 0 "$relief" bake other.gltf --world w --budget 200kB --as shell --thickness 1.5 --json
-json stdout "len(d['removed']) == 3 and d['bodies'] == 1"
+json stdout "len(d['removed']) == 4 and d['bodies'] == 1"
 [ "$(cat w/mine.relief)" = mine ] || die "a file of somebody else is gone"
 
 # The contents.
