@@ -110,7 +110,9 @@ void fields(Visitor& visit, Request& request) {
          .unit = "object units",
          .range = {0.0, 1e15, false},
          .value = "LENGTH",
-         .must = "a length above 0, in the collider's units; with --world, of the level",
+         .must = "a length above 0, in the collider's units, with --world of the level; of metres also with "
+                 "mm, cm or m "
+                 "behind it",
          .recorded = true});
     visit(
         "max_error", request.max_error,

@@ -42,7 +42,8 @@ void measurementFields(Visitor& visit, Request& request) {
            .range = {0.0, double{1e15F}},
            .fallback = "a thousandth of the longest part, in metres at most 0.1",
            .value = "LENGTH",
-           .must = "a length of at least 0, in the collider's units"});
+           .must =
+               "a length of at least 0, in the collider's units; of metres also with mm, cm or m behind it"});
 }
 
 template <class Visitor, FieldsOf<CheckRequest> Request>

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <utility>
 
 #include "formats/base/text.h"
 
@@ -78,11 +79,28 @@ std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint
     return {};
 }
 
+/// Of a length whose unit is behind it: of metres, which is what object units are where a file says so.
+double takeUnit(std::string_view& word) {
+    static constexpr std::array<std::pair<std::string_view, double>, 4> kUnits{
+        {{"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}, {"m", 1.0}}};
+    for (const auto& [unit, metres] : kUnits) {
+        if (word.ends_with(unit)) {
+            word.remove_suffix(unit.size());
+            return metres;
+        }
+    }
+    return 1.0;
+}
+
 std::string readFloat(std::string_view word, const FieldInfo& info, float& value) {
     const bool percent = info.unit == "%";
     std::string_view plain = trimmed(word);
     plain.remove_suffix(percent && plain.ends_with('%') ? 1 : 0);
-    const std::optional<float> number = parseFloat(trimmed(plain));
+    const double scale = info.unit == "object units" ? takeUnit(plain) : 1.0;
+    std::optional<float> number = parseFloat(trimmed(plain));
+    if (number && scale != 1.0) {
+        number = static_cast<float>(parseDouble(trimmed(plain)).value_or(0.0) * scale);
+    }
     if (!number || !info.range.holds(double{*number})) {
         return butMustBe(word, !info.must.empty() ? info.must
                                : percent          ? "a share in percent, such as 1.5"

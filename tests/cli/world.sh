@@ -117,7 +117,7 @@ cp stdout texel.json
 expect 0 "$relief" check by_texel/world.json --mesh level.gltf --max-error 0.5 -q
 expect 0 "$relief" info "by_texel/$(python3 -c "import json; print(json.load(open('texel.json'))['colliders'][1]['file'])")"
 grep -q -- '--texel 0.01' stdout || die "a mesh at scale 2 has another texel: $(cat stdout)"
-expect 0 "$relief" bake level.gltf --world by_texel --texel 0.02
+expect 0 "$relief" bake level.gltf --world by_texel --texel 2cm
 grep -q '5 bodies of 3 colliders: 0 baked, 3 up to date' stderr || die "by texel, not up to date: $(cat stderr)"
 # With a budget as well, what does not get there is named.
 expect 0 "$relief" bake level.gltf --world by_texel --texel 0.0005 --budget 60kB --json

@@ -80,6 +80,23 @@ TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
     }
 }
 
+TEST(BakeRequest, LengthsMayHaveAUnitBehindThem) {
+    for (const auto& [word, metres] :
+         {std::pair("1cm", 0.01F), {"0.01", 0.01F}, {"2.5 mm", 0.0025F}, {"3m", 3.0F}, {"0.5km", 500.0F}}) {
+        BakeRequest request;
+        EXPECT_TRUE(setField(request, "texel", word)) << word;
+        EXPECT_EQ(request.texel, metres) << word;
+    }
+    for (const char* word : {"1inch", "cm", "0mm", "-1cm", "1cmm", "1e30km"}) {
+        BakeRequest request;
+        const Result<void> set = setField(request, "texel", word);
+        ASSERT_FALSE(set) << word;
+        EXPECT_TRUE(set.error().message.starts_with("--texel is '" + std::string(word) +
+                                                    "' but must be a length above 0"))
+            << set.error().message;
+    }
+}
+
 TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
     const auto fault = [](const std::vector<std::pair<std::string, std::string>>& words) {
         BakeRequest request;
