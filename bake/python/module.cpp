@@ -369,10 +369,10 @@ class HeadlessSimulation {
         overrides.root = root;
         loaded_ = std::make_unique<LoadedScene>(need(released([&] { return loadAll(scene, overrides); })));
         simulation_ = std::make_unique<Simulation>(need(released([&] {
-            return Simulation::create(*loaded_, StepPath::kAuto, nullptr, [] {
+            return Simulation::create(*loaded_, {.checkpoint = [] {
                 const py::gil_scoped_acquire held;
                 raiseSignals();
-            });
+            }});
         })));
         if (hits) {
             hits_ = std::make_unique<std::vector<Hit>>();

@@ -141,7 +141,8 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     std::vector<std::string> warnings = sceneWarnings(loaded);
     RELIEF_TRY(checkFrames(options, loaded.scene, guard));
     const auto context = RELIEF_TRY(makeContext(options));
-    auto simulation = RELIEF_TRY(Simulation::create(loaded, options.path, options.watchdog));
+    auto simulation =
+        RELIEF_TRY(Simulation::create(loaded, {.path = options.path, .watchdog = options.watchdog}));
     Outputs outputs(options, loaded, simulation.textures());
     RELIEF_TRY(outputs.open());
     if (EventsLog* events = outputs.events(); events != nullptr) {

@@ -63,10 +63,10 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 }  // namespace
 
 /// The colliders on the GPU: a single one without a pose in its own space, others in the world.
-Result<void> Simulation::makeTextures(const LoadedScene& loaded) {
+Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr<ColliderSource> source) {
     const SceneCollider& first = loaded.scene.colliders.front();
     if (loaded.scene.stream) {
-        stream_ = RELIEF_TRY(makeStream(loaded, bodiesOf(loaded)));
+        stream_ = RELIEF_TRY(makeStream(loaded, bodiesOf(loaded), std::move(source)));
         return {};
     }
     const bool alone = loaded.colliders.size() == 1 && !first.posed && !first.live;
@@ -76,9 +76,9 @@ Result<void> Simulation::makeTextures(const LoadedScene& loaded) {
     return {};
 }
 
-Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, Watchdog* watchdog,
-                                      const std::function<void()>& checkpoint) {
+Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptions options) {
     Simulation made;
+    Watchdog* const watchdog = options.watchdog;
     const Scene& scene = loaded.scene;
     made.loaded_ = &loaded;
     made.scene_ = &scene;
@@ -88,17 +88,21 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, StepPath path, 
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty(); });
     made.poses_ = posesAt(scene, 0.0);
-    RELIEF_TRY(
-        inFront(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
-                watched(watchdog, "uploading the collider", [&] { return made.makeTextures(loaded); })));
+    if (options.source) {
+        made.stream_waits_ = false;
+        made.points_.emplace();
+    }
+    RELIEF_TRY(inFront(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
+                       watched(watchdog, "uploading the collider",
+                               [&] { return made.makeTextures(loaded, std::move(options.source)); })));
     RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
-                                        [&] { return makeParticles(scene, made.textures(), path); }));
+                                        [&] { return makeParticles(scene, made.textures(), options.path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.showLive(made.particles_->time()); }));
     RELIEF_TRY(watched(watchdog, "the shaders of events", [&] { return made.setEvents(); }));
-    RELIEF_TRY(made.prewarm(watchdog, checkpoint));
+    RELIEF_TRY(made.prewarm(watchdog, options.checkpoint));
     return made;
 }
 
@@ -127,7 +131,7 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(takeEvents(kStepsUnderWay));
     RELIEF_TRY(giveBirth(dt));
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
-    RELIEF_TRY(loadFor(particles_->time()));
+    RELIEF_TRY(stream());
     RELIEF_TRY(particles_->step(dt));
     if (particles_->eventList() != nullptr) {
         particles_->requestEvents(tag);
@@ -216,8 +220,23 @@ Result<void> Simulation::moveColliders(double time) {
     return showLive(time);
 }
 
-Result<void> Simulation::loadFor(double time) {
-    return stream_ ? stream_->finish(streamPoints(*loaded_, motions_, time)) : Result<void>();
+std::vector<PointOfInterest> Simulation::streamPointsNow() const {
+    const double time = particles_->time();
+    std::vector<PointOfInterest> points = emitterPoints(emitters_, motions_, scene_->stream->radius, time);
+    if (points_) {
+        points.insert(points.end(), points_->begin(), points_->end());
+    } else {
+        points.push_back(cameraPoint(*loaded_, time));
+    }
+    return points;
+}
+
+Result<void> Simulation::load() {
+    return stream_ ? stream_->finish(streamPointsNow()) : Result<void>();
+}
+
+Result<void> Simulation::stream() {
+    return stream_ && !stream_waits_ ? stream_->update(streamPointsNow()) : load();
 }
 
 Result<void> Simulation::makeLive(const LoadedScene& loaded) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -19,18 +20,23 @@
 
 namespace relief {
 
+struct SimulationOptions {
+    StepPath path = StepPath::kAuto;  ///< of the particles' steps
+    Watchdog* watchdog = nullptr;     ///< may be null
+    /// Called between steps before time 0; what it throws comes out of create(). May be empty.
+    std::function<void()> checkpoint = {};
+    /// Brings the colliders of a scene with a [stream]. Steps do not wait for it, so that no two runs need be alike, and the
+    /// scene's camera does not count. Null: the files beside the world, and each step waits for all that it wants.
+    std::unique_ptr<ColliderSource> source = nullptr;
+};
+
 class Simulation {
   public:
     /// Needs a current context, as step() does. Plays what comes before time 0 (time.prewarm).
-    /// \param loaded    must outlive this.
-    /// \param path      of the particles' steps.
-    /// \param watchdog  may be null.
-    /// \param checkpoint  called between steps before time 0; what it throws comes out of here. May be empty.
+    /// \param loaded  must outlive this.
     /// Fails as ColliderTextures, LiveCollider, WobblePass and ParticleSystem do. An error of the textures names the scene's
     /// world, or its first collider.
-    [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, StepPath path,
-                                                   Watchdog* watchdog,
-                                                   const std::function<void()>& checkpoint = {});
+    [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, SimulationOptions options = {});
 
     /// Births, those of the scene's [[spawn]] by events of the step before the last, then the colliders' poses and shapes
     /// at the step's end, then the particles' step.
@@ -72,6 +78,16 @@ class Simulation {
     }
     /// Births of emitters and [[spawn]] that were dropped because the particle system had no room.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
+    /// Places besides the emitters' where a world that is streamed has full detail, in place of the scene's camera. From the next
+    /// step on.
+    void setPoints(std::vector<PointOfInterest> points) { points_ = std::move(points); }
+    /// Before a step: uploads all of a world that is streamed that is wanted and has come, however many bytes, and requests the
+    /// rest. Waits for that as its source does. Fails as WorldStream::finish does.
+    [[nodiscard]] Result<void> load();
+    /// nullopt: no world is streamed.
+    [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
+        return stream_ ? std::optional(stream_->counts()) : std::nullopt;
+    }
     /// The mesh of a collider that deforms, as it is now; null: that one does not.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
 
@@ -82,10 +98,12 @@ class Simulation {
         WobblePass pass;
     };
     Simulation() = default;
-    [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded);
+    [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
+                                            std::unique_ptr<ColliderSource> source);
     [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
-    /// Waits for all that a step from this time on needs of a world that is streamed.
-    [[nodiscard]] Result<void> loadFor(double time);
+    /// Of a world that is streamed, for a step from now on.
+    [[nodiscard]] std::vector<PointOfInterest> streamPointsNow() const;
+    [[nodiscard]] Result<void> stream();
     [[nodiscard]] Result<void> makeLive(const LoadedScene& loaded);
     /// Deforms all that are live to a time, in seconds, and draws their maps. Before each step, for its end.
     [[nodiscard]] Result<void> showLive(double time);
@@ -107,6 +125,8 @@ class Simulation {
     std::vector<EmitterMotion> motions_;          // as many
     std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it
     std::unique_ptr<WorldStream> stream_;         // in place of them
+    bool stream_waits_ = true;
+    std::optional<std::vector<PointOfInterest>> points_;
     std::vector<LiveBody> live_;
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // of a step, kept for its memory

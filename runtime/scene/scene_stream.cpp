@@ -9,6 +9,8 @@ namespace relief {
 namespace {
 
 constexpr double kMegabyte = 1e6;
+/// Colliders under way where their way is long: as many as a browser has connections to a server.
+constexpr std::size_t kFromAfar = 6;
 
 /// A ball that holds all places of birth, in the emitter's space.
 PointOfInterest ballOf(const EmitterSettings& emitter) {
@@ -32,28 +34,37 @@ PointOfInterest ballOf(const EmitterSettings& emitter) {
 }  // namespace
 
 Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
-                                                std::span<const ColliderBody> bodies) {
+                                                std::span<const ColliderBody> bodies,
+                                                std::unique_ptr<ColliderSource> source) {
     const Scene& scene = loaded.scene;
-    auto source = RELIEF_TRY(makeFileSource(loaded.world, scene.world.parent_path()));
+    StreamOptions options{.gpu_bytes = static_cast<std::uint64_t>(kMegabyte * double{scene.stream->memory})};
+    if (source) {
+        options.under_way = kFromAfar;
+    } else {
+        source = RELIEF_TRY(makeFileSource(loaded.world, scene.world.parent_path()));
+    }
     std::vector<const Collider*> coarse;
     for (const auto& collider : loaded.world_colliders) {
         coarse.push_back(collider.get());
     }
-    const auto bytes = static_cast<std::uint64_t>(kMegabyte * double{scene.stream->memory});
-    return WorldStream::create(loaded.world, bodies, coarse, std::move(source), {.gpu_bytes = bytes});
+    return WorldStream::create(loaded.world, bodies, coarse, std::move(source), options);
 }
 
-std::vector<PointOfInterest> streamPoints(const LoadedScene& loaded, std::span<const EmitterMotion> motions,
-                                          double seconds) {
-    const float radius = loaded.scene.stream->radius;
-    std::vector<PointOfInterest> points{{sceneCamera(loaded.scene, loaded.bounds, seconds).eye, radius}};
-    for (std::size_t i = 0; i < loaded.emitters.size(); ++i) {
-        const PointOfInterest ball = ballOf(loaded.emitters[i].settings());
+std::vector<PointOfInterest> emitterPoints(std::span<const Emitter> emitters,
+                                           std::span<const EmitterMotion> motions, float radius,
+                                           double seconds) {
+    std::vector<PointOfInterest> points;
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        const PointOfInterest ball = ballOf(emitters[i].settings());
         Birth middle{.position = ball.position};
         carry(motions[i], seconds, {&middle, 1});
         points.push_back({middle.position, ball.radius + radius});
     }
     return points;
+}
+
+PointOfInterest cameraPoint(const LoadedScene& loaded, double seconds) {
+    return {sceneCamera(loaded.scene, loaded.bounds, seconds).eye, loaded.scene.stream->radius};
 }
 
 }  // namespace relief

@@ -13,15 +13,20 @@ namespace relief {
 
 /// \param loaded  with a [stream].
 /// \param bodies  the scene's colliders.
+/// \param source  of the world's; null: makeFileSource().
 /// Errors: those of WorldStream::create and makeFileSource.
 [[nodiscard]] Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
-                                                              std::span<const ColliderBody> bodies);
+                                                              std::span<const ColliderBody> bodies,
+                                                              std::unique_ptr<ColliderSource> source);
 
-/// Balls about the camera and about the birthplaces of each emitter, wider by the radius of the [stream].
-/// \param seconds  since the beginning; emitters and a camera that move are where they are then.
+/// Balls about the birthplaces of each emitter, wider by a radius.
 /// \param motions  of the emitters.
-[[nodiscard]] std::vector<PointOfInterest> streamPoints(const LoadedScene& loaded,
-                                                        std::span<const EmitterMotion> motions,
-                                                        double seconds);
+/// \param radius   of the [stream].
+/// \param seconds  since the beginning; emitters that move are where they are then.
+[[nodiscard]] std::vector<PointOfInterest> emitterPoints(std::span<const Emitter> emitters,
+                                                         std::span<const EmitterMotion> motions, float radius,
+                                                         double seconds);
+/// A ball of the radius of the [stream] about the scene's camera.
+[[nodiscard]] PointOfInterest cameraPoint(const LoadedScene& loaded, double seconds);
 
 }  // namespace relief

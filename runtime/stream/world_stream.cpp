@@ -19,8 +19,6 @@ namespace relief {
 namespace {
 
 constexpr std::size_t kTexelSize = 8;
-/// Colliders that are loaded or wait for their upload: what they take in memory.
-constexpr std::size_t kUnderWay = 2;
 /// Pairs of a body and a point whose distance an update measures: some tens of microseconds.
 constexpr std::size_t kPairs = 8192;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -157,7 +155,7 @@ void WorldStream::State::choose() {
 
 void WorldStream::State::request() {
     for (const std::uint32_t i : wanted) {
-        if (under_way + arrived.size() >= kUnderWay) {
+        if (under_way + arrived.size() >= options.under_way) {
             return;
         }
         Streamed& collider = colliders[i];
@@ -210,7 +208,8 @@ Result<bool> WorldStream::State::makeRoom(Streamed& collider) {
 }
 
 Result<void> WorldStream::State::upload(std::uint64_t bytes) {
-    std::size_t texels = std::max<std::size_t>(bytes / kTexelSize, 1);
+    auto texels = static_cast<std::size_t>(
+        std::clamp<std::uint64_t>(bytes / kTexelSize, 1, std::numeric_limits<std::size_t>::max()));
     while (texels > 0 && !arrived.empty()) {
         Upload& first = arrived.front();
         Streamed& collider = colliders[first.collider];
@@ -273,8 +272,8 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
                                            std::to_string(coarse_bytes) + " bytes of the GPU, more than " +
                                            std::to_string(options.gpu_bytes) + "; allow more");
     }
-    const std::size_t room =
-        std::min(texels, static_cast<std::size_t>((options.gpu_bytes - coarse_bytes) / kTexelSize));
+    const std::size_t room = static_cast<std::size_t>(
+        std::min<std::uint64_t>(texels, (options.gpu_bytes - coarse_bytes) / kTexelSize));
     auto textures = RELIEF_TRY(ColliderTextures::create(bodies, room));
     const std::size_t first = textures.room();
     auto state = std::make_unique<State>(State{.textures = std::move(textures),

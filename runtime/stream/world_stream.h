@@ -34,6 +34,8 @@ namespace relief {
 struct StreamOptions {
     std::uint64_t gpu_bytes = std::uint64_t{256} << 20;     ///< of all texels, the coarse ones included
     std::uint64_t upload_bytes = std::uint64_t{256} << 10;  ///< that one update may copy, at least 8
+    /// Colliders that are loaded or wait for their upload, at least 1: they take memory.
+    std::size_t under_way = 2;
 };
 
 struct StreamCounts {

@@ -279,6 +279,18 @@ TEST_P(WorldStreamGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
     expectFine({4});
 }
 
+TEST_P(WorldStreamGlTest, SoManyAreUnderWayAtOnce) {
+    const std::vector<PointOfInterest> points{at(0), at(1), at(2), at(3), at(4)};
+    for (const std::size_t most : {1U, 2U, 4U}) {
+        open({.under_way = most});
+        source_->holds_back = true;
+        for (int i = 0; i < 5; ++i) {
+            ASSERT_TRUE(stream_->update(points));
+        }
+        EXPECT_EQ(source_->asked.size(), most);
+    }
+}
+
 TEST_P(WorldStreamGlTest, TooLittleMemoryIsSaid) {
     auto made = WorldStream::create(world_, bodies_, coarseOnes(), std::make_unique<TestSource>(fine_),
                                     {.gpu_bytes = coarse_bytes_ - 1});
