@@ -10,11 +10,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "formats/base/file_io.h"
+#include "formats/base/finite.h"
 #include "formats/config/toml_reader.h"
 #include "formats/texel.h"
 #include "runtime/c_api/call.h"
+#include "runtime/c_api/objects.h"
 #include "runtime/c_api/relief.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
@@ -25,6 +29,7 @@
 #include "runtime/scene/scene_parser.h"
 #include "runtime/scene/scene_pictures.h"
 #include "runtime/scene/scene_world.h"
+#include "runtime/web/fetched_source.h"
 
 namespace relief {
 namespace {
@@ -36,6 +41,11 @@ std::string g_text;  // what a call that returns text returned last
 const char* returned(std::string text) {
     g_text = std::move(text);
     return g_text.c_str();
+}
+
+/// With names of files, which may be any bytes.
+std::string lineOf(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 Json json(const glm::vec3& v) {
@@ -77,6 +87,14 @@ Json describe(const Collider& collider) {
             {"gpu_bytes", collider.gpuBytes()},
             {"finest_texel", finestTexel(collider)},
             {"maps", maps}};
+}
+
+Json describeStream(const std::optional<StreamCounts>& counts) {
+    return counts ? Json{{"wanted", counts->wanted},
+                         {"present", counts->present},
+                         {"failed", counts->failed},
+                         {"gpu_bytes", counts->gpu_bytes}}
+                  : Json();
 }
 
 /// A scene's colliders as they are now: where each stands, by columns, and of which file it is. One without a file of
@@ -157,6 +175,26 @@ struct Player {
     std::optional<DepthSorter> sorter;
     ParticleStyle style;
     std::vector<ParticleState> read;  // kept for its memory
+    FetchedSource* source = nullptr;  // of the simulation, if it has one
+    std::optional<glm::vec3> eye;     // of the last picture
+    std::vector<PointOfInterest> near;
+    std::vector<std::string> warnings;  // not told yet
+
+    /// The points that a world is streamed for, besides the emitters.
+    void setPoints() {
+        std::vector<PointOfInterest> points = near;
+        if (eye && loaded.scene.stream) {
+            points.push_back({*eye, loaded.scene.stream->radius});
+        }
+        simulation->setPoints(std::move(points));
+    }
+    /// How many warnings there are.
+    int takeWarnings() {
+        for (std::string& line : simulation->takeWarnings()) {
+            warnings.push_back(std::move(line));
+        }
+        return static_cast<int>(warnings.size());
+    }
 
     Result<void> makeSorter(const Scene& scene) {
         if (scene.render.sort_frames > 0 && !sorter) {
@@ -166,11 +204,24 @@ struct Player {
     }
 };
 
-Result<Player*> createPlayer(const char* text, const char* path, bool shaded) {
+Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bool fetches) {
     auto player = std::make_unique<Player>();
-    player->loaded = RELIEF_TRY(loadAll(RELIEF_TRY(readScene(text, path)), path, {}));
+    Scene read = RELIEF_TRY(readScene(text, path));
+    if (fetches && !read.stream) {
+        return fail(ErrorCode::kUsage,
+                    quotedPath(path) +
+                        " has no [stream], which a world of streamWorld() needs in a scene "
+                        "that is text; add it, with its radius");
+    }
+    player->loaded = RELIEF_TRY(loadAll(std::move(read), path, {}));
     const Scene& scene = player->loaded.scene;
-    player->simulation.emplace(RELIEF_TRY(Simulation::create(player->loaded, StepPath::kFragment, nullptr)));
+    SimulationOptions options{.path = StepPath::kFragment};
+    if (fetches) {
+        auto source = std::make_unique<FetchedSource>(player->loaded.world);
+        player->source = source.get();
+        options.source = std::move(source);
+    }
+    player->simulation.emplace(RELIEF_TRY(Simulation::create(player->loaded, std::move(options))));
     player->atlas = RELIEF_TRY(loadAtlas(scene));
     player->style = particleStyle(scene, player->atlas.get());
     const ColliderView view = colliderView(player->loaded, player->simulation->textures());
@@ -226,6 +277,11 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
         return fail(ErrorCode::kUsage,
                     "other colliders, another capacity or integrator need a new system; make one");
     }
+    if (wanted.stream.has_value() != now.stream.has_value() ||
+        (now.stream && wanted.stream->memory != now.stream->memory)) {
+        return fail(ErrorCode::kUsage,
+                    "of 'stream' only the radius changes as it plays; make a new system for the rest");
+    }
     std::optional<std::vector<Emitter>> made;
     if (emitters) {
         made = RELIEF_TRY(makeEmitters(wanted.emitters));
@@ -239,6 +295,7 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     now = std::move(wanted);
     player.style = particleStyle(now, player.atlas.get());
     RELIEF_TRY(player.simulation->change(std::move(made)));
+    player.setPoints();
     return 0;
 }
 
@@ -251,6 +308,10 @@ Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& p
         order = sortedFor(player.loaded.scene, particles, camera.eye(), *player.sorter);
     }
     RELIEF_TRY(player.renderer->draw(particles, camera, player.style, target, order));
+    if (isFinite(camera.eye())) {
+        player.eye = camera.eye();
+        player.setPoints();
+    }
     return 0;
 }
 
@@ -269,6 +330,14 @@ T inPass(const char* function, T failed, const F& body) {
 using namespace relief;  // NOLINT: the functions below have C's names
 
 extern "C" {
+
+/// As relief_world_load(), with the coarse containers of the colliders that have one.
+EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
+    return create<relief_world>(__func__, [&](const Call&) -> Result<std::shared_ptr<WorldObject>> {
+        return std::make_shared<WorldObject>(
+            WorldObject{WorldField(RELIEF_TRY(loadWorld(path, {}, WorldDetail::kCoarse)))});
+    });
+}
 
 /// JSON.
 EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const relief_collider* collider) {
@@ -317,20 +386,78 @@ EMSCRIPTEN_KEEPALIVE int relief_collider_tree(const relief_collider* collider, i
 /// \param text    a scene file, or an object with its keys in JSON.
 /// \param path    of the file, in emscripten's file system, which ends in .toml, or what messages call the object.
 /// \param shaded  1: particles are lit and shaded by the collider.
-EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* text, const char* path, int shaded) {
-    return inPass<Player*>(__func__, nullptr, [&] { return createPlayer(text, path, shaded != 0); });
+/// \param fetches  1: the colliders of a world that is streamed come by relief_player_give().
+EMSCRIPTEN_KEEPALIVE Player* relief_player_create(const char* text, const char* path, int shaded,
+                                                  int fetches) {
+    return inPass<Player*>(__func__, nullptr,
+                           [&] { return createPlayer(text, path, shaded != 0, fetches != 0); });
 }
 
 EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
     delete player;
 }
 
-/// 0, or -1, as those below.
+/// The number of lines that relief_player_warnings() has, or -1.
 EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
     return inPass(__func__, -1, [&]() -> Result<int> {
         RELIEF_TRY(player->simulation->step(dt));
         RELIEF_TRY(checkGpu("stepping particles"));
+        return player->takeWarnings();
+    });
+}
+
+/// JSON, a list of lines: what of a world that is streamed could not be loaded since the last call.
+EMSCRIPTEN_KEEPALIVE const char* relief_player_warnings(Player* player) {
+    player->takeWarnings();
+    return returned(lineOf(Json(std::exchange(player->warnings, {}))));
+}
+
+/// Places where a world that is streamed has full detail: 4 floats each, position and radius. 0 or -1, as those below.
+EMSCRIPTEN_KEEPALIVE int relief_player_near(Player* player, const float* balls, int count) {
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
+        if (!player->loaded.scene.stream) {
+            return fail(ErrorCode::kUsage,
+                        "near() is for a world that is streamed, and all of this scene is always there; "
+                        "take streamWorld()");
+        }
+        player->near.clear();
+        for (int i = 0; i < count; ++i, balls += 4) {
+            player->near.push_back({{balls[0], balls[1], balls[2]}, balls[3]});
+        }
+        player->setPoints();
         return 0;
+    });
+}
+
+/// The next collider to fetch, JSON: its number, and its file relative to the folder of the world; null: none.
+EMSCRIPTEN_KEEPALIVE const char* relief_player_next(Player* player) {
+    const auto next = player->source != nullptr ? player->source->next() : std::nullopt;
+    return returned(next ? lineOf({{"collider", *next}, {"file", player->loaded.world.colliders[*next].file}})
+                         : "null");
+}
+
+/// The bytes of a container that relief_player_next() has named.
+EMSCRIPTEN_KEEPALIVE int relief_player_give(Player* player, int collider, const std::byte* bytes, int size) {
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
+        player->source->give(static_cast<std::size_t>(collider), {bytes, static_cast<std::size_t>(size)});
+        return 0;
+    });
+}
+
+/// Or why there are none.
+EMSCRIPTEN_KEEPALIVE int relief_player_refuse(Player* player, int collider, const char* reason) {
+    return answer(__func__, -1, [&](const Call&) -> Result<int> {
+        player->source->refuse(static_cast<std::size_t>(collider), reason);
+        return 0;
+    });
+}
+
+/// Uploads all that has come and is wanted. How many colliders are being fetched, or wait for it, or -1.
+EMSCRIPTEN_KEEPALIVE int relief_player_load(Player* player) {
+    return inPass(__func__, -1, [&]() -> Result<int> {
+        RELIEF_TRY(player->simulation->load());
+        RELIEF_TRY(checkGpu("uploading colliders"));
+        return player->source != nullptr ? static_cast<int>(player->source->underWay()) : 0;
     });
 }
 
@@ -393,6 +520,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
              {"ground", scene.ground.enabled && scene.ground.height ? Json(*scene.ground.height) : Json()},
              {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},
              {"background", json(scene.render.background)},
+             {"stream", describeStream(player->simulation->streamCounts())},
              {"bodies", describeBodies(scene.colliders, particles.time())}}
             .dump());
 }

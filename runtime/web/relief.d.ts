@@ -33,6 +33,28 @@ export function load(source: Source): Promise<Collider>;
 /** Fetches and reads a world.json of `relief bake LEVEL --world`, and the containers that it names, from beside it. */
 export function loadWorld(source: string | URL | Request | Response): Promise<World>;
 
+export interface StreamOptions {
+    /** How far from emitters, from the eye of draw() and from points of near() a world has full detail: world units, above 0. */
+    radius: number;
+    /** Megabytes of the GPU that the colliders of a system may take, the coarse ones included. Default 256. */
+    memory?: number;
+}
+
+export interface WorldSource extends StreamOptions {
+    /**
+     * Brings a container, named as in world.json; it may be any bytes, which are compared with the world's hash. Called again
+     * where one has made room for others in between. The signal aborts when no system waits for it any more.
+     */
+    load(file: string, signal: AbortSignal): Promise<Uint8Array> | Uint8Array;
+}
+
+/**
+ * As loadWorld(), for worlds that are too large: of each collider that has a coarse container it fetches that one only. A
+ * ParticleSystem fetches the others when its emitters, the eye of its pictures or near() come near, up to six at a time, and
+ * copies 256 kB a step to the GPU.
+ */
+export function streamWorld(source: string | URL | Request | Response, options: StreamOptions): Promise<World>;
+
 export interface Bounds {
     min: Vec3;
     max: Vec3;
@@ -126,15 +148,21 @@ export interface WorldBody {
 
 /** A level in memory: placed bodies. It needs no WebGL; systems made of it keep what they need of it. */
 export class World {
-    /** @param files world.json and the containers, by the names it has for them; kept. init() must have ended. */
-    constructor(files: Record<string, Collider | Uint8Array | string>);
+    /**
+     * @param files world.json and the containers, by the names it has for them; kept. init() must have ended.
+     * @param stream for a world that is streamed, whose files are the coarse containers, and others of colliders without one
+     */
+    constructor(files: Record<string, Collider | Uint8Array | string>, stream?: WorldSource);
     readonly files: Record<string, Collider | Uint8Array | string>;
     readonly unit: string;
-    readonly colliders: { file: string; hash: string; mesh: string; min: Vec3; max: Vec3 }[];
+    readonly colliders: { file: string; hash: string; gpu_bytes: number; mesh: string; min: Vec3; max: Vec3;
+                          coarse?: { file: string; hash: string; gpu_bytes: number } }[];
     readonly bodies: WorldBody[];
+    /** Null: all of it is there in full detail. */
+    readonly stream: WorldSource | null;
     /** The box that holds all bodies. */
     readonly bounds: Bounds;
-    /** On the CPU, where the file places the bodies. Takes time by their number. @param points 3 n numbers. */
+    /** On the CPU, where the file places the bodies; of a world that is streamed the coarse ones. Takes time by their number. @param points 3 n numbers. */
     query(points: Numbers): WorldAnswers;
     dispose(): void;
 }
@@ -172,6 +200,15 @@ export interface ParticleSystemOptions {
     files?: Record<string, Collider | Uint8Array | string>;
     /** False: the collider casts no shade on particles, which is cheaper. */
     shaded?: boolean;
+    /** Takes a line for each collider of a world that is streamed that cannot be loaded, once. Default: console.warn(). */
+    warn?: (line: string) => void;
+}
+
+/** A ball in the world. */
+export interface PointOfInterest {
+    position: Vec3 | Numbers;
+    /** Above 0. */
+    radius: number;
 }
 
 export interface Birth {
@@ -216,6 +253,11 @@ export interface SystemInfo {
     ground: number | null;
     camera: { eye: Vec3; target: Vec3; fov: number };
     background: Vec3;
+    /**
+     * Of a world that is streamed, else null: colliders wanted in full detail, those of them that are there, those that cannot
+     * be loaded, and the bytes of all that is there.
+     */
+    stream: { wanted: number; present: number; failed: number; gpu_bytes: number } | null;
     /** The scene's colliders, each where it stands now: object to world, by columns. One that deforms names its mesh. */
     bodies: { file: string; node: string; deforms: boolean; moves: boolean; matrix: number[] }[];
 }
@@ -249,7 +291,14 @@ export class ParticleSystem {
      * in `collider: [{ node: "door" }]`.
      */
     set(patch: Scene): void;
-    /** Starts over with nothing alive; also after 'webglcontextrestored'. */
+    /**
+     * Places beside the emitters and the eye of draw() where a world that is streamed has full detail, from the next step on, in
+     * place of those before.
+     */
+    near(points: readonly PointOfInterest[]): void;
+    /** Waits until all that is wanted now of a world that is streamed is there or has failed; before a first step, say. */
+    loaded(): Promise<void>;
+    /** Starts over with nothing alive, and asks again for what could not be loaded; also after 'webglcontextrestored'. */
     restart(): void;
     /** The particles, 12 numbers each: position, age, velocity, lifetime, type, steps in contact, contact, id. Waits for the GPU. */
     read(): Float32Array;
@@ -264,6 +313,7 @@ export const Relief: {
     init: typeof init;
     load: typeof load;
     loadWorld: typeof loadWorld;
+    streamWorld: typeof streamWorld;
     Collider: typeof Collider;
     GpuCollider: typeof GpuCollider;
     ParticleSystem: typeof ParticleSystem;

@@ -3,15 +3,11 @@
 // One WebAssembly instance serves all contexts of a page. Whatever draws or steps leaves the context's state as it was.
 import { decompress } from "fzstd";
 
+import { Fetches, ReliefError, bytesOf, urlIn, worldFiles } from "./fetch.js";
 import { withPassState } from "./pass_state.js";
 import createReliefWasm from "./relief_wasm.mjs";
 
-export class ReliefError extends Error {
-    constructor(message) {
-        super(message);
-        this.name = "ReliefError";
-    }
-}
+export { ReliefError };
 
 let loading = null; // promise of the instance
 let wasm = null;
@@ -179,29 +175,6 @@ function free(gl, losses, name, handle) {
 
 // --- arguments
 
-async function bytesOf(source) {
-    if (source instanceof Uint8Array) {
-        return source;
-    }
-    if (source instanceof ArrayBuffer || source instanceof Blob) {
-        return new Uint8Array(await new Response(source).arrayBuffer());
-    }
-    if (typeof source !== "string" && ![URL, Request, Response].some((kind) => source instanceof kind)) {
-        throw new ReliefError("load() takes a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
-    }
-    const response = source instanceof Response ? source : await fetch(source).catch((error) => {
-        throw new ReliefError(`${source.url ?? source}: the server does not answer (${error.message})`);
-    });
-    const name = response.url || source;
-    if (!response.ok) {
-        throw new ReliefError(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
-    }
-    if (/^text\/html/.test(response.headers.get("content-type"))) {
-        throw new ReliefError(`${name}: the server sends a web page, no collider; is the path right?`);
-    }
-    return new Uint8Array(await response.arrayBuffer());
-}
-
 /** Numbers of an array or a typed array, a multiple of `each`. */
 function numbers(what, values, each) {
     if (!Array.isArray(values) && !ArrayBuffer.isView(values)) {
@@ -261,43 +234,36 @@ export async function load(source) {
     }
 }
 
-/** Fetches a world.json, and the containers beside it that it names. */
-export async function loadWorld(source) {
-    // The containers lie beside the file that answers, wherever the way to it was sent on to.
-    const response = source instanceof Response ? source : await fetch(source).catch((error) => {
-        throw new ReliefError(`${source?.url ?? source}: the server does not answer (${error.message})`);
-    });
-    if (!response.url) {
-        throw new ReliefError("loadWorld() has to know where its containers lie, and this Response has no URL; give new World() the files");
-    }
-    const base = new URL(response.url);
-    const [text] = await Promise.all([bytesOf(response), init()]);
-    const files = { "world.json": text };
-    await Promise.all(namesOf(text, base).map(async (name) => {
-        files[name] = await bytesOf(new URL(name.split("/").map(encodeURIComponent).join("/"), base));
-    }));
+async function worldOf(source, stream) {
+    const [{ files, base }] = await Promise.all([worldFiles(source, stream !== undefined), init()]);
     try {
-        return new World(files);
+        return new World(files, stream && { ...stream, load: (name, signal) => bytesOf(urlIn(base, name), signal) });
     } catch (error) {
         throw new ReliefError(`${base}: ${error.message}`);
     }
 }
 
-/** The files that a world names, which lie in its folder; all else is checked when it is made. */
-function namesOf(text, base) {
-    let colliders;
-    try {
-        ({ colliders } = JSON.parse(new TextDecoder().decode(text)));
-    } catch (error) {
-        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world' (${error.message})`);
+export async function loadWorld(source) {
+    return worldOf(source);
+}
+
+export async function streamWorld(source, options = {}) {
+    checkStream("streamWorld()", options, ["radius", "memory"]);
+    return worldOf(source, options);
+}
+
+/** @param what takes the options. */
+function checkStream(what, options, keys) {
+    const wrong = Object.keys(options).find((key) => !keys.includes(key));
+    if (wrong !== undefined) {
+        throw new ReliefError(`${what} has no option '${wrong}'; it has ${keys.join(", ")}`);
     }
-    const names = Array.isArray(colliders) ? colliders.map((one) => one?.file) : [];
-    const wrong = names.findIndex((name) => typeof name !== "string" || name.split("/").some((part) => ["", ".", ".."].includes(part)));
-    if (names.length === 0 || wrong >= 0) {
-        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world': ` +
-                              (wrong >= 0 ? `colliders[${wrong}] names no file of its folder` : "it has no colliders"));
+    if (!(Number.isFinite(options.radius) && options.radius > 0)) {
+        throw new ReliefError(`${what} needs a radius above 0: how far from emitters and the camera a world has full detail`);
     }
-    return [...new Set(names)];
+    if (options.memory !== undefined && !(Number.isFinite(options.memory) && options.memory > 0)) {
+        throw new ReliefError(`${what}: the memory is a number of megabytes above 0`);
+    }
 }
 
 /** A new folder of the WebAssembly, to be given back as a whole. */
@@ -346,15 +312,23 @@ function asked(query, handle, points, which) {
 export class World {
     #handle = 0;
 
-    constructor(files) {
+    constructor(files, stream) {
         instance();
         this.files = { ...files };
+        this.stream = null;
+        if (stream) {
+            checkStream("the streaming of a World", stream, ["radius", "memory", "load"]);
+            if (typeof stream.load !== "function") {
+                throw new ReliefError("the streaming of a World needs 'load', a function that brings the bytes of a file");
+            }
+            this.stream = { ...stream };
+        }
         const folder = makeFolder();
         try {
             for (const [name, content] of Object.entries(this.files)) {
                 writeIn(folder, name, content);
             }
-            this.#handle = made("relief_world_load", `${folder}/world.json`);
+            this.#handle = made(stream ? "relief_world_load_coarse" : "relief_world_load", `${folder}/world.json`);
         } finally {
             removeFolder(folder);
         }
@@ -530,27 +504,35 @@ export class ParticleSystem {
     #handle = 0;
     #scene;
     #shaded;
+    #warn;
+    #fetches = null; // of a world that is streamed
+    #near = null; // 4 numbers each
 
     constructor(gl, options = {}) {
-        const wrong = Object.keys(options).find((key) => !["collider", "files", "scene", "shaded", "world"].includes(key));
+        const wrong = Object.keys(options).find((key) => !["collider", "files", "scene", "shaded", "warn", "world"].includes(key));
         if (wrong !== undefined) {
-            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, scene, shaded and world`);
+            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, scene, shaded, warn and world`);
         }
         if (options.collider) {
             collider("the option 'collider'", options.collider);
         }
         if (options.world) {
             if (!(options.world instanceof World)) {
-                throw new ReliefError("the option 'world' needs a World, as loadWorld() gives it; did you forget to await it?");
+                throw new ReliefError("the option 'world' needs a World, as loadWorld() and streamWorld() give it; did you forget to await it?");
             }
             if (options.collider) {
                 throw new ReliefError("give the option 'world' or 'collider'; more colliders are the scene's, with 'files'");
             }
             options.world.handle; // throws where it is disposed of
         }
+        if (options.warn !== undefined && typeof options.warn !== "function") {
+            throw new ReliefError("the option 'warn' is a function that takes a line");
+        }
         use(gl);
         this.#gl = gl;
         this.#shaded = options.shaded ?? true;
+        this.#warn = options.warn ?? ((line) => console.warn(line));
+        this.#fetches = options.world?.stream ? new Fetches(options.world.stream.load) : null;
         this.#folder = makeFolder();
         const files = { ...options.files };
         let scene = options.scene ?? {};
@@ -560,6 +542,12 @@ export class ParticleSystem {
                 scene = merged({ collider: { file: "collider.relief" } }, scene);
             } else if (options.world) {
                 scene = { world: "world/world.json", ...scene };
+                if (this.#fetches) {
+                    const { radius, memory } = options.world.stream;
+                    scene.stream = { radius, memory, ...scene.stream };
+                } else if (scene.stream) {
+                    this.#checkCoarse(options.world);
+                }
             } else if (!scene.collider && !scene.world) {
                 throw new ReliefError("a ParticleSystem needs the option 'collider' or 'world', or a scene that names its colliders");
             }
@@ -589,7 +577,19 @@ export class ParticleSystem {
 
     #create() {
         this.#losses = use(this.#gl);
-        this.#handle = made("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0);
+        this.#handle = made("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0, this.#fetches ? 1 : 0);
+        if (this.#near) {
+            done("relief_player_near", this.#handle, this.#near, this.#near.length / 4);
+        }
+    }
+
+    /** A world of loadWorld() has no coarse containers. */
+    #checkCoarse({ colliders, files }) {
+        const missing = colliders.find(({ coarse }) => coarse && !(coarse.file in files));
+        if (missing) {
+            throw new ReliefError(`the scene has a 'stream', and its world lacks '${missing.coarse.file}'; ` +
+                                  "leave out 'stream', or take streamWorld()");
+        }
     }
 
     get handle() {
@@ -645,7 +645,70 @@ export class ParticleSystem {
                                   "Math.min(seconds, 1 / 30)");
         }
         if (seconds > 0) {
-            done("relief_player_step", this.handle, seconds);
+            const warnings = done("relief_player_step", this.handle, seconds);
+            this.#fetch();
+            if (warnings > 0) {
+                this.#tell();
+            }
+        }
+    }
+
+    /** Passes on what of a world that is streamed could not be loaded. */
+    #tell() {
+        for (const line of JSON.parse(textAt(call("relief_player_warnings", this.#handle)))) {
+            this.#warn(line);
+        }
+    }
+
+    /** Fetches what the runtime wants. */
+    #fetch() {
+        for (let next; this.#fetches && (next = JSON.parse(textAt(call("relief_player_next", this.#handle))));) {
+            const { collider, file } = next;
+            this.#fetches.start(file, (bytes, reason) => this.#take(collider, file, bytes, reason));
+        }
+    }
+
+    #take(collider, file, bytes, reason) {
+        try {
+            let fault = reason;
+            try {
+                if (bytes) {
+                    done("relief_player_give", this.#handle, collider, bytes, bytes.length);
+                }
+            } catch (error) { // no room for the bytes
+                fault = `${file}: ${error.message}`;
+            }
+            if (fault !== null) {
+                done("relief_player_refuse", this.#handle, collider, fault);
+            }
+        } catch {
+            // The instance has ended, as the next step reports.
+        }
+    }
+
+    near(points) {
+        const places = Array.isArray(points) ? points : [];
+        const wrong = places.findIndex((one) => one?.position?.length !== 3 || !(one.radius > 0));
+        if (!Array.isArray(points) || wrong >= 0) {
+            throw new ReliefError("near() takes a list of { position: [x, y, z], radius }, whose radius is above 0" +
+                                  (wrong >= 0 ? `; number ${wrong} is none` : ""));
+        }
+        this.#ready();
+        const list = checkFinite("near()", Float32Array.from(places.flatMap(({ position, radius }) => [...position, radius])));
+        done("relief_player_near", this.handle, list, list.length / 4);
+        this.#near = list;
+    }
+
+    async loaded() {
+        while (true) {
+            this.#ready();
+            const underWay = done("relief_player_load", this.handle);
+            this.#fetch();
+            this.#tell();
+            if (underWay === 0) {
+                return;
+            }
+            await this.#fetches.next();
         }
     }
 
@@ -719,6 +782,7 @@ export class ParticleSystem {
     #free() {
         const old = this.#handle;
         this.#handle = 0;
+        this.#fetches?.stop();
         if (old) {
             free(this.#gl, this.#losses, "relief_player_free", old);
         }
@@ -733,5 +797,5 @@ export class ParticleSystem {
     }
 }
 
-export const Relief = { init, load, loadWorld, Collider, GpuCollider, ParticleSystem, ReliefError, World };
+export const Relief = { init, load, loadWorld, streamWorld, Collider, GpuCollider, ParticleSystem, ReliefError, World };
 export default Relief;

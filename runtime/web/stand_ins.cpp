@@ -1,14 +1,19 @@
 // Stand-ins for files of the desktop: what a WebGL2 context can do, the state around a pass, reading back, zstd by the
-// page's decoder; and the calls of OpenGL ES 3.1 that a context has not: hasCompute() is false, and nothing reaches them.
+// page's decoder, a world's files without a thread; and the calls of OpenGL ES 3.1 that a context has not: hasCompute() is false, and nothing reaches them.
 #include <cstdlib>
+#include <deque>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "formats/compression.h"
+#include "formats/container_reader.h"
 #include "runtime/gl/buffer_read.h"
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/player/watchdog.h"
+#include "runtime/stream/collider_source.h"
 
 extern "C" {
 int relief_js_has_extension(const char* name);
@@ -79,6 +84,41 @@ Result<std::vector<std::byte>> decompress(std::span<const std::byte> stored, std
                             std::to_string(raw_size));
     }
     return raw;
+}
+
+namespace {
+
+/// Files of a page are in memory, and are read when they are taken.
+class MemorySource : public ColliderSource {
+  public:
+    MemorySource(World world, std::filesystem::path folder, const ContainerLimits& limits)
+        : world_(std::move(world)), folder_(std::move(folder)), limits_(limits) {}
+
+    void request(std::size_t collider) override { requests_.push_back(collider); }
+
+    std::optional<Arrival> take() override {
+        if (requests_.empty()) {
+            return std::nullopt;
+        }
+        const std::size_t first = requests_.front();
+        requests_.pop_front();
+        return Arrival{first, withinMemory([&]() -> Result<Collider> {
+                           return loadWorldCollider(world_, first, WorldDetail::kFine, folder_, limits_);
+                       })};
+    }
+
+  private:
+    const World world_;
+    const std::filesystem::path folder_;
+    const ContainerLimits limits_;
+    std::deque<std::size_t> requests_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ColliderSource>> makeFileSource(World world, std::filesystem::path folder,
+                                                       const ContainerLimits& limits) {
+    return std::make_unique<MemorySource>(std::move(world), std::move(folder), limits);
 }
 
 // A browser watches over its GPU itself: there is never a Watchdog.

@@ -1,5 +1,5 @@
 // Everything of relief-particles once, for the compiler: types_test.mjs.
-import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, init, load } from "relief-particles";
+import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, World, init, load, streamWorld } from "relief-particles";
 import type { Answers, Birth, Scene } from "relief-particles";
 
 export async function everything(gl: WebGL2RenderingContext, program: WebGLProgram, file: File): Promise<string[]> {
@@ -33,6 +33,14 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
     const texture: WebGLTexture = system.textures().position;
     const alive: number = system.info.alive + system.read().length;
     system.restart();
+    const island: World = await streamWorld("island/world.json", { radius: 50, memory: 64 });
+    const own = new World(island.files, { radius: 5, load: async (name: string, signal: AbortSignal) => new Uint8Array(await (await fetch(name, { signal })).arrayBuffer()) });
+    const streamed = new ParticleSystem(gl, { world: own, warn: (line: string) => document.title = line });
+    streamed.near([{ position: [0, 1, 0], radius: 2 }]);
+    await streamed.loaded();
+    const missing: number = (streamed.info.stream?.wanted ?? 0) - (own.stream?.radius ?? 0) + (island.colliders[0].coarse?.gpu_bytes ?? 0);
+    // @ts-expect-error: a radius is needed
+    await streamWorld("island/world.json", { memory: 64 });
     // @ts-expect-error: a time is a number
     system.step("1");
     // @ts-expect-error: there is no such option
@@ -47,5 +55,5 @@ export async function everything(gl: WebGL2RenderingContext, program: WebGLProgr
         }
     }
     [system, other, gpu, collider, dropped].forEach((one) => one.dispose());
-    return [source, String(texture), String(sum + accepted + alive)];
+    return [source, String(texture), String(sum + accepted + alive + missing)];
 }

@@ -20,6 +20,6 @@ test("the types hold, and miss nothing", { timeout: 60_000 }, (t) => {
     assert.equal(status, 0, stdout);
 
     const exported = (file) => [...readFileSync(path.join(root, "out/npm", file), "utf8")
-        .matchAll(/^export (?:async )?(?:class|function|const) (\w+)/gm)].map(([, name]) => name).sort();
+        .matchAll(/^export (?:(?:async )?(?:class|function|const)|\{) (\w+)/gm)].map(([, name]) => name).sort();
     assert.deepEqual(exported("relief.d.ts"), exported("relief.js"));
 });

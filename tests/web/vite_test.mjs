@@ -27,7 +27,7 @@ test("npm pack, install and vite build give a page that plays", { timeout: 300_0
     const [packed] = JSON.parse(npm("pack", path.join(root, "out/npm"), "--json"));
     assert.equal(packed.name, "relief-particles");
     assert.deepEqual(packed.files.map((file) => file.path).sort(), [
-        "LICENSE", "README.md", "SCENE.md", "package.json", "pass_state.js", "relief.d.ts", "relief.js", "relief_wasm.mjs", "relief_wasm.wasm"]);
+        "LICENSE", "README.md", "SCENE.md", "fetch.js", "package.json", "pass_state.js", "relief.d.ts", "relief.js", "relief_wasm.mjs", "relief_wasm.wasm"]);
     writeFileSync(path.join(folder, "package.json"), '{ "name": "page", "private": true, "type": "module" }');
     npm("install", "--prefer-offline", "--ignore-scripts", `./${packed.filename}`, "vite@5.4.21");
     const installed = path.join(folder, "node_modules/relief-particles");

@@ -1,0 +1,129 @@
+// Files by fetch(), for relief.js: colliders, and the containers that a world names. No WebAssembly here.
+
+export class ReliefError extends Error {
+    constructor(message) {
+        super(message);
+        this.name = "ReliefError";
+    }
+}
+
+/** What answers for a source that is to be fetched. */
+async function answerOf(source, signal) {
+    return source instanceof Response ? source : fetch(source, { signal }).catch((error) => {
+        throw new ReliefError(`${source?.url ?? source}: the server does not answer (${error.message})`);
+    });
+}
+
+export async function bytesOf(source, signal) {
+    if (source instanceof Uint8Array) {
+        return source;
+    }
+    if (source instanceof ArrayBuffer || source instanceof Blob) {
+        return new Uint8Array(await new Response(source).arrayBuffer());
+    }
+    if (typeof source !== "string" && ![URL, Request, Response].some((kind) => source instanceof kind)) {
+        throw new ReliefError("load() takes a URL, a Response, a Blob, an ArrayBuffer or a Uint8Array");
+    }
+    const response = await answerOf(source, signal);
+    const name = response.url || source;
+    if (!response.ok) {
+        throw new ReliefError(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
+    }
+    if (/^text\/html/.test(response.headers.get("content-type"))) {
+        throw new ReliefError(`${name}: the server sends a web page, no collider; is the path right?`);
+    }
+    return new Uint8Array(await response.arrayBuffer());
+}
+
+/**
+ * A world.json, and beside it the containers that it names: of each collider its own, or the coarse one where it has that.
+ * { files: all of these, base: where they lie }
+ */
+export async function worldFiles(source, coarse) {
+    // The containers lie beside the file that answers, wherever the way to it was sent on to.
+    const response = await answerOf(source);
+    if (!response.url) {
+        throw new ReliefError("loadWorld() and streamWorld() have to know where the containers lie, and this Response has no URL; " +
+                              "give new World() the files");
+    }
+    const base = new URL(response.url);
+    const text = await bytesOf(response);
+    const files = { "world.json": text };
+    const names = namesOf(text, base, coarse);
+    const next = names.values();
+    // A browser refuses thousands of requests at once.
+    await Promise.all(Array.from({ length: 32 }, async () => {
+        for (const name of next) {
+            files[name] = await bytesOf(urlIn(base, name));
+        }
+    }));
+    return { files, base };
+}
+
+/** Fetches that bring files to whoever wants them, and never fail. */
+export class Fetches {
+    #load;
+    #stop = new AbortController();
+    #coming = new Set();
+
+    /** @param load  brings the bytes of a file: load(file, signal). */
+    constructor(load) {
+        this.#load = load;
+    }
+
+    /** Calls done(bytes, null) or done(null, reason) when the file has come; not after stop(). */
+    start(file, done) {
+        const fetched = this.#bring(file, this.#stop.signal, done);
+        this.#coming.add(fetched);
+        fetched.then(() => this.#coming.delete(fetched));
+    }
+
+    async #bring(file, signal, done) {
+        let bytes = null;
+        let reason = null;
+        try {
+            bytes = await this.#load(file, signal);
+            if (!(bytes instanceof Uint8Array)) {
+                throw new ReliefError(`${file}: 'load' gives no Uint8Array`);
+            }
+        } catch (error) {
+            reason = String(error?.message ?? error);
+        }
+        if (!signal.aborted) {
+            done(reason === null ? bytes : null, reason);
+        }
+    }
+
+    /** When one of them has ended. */
+    next() {
+        return Promise.race(this.#coming);
+    }
+
+    stop() {
+        this.#stop.abort();
+        this.#stop = new AbortController();
+    }
+}
+
+/** The URL of a file that lies in the folder of a world. */
+export function urlIn(base, name) {
+    return new URL(name.split("/").map(encodeURIComponent).join("/"), base);
+}
+
+/** The files that a world names, which lie in its folder; all else is checked when it is made. */
+function namesOf(text, base, coarse) {
+    let colliders;
+    try {
+        ({ colliders } = JSON.parse(new TextDecoder().decode(text)));
+    } catch (error) {
+        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world' (${error.message})`);
+    }
+    const list = Array.isArray(colliders) ? colliders : [];
+    const outside = (name) => typeof name !== "string" || name.split("/").some((part) => ["", ".", ".."].includes(part));
+    const wrong = list.findIndex((one) => outside(one?.file) || (coarse && one.coarse && outside(one.coarse.file)));
+    if (list.length === 0 || wrong >= 0) {
+        throw new ReliefError(`${base}: it is no world.json of 'relief bake --world': ` +
+                              (wrong >= 0 ? `colliders[${wrong}] names no file of its folder` : "it has no colliders"));
+    }
+    return [...new Set(list.map((one) => (coarse && one.coarse ? one.coarse.file : one.file)))];
+}

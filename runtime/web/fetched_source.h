@@ -1,0 +1,40 @@
+// Colliders of a world that a page fetches: it takes the requests, and gives the bytes when they have come.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+
+#include "formats/world/world.h"
+#include "runtime/stream/collider_source.h"
+
+namespace relief {
+
+class FetchedSource : public ColliderSource {
+  public:
+    explicit FetchedSource(World world) : world_(std::move(world)) {}
+
+    void request(std::size_t collider) override { requests_.push_back(collider); }
+    [[nodiscard]] std::optional<Arrival> take() override;
+
+    /// The next one to fetch; nullopt: none at present.
+    [[nodiscard]] std::optional<std::size_t> next();
+    /// Ends a fetch with the bytes of its container, which may be any. What next() has not named is passed over.
+    void give(std::size_t collider, std::span<const std::byte> bytes);
+    /// Ends a fetch that failed. \param reason  names the file.
+    void refuse(std::size_t collider, std::string reason);
+
+    /// Requested, and not yet given or refused.
+    [[nodiscard]] std::size_t underWay() const { return requests_.size() + fetched_.size(); }
+
+  private:
+    const World world_;
+    std::deque<std::size_t> requests_;
+    std::set<std::size_t> fetched_;  // next() has named them
+    std::deque<Arrival> arrivals_;
+};
+
+}  // namespace relief

@@ -1,0 +1,304 @@
+// A world of tiles that is streamed: which files come when, that drops lie on the ground that has come, and what of it that is
+// missing or damaged does. The hills of tests/cli/heights.py have a closed form.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+import { pathToFileURL } from "node:url";
+
+import { launch, openPage, root } from "./lib/browser.mjs";
+import { libraryPage } from "./lib/library.mjs";
+import { run, scratch } from "./lib/native.mjs";
+
+const kRadius = 30;
+const kSteps = 130; // until all lie on the ground
+/** Drops that fall on 40 m by 40 m of ground. */
+const emitterAt = (x, z) => ({
+    box_min: [x, 62, z], box_max: [x + 40, 66, z + 40], burst: 500, rate: 0, lifetime: 100,
+    velocity: [0, -30, 0], velocity_spread: [0, 0, 0],
+});
+const kScene = {
+    time: { dt: 1 / 64 }, particles: { capacity: 1024 }, emitter: emitterAt(20, 20),
+    forces: { gravity: [0, -9.81, 0], drag: 0 }, ground: { enabled: false },
+};
+
+/** The hills of heights.py, bilinear between samples, at 100 m for a sample of 65535. */
+function ground(x, z) {
+    const sample = (i, j) => Math.round(20000 + 9000 * Math.sin(i / 11) + 6000 * Math.cos(j / 7));
+    const [i, j] = [Math.floor(x), Math.floor(z)];
+    const [s, t] = [x - i, z - j];
+    return ((1 - t) * ((1 - s) * sample(i, j) + s * sample(i + 1, j)) +
+            t * ((1 - s) * sample(i, j + 1) + s * sample(i + 1, j + 1))) * 100 / 65535;
+}
+
+/** How far the lowest of such particles lies below the ground, and how many there are. */
+function below(rows) {
+    let deepest = -Infinity;
+    for (let i = 0; i < rows.length; i += 12) {
+        deepest = Math.max(deepest, ground(rows[i], rows[i + 2]) - rows[i + 1]);
+    }
+    return { count: rows.length / 12, deepest };
+}
+
+/** A world of nine tiles in the folder, of which eight have a coarse container; as JSON. */
+function bakeTiles(folder) {
+    execFileSync("python3", [path.join(root, "tests/cli/heights.py"), path.join(folder, "hills.r16"), "560"]);
+    run("relief", "bake", path.join(folder, "hills.r16"), "--heights", "low=0,high=100,tile=256", "--world", path.join(folder, "w"), "-q");
+    const world = JSON.parse(readFileSync(path.join(folder, "w/world.json"), "utf8"));
+    assert.equal(world.colliders.length, 9);
+    assert.equal(world.colliders.filter((one) => one.coarse).length, 8);
+    assert.ok(world.bodies.every((one) => one.scale === 1 && one.rotation[3] === 1));
+    return world;
+}
+
+/** Files of the tiles with a coarse container whose boxes reach into a ball. */
+function tilesIn(world, center, radius) {
+    return world.bodies.flatMap((body) => {
+        const { file, coarse, min, max } = world.colliders[body.collider];
+        const off = [0, 1, 2].map((k) => {
+            const at = center[k] - body.position[k];
+            return at - Math.min(Math.max(at, min[k]), max[k]);
+        });
+        return coarse && Math.hypot(...off) <= radius ? [file] : [];
+    }).sort();
+}
+
+/** Of the drops of emitterAt(). */
+const tilesAt = (world, x, z) => tilesIn(world, [x + 20, 64, z + 20], Math.hypot(20, 2, 20) + kRadius);
+
+/** Names of the files that the page fetches from here on. */
+function fetched(page) {
+    const names = [];
+    page.on("request", (request) => {
+        const at = new URL(request.url()).pathname;
+        if (at.startsWith("/files/")) {
+            names.push(path.basename(at));
+        }
+    });
+    return () => names.splice(0).sort();
+}
+
+test("tiles are fetched when they are needed, and drops lie on them", { timeout: 180_000 }, async (t) => {
+    const folder = scratch(t);
+    const world = bakeTiles(folder);
+    const { page, said } = await libraryPage(t, folder);
+    const taken = fetched(page);
+    await page.evaluate(async ({ scene, radius }) => {
+        window.scene = scene;
+        window.world = await relief.streamWorld("/files/w/world.json", { radius, memory: 64 });
+        window.system = new relief.ParticleSystem(gl, { world, scene });
+    }, { scene: kScene, radius: kRadius });
+    assert.deepEqual(taken(), ["world.json", ...world.colliders.map((one) => (one.coarse ?? one).file)].sort());
+
+    // As a system that has all from the beginning, bit by bit, once what is near has come.
+    const near = await page.evaluate(async (steps) => {
+        const before = { ...system.info.stream };
+        await system.loaded();
+        for (let i = 0; i < steps; ++i) {
+            system.step();
+        }
+        return { before, after: system.info.stream, rows: [...system.read()] };
+    }, kSteps);
+    const first = tilesAt(world, 20, 20);
+    assert.ok(first.length >= 1 && first.length < 8, first.join(" "));
+    assert.deepEqual(taken(), first);
+    assert.equal(near.before.present, 0);
+    assert.deepEqual([near.after.wanted, near.after.present, near.after.failed], [first.length, first.length, 0]);
+    const whole = await page.evaluate(async (steps) => {
+        const full = await relief.loadWorld("/files/w/world.json");
+        const all = new relief.World({ ...world.files, ...full.files }); // its files are there, the coarse ones too
+        const systems = [new relief.ParticleSystem(gl, { world: full, scene }),
+                         new relief.ParticleSystem(gl, { world: all, scene: { ...scene, stream: { radius: 30 } } }),
+                         new relief.ParticleSystem(gl, { world: new relief.World(world.files, { radius: 30, load: () => new Promise(() => {}) }), scene })];
+        for (let i = 0; i < steps; ++i) {
+            systems.forEach((one) => one.step());
+        }
+        return { rows: systems.map((one) => [...one.read()]), stream: systems.map((one) => one.info.stream) };
+    }, kSteps);
+    assert.deepEqual(near.rows, whole.rows[0]);
+    assert.deepEqual(near.rows, whole.rows[1]);
+    assert.equal(whole.stream[0], null);
+    assert.ok(whole.stream[1].present >= first.length && whole.stream[1].present === whole.stream[1].wanted);
+    assert.equal(whole.stream[2].present, 0);
+    assert.equal(below(near.rows).count, 500);
+    assert.ok(below(near.rows).deepest < 0.05, JSON.stringify(below(near.rows)));
+    assert.ok(below(whole.rows[2]).deepest > 0.2, JSON.stringify(below(whole.rows[2]))); // or the coarse ground is as good
+    taken();
+
+    // The emitter goes elsewhere: nothing waits, and the tiles there are on time for its drops.
+    const second = tilesAt(world, 440, 340);
+    const fresh = second.filter((file) => !first.includes(file));
+    assert.ok(fresh.length >= 1);
+    const gone = await page.evaluate(async ({ steps, emitter }) => {
+        system.set({ emitter });
+        for (let i = 0; i < steps; ++i) {
+            system.step();
+            await new Promise((done) => setTimeout(done, 5));
+        }
+        return { stream: system.info.stream, rows: [...system.read()] };
+    }, { steps: kSteps, emitter: emitterAt(440, 340) });
+    assert.deepEqual(taken(), fresh);
+    assert.deepEqual([gone.stream.wanted, gone.stream.present, gone.stream.failed], [second.length, second.length, 0]);
+    assert.equal(below(gone.rows).count, 1000);
+    assert.ok(below(gone.rows).deepest < 0.05, JSON.stringify(below(gone.rows)));
+
+    // So do places of the program's own, and the eye of the pictures.
+    const center = [20, 40, 500];
+    const there = tilesIn(world, center, 10);
+    const eye = [540, 40, 20];
+    const seen = tilesIn(world, eye, kRadius);
+    const known = [...first, ...second];
+    assert.ok(there.some((file) => !known.includes(file)) && seen.some((file) => !known.includes(file) && !there.includes(file)));
+    await page.evaluate(async (position) => {
+        system.near([{ position, radius: 10 }]);
+        await system.loaded();
+    }, center);
+    assert.deepEqual(taken(), there.filter((file) => !known.includes(file)));
+    await page.evaluate(async ([x, y, z]) => {
+        system.draw({ view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -x, -y, -z, 1], projection: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -0.2, 0] });
+        await system.loaded();
+    }, eye);
+    assert.deepEqual(taken(), seen.filter((file) => !known.includes(file) && !there.includes(file)));
+
+    // Starting over, and an end while files are on their way.
+    const again = await page.evaluate(async () => {
+        system.restart();
+        const begun = system.info.stream.present;
+        await system.loaded();
+        const { wanted, present } = system.info.stream;
+        system.restart();
+        system.step();
+        const waits = system.loaded().catch((error) => error.message);
+        system.dispose();
+        const kept = world.query([100, 30, 100]).distance[0];
+        world.dispose();
+        return { begun, wanted, present, end: await waits, kept, gl: gl.getError() };
+    });
+    assert.ok(again.begun === 0 && again.wanted === again.present && again.present > 0, JSON.stringify(again));
+    assert.match(again.end, /disposed of/);
+    assert.ok(Math.abs(again.kept) < 60, String(again.kept));
+    assert.equal(again.gl, 0);
+    // The end has stopped fetches, and a driver remarks on copies into a texture that nothing has drawn with yet.
+    assert.deepEqual(said.filter((line) => !/^failed: |GL Driver Message .*TexSubImage with unpack buffer/.test(line)), []);
+});
+
+test("a tile that is missing or damaged is named once, and its coarse one stays", { timeout: 120_000 }, async (t) => {
+    const folder = scratch(t);
+    const world = bakeTiles(folder);
+    const tiles = tilesIn(world, [256, 40, 256], 40); // about a corner of four
+    assert.ok(tiles.length >= 3);
+    const [gone, broken] = tiles;
+    rmSync(path.join(folder, "w", gone));
+    const bytes = readFileSync(path.join(folder, "w", broken));
+    bytes[bytes.length >> 1] ^= 1;
+    writeFileSync(path.join(folder, "w", broken), bytes);
+    cpSync(path.join(folder, "w"), path.join(folder, "cut"), { recursive: true });
+    rmSync(path.join(folder, "cut", world.colliders[0].coarse.file));
+    const { page, said } = await libraryPage(t, folder);
+    const got = await page.evaluate(async ({ scene, steps }) => {
+        const world = await relief.streamWorld("/files/w/world.json", { radius: 40 });
+        const lines = [];
+        const systems = [new relief.ParticleSystem(gl, { world, scene, warn: (line) => lines.push(line) }),
+                         new relief.ParticleSystem(gl, { world, scene })];
+        for (let i = 0; i < steps; ++i) {
+            systems.forEach((one) => one.step());
+            await new Promise((done) => setTimeout(done, 5));
+        }
+        const [info, rows] = [systems[0].info, [...systems[0].read()]];
+        const full = new relief.ParticleSystem(gl, { world: new relief.World(world.files, { radius: 40, load: () => "no bytes" }), scene,
+                                                     warn: (line) => lines.push(line) });
+        await full.loaded();
+        const errorOf = async (f) => {
+            try {
+                await f();
+                return "no error";
+            } catch (one) {
+                return `${one.name}: ${one.message}`;
+            }
+        };
+        const plain = new relief.ParticleSystem(gl, { world: new relief.World(world.files, { radius: 1, load: () => {} }), scene });
+        const cube = new relief.ParticleSystem(gl, { scene: { ...scene, collider: { file: "a.relief" } },
+                                                     files: { "a.relief": Object.entries(world.files).find(([name]) => name.endsWith(".relief"))[1] } });
+        const text = `world = "world/world.json"\n[particles]\ncapacity = 16\n`;
+        const make = (more) => errorOf(() => new relief.ParticleSystem(gl, { world, scene, ...more }));
+        return {
+            lines, info: info.stream, rows,
+            errors: [
+                await errorOf(() => relief.streamWorld("/files/w/world.json")),
+                await errorOf(() => relief.streamWorld("/files/w/world.json", { radius: 0 })),
+                await errorOf(() => relief.streamWorld("/files/w/world.json", { radius: 1, memory: "64" })),
+                await errorOf(() => relief.streamWorld("/files/w/world.json", { radius: 1, speed: 2 })),
+                await errorOf(() => relief.streamWorld("/files/cut/world.json", { radius: 1 })),
+                await errorOf(() => new relief.World(world.files, { radius: 1 })),
+                await errorOf(() => new relief.World(world.files)),
+                await make({ scene: { ...scene, stream: { memory: 0.01 } } }),
+                await make({ scene: text }),
+                await make({ warn: "loud" }),
+                await errorOf(() => plain.near({ position: [0, 0, 0], radius: 1 })),
+                await errorOf(() => plain.near([{ position: [0, 0, 0], radius: 1 }, { position: [0, 0, 0] }])),
+                await errorOf(() => plain.near([{ position: [0, NaN, 0], radius: 1 }])),
+                await errorOf(() => cube.near([])),
+                await errorOf(() => plain.set({ stream: undefined })),
+                await errorOf(() => plain.set({ stream: { memory: 3 } })),
+                await errorOf(() => cube.set({ stream: { radius: 3 } })),
+            ],
+            changed: await errorOf(() => plain.set({ stream: { radius: 3 } })),
+            spoken: await make({ scene: `${text}[stream]\nradius = 2.0\n` }),
+            gl: gl.getError(),
+        };
+    }, { scene: { ...kScene, emitter: emitterAt(236, 236) }, steps: kSteps });
+    const count = tilesAt(world, 236, 236).length;
+    const named = got.lines.slice(0, 2).sort((a, b) => a.includes(broken) - b.includes(broken));
+    assert.match(named[0], new RegExp(`^http.*/files/w/${gone}: the server answers 404 .*; its coarse likeness stays$`));
+    assert.match(named[1], new RegExp(`${broken}.* has other contents than its hash has.*; its coarse likeness stays$`));
+    assert.deepEqual([got.info.wanted, got.info.present, got.info.failed], [count, count - 2, 2]);
+    assert.equal(below(got.rows).count, 500);
+    assert.ok(below(got.rows).deepest < 3, JSON.stringify(below(got.rows))); // as coarse as it is
+    assert.equal(got.lines.slice(2).length, count);
+    assert.ok(got.lines.slice(2).every((line) => /'load' gives no Uint8Array/.test(line)));
+    const expected = [/streamWorld\(\) needs a radius above 0/, /needs a radius above 0/, /memory is a number/, /no option 'speed'/, /404/, /needs 'load'/,
+                      /No such file/, /always there.*allow more/, /has no \[stream\]/, /'warn' is a function/, /near\(\) takes a list/,
+                      /number 1 is none/, /near\(\): number 1 is NaN/, /take streamWorld\(\)/, /only the radius changes/, /only the radius changes/,
+                      /stream.*needs world/];
+    assert.equal(got.errors.length, expected.length);
+    got.errors.forEach((message, i) => {
+        assert.match(message, /^ReliefError: /);
+        assert.match(message, expected[i], `error ${i}`);
+    });
+    assert.deepEqual([got.changed, got.spoken], ["no error", "no error"]);
+    assert.equal(got.gl, 0);
+    // A system without 'warn' writes the same on the console, once each.
+    const warned = said.filter((line) => line.startsWith("warning: "));
+    assert.equal(warned.length, 2, said.join("\n"));
+    assert.deepEqual(said.filter((line) => !line.startsWith("warning: ") && !line.includes("404")), []);
+});
+
+test("a page of relief view plays a scene with [stream] from its own files", { timeout: 120_000 }, async (t) => {
+    const folder = scratch(t);
+    bakeTiles(folder);
+    writeFileSync(path.join(folder, "s.toml"), `world = "w/world.json"
+[stream]
+radius = 30.0
+[particles]
+capacity = 256
+[[emitter]]
+box_min = [20.0, 62.0, 20.0]
+box_max = [60.0, 66.0, 60.0]
+velocity = [0.0, -30.0, 0.0]
+rate = 100.0
+`);
+    run("relief", "view", path.join(folder, "s.toml"), "-o", path.join(folder, "s.html"));
+    const browser = await launch();
+    t.after(() => browser.close());
+    const { page, said } = await openPage(browser, pathToFileURL(path.join(folder, "s.html")).href);
+    await page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
+    const stream = await page.evaluate(() => {
+        reliefView.particles.paused = true;
+        reliefView.particles.step();
+        return reliefView.particles.system.info.stream;
+    });
+    assert.ok(stream.present > 0 && stream.present === stream.wanted && stream.failed === 0, JSON.stringify(stream));
+    assert.equal(await page.locator("#message p").textContent(), "");
+    assert.deepEqual(said.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line)), []);
+});
