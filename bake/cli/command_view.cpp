@@ -27,6 +27,7 @@
 #include "runtime/command_line/option_values.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_pictures.h"
+#include "runtime/scene/scene_world.h"
 
 namespace relief {
 namespace {
@@ -247,6 +248,12 @@ Result<std::string> scenePage(const std::string& name, const ContainerLimits& li
     }
     for (const fs::path& named : filesOf(loaded.scene)) {
         page.files[nameInScene(named, file)] = textOf(RELIEF_TRY(page.read(named)));
+    }
+    for (const WorldCollider& collider : loaded.world.colliders) {
+        if (loaded.scene.stream && collider.coarse) {
+            const fs::path coarse = containerOf(loaded.scene, *collider.coarse);
+            page.files[nameInScene(coarse, file)] = textOf(RELIEF_TRY(page.read(coarse)));
+        }
     }
     RELIEF_TRY(chooseShown(loaded.scene, file, page));
     return page.make();

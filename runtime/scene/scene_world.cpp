@@ -53,8 +53,8 @@ void place(SceneCollider& to, const WorldBody& body, const Scene& scene, const W
 
 }  // namespace
 
-std::filesystem::path containerOf(const Scene& scene, const WorldCollider& collider) {
-    return scene.world.parent_path() / collider.file;
+std::filesystem::path containerOf(const Scene& scene, const WorldFile& file) {
+    return scene.world.parent_path() / file.file;
 }
 
 Result<void> placeBodies(Scene& scene, const World& world) {

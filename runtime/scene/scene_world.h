@@ -9,8 +9,8 @@
 
 namespace relief {
 
-/// The path of a collider of the scene's world.
-[[nodiscard]] std::filesystem::path containerOf(const Scene& scene, const WorldCollider& collider);
+/// The path of a container of the scene's world.
+[[nodiscard]] std::filesystem::path containerOf(const Scene& scene, const WorldFile& file);
 
 /// Gives the colliders that name a node the body that it places, where they leave its pose open; the other bodies of the
 /// world follow behind all colliders, in the world's order.
