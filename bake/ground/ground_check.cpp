@@ -430,8 +430,9 @@ class GroundChecker {
             return {floor && *floor < probe.height ? std::max(*floor, reach) : reach, probe.height + within_};
         }
         const double deep = kDeep * std::max({high_.x - low_.x, high_.y - low_.y, high_.z - low_.z});
-        const double bottom =
-            std::isnan(probe.height) ? offset().y + lowest_ - deep : std::min(floor.value_or(reach), reach);
+        const double bottom = std::isnan(probe.height)         ? offset().y + lowest_ - deep
+                              : floor && *floor < probe.height ? *floor
+                                                               : reach;
         return {bottom, offset().y + highest_ + deep};
     }
 

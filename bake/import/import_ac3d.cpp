@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kDepthMax = 1000;
 
 /// The low digit of a surface's flags.
-enum SurfaceKind : std::uint64_t { kPolygon = 0, kClosedLine = 1, kLine = 2, kStrip = 4 };
+enum SurfaceKind : std::uint64_t { kPolygon = 0, kClosedLine = 1, kLine = 2, kStripSurface = 4 };
 
 /// Surfaces of one material of an object.
 using ByMaterial = std::map<std::uint64_t, PolygonMesh>;
@@ -261,7 +261,7 @@ class Ac3dReader {
         }
         PolygonMesh& polygons = surfaces[material];
         mark(corners_.size() >= 3 ? 2 : 1);
-        return kind == kStrip ? addStrip(polygons) : addPolygon(corners_, polygons);
+        return kind == kStripSurface ? addStrip(polygons) : addPolygon(corners_, polygons);
     }
 
     /// Of the corners. \param by  1: lines and points, 2: polygons.

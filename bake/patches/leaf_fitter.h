@@ -33,7 +33,7 @@ class LeafFitter {
     /// \return whether the node's leaf holds the surface; one without triangles does.
     bool hold(PatchNode& node, double within, double byte) const;
 
-    /// What is written of a leaf with a single surface, or with two.
+    /// The texels of a leaf with a single surface, or with two.
     [[nodiscard]] PatchHeights heights(const PatchNode& node) const;
     [[nodiscard]] std::array<PatchHeights, 2> pair(const PatchNode& node) const;
 

@@ -39,7 +39,7 @@ std::string WorldPlaceReport::advice() const {
 
 namespace {
 
-/// What to do, each sentence once, behind the bodies that it is for.
+/// Advice, each sentence once, behind the bodies that it is for.
 std::string adviceLines(const WorldField& field, const WorldAccuracy& accuracy) {
     std::vector<std::pair<std::string, std::string>> lines;  // advice, bodies
     for (std::size_t i = 0; i < accuracy.places.size(); ++i) {

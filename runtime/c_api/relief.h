@@ -129,7 +129,7 @@ typedef struct relief_ball {
 /* Call it before each step with the places that matter, such as the camera and the emitters: what reaches into these balls is loaded, and
  * what did not for the longest time goes. It copies a little at a time and waits for nothing, unless `waits` is 1 and not 0: then for all that
  * there is room for, so that runs are alike. Of textures that are not streamed it does nothing.
- * Returns how many colliders in the balls are not there in full detail; -1: an error. Since 1.2. */
+ * Returns how many colliders in the balls are not there in full detail, those that could not be loaded among them; -1: an error. Since 1.2. */
 int64_t relief_textures_stream(relief_textures* world_textures, const relief_ball* balls, size_t count,
                                int waits);
 /* One line about a collider that could not be loaded, which is told once; "": there is none. Valid until the next call of it. Since 1.2. */

@@ -153,8 +153,9 @@ relief_textures* relief_textures_stream_world(const char* world_path, uint64_t g
             RELIEF_TRY(call.notNull(world_path, "world_path"));
             RELIEF_TRY(call.number(static_cast<double>(gpu_bytes), {1.0, kStreamBytesMax}, {"gpu_bytes"}));
             RELIEF_TRY(call.context());
-            const World world = RELIEF_TRY(loadWorldFile(world_path));
-            auto stream = RELIEF_TRY(WorldStream::open(world_path, {.gpu_bytes = gpu_bytes}));
+            const LoadedWorld coarse = RELIEF_TRY(loadWorld(world_path, {}, WorldDetail::kCoarse));
+            const World& world = coarse.world;
+            auto stream = RELIEF_TRY(WorldStream::open(coarse, world_path, {.gpu_bytes = gpu_bytes}));
             auto made = RELIEF_TRY(texturesObject(std::move(stream)));
             made.world = worldBounds(world);
             made.texel = made.world->longestSide() / 2048.0F;

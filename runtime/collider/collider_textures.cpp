@@ -114,6 +114,11 @@ void ColliderTextures::setPoses(std::span<const Pose> poses) {
     }
 }
 
+std::size_t ColliderTextures::texelsMost() {
+    const auto side = static_cast<std::size_t>(integer(GL_MAX_TEXTURE_SIZE));
+    return side * side;
+}
+
 void ColliderTextures::upload(std::size_t first, std::span<const std::byte> texels) {
     const std::size_t texel_size = texelFormat(kFrontBackTexels).texel_size;
     const std::size_t width = rowTexels();

@@ -83,6 +83,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
     made.loaded_ = &loaded;
     made.scene_ = &scene;
     made.emitters_ = loaded.emitters;
+    made.emitter_balls_ = emitterBalls(made.emitters_);
     made.types_ = particleTypes(scene);
     made.motions_ = emitterMotions(scene.emitters, scene.colliders);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
@@ -191,6 +192,7 @@ Result<void> Simulation::takeEvents(int in_flight) {
 Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
     if (emitters) {
         emitters_ = std::move(*emitters);
+        emitter_balls_ = emitterBalls(emitters_);
     }
     motions_ = emitterMotions(scene_->emitters, scene_->colliders);
     types_ = particleTypes(*scene_);
@@ -222,7 +224,8 @@ Result<void> Simulation::moveColliders(double time) {
 
 std::vector<PointOfInterest> Simulation::streamPointsNow() const {
     const double time = particles_->time();
-    std::vector<PointOfInterest> points = emitterPoints(emitters_, motions_, scene_->stream->radius, time);
+    std::vector<PointOfInterest> points =
+        emitterPoints(emitter_balls_, motions_, scene_->stream->radius, time);
     if (points_) {
         points.insert(points.end(), points_->begin(), points_->end());
     } else {

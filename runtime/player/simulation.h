@@ -72,7 +72,7 @@ class Simulation {
     [[nodiscard]] const ColliderTextures& textures() const {
         return stream_ ? stream_->textures() : *textures_;
     }
-    /// What of a world that is streamed could not be loaded since the last call, one line each.
+    /// One line for each collider of a world that is streamed which could not be loaded, since the last call.
     [[nodiscard]] std::vector<std::string> takeWarnings() {
         return stream_ ? stream_->takeWarnings() : std::vector<std::string>();
     }
@@ -127,6 +127,7 @@ class Simulation {
     std::unique_ptr<WorldStream> stream_;         // in place of them
     bool stream_waits_ = true;
     std::optional<std::vector<PointOfInterest>> points_;
+    std::vector<PointOfInterest> emitter_balls_;  // of a world that is streamed
     std::vector<LiveBody> live_;
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // of a step, kept for its memory

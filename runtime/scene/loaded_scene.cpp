@@ -116,6 +116,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         emitter.seed = overrides.seed.value_or(emitter.seed);
     }
     LoadedScene loaded;
+    loaded.limits = overrides.limits;
     const std::size_t own = scene.colliders.size();
     RELIEF_TRY(openWorld(scene, loaded, overrides.limits));
     Colliders of_world;

@@ -36,6 +36,7 @@ struct LoadedScene {
     World world;  ///< without bodies: the scene has none
     /// Those of the world, coarse ones if the scene streams it.
     std::vector<std::shared_ptr<const Collider>> world_colliders;
+    ContainerLimits limits;  ///< of each collider that is read later
     /// Those of the scene, in its order; a file that it names several times, once.
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// As many: the meshes of those that deform, whose colliders have maps without texels.

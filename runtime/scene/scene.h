@@ -88,10 +88,11 @@ void fields(Visitor& visit, C& c) {
           {"Longest distance between two tests of a step; 0: only its ends are tested", {}, kLengthRange});
 }
 
-/// What of the world is on the GPU.
+/// A world of which only a part is in full detail.
 struct SceneStream {
     float radius = 0.0F;
     float memory = 256.0F;
+    friend bool operator==(const SceneStream&, const SceneStream&) = default;
 };
 
 template <class Visitor, FieldsOf<SceneStream> T>

@@ -41,7 +41,7 @@ Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
     if (source) {
         options.under_way = kFromAfar;
     } else {
-        source = RELIEF_TRY(makeFileSource(loaded.world, scene.world.parent_path()));
+        source = RELIEF_TRY(makeFileSource(loaded.world, scene.world.parent_path(), loaded.limits));
     }
     std::vector<const Collider*> coarse;
     for (const auto& collider : loaded.world_colliders) {
@@ -50,15 +50,22 @@ Result<std::unique_ptr<WorldStream>> makeStream(const LoadedScene& loaded,
     return WorldStream::create(loaded.world, bodies, coarse, std::move(source), options);
 }
 
-std::vector<PointOfInterest> emitterPoints(std::span<const Emitter> emitters,
+std::vector<PointOfInterest> emitterBalls(std::span<const Emitter> emitters) {
+    std::vector<PointOfInterest> balls;
+    for (const Emitter& emitter : emitters) {
+        balls.push_back(ballOf(emitter.settings()));
+    }
+    return balls;
+}
+
+std::vector<PointOfInterest> emitterPoints(std::span<const PointOfInterest> balls,
                                            std::span<const EmitterMotion> motions, float radius,
                                            double seconds) {
     std::vector<PointOfInterest> points;
-    for (std::size_t i = 0; i < emitters.size(); ++i) {
-        const PointOfInterest ball = ballOf(emitters[i].settings());
-        Birth middle{.position = ball.position};
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        Birth middle{.position = balls[i].position};
         carry(motions[i], seconds, {&middle, 1});
-        points.push_back({middle.position, ball.radius + radius});
+        points.push_back({middle.position, balls[i].radius + radius});
     }
     return points;
 }

@@ -19,11 +19,13 @@ namespace relief {
                                                               std::span<const ColliderBody> bodies,
                                                               std::unique_ptr<ColliderSource> source);
 
-/// Balls about the birthplaces of each emitter, wider by a radius.
+/// A ball that holds all birthplaces of each emitter, in its own space.
+[[nodiscard]] std::vector<PointOfInterest> emitterBalls(std::span<const Emitter> emitters);
+/// The same in the world, wider by a radius.
 /// \param motions  of the emitters.
 /// \param radius   of the [stream].
 /// \param seconds  since the beginning; emitters that move are where they are then.
-[[nodiscard]] std::vector<PointOfInterest> emitterPoints(std::span<const Emitter> emitters,
+[[nodiscard]] std::vector<PointOfInterest> emitterPoints(std::span<const PointOfInterest> balls,
                                                          std::span<const EmitterMotion> motions, float radius,
                                                          double seconds);
 /// A ball of the radius of the [stream] about the scene's camera.

@@ -43,6 +43,8 @@ class StreamPlan {
 
     /// Colliders in the order in which they are wanted: by the distance to the nearest of their bodies, in radii of the point.
     [[nodiscard]] std::span<const std::uint32_t> wanted() const { return wanted_; }
+    /// That distance of a wanted one, until the next look().
+    [[nodiscard]] float nearest(std::uint32_t collider) const { return nearest_[collider]; }
 
   private:
     void begin(std::span<const PointOfInterest> points);

@@ -13,24 +13,27 @@
 #include "formats/base/finite.h"
 #include "formats/base/text.h"
 #include "runtime/collider/world_bodies.h"
+#include "runtime/gl/gl_fault.h"
 #include "runtime/stream/texel_ranges.h"
 
 namespace relief {
 namespace {
 
 constexpr std::size_t kTexelSize = 8;
+/// Of the distance of a collider that is there.
+constexpr float kHere = 0.9F;
 /// Pairs of a body and a point whose distance an update measures: some tens of microseconds.
 constexpr std::size_t kPairs = 8192;
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-/// A collider that has a coarse likeness.
+/// A collider of the world.
 struct Streamed {
     std::size_t body = kNone;          // one that has it; kNone: there is none, or it does not come and go
     std::size_t texels = 0;            // of its own map
     Collider coarse;                   // without texels, but for the one that holds its tree's size
     std::optional<std::size_t> place;  // of its own map's texels
     std::uint64_t last_wanted = 0;     // number of the choice
-    std::uint64_t refused = kNone;     // number of removals when there was no place for it
+    std::uint64_t refused = kNone;     // State::era in which there was no place for it
     bool requested = false;            // and not yet uploaded
     bool failed = false;
     bool present = false;  // with its own map
@@ -74,8 +77,8 @@ Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
     }
     std::set<const Collider*> counted;
     for (const ColliderBody& body : bodies) {
-        const bool first = counted.insert(body.collider).second;
-        start.coarse_bytes += first || body.live ? body.collider->gpuBytes() : 0;
+        const bool first = body.live || counted.insert(body.collider).second;
+        start.coarse_bytes += first ? body.collider->gpuBytes() : 0;
         const auto found = body.live ? own.end() : own.find(body.collider);
         const bool streamed = found != own.end() && world.colliders[found->second].coarse;
         start.planned.push_back(streamed ? start.plan.size() : kNone);
@@ -118,9 +121,8 @@ struct WorldStream::State {
     std::size_t room = 0;                    // texels
     std::size_t spare = 0;                   // texels of the room that are not chosen for
     std::vector<std::uint32_t> wanted = {};  // that there is room for together, the most urgent first
-    std::size_t wanted_in_all = 0;
     std::uint64_t choices = 0;
-    std::uint64_t removals = 0;
+    std::uint64_t era = 0;  // of what may go: another when others are wanted, or something has gone
     std::deque<Upload> arrived = {};
     std::size_t under_way = 0;  // requested, and not in arrived
     std::uint64_t uploaded = 0;
@@ -130,6 +132,8 @@ struct WorldStream::State {
     void request();
     void take(ColliderSource::Arrival arrival);
     void giveUp(std::size_t collider, const std::string& warning);
+    /// Whether there is a place for its texels where all goes that is not wanted.
+    [[nodiscard]] bool hasRoom(const Streamed& collider) const;
     /// Takes a place for its texels. Colliders that are not wanted go for it, those first that were not for the longest time.
     Result<bool> makeRoom(Streamed& collider);
     /// \param bytes  at most.
@@ -139,18 +143,34 @@ struct WorldStream::State {
 
 void WorldStream::State::choose() {
     ++choices;
-    wanted.clear();
-    wanted_in_all = 0;
-    std::size_t texels = 0;
+    // Those that are there or on their way count as a little nearer, or two that are as far would take turns.
+    std::vector<std::pair<float, std::uint32_t>> order;
     for (const std::uint32_t i : plan.wanted()) {
+        const bool here = colliders[i].present || colliders[i].requested;
+        order.emplace_back((here ? kHere : 1.0F) * plan.nearest(i), i);
+    }
+    std::sort(order.begin(), order.end());
+    const std::vector<std::uint32_t> before = std::exchange(wanted, {});
+    std::size_t texels = 0;
+    for (const auto& [distance, i] : order) {
         Streamed& collider = colliders[i];
-        ++wanted_in_all;
         if (!collider.failed && (texels == 0 || texels + collider.texels + spare <= room)) {
             texels += collider.texels;
             collider.last_wanted = choices;
             wanted.push_back(i);
         }
     }
+    era += wanted != before ? 1 : 0;
+}
+
+bool WorldStream::State::hasRoom(const Streamed& collider) const {
+    TexelRanges left = ranges;
+    for (const Streamed& other : colliders) {
+        if (other.present && other.last_wanted != choices) {
+            left.give(*other.place, other.texels);
+        }
+    }
+    return left.take(collider.texels).has_value();
 }
 
 void WorldStream::State::request() {
@@ -159,7 +179,12 @@ void WorldStream::State::request() {
             return;
         }
         Streamed& collider = colliders[i];
-        if (!collider.present && !collider.requested && !collider.failed && collider.refused != removals) {
+        if (collider.present || collider.requested || collider.failed || collider.refused == era) {
+            continue;
+        }
+        if (!hasRoom(collider)) {
+            collider.refused = era;
+        } else {
             collider.requested = true;
             ++under_way;
             source->request(i);
@@ -186,6 +211,10 @@ void WorldStream::State::take(ColliderSource::Arrival arrival) {
 }
 
 Result<bool> WorldStream::State::makeRoom(Streamed& collider) {
+    if (!hasRoom(collider)) {
+        collider.refused = era;
+        return false;
+    }
     while (!(collider.place = ranges.take(collider.texels))) {
         Streamed* oldest = nullptr;
         for (Streamed& other : colliders) {
@@ -194,15 +223,11 @@ Result<bool> WorldStream::State::makeRoom(Streamed& collider) {
                 oldest = &other;
             }
         }
-        if (oldest == nullptr) {
-            collider.refused = removals;
-            return false;
-        }
         RELIEF_TRY(textures.exchange(oldest->body, oldest->coarse, std::nullopt));
         ranges.give(*oldest->place, oldest->texels);
         oldest->place.reset();
         oldest->present = false;
-        ++removals;
+        ++era;
     }
     return true;
 }
@@ -272,8 +297,12 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
                                            std::to_string(coarse_bytes) + " bytes of the GPU, more than " +
                                            std::to_string(options.gpu_bytes) + "; allow more");
     }
-    const std::size_t room = static_cast<std::size_t>(
-        std::min<std::uint64_t>(texels, (options.gpu_bytes - coarse_bytes) / kTexelSize));
+    RELIEF_TRY(checkContext());
+    const std::uint64_t most =
+        std::max<std::uint64_t>(ColliderTextures::texelsMost(), coarse_bytes / kTexelSize) -
+        coarse_bytes / kTexelSize;
+    const auto room = static_cast<std::size_t>(
+        std::min({std::uint64_t{texels}, (options.gpu_bytes - coarse_bytes) / kTexelSize, most}));
     auto textures = RELIEF_TRY(ColliderTextures::create(bodies, room));
     const std::size_t first = textures.room();
     auto state = std::make_unique<State>(State{.textures = std::move(textures),
@@ -301,7 +330,13 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
 Result<std::unique_ptr<WorldStream>> WorldStream::open(const std::filesystem::path& path,
                                                        const StreamOptions& options,
                                                        const ContainerLimits& limits) {
-    const LoadedWorld coarse = RELIEF_TRY(loadWorld(path, limits, WorldDetail::kCoarse));
+    return open(RELIEF_TRY(loadWorld(path, limits, WorldDetail::kCoarse)), path, options, limits);
+}
+
+Result<std::unique_ptr<WorldStream>> WorldStream::open(const LoadedWorld& coarse,
+                                                       const std::filesystem::path& path,
+                                                       const StreamOptions& options,
+                                                       const ContainerLimits& limits) {
     std::vector<const Collider*> colliders;
     for (const Collider& collider : coarse.colliders) {
         colliders.push_back(&collider);
@@ -362,10 +397,13 @@ std::vector<std::string> WorldStream::takeWarnings() {
 }
 
 StreamCounts WorldStream::counts() const {
-    StreamCounts counts{
-        .wanted = state_->wanted_in_all, .gpu_bytes = state_->coarse_bytes, .uploaded = state_->uploaded};
+    StreamCounts counts{.wanted = state_->plan.wanted().size(),
+                        .gpu_bytes = state_->coarse_bytes,
+                        .uploaded = state_->uploaded};
+    for (const std::uint32_t i : state_->plan.wanted()) {
+        counts.present += state_->colliders[i].present ? 1 : 0;
+    }
     for (const Streamed& collider : state_->colliders) {
-        counts.present += collider.present && collider.last_wanted == state_->choices ? 1 : 0;
         counts.failed += collider.failed ? 1 : 0;
         counts.gpu_bytes += collider.place ? kTexelSize * collider.texels : 0;
     }

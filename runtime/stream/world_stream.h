@@ -33,7 +33,7 @@ namespace relief {
 
 struct StreamOptions {
     std::uint64_t gpu_bytes = std::uint64_t{256} << 20;     ///< of all texels, the coarse ones included
-    std::uint64_t upload_bytes = std::uint64_t{256} << 10;  ///< that one update may copy, at least 8
+    std::uint64_t upload_bytes = std::uint64_t{128} << 10;  ///< that one update may copy, at least 8
     /// Colliders that are loaded or wait for their upload, at least 1: they take memory.
     std::size_t under_way = 2;
 };
@@ -59,6 +59,11 @@ class WorldStream {
                                                                      const StreamOptions& options = {});
     /// The world of a file as it stands, by makeFileSource(). Errors: also those of loadWorld.
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> open(const std::filesystem::path& path,
+                                                                   const StreamOptions& options = {},
+                                                                   const ContainerLimits& limits = {});
+    /// The same of a world that has been read, with WorldDetail::kCoarse. \param path  of its file.
+    [[nodiscard]] static Result<std::unique_ptr<WorldStream>> open(const LoadedWorld& coarse,
+                                                                   const std::filesystem::path& path,
                                                                    const StreamOptions& options = {},
                                                                    const ContainerLimits& limits = {});
     WorldStream(const WorldStream&) = delete;

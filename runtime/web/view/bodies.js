@@ -130,7 +130,7 @@ export class Bodies {
         return best;
     }
 
-    /** What is known of a body: pairs of words. */
+    /** Facts about a body: pairs of words. */
     facts(i) {
         const { file, deforms } = this.info[i];
         const base = file.split("/").pop();

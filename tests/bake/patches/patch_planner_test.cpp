@@ -274,7 +274,7 @@ TEST(PatchTexel, WithinABudgetIsAsFineAsThatAllows) {
     ASSERT_TRUE(tree) << tree.error().message;
     EXPECT_LE(tree->map.texels.size(), 20'000U);
     EXPECT_GT(tree->texel, 0.001);
-    // What takes less is not coarsened, and what takes little more than it may is refused.
+    // A tree that takes less is not coarsened, and one that takes a little more than it may is refused.
     EXPECT_EQ(byTexel(query, tree->texel).texels, tree->map.texels);
     EXPECT_GT(byTexel(query, 0.9 * tree->texel).texels.size(), 20'000U);
     options.texel = 2.0 * tree->texel;

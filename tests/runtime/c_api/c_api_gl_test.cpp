@@ -510,7 +510,7 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     relief_particles_free(particles);
 }
 
-// What is near a ball is there in full detail, and what is missing is told once.
+// Colliders near a ball are there in full detail, and one that is missing is told once.
 TEST_F(CApi, AWorldIsStreamed) {
     std::mt19937 random(5);
     const test::TemporaryFolder folder;

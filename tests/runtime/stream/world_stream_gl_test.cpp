@@ -244,6 +244,45 @@ TEST_P(WorldStreamGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     EXPECT_TRUE(source_->asked.empty());
 }
 
+TEST_P(WorldStreamGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWanted) {
+    std::uint64_t largest = 0;
+    for (const Collider& collider : fine_) {
+        largest = std::max(largest, collider.gpuBytes());
+    }
+    open({.gpu_bytes = coarse_bytes_ + 2 * largest});
+    // In any order and number: in the end the one that alone is wanted is there, and nothing has been loaded in vain.
+    Pcg32 random(12);
+    for (int i = 0; i < 60; ++i) {
+        std::vector<std::size_t> some;
+        for (std::size_t k = 0; k < kColliders; ++k) {
+            if (random.next() % 3 == 0) {
+                some.push_back(k);
+            }
+        }
+        static_cast<void>(finish(some));
+        const std::uint64_t present = stream_->counts().present;
+        EXPECT_GE(present, std::min<std::size_t>(some.size(), 1));
+        const std::size_t alone = random.next() % kColliders;
+        static_cast<void>(finish({alone}));
+        EXPECT_EQ(stream_->counts().present, 1U) << alone;
+        EXPECT_LE(stream_->counts().gpu_bytes, coarse_bytes_ + 2 * largest);
+    }
+    EXPECT_TRUE(stream_->takeWarnings().empty());
+}
+
+TEST_P(WorldStreamGlTest, TwoThatAreAsNearDoNotTakeTurns) {
+    std::uint64_t largest = 0;
+    for (const Collider& collider : fine_) {
+        largest = std::max(largest, collider.gpuBytes());
+    }
+    open({.gpu_bytes = coarse_bytes_ + largest});
+    for (int i = 0; i < 12; ++i) {
+        const PointOfInterest between{{15.0F + (i % 2 == 0 ? 0.1F : -0.1F), 3.0F, 0.0F}, 20.0F};
+        ASSERT_TRUE(stream_->finish({&between, 1}));
+    }
+    EXPECT_EQ(source_->asked.size(), 1U);
+}
+
 TEST_P(WorldStreamGlTest, WhatIsBrokenIsNamedOnceAndItsCoarseMapsStay) {
     open({});
     source_->broken = 2;
