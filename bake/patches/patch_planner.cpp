@@ -52,6 +52,8 @@ constexpr double kByteOfTexel = 0.005;
 /// From the origin to the farthest place: there a sixteenth of a texel is a step of a float.
 constexpr double kTexelsMost = 1 << 20;
 constexpr int kTexelNarrowings = 3;
+/// Of a tree that is to be cut, the share of its roots' records, at most.
+constexpr double kRootsShare = 1.0 / 16.0;
 constexpr std::size_t kManyTriangles = 256;
 
 class Planner {
@@ -71,6 +73,9 @@ class Planner {
     Result<PatchTree> run() {
         if (options_.texel > 0.0) {
             RELIEF_TRY(searchTexel());
+            if (takenBytes() > static_cast<double>(options_.tile_bytes) && !splitRoots()) {
+                planTexel(texel_);
+            }
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
@@ -314,23 +319,58 @@ class Planner {
         texel_ = texel;
         const double longest = static_cast<double>(query_.mesh().bounds.longestSide());
         const auto tooMany = [](const glm::dvec3& n) { return n.x * n.y * n.z > kRootsMost; };
-        std::uint32_t levels = 0;
+        levels_ = 0;
         roots_.size = kTexelsPerCell * texel;
-        while (levels < kPatchLevelsMax && roots_.size < kBesideMesh * longest &&
+        while (levels_ < kPatchLevelsMax && roots_.size < kBesideMesh * longest &&
                tooMany(rootsOf(roots_.size))) {
             roots_.size *= 2.0;
-            ++levels;
+            ++levels_;
         }
         makeRoots();
         texels_ = 0;
         texels_most_ = options_.bytes / static_cast<std::uint64_t>(kPatchTexelBytes);
         roots_done_ = 0;
         forEachIndex(0, nodes_.size(), 1, [&](std::size_t i) {
-            refine(nodes_[i], levels);
+            refine(nodes_[i], levels_);
             ++roots_done_;
             report(kSearchShare * rootsDone());
         });
         return texels_ <= texels_most_ && takenBytes() <= bytes_;
+    }
+
+    /// Takes the cells below the roots for roots, as long as these are a small share of the tree.
+    /// \return whether it still fits; or it is of no use any more.
+    bool splitRoots() {
+        while (levels_ > 0 &&
+               8.0 * kPatchTexelBytes * static_cast<double>(nodes_.size()) <= kRootsShare * takenBytes()) {
+            --levels_;
+            const glm::uvec3 from = roots_.count;
+            const glm::uvec3 to = 2U * from;
+            std::vector<PatchNode> children(8 * nodes_.size());
+            forEachIndex(0, nodes_.size(), 1, [&](std::size_t i) {
+                PatchNode& node = nodes_[i];
+                const bool known = node.children != nullptr;
+                makeChildren(node);
+                const std::size_t x = i % from.x;
+                const std::size_t y = i / from.x % from.y;
+                const std::size_t z = i / from.x / from.y;
+                for (std::size_t k = 0; k < 8; ++k) {
+                    PatchNode& child = (*node.children)[k];
+                    if (!known) {
+                        refine(child, levels_);
+                    }
+                    children[((2 * z + (k >> 2U)) * to.y + 2 * y + (k >> 1U & 1U)) * to.x + 2 * x +
+                             (k & 1U)] = std::move(child);
+                }
+            });
+            nodes_ = std::move(children);
+            roots_.count = to;
+            roots_.size *= 0.5;
+            if (texels_ > texels_most_ || takenBytes() > bytes_) {
+                return false;
+            }
+        }
+        return true;
     }
 
     /// The texel, or where that takes too many bytes the finest that does not, within an eighth of an octave.
@@ -385,6 +425,7 @@ class Planner {
     double taken_ = 0.0;  // bytes of the tree tried last
     std::atomic<std::size_t> looked_at_ = 0;
     double texel_ = 0.0;                     // that the nodes were chosen by
+    std::uint32_t levels_ = 0;               // below the roots, by texel
     std::atomic<std::uint64_t> texels_ = 0;  // of leaves so far, by texel
     std::uint64_t texels_most_ = 0;
     std::atomic<std::size_t> roots_done_ = 0;

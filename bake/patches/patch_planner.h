@@ -8,6 +8,7 @@
 
 #include "bake/mesh/mesh_query.h"
 #include "bake/patches/leaf_fitter.h"
+#include "bake/patches/patch_tiles.h"
 #include "formats/base/result.h"
 #include "formats/depth_map.h"
 
@@ -21,6 +22,9 @@ struct PatchOptions {
     double texel = 0.0;
     bool coarsen = false;                ///< where that takes more bytes, a texel is taken that does not
     std::optional<Bounds> roots_hold{};  ///< object units: a box that the roots hold beside the mesh
+    /// A tree by texel that takes more has small roots, so that it can be cut into tiles of this size (patch_tiles.h); one by
+    /// bytes always has.
+    std::uint64_t tile_bytes = PatchTileOptions().bytes;
     MistakeCosts costs{};
     LeafLines lines{};
     /// A leaf is split on trial where it has more mistakes than so many bytes are worth: fewer find more, in more time.

@@ -1,0 +1,252 @@
+#include "bake/patches/patch_tiles.h"
+
+#include <algorithm>
+#include <bit>
+#include <glm/common.hpp>
+
+#include "formats/patch_tree.h"
+
+namespace relief {
+namespace {
+
+/// Along the side of a tile, without those beyond.
+constexpr std::uint32_t kRootsLeast = 4;
+
+std::uint32_t childCount(const PatchRecord& split) {
+    return static_cast<std::uint32_t>(std::popcount(split.children()));
+}
+
+/// Texels of a leaf beside its record.
+std::uint32_t leafTexels(PatchTexels texels, const PatchRecord& leaf) {
+    if (leaf.kind() != PatchRecord::Kind::kPatch) {
+        return 0;
+    }
+    if (!leaf.isPair()) {
+        return heightTexels(leaf.side());
+    }
+    return 2 + heightTexels(patchTexel(texels, leaf.first()).side()) +
+           heightTexels(patchTexel(texels, leaf.first() + 1).side());
+}
+
+PatchRecord leadingTo(PatchRecord record, std::uint32_t first) {
+    record.high = (record.high & 0xff000000U) | first;
+    return record;
+}
+
+/// In the order of encodePatches().
+class Copier {
+  public:
+    explicit Copier(PatchTexels from) : from_(from) {}
+
+    [[nodiscard]] std::vector<PatchRecord> copy(const glm::uvec3& first, const glm::uvec3& count) {
+        gather(first, count);
+        std::uint32_t next = 1 + static_cast<std::uint32_t>(records_.size());
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            if (!isSplit(records_[i])) {
+                leads_to_[i] = next;
+                next += leafTexels(from_, records_[i]);
+            }
+        }
+        texels_.resize(next);
+        texels_[0] = {count.x | count.y << 16U, count.z | levels_ << 16U};
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            const PatchRecord& record = records_[i];
+            texels_[1 + i] = isSplit(record)   ? leadingTo(record, leads_to_[i])
+                             : record.isPair() ? copyPair(record, leads_to_[i])
+                                               : copyPatch(record, leads_to_[i]);
+        }
+        return std::move(texels_);
+    }
+
+  private:
+    static bool isSplit(const PatchRecord& record) { return record.kind() == PatchRecord::Kind::kSplit; }
+
+    /// Records level by level.
+    void gather(const glm::uvec3& first, const glm::uvec3& count) {
+        const glm::uvec3 roots = patchTreeSize(from_).roots;
+        for (std::uint32_t z = first.z; z < first.z + count.z; ++z) {
+            for (std::uint32_t y = first.y; y < first.y + count.y; ++y) {
+                for (std::uint32_t x = first.x; x < first.x + count.x; ++x) {
+                    records_.push_back(patchTexel(from_, 1 + (z * roots.y + y) * roots.x + x));
+                }
+            }
+        }
+        for (std::size_t at = 0, end = records_.size(); at < records_.size(); end = records_.size()) {
+            bool any = false;
+            for (; at < end; ++at) {
+                leads_to_.push_back(1 + static_cast<std::uint32_t>(records_.size()));
+                const PatchRecord record = records_[at];
+                for (std::uint32_t k = 0; isSplit(record) && k < childCount(record); ++k) {
+                    records_.push_back(patchTexel(from_, record.first() + k));
+                }
+                any = any || isSplit(record);
+            }
+            levels_ += any ? 1 : 0;
+        }
+    }
+
+    PatchRecord copyPatch(const PatchRecord& record, std::uint32_t to) {
+        // That of 2² heights, or of a cell without a surface, holds all in itself.
+        const std::uint32_t heights = leafTexels(from_, record);
+        for (std::uint32_t k = 0; k < heights; ++k) {
+            texels_[to + k] = patchTexel(from_, record.first() + k);
+        }
+        return heights > 0 ? leadingTo(record, to) : record;
+    }
+
+    PatchRecord copyPair(const PatchRecord& record, std::uint32_t to) {
+        std::uint32_t heights = to + 2;
+        for (std::uint32_t k = 0; k < 2; ++k) {
+            const PatchRecord patch = patchTexel(from_, record.first() + k);
+            texels_[to + k] = copyPatch(patch, heights);
+            heights += heightTexels(patch.side());
+        }
+        return leadingTo(record, to);
+    }
+
+    PatchTexels from_;
+    std::vector<PatchRecord> records_;     // as they are in the whole
+    std::vector<std::uint32_t> leads_to_;  // the first texel of each, in the copy
+    std::uint32_t levels_ = 0;
+    std::vector<PatchRecord> texels_;
+};
+
+class Cutter {
+  public:
+    Cutter(const DepthMap& whole, const PatchTileOptions& options)
+        : whole_(whole), options_(options), roots_(patchTreeSize(whole.texels).roots) {
+        const std::size_t count = std::size_t{roots_.x} * roots_.y * roots_.z;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const PatchRecord root = patchTexel(whole.texels, 1 + i);
+            below_.push_back(texelsBelow(root));
+            outside_.push_back(root.kind() == PatchRecord::Kind::kOutside ? 1 : 0);
+        }
+    }
+
+    [[nodiscard]] std::vector<PatchTile> run() {
+        std::vector<PatchTile> best = {PatchTile{.own = roots_}};
+        glm::uvec3 grid(1);
+        for (std::uint64_t largest = sizeOf(best).largest; largest > options_.bytes;) {
+            int axis = 0;
+            for (int i = 1; i < 3; ++i) {
+                axis = roots_[i] * grid[axis] > roots_[axis] * grid[i] ? i : axis;
+            }
+            ++grid[axis];
+            std::vector<PatchTile> tiles = tilesOf(grid);
+            const Sizes sizes = sizeOf(tiles);
+            if (roots_[axis] / grid[axis] < kRootsLeast || grid.x * grid.y * grid.z > options_.most ||
+                sizes.total > options_.total) {
+                break;
+            }
+            best = std::move(tiles);
+            largest = sizes.largest;
+        }
+        for (PatchTile& tile : best) {
+            if (tile.own != roots_) {
+                tile.map = cutPatches(whole_, tile.first, withRim(tile));
+            }
+        }
+        return best;
+    }
+
+  private:
+    /// All texels that a record leads to, and theirs.
+    [[nodiscard]] std::uint32_t texelsBelow(const PatchRecord& record) const {
+        if (record.kind() != PatchRecord::Kind::kSplit) {
+            return leafTexels(whole_.texels, record);
+        }
+        std::uint32_t texels = 0;
+        for (std::uint32_t k = 0; k < childCount(record); ++k) {
+            texels += 1 + texelsBelow(patchTexel(whole_.texels, record.first() + k));
+        }
+        return texels;
+    }
+
+    [[nodiscard]] glm::uvec3 withRim(const PatchTile& tile) const {
+        return glm::min(tile.own + 1U, roots_ - tile.first);
+    }
+
+    template <class Visitor>
+    void forRoots(const glm::uvec3& first, const glm::uvec3& count, const Visitor& visit) const {
+        for (std::uint32_t z = first.z; z < first.z + count.z; ++z) {
+            for (std::uint32_t y = first.y; y < first.y + count.y; ++y) {
+                for (std::uint32_t x = first.x; x < first.x + count.x; ++x) {
+                    visit((std::size_t{z} * roots_.y + y) * roots_.x + x);
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] std::vector<PatchTile> tilesOf(const glm::uvec3& grid) const {
+        std::vector<PatchTile> tiles;
+        for (std::uint32_t i = 0; i < grid.x * grid.y * grid.z; ++i) {
+            PatchTile tile;
+            tile.place = {i % grid.x, i / grid.x % grid.y, i / grid.x / grid.y};
+            tile.first = tile.place * roots_ / grid;
+            tile.own = (tile.place + 1U) * roots_ / grid - tile.first;
+            bool outside = true;
+            forRoots(tile.first, tile.own,
+                     [&](std::size_t root) { outside = outside && outside_[root] != 0; });
+            if (!outside) {
+                tiles.push_back(std::move(tile));
+            }
+        }
+        return tiles;
+    }
+
+    struct Sizes {
+        std::uint64_t largest = 0;
+        std::uint64_t total = 0;
+    };
+    [[nodiscard]] Sizes sizeOf(const std::vector<PatchTile>& tiles) const {
+        Sizes sizes;
+        for (const PatchTile& tile : tiles) {
+            std::size_t texels = 1;
+            forRoots(tile.first, withRim(tile), [&](std::size_t root) { texels += 1 + below_[root]; });
+            const PatchMapSize size = patchMapSize(texels);
+            const std::uint64_t bytes = std::uint64_t{size.width} * size.height * texelSize(whole_.format);
+            sizes.largest = std::max(sizes.largest, bytes);
+            sizes.total += bytes;
+        }
+        return sizes;
+    }
+
+    const DepthMap& whole_;
+    const PatchTileOptions& options_;
+    glm::uvec3 roots_;
+    std::vector<std::uint32_t> below_;  // texels, of each root
+    std::vector<char> outside_;         // 1: so is all of the root
+};
+
+}  // namespace
+
+std::vector<PatchTile> cutIntoTiles(const DepthMap& whole, const PatchTileOptions& options) {
+    return Cutter(whole, options).run();
+}
+
+DepthMap cutPatches(const DepthMap& whole, const glm::uvec3& first, const glm::uvec3& count) {
+    DepthMap map;
+    map.format = whole.format;
+    map.compare = whole.compare;
+    map.decode = whole.decode;
+    map.object_to_map = whole.object_to_map;
+    for (int axis = 0; axis < 3; ++axis) {
+        float& from = map.object_to_map.row[axis].w;
+        from = static_cast<float>(double{from} - static_cast<double>(first[axis]));
+    }
+    map.object_per_map = whole.object_per_map;
+    map.encloses = whole.encloses;
+    map.empty_is_outside = whole.empty_is_outside;
+    const std::vector<PatchRecord> texels = Copier(whole.texels).copy(first, count);
+    map.texels.reserve(texels.size() * texelSize(map.format));
+    for (const PatchRecord& texel : texels) {
+        appendPatchTexel(map.texels, texel);
+    }
+    const PatchMapSize size = patchMapSize(texels.size());
+    map.width = size.width;
+    map.height = size.height;
+    map.texels.resize(map.texelBytes());
+    return map;
+}
+
+}  // namespace relief

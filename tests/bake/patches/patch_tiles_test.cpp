@@ -1,0 +1,255 @@
+// Trees cut into tiles: their union against the whole tree and against closed forms, at seams as elsewhere.
+#include "bake/patches/patch_tiles.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "bake/patches/patch_planner.h"
+#include "formats/patch_tree.h"
+#include "formats/validate.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+constexpr float kHalf = 100.0F;  ///< of the hills' sides, metres
+
+float hillsAt(float x, float z) {
+    return 6.0F * std::sin(0.07F * x) * std::cos(0.05F * z) + 1.5F * std::sin(0.31F * x + 0.23F * z);
+}
+
+/// n × n quads of hills, closed below.
+TriangleMesh makeHills(std::uint32_t n) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    const std::uint32_t row = n + 1;
+    for (const bool top : {true, false}) {
+        for (std::uint32_t i = 0; i < row * row; ++i) {
+            const auto along = [&](std::uint32_t at) {
+                return kHalf * (2.0F * static_cast<float>(at) / static_cast<float>(n) - 1.0F);
+            };
+            const float x = along(i % row);
+            const float z = along(i / row);
+            positions.emplace_back(x, top ? hillsAt(x, z) : -20.0F, z);
+        }
+    }
+    const std::uint32_t below = row * row;
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        triangles.emplace_back(a, b, c);
+        triangles.emplace_back(a, c, d);
+    };
+    for (std::uint32_t z = 0; z < n; ++z) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+            const std::uint32_t at = z * row + x;
+            quad(at, at + row, at + row + 1, at + 1);
+            quad(below + at, below + at + 1, below + at + row + 1, below + at + row);
+        }
+    }
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t far = n * row;
+        quad(i, i + 1, below + i + 1, below + i);
+        quad(far + i + 1, far + i, below + far + i, below + far + i + 1);
+        quad((i + 1) * row, i * row, below + i * row, below + (i + 1) * row);
+        quad(i * row + n, (i + 1) * row + n, below + (i + 1) * row + n, below + i * row + n);
+    }
+    return finished(std::move(positions), std::move(triangles));
+}
+
+struct Tree {
+    DepthMap whole;
+    std::vector<PatchTile> tiles;
+
+    /// As a world of the tiles has it.
+    [[nodiscard]] float distance(const glm::vec3& p) const {
+        float least = kFarOutside;
+        for (const PatchTile& tile : tiles) {
+            least = std::min(least, vote(tile.map, p)->distance);
+        }
+        return least;
+    }
+    /// Object space.
+    [[nodiscard]] glm::vec3 cornerOf(const PatchTile& tile) const {
+        glm::vec3 corner;
+        for (int i = 0; i < 3; ++i) {
+            corner[i] =
+                (static_cast<float>(tile.first[i]) - whole.object_to_map.row[i].w) * whole.object_per_map.x;
+        }
+        return corner;
+    }
+};
+
+Tree cut(const TriangleMesh& mesh, const PatchOptions& planned, const PatchTileOptions& tiles) {
+    Result<PatchTree> tree = bakePatches(queryOf(mesh), planned);
+    EXPECT_TRUE(tree) << tree.error().message;
+    Tree made{std::move(tree->map), {}};
+    made.tiles = cutIntoTiles(made.whole, tiles);
+    for (const PatchTile& tile : made.tiles) {
+        const Result<void> valid = validateFrame(tile.map).and_then([&] { return validateTexels(tile.map); });
+        EXPECT_TRUE(valid) << valid.error().message;
+    }
+    return made;
+}
+
+/// Anywhere in the box, and within 5 cm of the seams.
+std::vector<glm::vec3> pointsOf(const Tree& tree, const Bounds& box, std::size_t count) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> share(0.0F, 1.0F);
+    std::vector<glm::vec3> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        glm::vec3 p(share(random), share(random), share(random));
+        p = glm::mix(box.min, box.max, p * 1.1F - 0.05F);
+        points.push_back(p);
+        const glm::vec3 seam = tree.cornerOf(tree.tiles[random() % tree.tiles.size()]);
+        const auto axes = static_cast<unsigned>(1 + random() % 7);
+        for (int axis = 0; axis < 3; ++axis) {
+            if ((axes >> axis & 1U) != 0 && seam[axis] > box.min[axis]) {
+                p[axis] = seam[axis] + (i % 4 == 0 ? 0.0F : 0.1F * share(random) - 0.05F);
+            }
+        }
+        points.push_back(p);
+    }
+    return points;
+}
+
+/// The union of the tiles has the whole tree's inside. \return the points where it also has its distance.
+std::size_t expectSameField(const Tree& tree, const std::vector<glm::vec3>& points) {
+    // A point's place among the roots is rounded once more in the whole, which has more of them.
+    const float rounding =
+        4e-7F * glm::length(glm::vec3(patchTreeSize(tree.whole.texels).roots)) * tree.whole.object_per_map.x;
+    std::size_t near = 0;
+    std::size_t same = 0;
+    for (const glm::vec3& p : points) {
+        const float whole = vote(tree.whole, p)->distance;
+        const float tiles = tree.distance(p);
+        if (std::abs(whole) > rounding) {
+            EXPECT_EQ(whole < 0.0F, tiles < 0.0F) << p.x << " " << p.y << " " << p.z << ": " << whole;
+        } else {
+            ++near;
+        }
+        // In a face between two cells either has the word.
+        bool is_same = false;
+        for (unsigned i = 0; i < 8 && !is_same; ++i) {
+            const glm::vec3 beside(i & 1U ? rounding : -rounding, i & 2U ? rounding : -rounding,
+                                   i & 4U ? rounding : -rounding);
+            is_same = std::abs(vote(tree.whole, p + beside)->distance - tiles) <= 4.0F * rounding;
+        }
+        same += is_same ? 1 : 0;
+        EXPECT_TRUE(is_same || tiles == kFarOutside)
+            << p.x << " " << p.y << " " << p.z << ": " << whole << " " << tiles;
+    }
+    EXPECT_LT(near, points.size() / 1000);
+    return same;
+}
+
+TEST(PatchTiles, AllRootsAreTheTreeItself) {
+    const TriangleMesh plates = joined({makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0, 0.01, 0.7)),
+                                        makeIcosphere(glm::dvec3(0.3, 0.9, 0.1), 0.4, 4)});
+    for (const PatchOptions& options :
+         {PatchOptions{.bytes = 40'000}, PatchOptions{.bytes = kPatchBytesMax, .texel = 0.01}}) {
+        const DepthMap whole = bakePatches(queryOf(plates), options)->map;
+        EXPECT_TRUE(cutPatches(whole, glm::uvec3(0), patchTreeSize(whole.texels).roots) == whole);
+    }
+}
+
+TEST(PatchTiles, HillsAreTheWholeTreesAtSeamsToo) {
+    const TriangleMesh mesh = makeHills(200);
+    const Tree tree = cut(mesh, {.bytes = 400'000}, {.bytes = 60'000});
+    ASSERT_GE(tree.tiles.size(), 8U);
+    for (const PatchTile& tile : tree.tiles) {
+        EXPECT_LE(tile.map.texels.size(), 60'000U);
+        EXPECT_EQ(tile.place.y, 0U) << "flat ground is cut along its long sides alone";
+    }
+    const std::vector<glm::vec3> points = pointsOf(tree, mesh.bounds, 50'000);
+    EXPECT_GT(expectSameField(tree, points), points.size() * 9 / 10);
+    // In closed form, but for the share that the tree itself has on the wrong side.
+    int wrong = 0;
+    for (const glm::vec3& p : points) {
+        const bool within = std::max(std::abs(p.x), std::abs(p.z)) < kHalf && p.y > -20.0F;
+        wrong += (within && p.y < hillsAt(p.x, p.z)) != (tree.distance(p) < 0.0F) ? 1 : 0;
+    }
+    EXPECT_LT(wrong, 500);
+}
+
+TEST(PatchTiles, ASphereInEightIsRoundAtSeamsToo) {
+    const TriangleMesh mesh = makeIcosphere(glm::dvec3(3.0, -2.0, 1.0), 50.0, 6);
+    for (const PatchOptions& options :
+         {PatchOptions{.bytes = 200'000},
+          PatchOptions{.bytes = kPatchBytesMax, .texel = 0.02, .tile_bytes = 40'000}}) {
+        const Tree tree = cut(mesh, options, {.bytes = 60'000});
+        ASSERT_GE(tree.tiles.size(), 8U) << tree.whole.texels.size();
+        const std::vector<glm::vec3> points = pointsOf(tree, mesh.bounds, 50'000);
+        expectSameField(tree, points);
+        std::array<int, 2> wrong{};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const bool truth = glm::length(points[i] - glm::vec3(3.0F, -2.0F, 1.0F)) < 50.0F;
+            wrong[i % 2] += truth != (tree.distance(points[i]) < 0.0F) ? 1 : 0;
+        }
+        EXPECT_LT(wrong[0], 250);
+        EXPECT_LT(wrong[1], 250) << "at seams";
+    }
+}
+
+TEST(PatchTiles, ThoseAllInsideStayAndThoseAllOutsideGo) {
+    // Of a sphere in 4³ tiles the inner 8 have no surface, and corners have nothing.
+    const TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 50.0, 5);
+    const Tree tree = cut(mesh, {.bytes = 1'000'000}, {.bytes = 20'000});
+    std::size_t inner = 0;
+    for (const PatchTile& tile : tree.tiles) {
+        std::size_t flat = 0;
+        const glm::uvec3 roots = patchTreeSize(tile.map.texels).roots;
+        for (std::uint32_t i = 0; i < roots.x * roots.y * roots.z; ++i) {
+            flat += patchTexel(tile.map.texels, 1 + i).kind() == PatchRecord::Kind::kInside ? 1 : 0;
+        }
+        inner += flat == std::size_t{roots.x} * roots.y * roots.z ? 1 : 0;
+    }
+    EXPECT_GT(inner, 0U);
+    expectSameField(tree, pointsOf(tree, mesh.bounds, 20'000));
+}
+
+TEST(PatchTiles, KeepToTheirLimits) {
+    const TriangleMesh mesh = makeHills(60);
+    const DepthMap whole = bakePatches(queryOf(mesh), {.bytes = 200'000})->map;
+    EXPECT_EQ(cutIntoTiles(whole, {.bytes = 200'000}).size(), 1U);
+    EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .most = 1}).size(), 1U);
+    EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .most = 4}).size(), 4U);
+    // Roots beyond a tile's own are bytes, too.
+    EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .total = whole.texels.size()}).size(), 1U);
+    std::uint64_t total = 0;
+    const std::vector<PatchTile> some = cutIntoTiles(whole, {.bytes = 20'000, .total = 225'000});
+    for (const PatchTile& tile : some) {
+        total += tile.map.texels.size();
+    }
+    EXPECT_GT(some.size(), 1U);
+    EXPECT_LE(total, 225'000U);
+}
+
+TEST(PatchTiles, RootsAreSmallByTexelToo) {
+    const TriangleMesh mesh = makeHills(60);
+    const PatchOptions plain{.bytes = kPatchBytesMax, .texel = 0.5};
+    PatchOptions small = plain;
+    small.tile_bytes = 50'000;
+    const auto bake = [&](const PatchOptions& options) { return bakePatches(queryOf(mesh), options)->map; };
+    const DepthMap one = bake(plain);
+    const DepthMap other = bake(small);
+    const auto roots = [](const DepthMap& map) {
+        const glm::uvec3 n = patchTreeSize(map.texels).roots;
+        return n.x * n.y * n.z;
+    };
+    EXPECT_LE(roots(one), 64U);
+    EXPECT_GE(roots(other), 256U);
+    EXPECT_LT(static_cast<double>(other.texels.size()), 1.1 * static_cast<double>(one.texels.size()));
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_TRUE(bake(small) == other) << "threads change the tree";
+    // A budget holds with small roots, too.
+    small.bytes = one.texels.size() / 2;
+    small.coarsen = true;
+    EXPECT_LE(bake(small).texels.size(), small.bytes);
+}
+
+}  // namespace
+}  // namespace relief::test
