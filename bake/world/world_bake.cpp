@@ -39,6 +39,8 @@ constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "ti
 constexpr std::uint32_t kCheckPoints = 4000;
 constexpr double kWarnFrom = 5.0;  ///< percent of them on the wrong side
 constexpr std::size_t kKeyDigits = 16;
+/// In the cache, before the names of all tiles of a mesh.
+constexpr std::string_view kTilesWord = "--tiles=";
 
 template <class... Arguments>
 void tell(const std::function<void(Arguments...)>& function, Arguments... arguments) {
@@ -69,9 +71,9 @@ std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t c
     return words;
 }
 
+/// Without its collider.
 WorldBody bodyOf(const LevelBody& from) {
     WorldBody body;
-    body.collider = from.mesh;
     body.node = from.node;
     for (int i = 0; i < 3; ++i) {
         body.position[i] = static_cast<float>(from.position[static_cast<std::size_t>(i)]);
@@ -120,15 +122,18 @@ class WorldBaker {
     }
 
     Result<void> share() {
-        result_.colliders.resize(level_.meshes.size());
+        meshes_.resize(level_.meshes.size());
+        parts_.resize(level_.meshes.size());
+        tiles_.bytes = request_.tile_bytes;
+        tiles_.most = tilesMost(level_.meshes.size(), level_.bodies.size());
         for (const LevelBody& body : level_.bodies) {
-            WorldColliderResult& collider = result_.colliders[body.mesh];
+            WorldColliderResult& collider = meshes_[body.mesh];
             ++collider.bodies;
             collider.largest_scale = std::max(collider.largest_scale, body.scale);
         }
         std::vector<BudgetShare> shares;
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
-            WorldColliderResult& collider = result_.colliders[i];
+            WorldColliderResult& collider = meshes_[i];
             collider.mesh = level_.meshes[i].name;
             collider.area = areaOf(level_.meshes[i]);
             shares.push_back({collider.area * collider.largest_scale * collider.largest_scale});
@@ -139,7 +144,7 @@ class WorldBaker {
         result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
         RELIEF_TRY(shareBudget(*result_.budget, shares));
         for (std::size_t i = 0; i < shares.size(); ++i) {
-            result_.colliders[i].budget = shares[i].bytes;
+            meshes_[i].budget = shares[i].bytes;
         }
         return {};
     }
@@ -153,11 +158,14 @@ class WorldBaker {
             result_.warnings.push_back(cache.error().message + "; everything is baked again");
             cache = BakeCacheEntries{};
         }
+        const bool by_patches = RELIEF_TRY(settingsOf(request_.bake)).layout == Layout::kPatches;
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
             TriangleMesh& mesh = level_.meshes[i];
-            WorldColliderResult& collider = result_.colliders[i];
+            WorldColliderResult& collider = meshes_[i];
             BakeRequest request = requestOf(request_.bake, names_, mesh);
-            request.budget = collider.budget;
+            if (collider.budget) {
+                request.budget = by_patches ? bytesBeforeCut(*collider.budget, tiles_) : *collider.budget;
+            }
             if (request.texel) {
                 request.texel = static_cast<float>(double{*request.texel} / collider.largest_scale);
             }
@@ -169,10 +177,19 @@ class WorldBaker {
             request.no_check = true;
             entry.inputs = {{mesh.name, mesh.content_hash},
                             {"marks", xxh3_128Hex(std::as_bytes(std::span(mesh.marks)))}};
-            collider.file = fileStem(mesh.name) + "-" +
-                            assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
-                            std::string(kColliderExtension);
-            if (!isUpToDate(entry, *cache, collider)) {
+            if (!collider.budget || *collider.budget > tiles_.bytes) {
+                entry.options.push_back("--tile-bytes=" + std::to_string(tiles_.bytes));
+                if (tiles_.most < PatchTileOptions().most) {
+                    entry.options.push_back("--tiles-most=" + std::to_string(tiles_.most));
+                }
+            }
+            names_of_files_.push_back(
+                {fileStem(mesh.name) + "-",
+                 "-" + assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
+                     std::string(kColliderExtension)});
+            collider.file = fileOf(i, "");
+            parts_[i] = upToDate(i, entry, *cache);
+            if (parts_[i].empty()) {
                 collider.state = WorldColliderState::kFailed;  // until it is baked
                 stale_.push_back(i);
             }
@@ -182,42 +199,62 @@ class WorldBaker {
         return {};
     }
 
-    /// The bytes of a container that is as it was baked, by these options from these inputs.
-    [[nodiscard]] std::optional<std::vector<std::byte>> upToDate(const BakeCacheEntry& wanted,
-                                                                 const BakeCacheEntries& cache,
-                                                                 const std::string& file) const {
-        const auto found = cache.find(file);
-        if (found == cache.end()) {
-            return std::nullopt;
-        }
-        const BakeCacheEntry& known = found->second;
-        if (known.tool != wanted.tool || known.options != wanted.options || known.inputs != wanted.inputs) {
-            return std::nullopt;
-        }
-        Result<std::vector<std::byte>> bytes = readFile(request_.folder / file);
-        return bytes && xxh3_128Hex(*bytes) == known.output_hash ? std::optional(*std::move(bytes))
-                                                                 : std::nullopt;
+    /// \param tile  its name; empty: of the whole mesh.
+    [[nodiscard]] std::string fileOf(std::size_t mesh, const std::string& tile) const {
+        const auto& [front, back] = names_of_files_[mesh];
+        return front + tile + (tile.empty() ? back.substr(1) : back);
     }
 
-    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntries& cache,
-                                  WorldColliderResult& collider) const {
-        const auto bytes = upToDate(wanted, cache, collider.file);
-        const Result<Collider> there = bytes ? readContainer(*bytes) : Result<Collider>(Collider());
-        if (!bytes || !there) {
-            return false;
+    /// The option that an entry of the cache has of a tile, of all those of its mesh.
+    static std::string tilesWord(const std::vector<std::string>& tiles) {
+        std::string word(kTilesWord);
+        for (const std::string& tile : tiles) {
+            word += (word.size() == kTilesWord.size() ? "" : ",") + tile;
         }
-        take(*there, *bytes, collider);
-        if (!hasCoarse(*there)) {
-            return true;
+        return word;
+    }
+
+    /// The colliders of a mesh; none unless all are there.
+    [[nodiscard]] std::vector<WorldColliderResult> upToDate(std::size_t mesh, BakeCacheEntry wanted,
+                                                            const BakeCacheEntries& cache) const {
+        WorldColliderResult part = meshes_[mesh];
+        if (isUpToDate(wanted, cache, part)) {
+            return coarseIsUpToDate(wanted, cache, part) ? std::vector{part}
+                                                         : std::vector<WorldColliderResult>();
         }
-        const std::string file = coarseFile(collider.file);
-        const auto coarse = upToDate(wanted, cache, file);
-        const Result<Collider> likeness = coarse ? readContainer(*coarse) : Result<Collider>(Collider());
-        if (coarse && likeness) {
-            collider.coarse = WorldFile{file, xxh3_128Hex(*coarse), likeness->gpuBytes()};
-            collider.coarse_bytes = coarse->size();
+        std::vector<WorldColliderResult> parts;
+        const std::vector<std::string> tiles = knownTiles(mesh, cache);
+        wanted.options.push_back(tilesWord(tiles));
+        for (const std::string& tile : tiles) {
+            part.tile = tile;
+            part.file = fileOf(mesh, tile);
+            const bool twice = !parts.empty() && std::ranges::count(tiles, tile) > 1;
+            if (twice || !isTileName(tile) || !isUpToDate(wanted, cache, part)) {
+                return {};
+            }
+            parts.push_back(part);
         }
-        return collider.coarse.has_value();
+        return parts;
+    }
+
+    /// The tiles of a mesh that an entry for one of them has.
+    [[nodiscard]] std::vector<std::string> knownTiles(std::size_t mesh, const BakeCacheEntries& cache) const {
+        const auto& [front, back] = names_of_files_[mesh];
+        std::vector<std::string> tiles;
+        for (auto at = cache.lower_bound(front); at != cache.end() && at->first.starts_with(front); ++at) {
+            const std::vector<std::string>& options = at->second.options;
+            if (!at->first.ends_with(back) || options.empty() || !options.back().starts_with(kTilesWord)) {
+                continue;
+            }
+            const std::string list = options.back().substr(kTilesWord.size());
+            for (std::size_t from = 0; from < list.size();) {
+                const std::size_t end = std::min(list.find(',', from), list.size());
+                tiles.push_back(list.substr(from, end - from));
+                from = end + 1;
+            }
+            break;
+        }
+        return tiles;
     }
 
     static std::string coarseFile(const std::string& file) {
@@ -225,9 +262,46 @@ class WorldBaker {
         return file.substr(0, key) + "coarse-" + file.substr(key);
     }
 
+    [[nodiscard]] bool coarseIsUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntries& cache,
+                                        WorldColliderResult& collider) const {
+        if (!collider.has_coarse) {
+            return true;
+        }
+        WorldColliderResult coarse;
+        coarse.file = coarseFile(collider.file);
+        if (!isUpToDate(wanted, cache, coarse)) {
+            return false;
+        }
+        collider.coarse = WorldFile{coarse.file, coarse.hash, coarse.gpu_bytes};
+        collider.coarse_bytes = coarse.bytes;
+        return true;
+    }
+
+    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntries& cache,
+                                  WorldColliderResult& collider) const {
+        const auto found = cache.find(collider.file);
+        if (found == cache.end()) {
+            return false;
+        }
+        const BakeCacheEntry& known = found->second;
+        if (known.tool != wanted.tool || known.options != wanted.options || known.inputs != wanted.inputs) {
+            return false;
+        }
+        const auto bytes = readFile(request_.folder / collider.file);
+        if (!bytes || xxh3_128Hex(*bytes) != known.output_hash) {
+            return false;
+        }
+        const Result<Collider> there = readContainer(*bytes);
+        if (there) {
+            take(*there, *bytes, collider);
+        }
+        return there.has_value();
+    }
+
     static void take(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider) {
         collider.box = from.bounds;
         collider.gpu_bytes = from.gpuBytes();
+        collider.has_coarse = hasCoarse(from);
         collider.bytes = bytes.size();
         collider.hash = xxh3_128Hex(bytes);
     }
@@ -237,7 +311,7 @@ class WorldBaker {
         tell(watcher_.begin, "baking colliders");
         std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
             const auto size = [this](std::size_t i) {
-                const WorldColliderResult& collider = result_.colliders[i];
+                const WorldColliderResult& collider = meshes_[i];
                 return collider.budget ? static_cast<double>(*collider.budget)
                                        : collider.area * collider.largest_scale * collider.largest_scale;
             };
@@ -259,20 +333,22 @@ class WorldBaker {
     }
 
     void bakeOne(std::size_t i) {
-        WorldColliderResult& collider = result_.colliders[i];
+        WorldColliderResult& collider = meshes_[i];
         const Stopwatch watch;
-        if (const Result<void> baked = tryBake(i, collider); !baked) {
+        Result<std::vector<WorldColliderResult>> baked = tryBake(i, collider);
+        if (!baked) {
             collider.error = baked.error();
-        } else {
-            collider.state = WorldColliderState::kBaked;
+            collider.ms = watch.ms();
+            return;
         }
-        collider.ms = watch.ms();
+        collider.state = WorldColliderState::kBaked;
+        parts_[i] = std::move(*baked);
+        parts_[i].front().ms = watch.ms();
     }
 
-    Result<void> tryBake(std::size_t i, WorldColliderResult& collider) {
+    /// \return the colliders of a mesh, which are written.
+    Result<std::vector<WorldColliderResult>> tryBake(std::size_t i, WorldColliderResult& collider) {
         BakeResult result = RELIEF_TRY(bake(requests_[i], {}, level_.meshes[i]));
-        const auto bytes =
-            RELIEF_TRY(writeContainer(result.baked.collider, {static_cast<int>(request_.compress)}));
         if (!request_.bake.no_check) {
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(result.mesh.mesh));
             AccuracyOptions options;
@@ -287,33 +363,59 @@ class WorldBaker {
                                                                "; give the level a larger --budget"
                                                          : "texel; give the level a smaller --texel"));
         }
-        RELIEF_TRY(writeFile(request_.folder / collider.file, bytes));
-        take(result.baked.collider, bytes, collider);
-        TriangleMesh mesh = std::move(level_.meshes[i]);
-        if (!hasCoarse(result.baked.collider)) {
-            return {};
+        PatchTileOptions options = tiles_;
+        options.total = collider.budget.value_or(options.total);
+        const std::vector<ColliderTile> tiles = cutCollider(std::move(result.baked.collider), options);
+        std::vector<WorldColliderResult> parts;
+        for (const ColliderTile& tile : tiles) {
+            const auto bytes =
+                RELIEF_TRY(writeContainer(tile.collider, {static_cast<int>(request_.compress)}));
+            WorldColliderResult part = collider;
+            part.state = WorldColliderState::kBaked;
+            part.tile = tile.name;
+            part.file = fileOf(i, tile.name);
+            RELIEF_TRY(writeFile(request_.folder / part.file, bytes));
+            take(tile.collider, bytes, part);
+            if (!parts.empty()) {
+                part.warnings.clear();
+            }
+            parts.push_back(std::move(part));
         }
-        const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], result.baked.collider, std::move(mesh)));
-        const auto coarse_bytes = RELIEF_TRY(writeContainer(coarse, {static_cast<int>(request_.compress)}));
-        collider.coarse = WorldFile{coarseFile(collider.file), xxh3_128Hex(coarse_bytes), coarse.gpuBytes()};
-        collider.coarse_bytes = coarse_bytes.size();
-        return writeFile(request_.folder / collider.coarse->file, coarse_bytes);
+        TriangleMesh mesh = std::move(level_.meshes[i]);
+        if (parts.size() == 1 && parts.front().has_coarse) {
+            RELIEF_TRY(bakeCoarseOf(i, tiles.front().collider, std::move(mesh), parts.front()));
+        }
+        return parts;
+    }
+
+    Result<void> bakeCoarseOf(std::size_t i, const Collider& whole, TriangleMesh mesh,
+                              WorldColliderResult& of) const {
+        const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, std::move(mesh)));
+        const auto bytes = RELIEF_TRY(writeContainer(coarse, {static_cast<int>(request_.compress)}));
+        of.coarse = WorldFile{coarseFile(of.file), xxh3_128Hex(bytes), coarse.gpuBytes()};
+        of.coarse_bytes = bytes.size();
+        return writeFile(request_.folder / of.coarse->file, bytes);
     }
 
     /// \pre No other thread is in it.
     void remember(std::size_t i) {
-        const WorldColliderResult& collider = result_.colliders[i];
-        if (collider.state != WorldColliderState::kBaked) {
-            return;
-        }
         BakeCacheEntry entry = entries_[i];
-        entry.output_hash = collider.hash;
-        entry.output_bytes = collider.bytes;
-        fresh_[collider.file] = entry;
-        if (collider.coarse) {
-            entry.output_hash = collider.coarse->hash;
-            entry.output_bytes = collider.coarse_bytes;
-            fresh_[collider.coarse->file] = std::move(entry);
+        if (parts_[i].size() > 1) {
+            std::vector<std::string> tiles;
+            for (const WorldColliderResult& part : parts_[i]) {
+                tiles.push_back(part.tile);
+            }
+            entry.options.push_back(tilesWord(tiles));
+        }
+        for (const WorldColliderResult& part : parts_[i]) {
+            entry.output_hash = part.hash;
+            entry.output_bytes = part.bytes;
+            fresh_[part.file] = entry;
+            if (part.coarse) {
+                entry.output_hash = part.coarse->hash;
+                entry.output_bytes = part.coarse_bytes;
+                fresh_[part.coarse->file] = entry;
+            }
         }
         // A killed run loses so much; the last write reports errors.
         if (since_cached_.seconds() > 2.0 && updateBakeCache(request_.folder, fresh_)) {
@@ -325,14 +427,26 @@ class WorldBaker {
     Result<void> writeWorld() {
         World& world = result_.world;
         world.unit = level_.unit;
+        std::vector<std::uint32_t> first;  // collider of each mesh
+        for (std::size_t i = 0; i < meshes_.size(); ++i) {
+            first.push_back(static_cast<std::uint32_t>(result_.colliders.size()));
+            if (parts_[i].empty()) {
+                parts_[i].push_back(meshes_[i]);  // which failed
+            }
+            std::ranges::move(parts_[i], std::back_inserter(result_.colliders));
+        }
         for (const WorldColliderResult& collider : result_.colliders) {
             world.colliders.push_back({{collider.file, collider.hash, collider.gpu_bytes},
                                        collider.mesh,
                                        collider.box,
                                        collider.coarse});
         }
-        for (const LevelBody& body : level_.bodies) {
-            world.bodies.push_back(bodyOf(body));
+        for (const LevelBody& from : level_.bodies) {
+            WorldBody body = bodyOf(from);
+            body.collider = first[from.mesh];
+            for (std::size_t tile = 0; tile < parts_[from.mesh].size(); ++tile, ++body.collider) {
+                world.bodies.push_back(body);
+            }
         }
         if (result_.countOf(WorldColliderState::kFailed) > 0) {
             return {};
@@ -348,10 +462,18 @@ class WorldBaker {
     std::vector<std::string> names_;  // of --as
     Level level_;                     // whose stale meshes are moved away
     std::string tool_;
-    std::vector<BakeRequest> requests_;    // of the meshes
-    std::vector<BakeCacheEntry> entries_;  // the same, without outputs
-    std::vector<std::size_t> stale_;
-    BakeCacheEntries fresh_;  // not yet in the cache file
+    PatchTileOptions tiles_;
+    std::vector<WorldColliderResult> meshes_;              // what the colliders of each have in common
+    std::vector<std::vector<WorldColliderResult>> parts_;  // those colliders; none yet of a stale mesh
+    struct FileName {
+        std::string front;
+        std::string back;
+    };
+    std::vector<FileName> names_of_files_;  // of the meshes
+    std::vector<BakeRequest> requests_;     // of the meshes
+    std::vector<BakeCacheEntry> entries_;   // the same, without outputs
+    std::vector<std::size_t> stale_;        // meshes
+    BakeCacheEntries fresh_;                // not yet in the cache file
     Stopwatch since_cached_;
 };
 

@@ -1,5 +1,5 @@
-// A level baked into a world: each different mesh into a container of its own, those that are up to date left as they are,
-// and last the file that places them (formats/world).
+// A level baked into a world: each different mesh into a container of its own, or a very large one into tiles
+// (world_tiles.h), those that are up to date left as they are, and last the file that places them (formats/world).
 //
 // A container is named by its mesh and by the XXH3-128 of all that it depends on, so that a bake never replaces one that the
 // world from before still names: whatever fails, that world stays whole.
@@ -15,6 +15,7 @@
 #include "bake/director/bake_request.h"
 #include "bake/measure/accuracy.h"
 #include "bake/recipe/depfile.h"
+#include "bake/world/world_tiles.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 #include "formats/world/world.h"
@@ -28,6 +29,7 @@ struct WorldRequest {
     BakeRequest bake;
     std::filesystem::path folder;  ///< is there
     std::uint32_t compress = 0;
+    std::uint64_t tile_bytes = PatchTileOptions().bytes;  ///< on the GPU, that a tile should not pass
 };
 
 enum class WorldColliderState : std::uint8_t { kBaked, kUpToDate, kFailed };
@@ -38,21 +40,23 @@ inline constexpr std::array<std::string_view, 3> kWordsOf<WorldColliderState>{"b
 /// A collider of the world, and its share.
 struct WorldColliderResult {
     std::string mesh;  ///< its name in the level
+    std::string tile;  ///< its place among those of its mesh, such as 0-1-0; empty: it is all of the mesh
     std::string file;  ///< in the folder
     WorldColliderState state = WorldColliderState::kUpToDate;
     std::uint64_t bodies = 0;
-    double area = 0.0;                    ///< of its surface, in its own space
+    double area = 0.0;                    ///< of its mesh's surface, in its own space
     double largest_scale = 0.0;           ///< of its bodies
-    std::optional<std::uint64_t> budget;  ///< bytes: its share; not of --texel alone
+    std::optional<std::uint64_t> budget;  ///< bytes: its mesh's share; not of --texel alone
     std::string hash;                     ///< XXH3-128 of the container
     std::uint64_t bytes = 0;              ///< of the container
     std::uint64_t gpu_bytes = 0;
     Bounds box;
-    std::optional<WorldFile> coarse;    ///< where hasCoarse()
+    bool has_coarse = false;  ///< hasCoarse(), and then the next, but of no tile
+    std::optional<WorldFile> coarse;
     std::uint64_t coarse_bytes = 0;     ///< of that container
-    std::optional<WrongShare> wrong;    ///< near the surface; of one that was baked
-    std::vector<std::string> warnings;  ///< one line each
-    double ms = 0.0;                    ///< of its bake
+    std::optional<WrongShare> wrong;    ///< near its mesh's surface; of one that was baked
+    std::vector<std::string> warnings;  ///< one line each; of tiles those of the mesh are at the first
+    double ms = 0.0;                    ///< of its mesh's bake; of tiles at the first
     Error error{};                      ///< of one that failed
 };
 

@@ -99,7 +99,7 @@ class WorldChecker {
         return {};
     }
 
-    /// The collider of a mesh: of several, which differ by --as NAME=KIND, the one that was baked by these.
+    /// A collider of a mesh: of several, which are its tiles or differ by --as NAME=KIND, the last that was baked by these.
     [[nodiscard]] std::optional<std::size_t> colliderOf(const std::string& hash,
                                                         const std::vector<std::string>& as) const {
         const auto [begin, end] = by_hash_.equal_range(hash);
@@ -128,31 +128,53 @@ class WorldChecker {
         }
     }
 
+    /// The first body of each node: the tiles of its mesh follow each other in the order of the world's colliders, in one place.
+    [[nodiscard]] std::vector<std::size_t> firstBodies() const {
+        const std::vector<WorldBody>& bodies = field_.world().bodies;
+        std::vector<std::size_t> first;
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            const WorldBody& body = bodies[i];
+            const bool goes_on =
+                i > 0 && body.node == bodies[i - 1].node && body.collider > bodies[i - 1].collider &&
+                samePose(body, bodies[i - 1]) &&
+                field_.colliderOf(i).provenance.mesh_hash == field_.colliderOf(i - 1).provenance.mesh_hash;
+            if (!goes_on) {
+                first.push_back(i);
+            }
+        }
+        return first;
+    }
+
+    static bool samePose(const WorldBody& a, const WorldBody& b) {
+        return a.position == b.position && a.rotation == b.rotation && a.scale == b.scale;
+    }
+
     /// A world whose level has changed is measured all the same, and wrong.
     void comparePoses() {
-        const std::vector<WorldBody>& bodies = field_.world().bodies;
+        const std::vector<std::size_t> first = firstBodies();
         std::size_t other = 0;
         moved_.assign(placed_.size(), false);
-        for (std::size_t i = 0; i < std::min(bodies.size(), placed_.size()); ++i) {
+        for (std::size_t i = 0; i < std::min(first.size(), placed_.size()); ++i) {
             const LevelBody& body = *placed_[i].body;
+            const WorldBody& own = field_.world().bodies[first[i]];
             double turn = 0.0;  // a quaternion and its negative are one rotation
             for (std::size_t k = 0; k < 4; ++k) {
-                turn += body.rotation[k] * double{bodies[i].rotation[k]};
+                turn += body.rotation[k] * double{own.rotation[k]};
             }
-            bool same = static_cast<float>(body.scale) == bodies[i].scale && std::abs(turn) > 1.0 - 1e-6;
+            bool same = static_cast<float>(body.scale) == own.scale && std::abs(turn) > 1.0 - 1e-6;
             for (int k = 0; k < 3; ++k) {
-                same = same && static_cast<float>(body.position[static_cast<std::size_t>(k)]) ==
-                                   bodies[i].position[k];
+                same =
+                    same && static_cast<float>(body.position[static_cast<std::size_t>(k)]) == own.position[k];
             }
             other += same ? 0 : 1;
             moved_[i] = !same;
         }
-        if (bodies.size() != placed_.size() || other > 0) {
+        if (first.size() != placed_.size() || other > 0) {
             result_.warnings.push_back(
                 level_.name + ": " +
-                (bodies.size() != placed_.size()
+                (first.size() != placed_.size()
                      ? "it places " + countText(placed_.size(), "mesh", "meshes") + ", and the world " +
-                           countText(bodies.size(), "body", "bodies")
+                           std::to_string(first.size())
                      : countText(other, "node") + " of it stand elsewhere than the world has them") +
                 "; bake the level again");
         }

@@ -15,7 +15,8 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
     std::vector<std::vector<std::string>> rows = {
         {"collider", "bodies>", "area>", "scale>", "share>", "taken>", "wrong>", "state"}};
     for (const WorldColliderResult& c : result.colliders) {
-        rows.push_back({c.mesh, std::to_string(c.bodies), shortNumber(c.area), shortNumber(c.largest_scale),
+        rows.push_back({c.mesh + (c.tile.empty() ? "" : " " + c.tile), std::to_string(c.bodies),
+                        shortNumber(c.area), shortNumber(c.largest_scale),
                         c.budget ? bytesText(*c.budget) : "-", bytesText(c.gpu_bytes), wrongText(c),
                         std::string(wordOf(c.state))});
     }

@@ -25,22 +25,27 @@ void fields(Visitor& visit, R& report) {
     const WorldColliderResult& c = report.collider;
     const bool failed = c.state == WorldColliderState::kFailed;
     visit("mesh", c.mesh, {"Name of its mesh in the level"});
+    visit("tile", c.tile,
+          {"Its place among the tiles of its mesh, such as 0-1-0; empty if it is all of the mesh"});
     visit("file", c.file, {"Its container, in the folder of the world"});
     visit("state", c.state, {"State of the container"});
     visit("bodies", c.bodies, {"Nodes that place it", {}, kFromOne});
-    visit("area", c.area, {"Area of its surface", "object units squared", kFromZero});
+    visit("area", c.area, {"Area of its mesh's surface", "object units squared", kFromZero});
     visit("largest_scale", c.largest_scale, {"Largest scale of its bodies", {}, kFromZero});
-    visit("budget", c.budget, {"Its share of the budget; null of --texel alone", "bytes"});
+    visit("budget", c.budget, {"Its mesh's share of the budget; null of --texel alone", "bytes"});
     visit("bytes", c.bytes, {"Size of the container; 0 if it failed", "bytes"});
     visit("gpu_bytes", c.gpu_bytes, {"Bytes that it takes on the GPU; 0 if it failed", "bytes"});
     visit("coarse", c.coarse,
           {"Container that stands in for it while it is not on the GPU; null where that would save little"});
     visit("hash", c.hash, {.help = "XXH3-128 of the container; empty if it failed", .pattern = kHashPattern});
     visit("wrong_percent", c.wrong ? std::optional(c.wrong->total()) : std::nullopt,
-          {"Share of the points near its surface that are on the wrong side; null unless it was baked and "
+          {"Share of the points near its mesh's surface that are on the wrong side; null unless it was baked "
+           "and "
            "measured",
            "%", kPercentRange});
-    visit("ms", c.ms, {"Time of its bake; 0 if it was up to date", "ms", kFromZero});
+    visit(
+        "ms", c.ms,
+        {"Time of its mesh's bake; 0 if it was up to date, and of all tiles but the first", "ms", kFromZero});
     visit("warnings", c.warnings, {"Warnings, one line each"});
     visit("error", failed ? std::optional(c.error.message) : std::nullopt,
           {"One line for people; null if it did not fail"});

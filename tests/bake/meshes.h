@@ -30,6 +30,11 @@ namespace relief::test {
 /// n × n squares of y = height over [−1, 1]²; normals +y.
 [[nodiscard]] TriangleMesh makePlane(float height, unsigned n);
 
+inline constexpr float kHillsHalf = 100.0F;  ///< of the sides of hills, along x and z
+[[nodiscard]] float hillsAt(float x, float z);
+/// n × n squares of hills above a floor at y = −20.
+[[nodiscard]] TriangleMesh makeHills(std::uint32_t n);
+
 /// A square of side 3 across an axis, at `at` on it, with a square window of this side in its middle.
 [[nodiscard]] TriangleMesh makePanel(int axis, double at, double window = 0.0);
 /// Six panels of side 3 that cross at ±0.5: of the 27 rooms of a cube, the one in the middle has no way out, but by a square

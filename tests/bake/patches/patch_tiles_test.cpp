@@ -17,49 +17,6 @@
 namespace relief::test {
 namespace {
 
-constexpr float kHalf = 100.0F;  ///< of the hills' sides, metres
-
-float hillsAt(float x, float z) {
-    return 6.0F * std::sin(0.07F * x) * std::cos(0.05F * z) + 1.5F * std::sin(0.31F * x + 0.23F * z);
-}
-
-/// n × n quads of hills, closed below.
-TriangleMesh makeHills(std::uint32_t n) {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
-    const std::uint32_t row = n + 1;
-    for (const bool top : {true, false}) {
-        for (std::uint32_t i = 0; i < row * row; ++i) {
-            const auto along = [&](std::uint32_t at) {
-                return kHalf * (2.0F * static_cast<float>(at) / static_cast<float>(n) - 1.0F);
-            };
-            const float x = along(i % row);
-            const float z = along(i / row);
-            positions.emplace_back(x, top ? hillsAt(x, z) : -20.0F, z);
-        }
-    }
-    const std::uint32_t below = row * row;
-    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-        triangles.emplace_back(a, b, c);
-        triangles.emplace_back(a, c, d);
-    };
-    for (std::uint32_t z = 0; z < n; ++z) {
-        for (std::uint32_t x = 0; x < n; ++x) {
-            const std::uint32_t at = z * row + x;
-            quad(at, at + row, at + row + 1, at + 1);
-            quad(below + at, below + at + 1, below + at + row + 1, below + at + row);
-        }
-    }
-    for (std::uint32_t i = 0; i < n; ++i) {
-        const std::uint32_t far = n * row;
-        quad(i, i + 1, below + i + 1, below + i);
-        quad(far + i + 1, far + i, below + far + i, below + far + i + 1);
-        quad((i + 1) * row, i * row, below + i * row, below + (i + 1) * row);
-        quad(i * row + n, (i + 1) * row + n, below + (i + 1) * row + n, below + i * row + n);
-    }
-    return finished(std::move(positions), std::move(triangles));
-}
-
 struct Tree {
     DepthMap whole;
     std::vector<PatchTile> tiles;
@@ -169,7 +126,7 @@ TEST(PatchTiles, HillsAreTheWholeTreesAtSeamsToo) {
     // In closed form, but for the share that the tree itself has on the wrong side.
     int wrong = 0;
     for (const glm::vec3& p : points) {
-        const bool within = std::max(std::abs(p.x), std::abs(p.z)) < kHalf && p.y > -20.0F;
+        const bool within = std::max(std::abs(p.x), std::abs(p.z)) < kHillsHalf && p.y > -20.0F;
         wrong += (within && p.y < hillsAt(p.x, p.z)) != (tree.distance(p) < 0.0F) ? 1 : 0;
     }
     EXPECT_LT(wrong, 500);

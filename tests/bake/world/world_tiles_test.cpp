@@ -1,0 +1,215 @@
+// A level whose terrain is cut into tiles: against its closed form and its mesh, and what is baked again.
+#include "bake/world/world_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "bake/recipe/recipe_jobs.h"
+#include "bake/world/world_bake.h"
+#include "bake/world/world_check.h"
+#include "formats/base/file_io.h"
+#include "tests/bake/meshes.h"
+#include "tests/temporary_folder.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kBudget = 800'000;
+constexpr std::uint64_t kTileBytes = 205'000;  ///< more than the share of the box
+
+using Files = std::map<std::string, std::vector<std::byte>>;
+
+class WorldTiles : public testing::Test {
+  protected:
+    void SetUp() override { writeLevel(1.0, 60); }
+
+    /// Hills, and a box beside them.
+    void writeLevel(double high, std::uint32_t squares) const {
+        std::ostringstream text;
+        std::size_t before = 1;
+        const auto add = [&](const char* name, const TriangleMesh& mesh) {
+            text << "o " << name << "\n";
+            for (const glm::vec3& p : mesh.positions) {
+                text << "v " << p.x << " " << p.y << " " << p.z << "\n";
+            }
+            for (const glm::uvec3& t : mesh.triangles) {
+                text << "f " << before + t.x << " " << before + t.y << " " << before + t.z << "\n";
+            }
+            before += mesh.positions.size();
+        };
+        add("hills", makeHills(squares));
+        add("box", makeBoxMesh(glm::dvec3(150.0, 0.0, 0.0), glm::dvec3(2.0, high, 3.0)));
+        folder_.write("level.obj", text.str());
+    }
+
+    WorldBakeResult bake(const char* into, std::uint64_t budget = kBudget,
+                         std::optional<unsigned> threads = {}) const {
+        WorldRequest request;
+        request.bake.budget = budget;
+        request.bake.threads = threads;
+        request.bake.mesh = (folder_.path() / "level.obj").string();
+        request.folder = folder_.path() / into;
+        request.tile_bytes = kTileBytes;
+        fs::create_directories(request.folder);
+        Result<WorldBakeResult> result = bakeWorld(request);
+        EXPECT_TRUE(result) << result.error().message;
+        EXPECT_TRUE(result->written);
+        return std::move(*result);
+    }
+    [[nodiscard]] WorldField load(const char* from) const {
+        Result<LoadedWorld> loaded = loadWorld(folder_.path() / from / kWorldFileName);
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        return WorldField(std::move(*loaded));
+    }
+    [[nodiscard]] Result<WorldAccuracy> check(const WorldField& field) const {
+        WorldCheckRequest request;
+        request.check.mesh = (folder_.path() / "level.obj").string();
+        request.check.samples = 20'000;
+        return checkWorld(request, field);
+    }
+    [[nodiscard]] Files filesOf(const char* folder) const {
+        Files files;
+        for (const auto& entry : fs::directory_iterator(folder_.path() / folder)) {
+            const std::string name = entry.path().filename().string();
+            if (name.front() != '.') {
+                files[name] = *readFile(entry.path());
+            }
+        }
+        return files;
+    }
+    static std::vector<std::string> namesOf(const WorldBakeResult& result, WorldColliderState state) {
+        std::vector<std::string> names;
+        for (const WorldColliderResult& collider : result.colliders) {
+            if (collider.state == state) {
+                names.push_back(collider.mesh);
+            }
+        }
+        return names;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(WorldTiles, HillsAreInTheirPlaceAndWithinTheirBytes) {
+    writeLevel(1.0, 200);
+    const WorldBakeResult result = bake("w");
+    const WorldField field = load("w");
+    ASSERT_GE(result.colliders.size(), 4U);
+    EXPECT_LE(result.gpuBytes(), kBudget);
+    ASSERT_EQ(field.world().bodies.size(), result.colliders.size());
+    for (std::size_t i = 0; i < result.colliders.size(); ++i) {
+        const WorldColliderResult& tile = result.colliders[i];
+        EXPECT_EQ(field.world().bodies[i].collider, i);
+        EXPECT_EQ(field.world().bodies[i].node, tile.mesh);
+        EXPECT_EQ(tile.tile.empty(), tile.mesh == "box");
+        EXPECT_EQ(tile.file.find(tile.tile.empty() ? "box-" : "hills-" + tile.tile + "-"), 0U) << tile.file;
+        EXPECT_TRUE(tile.tile.empty() || tile.gpu_bytes <= kTileBytes) << tile.gpu_bytes;
+    }
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> share(0.0F, 1.0F);
+    std::array<int, 2> wrong{};
+    constexpr int kPoints = 50'000;
+    for (int i = 0; i < kPoints; ++i) {
+        glm::vec3 p((2.0F * share(random) - 1.0F) * kHillsHalf, 0.0F,
+                    (2.0F * share(random) - 1.0F) * kHillsHalf);
+        if (i % 2 == 1) {
+            // Within 5 cm of a seam: tiles' boxes end in them.
+            const Bounds& tile = result.colliders[random() % (result.colliders.size() - 1)].box;
+            (i % 4 == 1 ? p.x : p.z) = (i % 4 == 1 ? tile.min.x : tile.min.z) + 0.1F * share(random) - 0.05F;
+        }
+        p.y = hillsAt(p.x, p.z) + 2.0F * share(random) - 1.0F;
+        const bool within = std::max(std::abs(p.x), std::abs(p.z)) < kHillsHalf;
+        wrong[i % 2] += (within && p.y < hillsAt(p.x, p.z)) != field.evaluate(p).inside() ? 1 : 0;
+    }
+    // The mesh's facets are up to 3 cm off the formula.
+    EXPECT_LT(wrong[0], kPoints / 2 / 50);
+    EXPECT_LT(wrong[1], kPoints / 2 / 50) << "at seams";
+}
+
+TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
+    static_cast<void>(bake("w"));
+    const WorldField field = load("w");
+    const Result<WorldAccuracy> accuracy = check(field);
+    ASSERT_TRUE(accuracy) << accuracy.error().message;
+    EXPECT_TRUE(accuracy->warnings.empty());
+    ASSERT_EQ(accuracy->bodies.size(), 2U);
+    EXPECT_LT(accuracy->all.total(), 0.5);
+    // Without one of the tiles, what was in it is missing.
+    LoadedWorld broken = field.loaded();
+    broken.world.bodies.erase(broken.world.bodies.begin() + 2);
+    const Result<WorldAccuracy> less = check(WorldField(std::move(broken)));
+    ASSERT_TRUE(less) << less.error().message;
+    EXPECT_GT(less->bodies[0].wrong.false_outside, 2.0);
+    // And a tile elsewhere is no part of its node any more.
+    LoadedWorld moved = field.loaded();
+    moved.world.bodies[2].position.y += 5.0F;
+    const Result<WorldAccuracy> other = check(WorldField(std::move(moved)));
+    ASSERT_TRUE(other) << other.error().message;
+    EXPECT_EQ(other->warnings.size(), 1U);
+}
+
+TEST_F(WorldTiles, ThreadsChangeNoByte) {
+    static_cast<void>(bake("w"));
+    static_cast<void>(bake("one", kBudget, 1));
+    EXPECT_TRUE(filesOf("w") == filesOf("one"));
+}
+
+TEST_F(WorldTiles, OnlyWhatHasChangedIsBaked) {
+    const std::size_t all = bake("w").colliders.size();
+    const Files before = filesOf("w");
+    EXPECT_EQ(bake("w").countOf(WorldColliderState::kUpToDate), all);
+    EXPECT_TRUE(filesOf("w") == before);
+    // Without one of its tiles, a mesh is baked again, to the same bytes.
+    const auto tile = std::find_if(before.begin(), before.end(),
+                                   [](const auto& file) { return file.first.starts_with("hills-1-"); });
+    ASSERT_NE(tile, before.end());
+    fs::remove(folder_.path() / "w" / tile->first);
+    WorldBakeResult again = bake("w");
+    EXPECT_EQ(namesOf(again, WorldColliderState::kUpToDate), std::vector<std::string>{"box"});
+    EXPECT_TRUE(filesOf("w") == before);
+    writeLevel(1.5, 60);
+    again = bake("w");
+    EXPECT_EQ(namesOf(again, WorldColliderState::kBaked), std::vector<std::string>{"box"});
+    EXPECT_EQ(again.removed.size(), 1U);
+    // Of another budget there are other tiles, and those from before go.
+    again = bake("w", kBudget / 2);
+    EXPECT_EQ(filesOf("w").size(), again.colliders.size() + 1);
+}
+
+TEST_F(WorldTiles, ACacheThatIsMadeUpCostsABake) {
+    const std::size_t all = bake("w").colliders.size();
+    const Files before = filesOf("w");
+    const fs::path cache = folder_.path() / "w" / kBakeCacheName;
+    ASSERT_TRUE(fs::exists(cache));
+    const auto bytes = readFile(cache);
+    std::string text(bytes->size(), ' ');
+    std::transform(bytes->begin(), bytes->end(), text.begin(),
+                   [](std::byte b) { return static_cast<char>(b); });
+    for (const char* tiles : {"", "../0-0-0", "0-0-0,0-0-0"}) {
+        std::string made = text;
+        for (std::size_t at = 0; (at = made.find("--tiles=", at)) != std::string::npos; at += 8) {
+            made.replace(at + 8, made.find('"', at) - at - 8, tiles);
+        }
+        ASSERT_TRUE(writeFile(cache, std::as_bytes(std::span(made))));
+        EXPECT_EQ(bake("w").countOf(WorldColliderState::kBaked), all - 1) << tiles;
+        EXPECT_TRUE(filesOf("w") == before);
+    }
+}
+
+TEST(TilesMost, KeepsAWorldWithinItsLimits) {
+    EXPECT_EQ(tilesMost(1, 1), 64U);
+    EXPECT_EQ(tilesMost(64, 64), 64U);
+    EXPECT_EQ(tilesMost(65, 65), 32U);
+    EXPECT_EQ(tilesMost(kWorldCollidersMax, kWorldCollidersMax), 1U);
+    EXPECT_EQ(tilesMost(2, kWorldBodiesMax), 1U);
+    EXPECT_EQ(tilesMost(2, 10'000), 4U);
+}
+
+}  // namespace
+}  // namespace relief::test
