@@ -154,6 +154,11 @@ class WorldChecker {
         const std::vector<std::size_t> first = firstBodies();
         std::size_t other = 0;
         moved_.assign(placed_.size(), false);
+        tiles_.assign(placed_.size(), 0);
+        for (std::size_t i = 0; first.size() == placed_.size() && i < first.size(); ++i) {
+            const std::size_t end = i + 1 < first.size() ? first[i + 1] : field_.world().bodies.size();
+            tiles_[i] = end - first[i];
+        }
         for (std::size_t i = 0; i < std::min(first.size(), placed_.size()); ++i) {
             const LevelBody& body = *placed_[i].body;
             const WorldBody& own = field_.world().bodies[first[i]];
@@ -240,6 +245,7 @@ class WorldChecker {
                           placed.query->mesh().name,
                           points,
                           {percent(counts.false_inside, points), percent(counts.false_outside, points)},
+                          tiles_[index],
                           glm::vec3(placed.position())};
         const std::uint64_t wrong = counts.false_inside + counts.false_outside;
         double nearest = std::numeric_limits<double>::max();
@@ -277,7 +283,8 @@ class WorldChecker {
     Level level_;
     std::vector<MeshQuery> queries_;  // of its meshes
     std::vector<PlacedMesh> placed_;
-    std::vector<bool> moved_;  // of them: the world has it elsewhere
+    std::vector<std::size_t> tiles_;  // of them: bodies of the world
+    std::vector<bool> moved_;         // of them: the world has it elsewhere
 };
 
 }  // namespace

@@ -29,6 +29,8 @@ struct BodyAccuracy {
     std::string mesh;
     std::uint64_t points = 0;
     WrongShare wrong;
+    std::size_t tiles =
+        1;  ///< bodies of the world, in its order: several of a mesh in tiles; 0: the level has others
     glm::vec3 place{0.0F};  ///< world space: a typical point on the wrong side, or the body's position
 };
 

@@ -59,6 +59,9 @@ void fields(Visitor& visit, B& body) {
     visit("mesh", body.mesh, {"Name of its mesh"});
     visit("points", body.points, {"Points near its surface", {}, kFromOne});
     fields(visit, body.wrong);
+    visit("tiles", body.tiles,
+          {"Bodies of the world that follow those of the body before: several of a mesh in tiles; 0 of all "
+           "if the level has other nodes"});
     visit("place", body.place,
           {"A typical point on the wrong side, in the world; the body's position without any", "[x, y, z]"});
 }

@@ -71,7 +71,8 @@ export class Bodies {
                 JSON.parse(new TextDecoder().decode(bytes)).colliders?.forEach((one) => this.meshes.set(one.file, one.mesh));
             }
         }
-        const measured = data.check?.accuracy?.bodies;
+        this.nodes = data.check?.accuracy?.bodies; // a mesh in tiles is one there, and several bodies here
+        const measured = this.nodes?.flatMap((node) => Array(node.tiles).fill(node));
         this.measured = measured?.length === placed.length ? measured : null; // the level has the bodies of the world
     }
 

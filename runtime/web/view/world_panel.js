@@ -59,11 +59,12 @@ export class WorldPanel {
             item.querySelector("button").setAttribute("aria-expanded", open);
         });
         app.pin = place.position;
-        const body = app.bodies.measured ? app.bodies.placed[place.body] : null;
+        const index = app.bodies.measured?.indexOf(app.bodies.nodes[place.body]) ?? -1;
+        const body = app.bodies.placed[index];
         const longest = body ? (body.body ?? body).box.longest * Math.hypot(...body.model.slice(0, 3)) : app.look.box.longest;
         app.camera.lookAt(place.position, place.normal, 0.5 * longest);
         app.camera.pitch = Math.max(app.camera.pitch, 0.3); // worlds stand on the ground
-        this.pick(body ? place.body : -1);
+        this.pick(index);
     }
 
     /** Shows a body's facts; −1: none. */

@@ -140,6 +140,8 @@ TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
     EXPECT_TRUE(accuracy->warnings.empty());
     ASSERT_EQ(accuracy->bodies.size(), 2U);
     EXPECT_LT(accuracy->all.total(), 0.5);
+    EXPECT_EQ(accuracy->bodies[0].tiles, field.world().bodies.size() - 1);
+    EXPECT_EQ(accuracy->bodies[1].tiles, 1U);
     // Without one of the tiles, what was in it is missing.
     LoadedWorld broken = field.loaded();
     broken.world.bodies.erase(broken.world.bodies.begin() + 2);
