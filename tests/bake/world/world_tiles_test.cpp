@@ -178,10 +178,12 @@ TEST_F(WorldTiles, OnlyWhatHasChangedIsBaked) {
     writeLevel(1.5, 60);
     again = bake("w");
     EXPECT_EQ(namesOf(again, WorldColliderState::kBaked), std::vector<std::string>{"box"});
-    EXPECT_EQ(again.removed.size(), 1U);
+    EXPECT_EQ(again.removed.size(), 2U) << "the coarse one too";
     // Of another budget there are other tiles, and those from before go.
     again = bake("w", kBudget / 2);
-    EXPECT_EQ(filesOf("w").size(), again.colliders.size() + 1);
+    const auto coarse = std::ranges::count_if(
+        again.colliders, [](const WorldColliderResult& collider) { return collider.coarse.has_value(); });
+    EXPECT_EQ(filesOf("w").size(), again.colliders.size() + static_cast<std::size_t>(coarse) + 1);
 }
 
 TEST_F(WorldTiles, ACacheThatIsMadeUpCostsABake) {
