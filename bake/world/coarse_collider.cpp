@@ -1,8 +1,12 @@
 #include "bake/world/coarse_collider.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "bake/director/director.h"
+#include "bake/patches/patch_tiles.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -18,16 +22,45 @@ bool hasCoarse(const Collider& fine) {
            fine.gpuBytes() > kCoarseFrom;
 }
 
-Result<Collider> bakeCoarse(const BakeRequest& request, const Collider& fine, TriangleMesh mesh) {
+FineCollider FineCollider::of(const Collider& fine) {
+    return {solidBox(fine), fine.bounds, fine.gpuBytes()};
+}
+
+Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine, TriangleMesh mesh) {
     BakeRequest coarse = request;
-    coarse.budget = fine.gpuBytes() / kCoarser;
+    coarse.budget = fine.gpu_bytes / kCoarser;
     coarse.texel.reset();
     coarse.no_check = true;
-    Bounds box = solidBox(fine);
-    const glm::vec3 margin(kMargin * box.longestSide());
-    coarse.roots_hold = Bounds{box.min - margin, box.max + margin};
+    const glm::vec3 margin(kMargin * fine.box.longestSide());
+    coarse.roots_hold = Bounds{fine.box.min - margin, fine.box.max + margin};
     Collider collider = RELIEF_TRY(bake(coarse, {}, std::move(mesh))).baked.collider;
     collider.bounds = fine.bounds;  // its own have thicker shells
+    return collider;
+}
+
+Collider coarseTile(const Collider& coarse, const FineCollider& tile) {
+    const DepthMap& map = coarse.maps[0];
+    const glm::uvec3 roots = patchTreeSize(map.texels).roots;
+    const float margin = kMargin * coarse.bounds.longestSide();
+    glm::uvec3 first;
+    glm::uvec3 count;
+    for (int i = 0; i < 3; ++i) {
+        // Rows of patches scale and shift, and no more.
+        const double per_unit = 1.0 / double{map.object_per_map.x};
+        const auto rootAt = [&](float place) {
+            return std::floor(double{place} * per_unit + double{map.object_to_map.row[i].w});
+        };
+        const double last = roots[i] - 1.0;
+        const double low = std::clamp(rootAt(tile.box.min[i] - margin), 0.0, last);
+        const double high = std::clamp(rootAt(tile.box.max[i] + margin), low, last);
+        first[i] = static_cast<std::uint32_t>(low);
+        count[i] = static_cast<std::uint32_t>(high - low) + 1;
+    }
+    Collider collider;
+    collider.bounds = tile.bounds;
+    collider.unit = coarse.unit;
+    collider.provenance = coarse.provenance;
+    collider.maps.push_back(cutPatches(map, first, count));
     return collider;
 }
 

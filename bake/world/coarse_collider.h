@@ -16,12 +16,25 @@ inline constexpr std::uint64_t kCoarseFrom = 65'536;
 /// Whether a collider of a level has one: of a single map of patches, and not a small one.
 [[nodiscard]] bool hasCoarse(const Collider& fine);
 
+/// The collider that a coarse one stands for.
+struct FineCollider {
+    Bounds box;     ///< solidBox()
+    Bounds bounds;  ///< of its mesh
+    std::uint64_t gpu_bytes = 0;
+
+    [[nodiscard]] static FineCollider of(const Collider& fine);
+};
+
 /// One of a sixteenth of the bytes, whose box holds that of the fine one, so that a program need not sort its bodies anew when
 /// it takes one for the other. Shells of open sheets are as thick as its texels ask for.
-/// \param request  that `fine` was baked by.
-/// \param mesh     the same that `fine` was baked from.
+/// \param request  that the fine one was baked by.
+/// \param mesh     the same that it was baked from.
 /// Errors: those of bake().
-[[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const Collider& fine,
+[[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,
                                           TriangleMesh mesh);
+
+/// The roots of a coarse one that hold the box of a tile, as a collider of their own.
+/// \param coarse  bakeCoarse() of the whole that the tile was cut from.
+[[nodiscard]] Collider coarseTile(const Collider& coarse, const FineCollider& tile);
 
 }  // namespace relief

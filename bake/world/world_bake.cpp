@@ -228,8 +228,10 @@ class WorldBaker {
         for (const std::string& tile : tiles) {
             part.tile = tile;
             part.file = fileOf(mesh, tile);
+            part.coarse.reset();
             const bool twice = !parts.empty() && std::ranges::count(tiles, tile) > 1;
-            if (twice || !isTileName(tile) || !isUpToDate(wanted, cache, part)) {
+            if (twice || !isTileName(tile) || !isUpToDate(wanted, cache, part) ||
+                !coarseIsUpToDate(wanted, cache, part)) {
                 return {};
             }
             parts.push_back(part);
@@ -365,6 +367,7 @@ class WorldBaker {
         }
         PatchTileOptions options = tiles_;
         options.total = collider.budget.value_or(options.total);
+        const FineCollider whole = FineCollider::of(result.baked.collider);
         const std::vector<ColliderTile> tiles = cutCollider(std::move(result.baked.collider), options);
         std::vector<WorldColliderResult> parts;
         for (const ColliderTile& tile : tiles) {
@@ -382,15 +385,20 @@ class WorldBaker {
             parts.push_back(std::move(part));
         }
         TriangleMesh mesh = std::move(level_.meshes[i]);
-        if (parts.size() == 1 && parts.front().has_coarse) {
-            RELIEF_TRY(bakeCoarseOf(i, tiles.front().collider, std::move(mesh), parts.front()));
+        if (std::ranges::any_of(parts, &WorldColliderResult::has_coarse)) {
+            const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, std::move(mesh)));
+            for (std::size_t k = 0; k < parts.size(); ++k) {
+                if (parts[k].has_coarse) {
+                    RELIEF_TRY(writeCoarse(
+                        tiles.size() == 1 ? coarse : coarseTile(coarse, FineCollider::of(tiles[k].collider)),
+                        parts[k]));
+                }
+            }
         }
         return parts;
     }
 
-    Result<void> bakeCoarseOf(std::size_t i, const Collider& whole, TriangleMesh mesh,
-                              WorldColliderResult& of) const {
-        const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, std::move(mesh)));
+    Result<void> writeCoarse(const Collider& coarse, WorldColliderResult& of) const {
         const auto bytes = RELIEF_TRY(writeContainer(coarse, {static_cast<int>(request_.compress)}));
         of.coarse = WorldFile{coarseFile(of.file), xxh3_128Hex(bytes), coarse.gpuBytes()};
         of.coarse_bytes = bytes.size();

@@ -1,5 +1,6 @@
 // A level whose terrain is cut into tiles: against its closed form and its mesh, and what is baked again.
 #include "bake/world/world_tiles.h"
+#include "bake/world/coarse_collider.h"
 
 #include <gtest/gtest.h>
 
@@ -62,8 +63,8 @@ class WorldTiles : public testing::Test {
         EXPECT_TRUE(result->written);
         return std::move(*result);
     }
-    [[nodiscard]] WorldField load(const char* from) const {
-        Result<LoadedWorld> loaded = loadWorld(folder_.path() / from / kWorldFileName);
+    [[nodiscard]] WorldField load(const char* from, WorldDetail detail = WorldDetail::kFine) const {
+        Result<LoadedWorld> loaded = loadWorld(folder_.path() / from / kWorldFileName, {}, detail);
         EXPECT_TRUE(loaded) << loaded.error().message;
         return WorldField(std::move(*loaded));
     }
@@ -93,6 +94,30 @@ class WorldTiles : public testing::Test {
         return names;
     }
 
+    /// The shares of points on the wrong side, of those anywhere within so far of the hills, and of those within 5 cm of a seam.
+    static std::pair<double, double> wrongAmong(const WorldField& field, const WorldBakeResult& result,
+                                                float within) {
+        std::mt19937 random(11);
+        std::uniform_real_distribution<float> share(0.0F, 1.0F);
+        std::array<int, 2> wrong{};
+        constexpr int kPoints = 50'000;
+        for (int i = 0; i < kPoints; ++i) {
+            glm::vec3 p((2.0F * share(random) - 1.0F) * kHillsHalf, 0.0F,
+                        (2.0F * share(random) - 1.0F) * kHillsHalf);
+            if (i % 2 == 1) {
+                // Tiles' boxes end in their seams, but where the hills end.
+                const Bounds& tile = result.colliders[random() % (result.colliders.size() - 1)].box;
+                const int axis = i % 4 == 1 ? 0 : 2;
+                const float seam = tile.min[axis] > 0.1F - kHillsHalf ? tile.min[axis] : tile.max[axis];
+                p[axis] = seam + 0.1F * share(random) - 0.05F;
+            }
+            p.y = hillsAt(p.x, p.z) + within * (2.0F * share(random) - 1.0F);
+            const bool on_hills = std::max(std::abs(p.x), std::abs(p.z)) < kHillsHalf;
+            wrong[i % 2] += (on_hills && p.y < hillsAt(p.x, p.z)) != field.evaluate(p).inside() ? 1 : 0;
+        }
+        return {2.0 * wrong[0] / kPoints, 2.0 * wrong[1] / kPoints};
+    }
+
     TemporaryFolder folder_;
 };
 
@@ -111,25 +136,33 @@ TEST_F(WorldTiles, HillsAreInTheirPlaceAndWithinTheirBytes) {
         EXPECT_EQ(tile.file.find(tile.tile.empty() ? "box-" : "hills-" + tile.tile + "-"), 0U) << tile.file;
         EXPECT_TRUE(tile.tile.empty() || tile.gpu_bytes <= kTileBytes) << tile.gpu_bytes;
     }
-    std::mt19937 random(11);
-    std::uniform_real_distribution<float> share(0.0F, 1.0F);
-    std::array<int, 2> wrong{};
-    constexpr int kPoints = 50'000;
-    for (int i = 0; i < kPoints; ++i) {
-        glm::vec3 p((2.0F * share(random) - 1.0F) * kHillsHalf, 0.0F,
-                    (2.0F * share(random) - 1.0F) * kHillsHalf);
-        if (i % 2 == 1) {
-            // Within 5 cm of a seam: tiles' boxes end in them.
-            const Bounds& tile = result.colliders[random() % (result.colliders.size() - 1)].box;
-            (i % 4 == 1 ? p.x : p.z) = (i % 4 == 1 ? tile.min.x : tile.min.z) + 0.1F * share(random) - 0.05F;
-        }
-        p.y = hillsAt(p.x, p.z) + 2.0F * share(random) - 1.0F;
-        const bool within = std::max(std::abs(p.x), std::abs(p.z)) < kHillsHalf;
-        wrong[i % 2] += (within && p.y < hillsAt(p.x, p.z)) != field.evaluate(p).inside() ? 1 : 0;
-    }
+    const auto [wrong, at_seams] = wrongAmong(field, result, 1.0F);
     // The mesh's facets are up to 3 cm off the formula.
-    EXPECT_LT(wrong[0], kPoints / 2 / 50);
-    EXPECT_LT(wrong[1], kPoints / 2 / 50) << "at seams";
+    EXPECT_LT(wrong, 0.02);
+    EXPECT_LT(at_seams, 0.02);
+}
+
+TEST_F(WorldTiles, CoarseOnesAreTheWholeToo) {
+    writeLevel(1.0, 200);
+    const WorldBakeResult result = bake("w");
+    const WorldField field = load("w");
+    const WorldField coarse = load("w", WorldDetail::kCoarse);
+    std::uint64_t bytes = 0;
+    for (std::size_t i = 0; i < result.colliders.size(); ++i) {
+        const WorldColliderResult& tile = result.colliders[i];
+        ASSERT_EQ(tile.coarse.has_value(), tile.gpu_bytes > kCoarseFrom) << tile.file;
+        bytes += tile.coarse ? tile.coarse->gpu_bytes : 0;
+        const Bounds outer = solidBox(coarse.colliderOf(i));
+        const Bounds inner = solidBox(field.colliderOf(i));
+        EXPECT_TRUE(glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+                    glm::all(glm::greaterThanEqual(outer.max, inner.max)))
+            << tile.file;
+    }
+    EXPECT_GT(bytes, 0U);
+    EXPECT_LT(bytes, result.gpuBytes() / 8);
+    const auto [wrong, at_seams] = wrongAmong(coarse, result, 1.0F);
+    EXPECT_LT(wrong, 0.1);
+    EXPECT_LT(at_seams, 1.3 * wrong + 0.01);
 }
 
 TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
