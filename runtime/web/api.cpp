@@ -273,9 +273,9 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     Scene wanted = RELIEF_TRY(withDefaults(std::move(read), player.loaded.bounds));
     if (wanted.particles.capacity != now.particles.capacity ||
         wanted.time.integrator != now.time.integrator || wanted.colliders.size() != now.colliders.size() ||
-        wanted.world != now.world || wanted.stream != now.stream) {
+        wanted.world != now.world) {
         return fail(ErrorCode::kUsage,
-                    "other colliders, another capacity, integrator or stream need a new system; make one");
+                    "other colliders, another capacity or integrator need a new system; make one");
     }
     if (wanted.stream.has_value() != now.stream.has_value() ||
         (now.stream && wanted.stream->memory != now.stream->memory)) {
