@@ -51,7 +51,7 @@ export interface WorldSource extends StreamOptions {
 /**
  * As loadWorld(), for worlds that are too large: of each collider that has a coarse container it fetches that one only. A
  * ParticleSystem fetches the others when its emitters, the eye of its pictures or near() come near, up to six at a time, and
- * copies 256 kB a step to the GPU.
+ * copies 128 kB a step to the GPU.
  */
 export function streamWorld(source: string | URL | Request | Response, options: StreamOptions): Promise<World>;
 
