@@ -102,8 +102,14 @@ std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const f
     const fb::Vec3 bounds_max = toFb(collider.bounds.max);
     const auto unit = builder.CreateString(collider.unit);
     const auto map_vector = builder.CreateVector(maps);
-    fb::FinishColliderBuffer(
-        builder, fb::CreateCollider(builder, &bounds_min, &bounds_max, unit, provenance, map_vector));
+    flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> animation = 0;
+    if (!collider.animation.empty()) {
+        builder.ForceVectorAlignment(collider.animation.size(), 1, sizeof(std::uint64_t));
+        animation = builder.CreateVector(reinterpret_cast<const std::uint8_t*>(collider.animation.data()),
+                                         collider.animation.size());
+    }
+    fb::FinishColliderBuffer(builder, fb::CreateCollider(builder, &bounds_min, &bounds_max, unit, provenance,
+                                                         map_vector, animation));
     const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
     return {bytes.begin(), bytes.end()};
 }
@@ -152,7 +158,12 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                                   [](const DepthMap& map) { return map.compare == Compare::kGap; });
     const bool patches = std::any_of(collider.maps.begin(), collider.maps.end(),
                                      [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
-    header.minor = patches ? 4 : !collider.provenance.options.empty() ? 3 : gaps ? 2 : rows ? 1 : 0;
+    header.minor = !collider.animation.empty()            ? 5
+                   : patches                              ? 4
+                   : !collider.provenance.options.empty() ? 3
+                   : gaps                                 ? 2
+                   : rows                                 ? 1
+                                                          : 0;
     header.metadata_size = writeMetadata(collider, payloads, packed).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {
@@ -161,7 +172,10 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     }
     const std::vector<std::byte> metadata = writeMetadata(collider, payloads, packed);
     if (metadata.size() != header.metadata_size || metadata.size() > kContainerMetadataMax) {
-        return fail(ErrorCode::kLimit, "the metadata does not fit into the container; use fewer maps");
+        return fail(ErrorCode::kLimit, collider.animation.empty()
+                                           ? "the metadata does not fit into the container; use fewer maps"
+                                           : "the animated mesh takes more than the 16 MiB of a container's "
+                                             "metadata; simplify it, or bake fewer clips");
     }
     header.file_size = end;
     header.metadata_hash = xxh3_64(metadata);

@@ -260,6 +260,11 @@ bool ContainerReader::readMetadata() {
             collider.provenance.options.push_back({option->name()->str(), option->value()->str()});
         }
     }
+    if (metadata.animation() != nullptr) {
+        const auto animation =
+            std::as_bytes(std::span(metadata.animation()->data(), metadata.animation()->size()));
+        collider.animation.assign(animation.begin(), animation.end());
+    }
     for (const fb::Map* map : stored) {
         const fb::Payload& payload = *map->payload();
         maps.push_back({readFrame(*map),

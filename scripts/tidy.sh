@@ -8,7 +8,7 @@ scripts/setup.sh clang clang-tidy
 build=build/tidy
 [ -f $build/build.ninja ] || cmake -G Ninja -S . -B $build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=clang++ \
     -DRELIEF_PRECOMPILE=OFF -DRELIEF_UNITY=OFF >&2
-ninja -C $build formats/collider_generated.h >&2
+ninja -C $build formats/collider_generated.h formats/animated_mesh_generated.h >&2
 base=${1:-main}
 if [ "$base" = --all ]; then
     list=(git ls-files)

@@ -85,6 +85,22 @@ TEST(Container, MapsOfGapsAreReadAndNeedVersion12) {
     }
 }
 
+TEST(Container, AnimationsComeBackAndNeedVersion15) {
+    Collider collider = oneMapOfEveryFormat();
+    for (const char byte : {'R', 'L', 'A', '1', '\xff'}) {
+        collider.animation.push_back(static_cast<std::byte>(byte));
+    }
+    const std::vector<std::byte> bytes = written(collider, 0);
+    EXPECT_EQ(readContainerInfo(bytes)->minor, 5);
+    const Result<Collider> read = readContainer(bytes);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(*read, collider);
+    collider.animation.resize(std::size_t{17} << 20);
+    const Result<std::vector<std::byte>> refused = writeContainer(collider, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
+}
+
 TEST(Container, LayoutIsTheOneOfTheReadme) {
     for (const int level : {0, 19}) {
         Collider collider = oneMapOfEveryFormat();

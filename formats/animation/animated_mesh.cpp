@@ -1,0 +1,220 @@
+#include "formats/animation/animated_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <set>
+#include <utility>
+
+#include "formats/base/finite.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+constexpr float kWeightSumTolerance = 1e-3F;
+constexpr float kUnitTolerance = 1e-3F;
+
+tl::unexpected<Error> wrong(const char* list, std::size_t index, const std::string& fault) {
+    return invalidInput("animation." + std::string(list) + "[" + std::to_string(index) + "] " + fault);
+}
+
+Result<void> atMost(const char* list, std::size_t count, std::size_t most) {
+    if (count <= most) {
+        return {};
+    }
+    return fail(ErrorCode::kLimit, "animation." + std::string(list) + " has " + std::to_string(count) +
+                                       " entries, and at most " + std::to_string(most) + " may be");
+}
+
+bool hasNumbers(const Affine& affine) {
+    return std::all_of(std::begin(affine.row), std::end(affine.row),
+                       [](const glm::vec4& row) { return isFinite(glm::vec3(row)) && std::isfinite(row.w); });
+}
+
+bool areFinite(const std::vector<float>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](float number) { return std::isfinite(number); });
+}
+
+bool isName(std::string_view name) {
+    return name.size() <= kAnimatedNameMax && cleanUtf8(name) == name;
+}
+
+/// Starts of one more list than there are vertices, from 0 to `count`.
+bool areStarts(const std::vector<std::uint32_t>& begin, std::size_t vertices, std::size_t count) {
+    return begin.size() == vertices + 1 && begin.front() == 0 && begin.back() == count &&
+           std::is_sorted(begin.begin(), begin.end());
+}
+
+Result<void> checkTriangles(const AnimatedMesh& mesh) {
+    RELIEF_TRY(atMost("positions", mesh.positions.size(), kAnimatedVerticesMax));
+    if (mesh.positions.empty() || mesh.triangles.empty()) {
+        return invalidInput("animation has no triangle");
+    }
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        if (!isFinite(mesh.positions[i])) {
+            return wrong("positions", i, "is not finite");
+        }
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::uvec3& t = mesh.triangles[i];
+        if (std::max({t.x, t.y, t.z}) >= mesh.positions.size()) {
+            return wrong("triangles", i, "has a corner that does not exist");
+        }
+    }
+    return {};
+}
+
+Result<void> checkInfluences(const AnimatedMesh& mesh) {
+    if (!areStarts(mesh.influence_begin, mesh.positions.size(), mesh.influences.size())) {
+        return invalidInput("animation.influence_begin does not rise from 0 to the number of influences");
+    }
+    for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+        const std::uint32_t begin = mesh.influence_begin[vertex];
+        const std::uint32_t end = mesh.influence_begin[vertex + 1];
+        if (begin == end || end - begin > kVertexInfluencesMax) {
+            return wrong("positions", vertex,
+                         "has no joints, or more than " + std::to_string(kVertexInfluencesMax));
+        }
+        double sum = 0.0;
+        for (std::uint32_t i = begin; i < end; ++i) {
+            const VertexInfluence& by = mesh.influences[i];
+            if (by.joint >= mesh.joints.size() || !(by.weight > 0.0F)) {
+                return wrong("influences", i, "has no such joint, or a weight that is not above 0");
+            }
+            sum += double{by.weight};
+        }
+        if (!(std::abs(sum - 1.0) <= double{kWeightSumTolerance})) {
+            return wrong("positions", vertex, "has weights whose sum is not 1");
+        }
+    }
+    return {};
+}
+
+Result<void> checkDeltas(const AnimatedMesh& mesh) {
+    RELIEF_TRY(atMost("weights", mesh.weights.size(), kMorphTargetsMax));
+    if (!areFinite(mesh.weights)) {
+        return invalidInput("animation.weights are not finite");
+    }
+    if (!areStarts(mesh.delta_begin, mesh.positions.size(), mesh.deltas.size())) {
+        return invalidInput("animation.delta_begin does not rise from 0 to the number of deltas");
+    }
+    for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+        for (std::uint32_t i = mesh.delta_begin[vertex]; i < mesh.delta_begin[vertex + 1]; ++i) {
+            const MorphDelta& by = mesh.deltas[i];
+            if (by.target >= mesh.weights.size() || !isFinite(by.delta)) {
+                return wrong("deltas", i, "has no such target, or is not finite");
+            }
+            if (i > mesh.delta_begin[vertex] && by.target <= mesh.deltas[i - 1].target) {
+                return wrong("deltas", i, "does not follow the target before it");
+            }
+        }
+    }
+    return {};
+}
+
+Result<void> checkNodes(const AnimatedMesh& mesh) {
+    RELIEF_TRY(atMost("nodes", mesh.nodes.size(), kMeshNodesMax));
+    RELIEF_TRY(atMost("joints", mesh.joints.size(), kMeshJointsMax));
+    for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+        const MeshNode& node = mesh.nodes[i];
+        if (node.parent < -1 || node.parent >= static_cast<std::int64_t>(i)) {
+            return wrong("nodes", i, "has a parent that does not come before it");
+        }
+        if (!isName(node.name)) {
+            return wrong("nodes", i, "has a name that is too long or no clean text");
+        }
+        const double length = std::sqrt(double{glm::dot(node.rotation, node.rotation)});
+        if (!isFinite(node.translation) || !isFinite(node.scale) ||
+            !(std::abs(length - 1.0) <= double{kUnitTolerance}) ||
+            (node.matrix && !hasNumbers(*node.matrix))) {
+            return wrong("nodes", i,
+                         "has a transform that is not finite, or whose rotation is no unit quaternion");
+        }
+        if (node.first_weight > mesh.weights.size() ||
+            node.weights > mesh.weights.size() - node.first_weight) {
+            return wrong("nodes", i, "has morph targets that do not exist");
+        }
+    }
+    for (std::size_t i = 0; i < mesh.joints.size(); ++i) {
+        if (mesh.joints[i].node >= mesh.nodes.size() || !hasNumbers(mesh.joints[i].bind)) {
+            return wrong("joints", i, "has no such node, or a transform that is not finite");
+        }
+    }
+    return {};
+}
+
+/// \return what is wrong with a channel, or "".
+std::string faultOf(const AnimatedMesh& mesh, const MeshClip& clip, const ClipChannel& channel) {
+    if (channel.node >= mesh.nodes.size() || channel.member > NodeMember::kWeights ||
+        channel.curve > KeyCurve::kCubic) {
+        return "has no such node, member or curve";
+    }
+    const MeshNode& node = mesh.nodes[channel.node];
+    if (channel.member == NodeMember::kWeights ? node.weights == 0 : node.matrix.has_value()) {
+        return "moves a node that has no such member";
+    }
+    const std::size_t numbers = keyNumbers(mesh, channel) * (channel.curve == KeyCurve::kCubic ? 3 : 1);
+    if (channel.times.empty() || channel.values.size() / numbers != channel.times.size() ||
+        channel.values.size() % numbers != 0) {
+        return "has no key, or not as many values as times";
+    }
+    if (!areFinite(channel.times) || !areFinite(channel.values) || !(channel.times.front() >= 0.0F) ||
+        !(channel.times.back() <= clip.seconds)) {
+        return "has keys that are not finite, or not within the clip";
+    }
+    if (std::adjacent_find(channel.times.begin(), channel.times.end(), std::greater_equal<>()) !=
+        channel.times.end()) {
+        return "has times that do not rise";
+    }
+    return "";
+}
+
+Result<void> checkClips(const AnimatedMesh& mesh) {
+    RELIEF_TRY(atMost("clips", mesh.clips.size(), kMeshClipsMax));
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < mesh.clips.size(); ++i) {
+        const MeshClip& clip = mesh.clips[i];
+        if (clip.name.empty() || !isName(clip.name) || !names.insert(clip.name).second) {
+            return wrong("clips", i, "has a name that is empty, too long, no clean text, or that of another");
+        }
+        if (!(clip.seconds > 0.0F && clip.seconds <= kClipSecondsMax)) {
+            return wrong("clips", i, "has no length, or one of more than a day");
+        }
+        std::set<std::pair<std::uint32_t, NodeMember>> moved;
+        for (const ClipChannel& channel : clip.channels) {
+            std::string fault = faultOf(mesh, clip, channel);
+            if (fault.empty() && !moved.emplace(channel.node, channel.member).second) {
+                fault = "moves what another one moves";
+            }
+            if (!fault.empty()) {
+                return wrong("clips", i, "has a channel that " + fault);
+            }
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+std::size_t keyNumbers(const AnimatedMesh& mesh, const ClipChannel& channel) {
+    switch (channel.member) {
+        case NodeMember::kRotation:
+            return 4;
+        case NodeMember::kWeights:
+            return mesh.nodes[channel.node].weights;
+        default:
+            return 3;
+    }
+}
+
+Result<void> validate(const AnimatedMesh& mesh) {
+    RELIEF_TRY(checkTriangles(mesh));
+    RELIEF_TRY(checkNodes(mesh));
+    RELIEF_TRY(checkInfluences(mesh));
+    RELIEF_TRY(checkDeltas(mesh));
+    return checkClips(mesh);
+}
+
+}  // namespace relief

@@ -1,0 +1,173 @@
+#include "formats/animation/mesh_pose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <limits>
+#include <string>
+
+#include "tests/formats/animation/animated_meshes.h"
+
+namespace relief {
+namespace {
+
+void expectNear(const glm::vec3& value, const glm::vec3& expected, float tolerance = 1e-5F) {
+    EXPECT_LE(glm::length(value - expected), tolerance)
+        << value.x << " " << value.y << " " << value.z << ", not " << expected.x << " " << expected.y << " "
+        << expected.z;
+}
+
+/// The top of the tube, its last vertex.
+glm::vec3 topAt(const AnimatedMesh& mesh, const char* clip, double seconds) {
+    return posed(mesh, poseAt(mesh, mesh.clips.at(*findClip(mesh, clip)), seconds)).back();
+}
+
+TEST(MeshPose, TurnsAboutTheJointAtAConstantSpeed) {
+    const AnimatedMesh mesh = bendingTube();
+    ASSERT_TRUE(validate(mesh));
+    for (const double t : {0.0, 0.1, 0.5, 1.0, 1.25, 2.0}) {
+        const double angle = (t <= 1.0 ? t : 2.0 - t) * std::acos(0.0);
+        expectNear(topAt(mesh, "bend", t), {-std::sin(angle), 1.0 + std::cos(angle), 0.0});
+    }
+    expectNear(topAt(mesh, "bend", -5.0), {0, 2, 0});
+    expectNear(topAt(mesh, "bend", 7.0), {0, 2, 0});
+}
+
+TEST(MeshPose, MorphsBeforeJointsMove) {
+    const AnimatedMesh mesh = bendingTube();
+    expectNear(posed(mesh, restPose(mesh)).front(), {0.1F, 0, 0});
+    for (const float t : {0.0F, 0.25F, 1.0F}) {
+        expectNear(posed(mesh, poseAt(mesh, mesh.clips[1], double{t})).front(), {0.1F * (1.0F + t), 0, 0});
+    }
+}
+
+TEST(MeshPose, TakesTheShorterWayAndCrossesCurves) {
+    AnimatedMesh mesh = bendingTube();
+    MeshClip& clip = mesh.clips[0];
+    const float half = std::sqrt(0.5F);
+    // The same rotation by the opposite quaternion.
+    clip.channels[0].values = {0, 0, 0, 1, 0, 0, -half, -half, 0, 0, 0, 1};
+    expectNear(topAt(mesh, "bend", 0.5), {-half, 1.0F + half, 0});
+    clip.channels[0].curve = KeyCurve::kStep;
+    expectNear(topAt(mesh, "bend", 0.99), {0, 2, 0});
+    expectNear(topAt(mesh, "bend", 1.0), {-1, 1, 0});
+    // A Hermite curve of a parabola is that parabola: y = 1 + t², slopes 0 and 2, in one key of 1 s.
+    clip.channels[0] = {1,
+                        NodeMember::kTranslation,
+                        KeyCurve::kCubic,
+                        {0.0F, 1.0F},
+                        {9, 9, 9, 0, 1, 0, 0, 0, 0, 0, 2, 0, 0, 2, 0, 9, 9, 9}};
+    ASSERT_TRUE(validate(mesh));
+    for (const double t : {0.0, 0.3, 0.5, 0.9}) {
+        expectNear(topAt(mesh, "bend", t), {0, 2.0 + t * t, 0});
+    }
+}
+
+TEST(MeshPose, FollowsParentsAndMatrices) {
+    AnimatedMesh mesh = bendingTube();
+    mesh.nodes[0].matrix =
+        Affine{{{0, -2, 0, 1}, {2, 0, 0, 0}, {0, 0, 2, 5}}};  // twice as large, turned, moved
+    ASSERT_TRUE(validate(mesh));
+    expectNear(topAt(mesh, "bend", 1.0), {1.0F - 2.0F * 1.0F, 2.0F * -1.0F, 5.0F});
+}
+
+TEST(MeshPose, RepeatsClips) {
+    const MeshClip& clip = bendingTube().clips[0];
+    EXPECT_EQ(repeated(clip, 0.5), 0.5);
+    EXPECT_EQ(repeated(clip, 2.0), 0.0);
+    EXPECT_EQ(repeated(clip, 5.25), 1.25);
+    EXPECT_EQ(repeated(clip, -0.25), 1.75);
+    EXPECT_EQ(repeated(clip, -1e-300), 0.0);
+}
+
+TEST(MeshPose, BoundsHoldEveryVertexAtEveryTime) {
+    const AnimatedMesh mesh = bendingTube();
+    const PoseBounds bounds(mesh);
+    const glm::vec3 room = poseRoom(mesh);
+    for (const MeshClip& clip : mesh.clips) {
+        for (double t = 0.0; t < double{clip.seconds}; t += 0.013) {
+            const MeshPose pose = poseAt(mesh, clip, t);
+            const Bounds box = bounds.of(pose);
+            Bounds exact;
+            for (const glm::vec3& p : posed(mesh, pose)) {
+                exact.add(p);
+            }
+            EXPECT_TRUE(glm::all(glm::lessThanEqual(box.min, exact.min + 1e-6F))) << t;
+            EXPECT_TRUE(glm::all(glm::greaterThanEqual(box.max, exact.max - 1e-6F))) << t;
+            EXPECT_TRUE(glm::all(glm::lessThanEqual(box.size(), room))) << t;
+            EXPECT_LE(box.longestSide(), 1.4F * exact.longestSide()) << t;
+        }
+    }
+}
+
+TEST(AnimatedMesh, ComesBackFromItsBytes) {
+    AnimatedMesh mesh = bendingTube(8, 6);
+    mesh.nodes[0].matrix = Affine{{{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 5}}};
+    const std::vector<std::byte> bytes = writeAnimatedMesh(mesh);
+    const Result<AnimatedMesh> read = readAnimatedMesh(bytes);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(*read, mesh);
+    EXPECT_EQ(writeAnimatedMesh(*read), bytes);
+}
+
+TEST(AnimatedMesh, RefusesTruncationsAndLivesThroughFlippedBytes) {
+    const std::vector<std::byte> bytes = writeAnimatedMesh(bendingTube(6, 4));
+    for (std::size_t size = 0; size < bytes.size(); size += 7) {
+        EXPECT_FALSE(readAnimatedMesh(std::span(bytes).first(size))) << size;
+    }
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        std::vector<std::byte> flipped = bytes;
+        flipped[i] ^= std::byte{0x81};
+        if (const Result<AnimatedMesh> read = readAnimatedMesh(flipped)) {
+            ASSERT_TRUE(validate(*read));
+            for (const MeshClip& clip : read->clips) {
+                EXPECT_EQ(posed(*read, poseAt(*read, clip, 0.5)).size(), read->positions.size());
+            }
+        }
+    }
+}
+
+TEST(AnimatedMesh, SaysWhatIsWrong) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    using Change = std::function<void(AnimatedMesh&)>;
+    const std::pair<Change, const char*> cases[] = {
+        {[](AnimatedMesh& m) { m.positions[3].y = kNan; }, "animation.positions[3] is not finite"},
+        {[](AnimatedMesh& m) { m.triangles[2].z = 100'000; }, "animation.triangles[2] has a corner"},
+        {[](AnimatedMesh& m) { m.influences[0].weight = 0.25F; },
+         "animation.positions[0] has weights whose sum"},
+        {[](AnimatedMesh& m) { m.influences[0].weight = kNan; }, "animation.influences[0] has no such joint"},
+        {[](AnimatedMesh& m) { m.influences[5].joint = 2; }, "animation.influences[5] has no such joint"},
+        {[](AnimatedMesh& m) { m.influence_begin[1] = 0; }, "animation.positions[0] has no joints"},
+        {[](AnimatedMesh& m) { m.influence_begin[1] = 5000; }, "animation.influence_begin does not rise"},
+        {[](AnimatedMesh& m) { m.deltas[1].target = 1; }, "animation.deltas[1] has no such target"},
+        {[](AnimatedMesh& m) { m.delta_begin.pop_back(); }, "animation.delta_begin does not rise"},
+        {[](AnimatedMesh& m) { m.nodes[1].parent = 1; }, "animation.nodes[1] has a parent"},
+        {[](AnimatedMesh& m) { m.nodes[1].rotation = glm::vec4(0.0F); },
+         "animation.nodes[1] has a transform"},
+        {[](AnimatedMesh& m) { m.nodes[0].weights = 2; }, "animation.nodes[0] has morph targets"},
+        {[](AnimatedMesh& m) { m.joints[0].node = 2; }, "animation.joints[0] has no such node"},
+        {[](AnimatedMesh& m) { m.clips[1].name = "bend"; }, "animation.clips[1] has a name"},
+        {[](AnimatedMesh& m) { m.clips[0].seconds = 0.0F; }, "animation.clips[0] has no length"},
+        {[](AnimatedMesh& m) { m.clips[0].seconds = kNan; }, "animation.clips[0] has no length"},
+        {[](AnimatedMesh& m) { m.clips[0].channels[0].times[1] = 0.0F; }, "has times that do not rise"},
+        {[](AnimatedMesh& m) { m.clips[0].channels[0].values.pop_back(); }, "not as many values as times"},
+        {[](AnimatedMesh& m) { m.clips[0].channels[0].values[4] = kNan; }, "keys that are not finite"},
+        {[](AnimatedMesh& m) { m.clips[0].channels[0].node = 9; }, "has no such node, member or curve"},
+        {[](AnimatedMesh& m) { m.clips[1].channels[0].node = 1; }, "moves a node that has no such member"},
+        {[](AnimatedMesh& m) { m.clips[0].channels.push_back(m.clips[0].channels[0]); },
+         "what another one moves"},
+        {[](AnimatedMesh& m) { m.joints.resize(kMeshJointsMax + 1); }, "animation.joints has 4097 entries"},
+    };
+    for (const auto& [change, words] : cases) {
+        AnimatedMesh mesh = bendingTube(8, 6);
+        change(mesh);
+        const Result<AnimatedMesh> read = readAnimatedMesh(writeAnimatedMesh(mesh));
+        ASSERT_FALSE(read) << words;
+        EXPECT_NE(read.error().message.find(words), std::string::npos) << read.error().message;
+    }
+}
+
+}  // namespace
+}  // namespace relief
