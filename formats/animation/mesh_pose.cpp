@@ -15,8 +15,8 @@ namespace {
 /// Above this cosine of two rotations' half angle, a straight line is as good as an arc.
 constexpr double kStraightCosine = 0.9999999;
 constexpr double kPoseSeconds = 1.0 / 60.0;
-/// More than the rounding of positions.
-constexpr float kRoom = 1e-4F;
+/// Between those times.
+constexpr float kRoom = 0.02F;
 
 struct Motion {
     glm::dmat3 linear{1.0};

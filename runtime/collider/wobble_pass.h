@@ -11,6 +11,7 @@
 #include <span>
 
 #include "formats/base/result.h"
+#include "runtime/collider/vertex_feedback.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {
@@ -26,12 +27,6 @@ struct Wobble {
 
 class WobblePass {
   public:
-    /// The output of a vertex.
-    enum class Output : std::uint8_t {
-        kPositions,           ///< three floats, tightly packed
-        kPositionsAndNormals  ///< six: position and normal, as ColliderMesh's vertices
-    };
-
     /// Needs a current context, as run() does.
     /// \param positions  at rest, object units, finite; at least one.
     /// \param normals    as many, of length 1 or zero.
@@ -39,27 +34,21 @@ class WobblePass {
     /// driver's compiler).
     [[nodiscard]] static Result<WobblePass> create(const Wobble& wobble, std::span<const glm::vec3> positions,
                                                    std::span<const glm::vec3> normals,
-                                                   Output output = Output::kPositions);
+                                                   VertexOutput output = VertexOutput::kPositions);
 
     /// Writes all vertices as they are at `time`, in seconds, into buffer(). Does not wait. Restores the GL
     /// state; no transform feedback of the caller's may be active.
     void run(double time);
 
     /// Of bytes(), rewritten by every run().
-    [[nodiscard]] const GlBuffer& buffer() const { return output_; }
-    [[nodiscard]] std::size_t bytes() const;
+    [[nodiscard]] const GlBuffer& buffer() const { return feedback_.buffer(); }
+    [[nodiscard]] std::size_t bytes() const { return feedback_.bytes(); }
 
   private:
     Wobble wobble_;
-    Output what_ = Output::kPositions;
-    GLsizei vertices_ = 0;
     float inch_ = 0.0F;
     GlBuffer rest_;
-    GlBuffer output_;
-    GlVertexArray array_;
-    GlTexture pixel_;  // a draw needs a whole framebuffer, even one that rasterises nothing
-    GlFramebuffer target_;
-    GlProgram program_;
+    VertexFeedback feedback_;
 };
 
 }  // namespace relief

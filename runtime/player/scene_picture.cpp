@@ -27,7 +27,7 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
         const LiveMesh& live = *loaded.live.front();
         mesh = std::make_unique<ColliderMesh>(RELIEF_TRY(ColliderMesh::create(live.mesh)));
         wobble = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
-                                               WobblePass::Output::kPositionsAndNormals));
+                                               VertexOutput::kPositionsAndNormals));
     } else {
         mesh = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
     }

@@ -195,40 +195,34 @@ vec3 reliefMotion(int body, int i, vec3 q, vec3 normal) {
     return (scale * scale) * reliefTurnedBack(body, motion);
 }
 
-// The same at a point of the world, of a body's deciding map; zero of one that is not live.
-vec3 reliefBodyMotion(int body, int map, vec3 p, vec3 normal) {
-    vec3 motion = vec3(0.0);
-    if (reliefBodyMaps(body).z != 0 && map >= 0) {
-        motion = reliefMotion(body, map, reliefToObject(body, p), reliefTurned(body, normal));
-    }
-    return motion;
-}
-
-// The motion of a particle that rests on a live body: that of the nearest surface; zero on one that is not live. Each map
-// is evaluated alone: where one sees nothing near a silhouette, another one does.
-vec3 reliefNearestMotion(int body, vec3 p) {
+// The motion of the surface of a body near a point of the world; zero on one that is not live. Each map is evaluated alone:
+// where one sees nothing near a silhouette, another one does. Of those that see the surface equally near, the one that faces it
+// counts: in a view along the surface, the piece in the same texel may be far away.
+vec3 reliefBodyMotion(int body, vec3 p) {
     if (reliefBodyMaps(body).z == 0) {
         return vec3(0.0);
     }
     vec3 q = reliefToObject(body, p);
-    ReliefField nearest = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    ReliefField met = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
+    float best = 0.0;
     int first = reliefBodyMaps(body).x;
     for (int i = first; i < first + reliefBodyMaps(body).y; ++i) {
         ReliefField one = reliefMaps(i, i + 1, q, true);
-        if (one.map >= 0 && abs(one.distance) < abs(nearest.distance)) {
-            nearest = one;
+        if (one.map >= 0 && one.distance < RELIEF_FAR_OUTSIDE) {
+            float texel = 1.0 / length(reliefMapRow(i, 0).xyz);
+            float faces = abs(reliefDot(one.normal, reliefUnit(reliefMapRow(i, 2).xyz))) / (abs(one.distance) + texel);
+            if (faces >= best) {
+                best = faces;
+                met = one;
+            }
         }
     }
-    return nearest.map >= 0 ? reliefMotion(body, nearest.map, q, nearest.normal) : vec3(0.0);
+    return met.map >= 0 ? reliefMotion(body, met.map, q, met.normal) : vec3(0.0);
 }
 
 #else
 
-vec3 reliefBodyMotion(int body, int map, vec3 p, vec3 normal) {
-    return vec3(0.0);
-}
-
-vec3 reliefNearestMotion(int body, vec3 p) {
+vec3 reliefBodyMotion(int body, vec3 p) {
     return vec3(0.0);
 }
 

@@ -9,7 +9,7 @@ uniform float u_amplitude;  // object units
 uniform float u_number;     // 2 pi / wavelength
 
 out vec3 v_position;
-#if defined(RELIEF_WOBBLE_NORMALS)
+#if defined(RELIEF_NORMALS)
 out vec3 v_normal;
 #endif
 
@@ -20,7 +20,7 @@ vec3 moved(vec3 p) {
 
 void main() {
     v_position = moved(a_position);
-#if defined(RELIEF_WOBBLE_NORMALS)
+#if defined(RELIEF_NORMALS)
     // Two directions across the normal, moved along.
     vec3 n = a_normal;
     vec3 u = abs(n.x) < 0.6 ? vec3(0.0, n.z, -n.y) : vec3(-n.z, 0.0, n.x);

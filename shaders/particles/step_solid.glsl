@@ -59,7 +59,7 @@ Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
     vec3 motion = vec3(0.0);
     if (inside) {
         // A ball touches with its rim.
-        motion = reliefBodyMotion(body, field.map, p - radius * field.normal, field.normal);
+        motion = reliefBodyMotion(body, p - radius * field.normal);
     }
     return Solid(inside ? field.distance : RELIEF_FAR_OUTSIDE, field.normal, field.map, body, motion);
 }
@@ -91,7 +91,7 @@ vec3 pointNow(int body, vec3 p) {
     // A particle that stopped on a body of colliders that are no longer set stays where it is.
     if (body < reliefBodyCount()) {
         now = reliefMoved(body, p);
-        now += reliefNearestMotion(body, now);
+        now += reliefBodyMotion(body, now);
     }
     return now;
 }

@@ -67,4 +67,51 @@ AnimatedMesh bendingTube(int around, int rings) {
     return mesh;
 }
 
+AnimatedMesh movingBox(const glm::vec3& half) {
+    AnimatedMesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.positions.emplace_back((corner & 1) != 0 ? half.x : -half.x,
+                                    (corner & 2) != 0 ? half.y : -half.y,
+                                    (corner & 4) != 0 ? half.z : -half.z);
+        mesh.influence_begin.push_back(static_cast<std::uint32_t>(corner));
+        mesh.influences.push_back({0, 1.0F});
+    }
+    mesh.influence_begin.push_back(8);
+    mesh.delta_begin.assign(9, 0);
+    for (const glm::uvec4& face : {glm::uvec4(0, 4, 6, 2), glm::uvec4(1, 3, 7, 5), glm::uvec4(0, 1, 5, 4),
+                                   glm::uvec4(2, 6, 7, 3), glm::uvec4(0, 2, 3, 1), glm::uvec4(4, 5, 7, 6)}) {
+        mesh.triangles.emplace_back(face.x, face.y, face.z);
+        mesh.triangles.emplace_back(face.x, face.z, face.w);
+    }
+    mesh.nodes.push_back({.name = "box"});
+    mesh.joints.push_back({0, {}});
+    const float half_turn = std::sqrt(0.5F);
+    mesh.clips.push_back(
+        {"go", 1.0F, {{0, NodeMember::kTranslation, KeyCurve::kLinear, {0.0F, 1.0F}, {0, 0, 0, 1, 0, 0}}}});
+    mesh.clips.push_back({"turn",
+                          1.0F,
+                          {{0,
+                            NodeMember::kRotation,
+                            KeyCurve::kLinear,
+                            {0.0F, 1.0F},
+                            {0, 0, 0, 1, 0, half_turn, 0, half_turn}}}});
+    return mesh;
+}
+
+double windingNumber(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                     const glm::dvec3& p) {
+    double sum = 0.0;
+    for (const glm::uvec3& t : triangles) {
+        const glm::dvec3 a = glm::dvec3(positions[t.x]) - p;
+        const glm::dvec3 b = glm::dvec3(positions[t.y]) - p;
+        const glm::dvec3 c = glm::dvec3(positions[t.z]) - p;
+        const double la = glm::length(a);
+        const double lb = glm::length(b);
+        const double lc = glm::length(c);
+        sum += std::atan2(glm::dot(a, glm::cross(b, c)),
+                          la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+    }
+    return sum / (2.0 * std::numbers::pi);
+}
+
 }  // namespace relief

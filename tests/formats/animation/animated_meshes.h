@@ -1,6 +1,10 @@
 // Animated meshes with poses in closed form.
 #pragma once
 
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
 #include "formats/animation/animated_mesh.h"
 
 namespace relief {
@@ -9,5 +13,13 @@ namespace relief {
 /// go over within a third of its length. The clip "bend" turns the upper joint by 90° about z and back within 2 s, by linear
 /// keys; "grow" lets one morph target, which doubles the radius, come in 1 s.
 [[nodiscard]] AnimatedMesh bendingTube(int around = 32, int rings = 40);
+
+/// A box of half sides `half`, one node, which the clip "go" moves along +x by 1 within 1 s, and the clip "turn" turns about y
+/// by 90° within 1 s.
+[[nodiscard]] AnimatedMesh movingBox(const glm::vec3& half);
+
+/// How often a closed surface winds around a point, by the solid angles of its triangles: ½ and more is inside.
+[[nodiscard]] double windingNumber(std::span<const glm::vec3> positions,
+                                   std::span<const glm::uvec3> triangles, const glm::dvec3& p);
 
 }  // namespace relief

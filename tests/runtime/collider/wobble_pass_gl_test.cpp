@@ -108,7 +108,7 @@ TEST_P(WobblePassGlTest, NormalsAreThoseOfTheMovedSurface) {
         wanted.push_back(glm::normalize(normal));
     }
     auto pass =
-        WobblePass::create(kSome, points.positions, points.normals, WobblePass::Output::kPositionsAndNormals);
+        WobblePass::create(kSome, points.positions, points.normals, VertexOutput::kPositionsAndNormals);
     ASSERT_TRUE(pass) << pass.error().message;
     pass->run(static_cast<double>(time));
     const std::vector<glm::vec3> gpu = read(*pass);

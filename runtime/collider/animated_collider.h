@@ -1,0 +1,86 @@
+// A collider that moves as a glTF's clips, or the program, would have it: a character, a machine. Its mesh is posed on the
+// GPU (skin_pass.h) and drawn into the maps of a LiveCollider, whose box goes with it:
+//
+//     AnimatedCollider walker = *AnimatedCollider::create(mesh);
+//     ColliderBody body{.collider = &walker.frames(), .pose = walker.placed(pose), .live = true};
+//     ColliderTextures textures = *ColliderTextures::create({&body, 1});   // other bodies may stand beside it
+//     each step:  walker.setPose(poseAt(*mesh, clip, time));               // at the end of the step
+//                 textures.setPoses({walker.placed(pose), …});
+//                 walker.update(textures, 0);
+//                 particles.step(dt);
+//
+// The maps cover as much as the mesh ever takes up, not the whole way that it goes: the box keeps its size, and its middle
+// is the object's origin on the GPU. What placed() returns has that in it.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+
+#include "formats/animation/mesh_pose.h"
+#include "formats/base/result.h"
+#include "runtime/collider/live_collider.h"
+#include "runtime/collider/pose.h"
+#include "runtime/collider/skin_pass.h"
+
+namespace relief {
+
+/// Maps for a mesh that takes up a box of these sides: liveFrames() about the origin, that know free space around the mesh.
+/// \param room  object units, as poseRoom() finds it. Errors: as liveFrames().
+[[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution);
+
+struct AnimatedColliderOptions {
+    std::uint32_t resolution = 384;  ///< texels along a side of its three maps
+    /// Sides of the box that holds it in every pose, object units; nullopt: poseRoom(), for the poses of its clips.
+    std::optional<glm::vec3> room{};
+};
+
+class AnimatedCollider {
+  public:
+    /// Needs a current context, as every call but placed() does; every call restores the GL state that it touches, and none
+    /// waits. It has the pose at rest.
+    /// \param mesh  valid; shared by all that move as it does.
+    /// Fails as animatedFrames(), LiveCollider and SkinPass do.
+    [[nodiscard]] static Result<AnimatedCollider> create(std::shared_ptr<const AnimatedMesh> mesh,
+                                                         const AnimatedColliderOptions& options = {});
+
+    /// Moves the vertices; update() shows it. Once between two updates.
+    /// Errors: kUsage (called twice; another number of joints or weights; a number that is not finite; a pose that takes up
+    /// more than the room). Nothing then changes.
+    [[nodiscard]] Result<void> setPose(const MeshPose& pose);
+    /// The last change was a jump: LiveCollider::settle(). Poses of the body are ColliderTextures' own.
+    void settle() { live_.settle(); }
+
+    /// The pose to give to ColliderTextures: that of the middle of its box. \param body  where the mesh's own origin is.
+    [[nodiscard]] Pose placed(const Pose& body) const;
+
+    /// LiveCollider::update().
+    [[nodiscard]] Result<void> update(ColliderTextures& textures, std::size_t body) {
+        return live_.update(textures, body);
+    }
+
+    [[nodiscard]] const AnimatedMesh& mesh() const { return *mesh_; }
+    [[nodiscard]] const LiveCollider& live() const { return live_; }
+    [[nodiscard]] const Collider& frames() const { return live_.frames(); }
+    [[nodiscard]] const glm::vec3& middle() const { return middle_; }  ///< of its box, object space
+
+  private:
+    AnimatedCollider(std::shared_ptr<const AnimatedMesh> mesh, const glm::vec3& room, SkinPass pass,
+                     LiveCollider live)
+        : mesh_(std::move(mesh)),
+          bounds_(*mesh_),
+          room_(room),
+          pass_(std::move(pass)),
+          live_(std::move(live)) {}
+
+    std::shared_ptr<const AnimatedMesh> mesh_;
+    PoseBounds bounds_;
+    glm::vec3 room_;
+    SkinPass pass_;
+    LiveCollider live_;
+    std::optional<MeshPose> pose_;  // the last
+    glm::vec3 middle_{0.0F};
+};
+
+}  // namespace relief

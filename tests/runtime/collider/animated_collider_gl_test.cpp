@@ -1,0 +1,257 @@
+// Colliders that clips move: vertices and fields against the CPU's poses, and the motion that particles are met with.
+#include "runtime/collider/animated_collider.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <glm/glm.hpp>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "runtime/gl/buffer_read.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/field_query.h"
+#include "tests/runtime/particles/collision_test.h"
+
+namespace relief {
+namespace {
+
+using SharedMesh = std::shared_ptr<const AnimatedMesh>;
+
+SharedMesh shared(AnimatedMesh mesh) {
+    return std::make_shared<const AnimatedMesh>(std::move(mesh));
+}
+
+MeshPose clipPose(const AnimatedMesh& mesh, const char* clip, double seconds) {
+    return poseAt(mesh, mesh.clips.at(*findClip(mesh, clip)), seconds);
+}
+
+std::vector<glm::vec3> readVertices(const SkinPass& pass) {
+    std::vector<glm::vec3> vertices(pass.bytes() / sizeof(glm::vec3));
+    EXPECT_TRUE(readBuffer(pass.buffer(), std::as_writable_bytes(std::span(vertices))));
+    return vertices;
+}
+
+/// Points on the surface, moved by a Gaussian of a two hundredth of `size`.
+std::vector<glm::vec3> pointsNear(const std::vector<glm::vec3>& positions,
+                                  const std::vector<glm::uvec3>& triangles, std::size_t count, float size) {
+    std::vector<double> areas;
+    for (const glm::uvec3& t : triangles) {
+        areas.push_back(static_cast<double>(
+            glm::length(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]))));
+    }
+    std::mt19937 random(7);
+    std::discrete_distribution<std::size_t> any(areas.begin(), areas.end());
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    std::normal_distribution<float> off(0.0F, 0.005F * size);
+    std::vector<glm::vec3> points;
+    while (points.size() < count) {
+        const glm::uvec3& t = triangles[any(random)];
+        const float u = unit(random);
+        const float v = unit(random);
+        const float x = off(random);
+        const float y = off(random);
+        const float z = off(random);
+        if (u + v <= 1.0F) {
+            points.push_back(positions[t.x] + u * (positions[t.y] - positions[t.x]) +
+                             v * (positions[t.z] - positions[t.x]) + glm::vec3(x, y, z));
+        }
+    }
+    return points;
+}
+
+class AnimatedColliderGlTest : public CollisionTest {
+  protected:
+    void makeAnimated(const SharedMesh& mesh, const Pose& pose = {},
+                      std::span<const ColliderBody> others = {}) {
+        auto made = AnimatedCollider::create(mesh);
+        ASSERT_TRUE(made) << made.error().message;
+        animated_.emplace(std::move(*made));
+        pose_ = pose;
+        std::vector<ColliderBody> bodies{
+            {.collider = &animated_->frames(), .pose = animated_->placed(pose), .live = true}};
+        bodies.insert(bodies.end(), others.begin(), others.end());
+        auto textures = ColliderTextures::create(bodies);
+        ASSERT_TRUE(textures) << textures.error().message;
+        textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
+        show();
+    }
+    void show() {
+        const Pose placed = animated_->placed(pose_);
+        textures_->setPoses({&placed, 1});
+        const Result<void> done = animated_->update(*textures_, 0);
+        ASSERT_TRUE(done) << done.error().message;
+    }
+    void showPose(const MeshPose& pose) {
+        const Result<void> set = animated_->setPose(pose);
+        ASSERT_TRUE(set) << set.error().message;
+        show();
+    }
+    void particlesOf(const ParticleType& type) {
+        make({.capacity = 16});
+        setType(type);
+        ASSERT_TRUE(particles_->setCollider(textures_.get()));
+    }
+    /// Until the one particle has collided.
+    void playUntilMet(const char* clip, int steps) {
+        bool met = false;
+        for (int step = 1; step <= steps && !met; ++step) {
+            showPose(clipPose(animated_->mesh(), clip, static_cast<double>(static_cast<float>(step) * kDt)));
+            particles_->step(kDt);
+            met = state().at(0).collisions > 0;
+        }
+        ASSERT_TRUE(met);
+    }
+    [[nodiscard]] std::vector<FieldSample> field(std::span<const glm::vec3> points) const {
+        auto query = FieldQuery::create(*textures_);
+        EXPECT_TRUE(query);
+        auto samples = query->evaluate(points);
+        EXPECT_TRUE(samples);
+        return samples.value_or(std::vector<FieldSample>{});
+    }
+
+    std::optional<AnimatedCollider> animated_;
+    Pose pose_;
+};
+RELIEF_INSTANTIATE_STEP_TESTS(AnimatedColliderGlTest);
+
+TEST_P(AnimatedColliderGlTest, VerticesAreThoseOfTheCpu) {
+    const AnimatedMesh mesh = bendingTube(24, 200);
+    std::vector<glm::vec3> normals(mesh.positions.size(), glm::vec3(0.0F, 1.0F, 0.0F));
+    auto pass = SkinPass::create(mesh);
+    auto with_normals = SkinPass::create(mesh, normals);
+    ASSERT_TRUE(pass && with_normals);
+    const glm::vec3 origin(0.25F, -1.0F, 2.0F);
+    for (const MeshClip& clip : mesh.clips) {
+        for (const double time : {0.0, 0.37, 0.9}) {
+            const MeshPose pose = poseAt(mesh, clip, time);
+            const std::vector<glm::vec3> cpu = posed(mesh, pose);
+            pass->run(pose, origin);
+            with_normals->run(pose);
+            const std::vector<glm::vec3> gpu = readVertices(*pass);
+            const std::vector<glm::vec3> pairs = readVertices(*with_normals);
+            ASSERT_EQ(gpu.size(), cpu.size());
+            ASSERT_EQ(pairs.size(), 2 * cpu.size());
+            for (std::size_t i = 0; i < cpu.size(); ++i) {
+                ASSERT_LE(glm::length(gpu[i] + origin - cpu[i]), 2e-6F)
+                    << clip.name << " " << time << " " << i;
+                ASSERT_LE(glm::length(pairs[2 * i] - cpu[i]), 2e-6F) << i;
+            }
+            // The ends of the tube turn with their joints.
+            const auto angle = static_cast<float>(clip.name == "bend" ? time * std::acos(0.0) : 0.0);
+            EXPECT_LE(glm::length(pairs.back() - glm::vec3(-std::sin(angle), std::cos(angle), 0.0F)), 1e-5F);
+            EXPECT_LE(glm::length(pairs[1] - glm::vec3(0, 1, 0)), 1e-5F);
+        }
+    }
+}
+
+// Against the winding number of the posed triangles, far out of the box at rest.
+TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
+    const SharedMesh mesh = shared(bendingTube());
+    const Pose body{{3.0F, -1.0F, 0.5F}, glm::angleAxis(0.7F, glm::normalize(glm::vec3(1, 2, 3))), 1.5F};
+    makeAnimated(mesh, body);
+    constexpr std::size_t kPoints = 3000;
+    for (const char* clip : {"bend", "grow"}) {
+        for (const double time : {0.0, 0.31, 0.77, 1.0}) {
+            const MeshPose pose = clipPose(*mesh, clip, time);
+            showPose(pose);
+            const std::vector<glm::vec3> positions = posed(*mesh, pose);
+            const std::vector<glm::vec3> points = pointsNear(positions, mesh->triangles, kPoints, 2.0F);
+            std::vector<glm::vec3> world;
+            for (const glm::vec3& p : points) {
+                world.push_back(toWorld(body, p));
+            }
+            const std::vector<FieldSample> samples = field(world);
+            ASSERT_EQ(samples.size(), kPoints);
+            std::size_t wrong = 0;
+            std::size_t inside = 0;
+            for (std::size_t i = 0; i < kPoints; ++i) {
+                const bool truth = windingNumber(positions, mesh->triangles, points[i]) > 0.5;
+                wrong += samples[i].inside() == truth ? 0 : 1;
+                inside += truth ? 1 : 0;
+            }
+            EXPECT_LE(wrong, kPoints / 50) << clip << " at " << time;
+            EXPECT_GT(inside, kPoints / 4);
+            EXPECT_LT(inside, kPoints * 3 / 4);
+        }
+    }
+}
+
+TEST_P(AnimatedColliderGlTest, StandsBesideBodiesAtRest) {
+    const Collider box = boxCollider();
+    const ColliderBody other{.collider = &box, .pose = {.position = {5.0F, 0.0F, 0.0F}}};
+    makeAnimated(shared(bendingTube()), {}, {&other, 1});
+    const std::vector<glm::vec3> points = {{0, 1, 0}, {5, 0, 0}, {2.5F, 0, 0}, {0, 2.2F, 0}};
+    std::vector<FieldSample> samples = field(points);
+    EXPECT_TRUE(samples[0].inside());
+    EXPECT_TRUE(samples[1].inside());
+    EXPECT_FALSE(samples[2].inside());
+    EXPECT_FALSE(samples[3].inside());
+}
+
+// Closed form: a box goes along +x with 1 unit a second, by its clip, and meets a particle at rest. All the motion is that of
+// the box of its maps.
+TEST_P(AnimatedColliderGlTest, AClipThrowsWhatItMeets) {
+    const SharedMesh mesh = shared(movingBox({0.2F, 0.3F, 0.3F}));
+    makeAnimated(mesh);
+    ParticleType type;
+    type.restitution = 0.5F;
+    particlesOf(type);
+    spawnOne({{0.3F, 0.05F, 0.1F}, glm::vec3(0.0F), 100.0F, 0});
+    playUntilMet("go", 12);
+    const ParticleState after = state().at(0);
+    EXPECT_EQ(after.contact, Contact::kCollided);
+    EXPECT_NEAR(after.velocity.x, 1.5F, 0.02F);
+    EXPECT_NEAR(after.velocity.y, 0.0F, 1e-3F);
+}
+
+// Closed form: the box turns about y with a right angle a second. Its middle stays, so the motion is that of its texels: at
+// (x, y, z) it is ω × p.
+TEST_P(AnimatedColliderGlTest, ATurnThrowsByItsMotionThere) {
+    const SharedMesh mesh = shared(movingBox({0.5F, 0.3F, 0.05F}));
+    makeAnimated(mesh);
+    ParticleType type;
+    type.restitution = 0.0F;
+    particlesOf(type);
+    // Turning by +y carries the end +x towards −z.
+    spawnOne({{0.4F, 0.05F, -0.083F}, glm::vec3(0.0F), 100.0F, 0});
+    playUntilMet("turn", 6);
+    const ParticleState after = state().at(0);
+    EXPECT_EQ(after.contact, Contact::kCollided);
+    const float speed = 0.4F * static_cast<float>(std::acos(0.0));
+    EXPECT_NEAR(after.velocity.z, -speed, 0.08F * speed);
+}
+
+TEST_P(AnimatedColliderGlTest, WhatMakesNoSenseIsRefused) {
+    const SharedMesh mesh = shared(movingBox({0.2F, 0.3F, 0.3F}));
+    makeAnimated(mesh);
+    const MeshPose rest = restPose(*mesh);
+    const auto refused = [&](const MeshPose& pose, const char* words) {
+        const Result<void> set = animated_->setPose(pose);
+        ASSERT_FALSE(set);
+        EXPECT_EQ(set.error().code, ErrorCode::kUsage);
+        EXPECT_NE(set.error().message.find(words), std::string::npos) << set.error().message;
+    };
+    MeshPose other = rest;
+    other.joints.emplace_back();
+    refused(other, "a pose of 2 joints");
+    other = rest;
+    other.weights.push_back(1.0F);
+    refused(other, "1 morph weights");
+    other = rest;
+    other.joints[0].row[1].x = std::numeric_limits<float>::quiet_NaN();
+    refused(other, "not finite");
+    other = rest;
+    other.joints[0].row[0].x = 5.0F;
+    refused(other, "more than the room");
+    ASSERT_TRUE(animated_->setPose(clipPose(*mesh, "go", 0.5)));
+    refused(clipPose(*mesh, "go", 0.75), "twice");
+    EXPECT_FALSE(SkinPass::create(*mesh, std::vector<glm::vec3>(3)));
+}
+
+}  // namespace
+}  // namespace relief
