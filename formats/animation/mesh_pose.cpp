@@ -136,6 +136,20 @@ MeshPose poseOf(const AnimatedMesh& mesh, const std::vector<NodeState>& states, 
     return pose;
 }
 
+/// Of all keys, and kPoseSeconds apart, rising.
+std::vector<double> timesOf(const MeshClip& clip) {
+    std::vector<double> times{double{clip.seconds}};
+    for (const ClipChannel& channel : clip.channels) {
+        times.insert(times.end(), channel.times.begin(), channel.times.end());
+    }
+    for (double t = 0.0; t < double{clip.seconds}; t += kPoseSeconds) {
+        times.push_back(t);
+    }
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
+}
+
 std::vector<NodeState> statesOf(const AnimatedMesh& mesh) {
     std::vector<NodeState> states;
     for (const MeshNode& node : mesh.nodes) {
@@ -245,20 +259,22 @@ Bounds PoseBounds::of(const MeshPose& pose) const {
     return all;
 }
 
+Bounds clipBounds(const AnimatedMesh& mesh, const MeshClip& clip) {
+    const PoseBounds bounds(mesh);
+    Bounds all;
+    for (const double t : timesOf(clip)) {
+        const Bounds box = bounds.of(poseAt(mesh, clip, t));
+        all.add(box.min);
+        all.add(box.max);
+    }
+    return all;
+}
+
 glm::vec3 poseRoom(const AnimatedMesh& mesh) {
     const PoseBounds bounds(mesh);
     glm::vec3 room = bounds.of(restPose(mesh)).size();
     for (const MeshClip& clip : mesh.clips) {
-        std::vector<double> times;
-        for (const ClipChannel& channel : clip.channels) {
-            times.insert(times.end(), channel.times.begin(), channel.times.end());
-        }
-        for (double t = 0.0; t < double{clip.seconds}; t += kPoseSeconds) {
-            times.push_back(t);
-        }
-        std::sort(times.begin(), times.end());
-        times.erase(std::unique(times.begin(), times.end()), times.end());
-        for (const double t : times) {
+        for (const double t : timesOf(clip)) {
             room = glm::max(room, bounds.of(poseAt(mesh, clip, t)).size());
         }
     }

@@ -50,6 +50,9 @@ class PoseBounds {
     std::vector<glm::vec3> reach_;  // of each morph target: the most that it moves a vertex, along each axis
 };
 
+/// A box that holds every vertex at all times of a clip, at the times of poseRoom().
+[[nodiscard]] Bounds clipBounds(const AnimatedMesh& mesh, const MeshClip& clip);
+
 /// The sides of a box, with room for them at any time of any clip and at rest.
 /// The times are those of keys, and 1/60 s apart.
 [[nodiscard]] glm::vec3 poseRoom(const AnimatedMesh& mesh);

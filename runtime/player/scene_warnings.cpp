@@ -143,7 +143,7 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
         const Collider& collider = *loaded.colliders[i];
         const auto known = thicknesses.find(&collider);
         const auto thickness = known != thicknesses.end() ? known->second
-                               : body.live                ? std::nullopt
+                               : body.deforms()           ? std::nullopt
                                                           : typicalThickness(collider);
         thicknesses.emplace(&collider, thickness);
         const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;

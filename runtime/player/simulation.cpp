@@ -18,12 +18,13 @@ namespace {
 // cause must not depend on a clock.
 constexpr int kStepsUnderWay = 1;
 
-std::vector<ColliderBody> bodiesOf(const LoadedScene& loaded) {
+/// \param poses  one a collider.
+std::vector<ColliderBody> bodiesOf(const LoadedScene& loaded, std::span<const Pose> poses) {
     std::vector<ColliderBody> bodies;
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& from = loaded.scene.colliders[i];
-        bodies.push_back({loaded.colliders[i].get(), poseAt(from, 0.0), from.restitution, from.friction,
-                          from.live.has_value()});
+        bodies.push_back(
+            {loaded.colliders[i].get(), poses[i], from.restitution, from.friction, from.deforms()});
     }
     return bodies;
 }
@@ -65,14 +66,14 @@ std::vector<Pose> posesAt(const Scene& scene, double time) {
 /// The colliders on the GPU: a single one without a pose in its own space, others in the world.
 Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr<ColliderSource> source) {
     const SceneCollider& first = loaded.scene.colliders.front();
+    const std::vector<ColliderBody> bodies = bodiesOf(loaded, posesNow(0.0));
     if (loaded.scene.stream) {
-        stream_ = RELIEF_TRY(makeStream(loaded, bodiesOf(loaded), std::move(source)));
+        stream_ = RELIEF_TRY(makeStream(loaded, bodies, std::move(source)));
         return {};
     }
-    const bool alone = loaded.colliders.size() == 1 && !first.posed && !first.live;
-    textures_ = std::make_unique<ColliderTextures>(
-        RELIEF_TRY(alone ? ColliderTextures::create(*loaded.colliders.front())
-                         : ColliderTextures::create(bodiesOf(loaded))));
+    const bool alone = loaded.colliders.size() == 1 && !first.posed && !first.deforms();
+    textures_ = std::make_unique<ColliderTextures>(RELIEF_TRY(
+        alone ? ColliderTextures::create(*loaded.colliders.front()) : ColliderTextures::create(bodies)));
     return {};
 }
 
@@ -87,16 +88,16 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
     made.types_ = particleTypes(scene);
     made.motions_ = emitterMotions(scene.emitters, scene.colliders);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
-                                     [](const SceneCollider& c) { return !c.keys.empty(); });
+                                     [](const SceneCollider& c) { return !c.keys.empty() || c.play; });
     made.poses_ = posesAt(scene, 0.0);
     if (options.source) {
         made.stream_waits_ = false;
         made.points_.emplace();
     }
+    RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));
     RELIEF_TRY(inFront(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
                        watched(watchdog, "uploading the collider",
                                [&] { return made.makeTextures(loaded, std::move(options.source)); })));
-    RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
                                         [&] { return makeParticles(scene, made.textures(), options.path); }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
@@ -212,11 +213,12 @@ Result<void> Simulation::giveBirth(float dt) {
 }
 
 Result<void> Simulation::moveColliders(double time) {
+    RELIEF_TRY(playClips(time));
     if (poses_change_) {
         if (stream_) {
-            stream_->setPoses(posesAt(*scene_, time));
+            stream_->setPoses(posesNow(time));
         } else {
-            textures_->setPoses(posesAt(*scene_, time));
+            textures_->setPoses(posesNow(time));
         }
     }
     return showLive(time);
@@ -257,7 +259,30 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
                                WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals)));
         live_.push_back({i, std::move(collider), std::move(pass)});
     }
+    for (std::size_t i = 0; i < loaded.played.size(); ++i) {
+        if (const auto& played = loaded.played[i]) {
+            auto collider = RELIEF_TRY(inFront(
+                loaded.scene.colliders[i].origin + ": collider.play",
+                AnimatedCollider::create(played->mesh, {.resolution = played->play.resolution, .room = {}})));
+            played_.push_back({i, std::move(collider)});
+        }
+    }
+    return playClips(0.0);
+}
+
+Result<void> Simulation::playClips(double time) {
+    for (PlayedBody& body : played_) {
+        RELIEF_TRY(body.collider.setPose(loaded_->played[body.index]->poseAt(time)));
+    }
     return {};
+}
+
+std::vector<Pose> Simulation::posesNow(double time) const {
+    std::vector<Pose> poses = posesAt(*scene_, time);
+    for (const PlayedBody& body : played_) {
+        poses[body.index] = body.collider.placed(poses[body.index]);
+    }
+    return poses;
 }
 
 Result<void> Simulation::showLive(double time) {
@@ -266,13 +291,21 @@ Result<void> Simulation::showLive(double time) {
         RELIEF_TRY(body.collider.setPositions(body.pass.buffer().name()));
         RELIEF_TRY(body.collider.update(mutableTextures(), body.index));
     }
+    for (PlayedBody& body : played_) {
+        RELIEF_TRY(body.collider.update(mutableTextures(), body.index));
+    }
     return {};
 }
 
 const GpuMesh* Simulation::mesh(std::size_t collider) const {
     const auto found = std::find_if(live_.begin(), live_.end(),
                                     [&](const LiveBody& body) { return body.index == collider; });
-    return found == live_.end() ? nullptr : &found->collider.mesh();
+    if (found != live_.end()) {
+        return &found->collider.mesh();
+    }
+    const auto played = std::find_if(played_.begin(), played_.end(),
+                                     [&](const PlayedBody& body) { return body.index == collider; });
+    return played == played_.end() ? nullptr : &played->collider.live().mesh();
 }
 
 }  // namespace relief

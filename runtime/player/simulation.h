@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/collider/animated_collider.h"
 #include "runtime/collider/live_collider.h"
 #include "runtime/collider/wobble_pass.h"
 #include "runtime/particles/emitter.h"
@@ -34,7 +35,7 @@ class Simulation {
   public:
     /// Needs a current context, as step() does. Plays what comes before time 0 (time.prewarm).
     /// \param loaded  must outlive this.
-    /// Fails as ColliderTextures, LiveCollider, WobblePass and ParticleSystem do. An error of the textures names the scene's
+    /// Fails as ColliderTextures, LiveCollider, WobblePass, AnimatedCollider and ParticleSystem do. An error of the textures names the scene's
     /// world, or its first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, SimulationOptions options = {});
 
@@ -88,6 +89,8 @@ class Simulation {
     [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
         return stream_ ? std::optional(stream_->counts()) : std::nullopt;
     }
+    /// Where the colliders are now: a pose each, in the scene's order. Of one that plays a clip it is that of mesh()'s origin.
+    [[nodiscard]] std::vector<Pose> poses() const { return posesNow(particles_->time()); }
     /// The mesh of a collider that deforms, as it is now; null: that one does not.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
 
@@ -97,10 +100,19 @@ class Simulation {
         LiveCollider collider;
         WobblePass pass;
     };
+    /// A collider that plays a clip.
+    struct PlayedBody {
+        std::size_t index;  // in the scene
+        AnimatedCollider collider;
+    };
     Simulation() = default;
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
+    /// Gives those that play a clip its pose at a time, in seconds. Their bodies go with it: posesNow().
+    [[nodiscard]] Result<void> playClips(double time);
+    /// Of all bodies, at a time whose clips have been played.
+    [[nodiscard]] std::vector<Pose> posesNow(double time) const;
     /// Of a world that is streamed, for a step from now on.
     [[nodiscard]] std::vector<PointOfInterest> streamPointsNow() const;
     [[nodiscard]] Result<void> stream();
@@ -129,6 +141,7 @@ class Simulation {
     std::optional<std::vector<PointOfInterest>> points_;
     std::vector<PointOfInterest> emitter_balls_;  // of a world that is streamed
     std::vector<LiveBody> live_;
+    std::vector<PlayedBody> played_;
     std::unique_ptr<ParticleSystem> particles_;
     std::vector<Birth> births_;  // of a step, kept for its memory
     std::uint64_t refused_ = 0;

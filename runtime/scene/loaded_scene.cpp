@@ -51,6 +51,23 @@ Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& 
 }
 
 using Colliders = std::map<fs::path, std::shared_ptr<const Collider>>;
+using AnimatedMeshes = std::map<fs::path, std::shared_ptr<const AnimatedMesh>>;
+
+/// The clip that a collider plays. \param known  meshes that other colliders have read.
+Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& limits,
+                              AnimatedMeshes& known) {
+    std::shared_ptr<const AnimatedMesh>& mesh = known[from.path];
+    if (mesh == nullptr) {
+        const Collider collider = RELIEF_TRY(openCollider(from, limits));
+        const std::string place = from.origin + ": collider.play: " + quotedPath(from.path);
+        if (collider.animation.empty()) {
+            return invalidInput(place + " has no animated mesh; bake it with --animated, or remove play");
+        }
+        mesh = std::make_shared<const AnimatedMesh>(
+            RELIEF_TRY(inFront(place, readAnimatedMesh(collider.animation))));
+    }
+    return loadPlayedMesh(from, mesh);
+}
 
 /// Reads the scene's world, if it has one, and places its bodies.
 Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& limits) {
@@ -124,22 +141,26 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         of_world[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
     }
     // A table that names a file means that file, also where the world has a coarse one in its place.
+    AnimatedMeshes meshes;
     Colliders of_tables = scene.stream ? Colliders() : of_world;
     for (const SceneCollider& from : scene.colliders) {
         const bool named = loaded.colliders.size() < own && from.node.empty();
         Colliders& known = named ? of_tables : of_world;
         loaded.live.emplace_back();
+        loaded.played.emplace_back();
+        std::shared_ptr<const Collider> read;
         if (from.live) {
             loaded.live.back() = RELIEF_TRY(loadLiveMesh(from));
-        }
-        std::shared_ptr<const Collider> read = from.live ? nullptr : known[from.path];
-        if (read == nullptr) {
-            read = std::make_shared<const Collider>(
-                RELIEF_TRY(from.live ? Result<Collider>(loaded.live.back()->frames)
-                                     : openCollider(from, overrides.limits)));
-        }
-        if (!from.live) {
-            known[from.path] = read;
+            read = std::make_shared<const Collider>(loaded.live.back()->frames);
+        } else if (from.play) {
+            loaded.played.back() = RELIEF_TRY(openPlayed(from, overrides.limits, meshes));
+            read = std::make_shared<const Collider>(loaded.played.back()->frames);
+        } else {
+            std::shared_ptr<const Collider>& file = known[from.path];
+            if (file == nullptr) {
+                file = std::make_shared<const Collider>(RELIEF_TRY(openCollider(from, overrides.limits)));
+            }
+            read = file;
         }
         const Collider& collider = *read;
         const bool posed = from.posed || scene.colliders.size() > 1;

@@ -13,6 +13,7 @@
 #include "formats/world/world.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_live.h"
+#include "runtime/scene/scene_play.h"
 
 namespace relief {
 
@@ -41,6 +42,8 @@ struct LoadedScene {
     std::vector<std::shared_ptr<const Collider>> colliders;
     /// As many: the meshes of those that deform, whose colliders have maps without texels.
     std::vector<std::optional<LiveMesh>> live;
+    /// As many: of those that play a clip, whose colliders have maps without texels, too.
+    std::vector<std::optional<PlayedMesh>> played;
     Bounds bounds;                  ///< of what they occupy in the course of time, in the particles' space
     std::vector<Emitter> emitters;  ///< those of the scene, which have given no birth yet
 };

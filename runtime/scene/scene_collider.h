@@ -50,6 +50,8 @@ void fields(Visitor& visit, K& key) {
 }
 
 inline constexpr std::size_t kPoseKeysMax = 1024;
+inline constexpr double kClipStartMax = 86'400.0;
+inline constexpr double kClipSpeedMax = 1000.0;
 
 /// Completes what the table leaves open from `rest`. \return it as a pose.
 [[nodiscard]] Pose completePose(ScenePose& pose, const Pose& rest);
@@ -76,6 +78,27 @@ void fields(Visitor& visit, L& live) {
           leftOut({"Length of the waves", "object units", kSizeRange, "half the longest side"}));
 }
 
+/// collider.play.
+struct ScenePlay {
+    std::string clip;
+    float start = 0.0F;
+    float speed = 1.0F;
+    bool repeat = true;
+    std::uint32_t resolution = 384;
+    friend bool operator==(const ScenePlay&, const ScenePlay&) = default;
+};
+
+template <class Visitor, FieldsOf<ScenePlay> P>
+void fields(Visitor& visit, P& play) {
+    visit("clip", play.clip,
+          {"Name of a clip of the container, baked with --animated", {}, {}, {}, kRequired});
+    visit("start", play.start, {"Place in the clip at time 0", "s", within(kClipStartMax)});
+    visit("speed", play.speed,
+          {"Seconds of the clip a second; below 0 it runs backwards", "1", within(kClipSpeedMax)});
+    visit("repeat", play.repeat, {"The clip begins again where it ends"});
+    visit("resolution", play.resolution, {"Texels along a side of its maps", {}, {16.0, 4096.0}});
+}
+
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;          ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
@@ -85,6 +108,7 @@ struct SceneCollider {
     float restitution = 1.0F;        ///< factor of the particles' own
     float friction = 0.0F;           ///< on top of the particles' own
     std::optional<SceneLive> live;   ///< wobbles: `path` is a mesh, not a container
+    std::optional<ScenePlay> play;   ///< an animated mesh of the container moves
     std::uint32_t resolution = 256;  ///< of its maps
     std::vector<SceneKey> given_keys;
     // Filled by check() (of a body by placeBodies()), which also completes the pose and the keys above:
@@ -92,6 +116,9 @@ struct SceneCollider {
     bool posed = false;
     Pose pose;
     std::vector<PoseKey> keys;  ///< by rising time; empty: at rest at `pose`
+
+    /// Its maps are drawn before each step.
+    [[nodiscard]] bool deforms() const { return live || play; }
 };
 
 template <class Visitor, FieldsOf<SceneCollider> C>
@@ -116,6 +143,8 @@ void fields(Visitor& visit, C& c) {
         "resolution", c.resolution,
         leftOut(
             {"Texels along a side of the deforming mesh's maps", {}, {16.0, 4096.0}, {}, {.needs = "mesh"}}));
+    visit("play", c.play,
+          leftOut({"How the container's animated mesh moves", {}, {}, "not at all", {.needs = "file"}}));
     fields(visit, c.given_pose);
     visit("scale", FieldMaybe{c.scale, c.posed}, leftOut({"World units of an object unit", {}, {1e-6, 1e6}}));
     visit("restitution", FieldMaybe{c.restitution, c.posed},

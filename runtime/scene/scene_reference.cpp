@@ -50,6 +50,7 @@ GeneratedTexts sceneReference() {
     }
     const FieldReference& collider = tableOf(fields, "collider");
     texts.push_back({readme, "key", markdownTable(tableOf(collider.fields, "key").fields)});
+    texts.push_back({readme, "play", markdownTable(tableOf(collider.fields, "play").fields)});
     texts.push_back({readme, "deform", markdownTable(tableOf(collider.fields, "deform").fields)});
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "A scene of relief-sim"}};

@@ -97,12 +97,13 @@ Json describeStream(const std::optional<StreamCounts>& counts) {
                   : Json();
 }
 
-/// A scene's colliders as they are now: where each stands, by columns, and of which file it is. One without a file of
-/// its own deforms.
-Json describeBodies(const std::vector<SceneCollider>& colliders, double time) {
+/// A scene's colliders as they are now: where each stands, by columns, and of which file it is.
+/// \param poses  one a collider.
+Json describeBodies(const std::vector<SceneCollider>& colliders, const std::vector<Pose>& poses) {
     Json bodies = Json::array();
-    for (const SceneCollider& collider : colliders) {
-        const Pose pose = poseAt(collider, time);
+    for (std::size_t at = 0; at < colliders.size(); ++at) {
+        const SceneCollider& collider = colliders[at];
+        const Pose& pose = poses[at];
         const glm::mat3 turned = pose.scale * glm::mat3_cast(pose.rotation);
         Json matrix = Json::array();
         for (int i = 0; i < 3; ++i) {
@@ -111,8 +112,8 @@ Json describeBodies(const std::vector<SceneCollider>& colliders, double time) {
         matrix.insert(matrix.end(), {pose.position.x, pose.position.y, pose.position.z, 1.0F});
         bodies.push_back({{"file", collider.path.string()},
                           {"node", collider.node},
-                          {"deforms", collider.live.has_value()},
-                          {"moves", !collider.keys.empty()},
+                          {"deforms", collider.deforms()},
+                          {"moves", !collider.keys.empty() || collider.play},
                           {"matrix", matrix}});
     }
     return bodies;
@@ -236,9 +237,9 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
     for (std::size_t i = 0; i < now.size(); ++i) {
         SceneCollider& body = now[i];
         const SceneCollider& to = wanted[i];
-        if (to.path != body.path || to.node != body.node || to.live.has_value() != body.live.has_value() ||
-            to.keys != body.keys || to.pose.scale != body.pose.scale || to.restitution != body.restitution ||
-            to.friction != body.friction) {
+        if (to.path != body.path || to.node != body.node || to.deforms() != body.deforms() ||
+            to.play != body.play || to.keys != body.keys || to.pose.scale != body.pose.scale ||
+            to.restitution != body.restitution || to.friction != body.friction) {
             return fail(ErrorCode::kUsage,
                         "collider " + std::to_string(i) +
                             ": of a collider that plays only position, axis and angle change; "
@@ -252,7 +253,7 @@ Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneC
                         "collider " + std::to_string(i) +
                             " follows its keys; leave out its 'key', and set() may place it");
         }
-        if (now.size() == 1 && !body.posed && !body.live) {
+        if (now.size() == 1 && !body.posed && !body.deforms()) {
             return fail(ErrorCode::kUsage,
                         "a single collider moves if it had a pose from the beginning; make the system with "
                         "collider: { position: [0, 0, 0] } in its scene");
@@ -521,7 +522,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
              {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},
              {"background", json(scene.render.background)},
              {"stream", describeStream(player->simulation->streamCounts())},
-             {"bodies", describeBodies(scene.colliders, particles.time())}}
+             {"bodies", describeBodies(scene.colliders, player->simulation->poses())}}
             .dump());
 }
 

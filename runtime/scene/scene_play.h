@@ -1,0 +1,31 @@
+// A scene's collider that plays a clip of its container.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "formats/animation/mesh_pose.h"
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "runtime/scene/scene_collider.h"
+
+namespace relief {
+
+/// An animated mesh and the clip of it that a collider of a scene plays.
+struct PlayedMesh {
+    std::shared_ptr<const AnimatedMesh> mesh;
+    std::size_t clip = 0;  ///< of the mesh
+    ScenePlay play;
+    Collider frames;  ///< bounds of the whole clip, object space, and three maps without texels
+
+    /// \param time  of the scene, seconds.
+    [[nodiscard]] MeshPose poseAt(double time) const;
+};
+
+/// Finds the clip, and chooses maps that hold it.
+/// \param from  with `play`. \param mesh  of its container.
+/// Errors: kInvalidInput (no such clip: the message lists those there are); they begin with the place in the scene.
+[[nodiscard]] Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from,
+                                                std::shared_ptr<const AnimatedMesh> mesh);
+
+}  // namespace relief

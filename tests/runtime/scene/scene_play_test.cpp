@@ -1,0 +1,89 @@
+// The scene's colliders that play clips: what is read, what is filled in, and every mistake with its place.
+#include "runtime/scene/scene_play.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/glm.hpp>
+
+#include "formats/container.h"
+#include "runtime/collider/animated_collider.h"
+#include "runtime/scene/loaded_scene.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/scene/scene_error.h"
+#include "tests/temporary_folder.h"
+
+namespace relief {
+namespace {
+
+const std::string kHead = "[[collider]]\nfile = \"tube.relief\"\n";
+
+Collider tubeContainer() {
+    const AnimatedMesh mesh = bendingTube(12, 8);
+    Collider collider = *animatedFrames(poseRoom(mesh), 16);
+    for (DepthMap& map : collider.maps) {
+        map.texels.resize(map.texelBytes());
+    }
+    collider.animation = writeAnimatedMesh(mesh);
+    return collider;
+}
+
+TEST(ScenePlay, Keys) {
+    const auto scene = parseScene(
+        kHead + "play = { clip = \"bend\", start = 0.5, speed = -2, repeat = false, resolution = 64 }\n",
+        "dir/scene.toml");
+    ASSERT_TRUE(scene) << scene.error().message;
+    const SceneCollider& collider = scene->colliders.front();
+    EXPECT_EQ(collider.play, (ScenePlay{"bend", 0.5F, -2.0F, false, 64}));
+    EXPECT_TRUE(collider.deforms());
+}
+
+TEST(ScenePlay, Mistakes) {
+    const auto expectError = [](const std::string& more, const std::string& place, const std::string& part) {
+        expectSceneError(kHead + more, "dir/scene.toml:" + place + ": ", part);
+    };
+    expectError("play = { speed = 2 }\n", "3:8", "clip is missing");
+    expectError("play = { clip = \"a\", resolution = 8 }\n", "3:35", "16");
+    expectError("play = { clip = \"a\", speed = 2000 }\n", "3:30", "1000");
+    expectError("play = { clip = \"a\", sped = 1 }\n", "3:22", "sped");
+}
+
+TEST(ScenePlay, IsLoadedWithItsClip) {
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", tubeContainer()));
+    const std::string two = kHead + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" + kHead +
+                            "play = { clip = \"grow\", start = 0.25, repeat = false }\n" + kHead;
+    const auto loaded = loadAll(folder.write("scene.toml", two), {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE(loaded->played[0] && loaded->played[1]);
+    EXPECT_FALSE(loaded->played[2]) << "at rest";
+    EXPECT_EQ(loaded->played[0]->mesh, loaded->played[1]->mesh) << "read once";
+    const AnimatedMesh& mesh = *loaded->played[0]->mesh;
+    EXPECT_EQ(loaded->played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "again from the beginning";
+    EXPECT_EQ(loaded->played[1]->poseAt(0.5), poseAt(mesh, mesh.clips[1], 0.75));
+    EXPECT_EQ(loaded->played[1]->poseAt(7.0), poseAt(mesh, mesh.clips[1], 1.0));
+    // The tube bends to -x by a little more than 1.
+    EXPECT_LE(loaded->bounds.min.x, 3.0F - 1.05F);
+    EXPECT_GE(loaded->bounds.max.x, 3.09F);
+}
+
+TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
+    const test::TemporaryFolder folder;
+    Collider collider = tubeContainer();
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
+    const auto expectRefused = [&](const std::string& words) {
+        const auto loaded = loadAll(folder.write("scene.toml", kHead + "play = { clip = \"run\" }\n"), {});
+        ASSERT_FALSE(loaded);
+        EXPECT_NE(loaded.error().message.find(words), std::string::npos) << loaded.error().message;
+        EXPECT_NE(loaded.error().message.find("scene.toml:2:8"), std::string::npos) << loaded.error().message;
+    };
+    expectRefused("it has 'bend', 'grow'");
+    collider.animation.resize(100);
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
+    expectRefused("no FlatBuffers table");
+    collider.animation.clear();
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
+    expectRefused("bake it with --animated");
+}
+
+}  // namespace
+}  // namespace relief
