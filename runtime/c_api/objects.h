@@ -12,12 +12,20 @@
 #include "formats/world/world_field.h"
 #include "runtime/c_api/call.h"
 #include "runtime/c_api/relief.h"
+#include "runtime/collider/animated_collider.h"
 #include "runtime/collider/collider_textures.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/stream/world_stream.h"
 
 namespace relief {
+
+/// A body that moves by clips, on the GPU.
+struct AnimatedBody {
+    std::uint32_t body;  // of the world's textures
+    AnimatedCollider collider;
+    std::optional<MeshPose> next = {};  // that it gets with the poses
+};
 
 struct TexturesObject {
     std::optional<ColliderTextures> own;       // or those of
@@ -28,6 +36,7 @@ struct TexturesObject {
     std::optional<Bounds> world = {};  // of bodies, where they were placed; nullopt: of a single collider
     float texel = 0.0F;                // the finest of a world
     std::vector<Pose> poses = {};      // of its bodies, at the end of the next step
+    std::vector<AnimatedBody> animated = {};
     std::vector<std::string> warnings = {};  // of the stream, not told yet
     std::string warning = {};                // that was told last
 
@@ -46,8 +55,20 @@ struct PictureObject {
     float diameter = 0.01F;
 };
 
+struct AnimationObject {
+    std::shared_ptr<const AnimatedMesh> mesh;
+};
+
+/// A body of a world that moves by clips, behind those of its file.
+struct AddedBody {
+    std::shared_ptr<const AnimatedMesh> mesh;
+    Pose pose{};
+    AnimatedColliderOptions options{};
+};
+
 struct WorldObject {
     WorldField field;
+    std::vector<AddedBody> added = {};
 };
 
 template <>
@@ -75,6 +96,13 @@ struct HandleType<relief_world> {
     static constexpr const char* kName = "relief_world";
 };
 
+template <>
+struct HandleType<relief_animation> {
+    using Object = AnimationObject;
+    static constexpr HandleKind kKind = HandleKind::kAnimation;
+    static constexpr const char* kName = "relief_animation";
+};
+
 // As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (isLost()).
 inline constexpr FieldRange kAny{-1e15, 1e15};
 inline constexpr FieldRange kNotNegative{0.0, 1e15};
@@ -96,13 +124,22 @@ inline glm::vec3 pointAt(const float* points, std::size_t i) {
     return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
 
-/// Frees an object. The context must be current if GL names go with it: all but colliders and worlds have some.
+/// A pose of C's. \param rest  whose scale stays.
+[[nodiscard]] Result<Pose> poseOf(const Call& call, const relief_pose& given, NumberName name,
+                                  const Pose& rest);
+
+/// Whether GL names go with its objects.
+[[nodiscard]] constexpr bool hasGlNames(HandleKind kind) {
+    return kind == HandleKind::kTextures || kind == HandleKind::kParticles || kind == HandleKind::kPicture;
+}
+
+/// Frees an object. The context must be current if GL names go with it.
 template <class H>
 void release(const char* function, H* handle, const char* argument) noexcept {
     answer(function, false, [&](const Call& call) -> Result<bool> {
         if (handle != nullptr) {
             [[maybe_unused]] const auto* object = RELIEF_TRY(call.object(handle, argument));
-            if (HandleType<H>::kKind != HandleKind::kCollider && HandleType<H>::kKind != HandleKind::kWorld) {
+            if (hasGlNames(HandleType<H>::kKind)) {
                 RELIEF_TRY(call.context());
             }
             [[maybe_unused]] const auto last =

@@ -80,6 +80,8 @@ void relief_collider_nearest(const relief_collider* collider, const float* point
 
 typedef struct relief_world relief_world;
 
+/* Without bodies: for relief_world_add(). */
+relief_world* relief_world_create(void);
 /* A world.json of `relief bake LEVEL --world`, with the colliders that it names: up to 65536 bodies of 4096 colliders. Lengths
  * are world units. A body is a number, from 0, in the file's order. */
 relief_world* relief_world_load(const char* world_path);
@@ -89,7 +91,7 @@ size_t relief_world_body_count(const relief_world* world);
 /* The first body of the node of this name; that there is none is an error. */
 int64_t relief_world_find(const relief_world* world, const char* node);
 const char* relief_world_node(const relief_world* world, size_t body); /* as long as the world */
-/* The box that holds all bodies. */
+/* The box that holds all bodies, those of clips in their first pose. */
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]);
 
 typedef struct relief_pose {
@@ -104,6 +106,30 @@ int relief_world_pose(const relief_world* world, size_t body, relief_pose* pose)
  * time by the number of bodies. */
 void relief_world_query(const relief_world* world, const float* points, size_t count, relief_sample* samples);
 
+/* --- colliders that move by clips: characters, machines. Since 1.2 --- */
+
+typedef struct relief_animation relief_animation;
+
+/* The animated mesh of a container of `relief bake --animated`. The collider may be freed at once. */
+relief_animation* relief_animation_create(const relief_collider* collider);
+void relief_animation_free(relief_animation* animation);
+
+size_t relief_animation_clip_count(const relief_animation* animation);
+const char* relief_animation_clip_name(const relief_animation* animation,
+                                       size_t clip); /* as long as the animation */
+float relief_animation_clip_seconds(const relief_animation* animation, size_t clip);
+/* Joints as glTF's skins have them; that of a mesh without a skin is its node. */
+size_t relief_animation_joint_count(const relief_animation* animation);
+const char* relief_animation_joint_name(const relief_animation* animation,
+                                        size_t joint);                   /* as long as the animation */
+size_t relief_animation_weight_count(const relief_animation* animation); /* of morph targets */
+
+/* Adds a body that moves by clips, behind the others, and returns its number; relief_world_query() leaves it out. The animation may be
+ * freed at once. `pose` is that of the mesh's origin; `resolution` texels along a side of its three maps, 16 to 4096, or 0: 384; `room`
+ * the sides of a box that holds it in every pose, or NULL: those that its clips need. */
+int64_t relief_world_add(relief_world* world, const relief_animation* animation, const relief_pose* pose,
+                         uint32_t resolution, const float room[3]);
+
 /* --- colliders, on the GPU (GL) --- */
 
 typedef struct relief_textures relief_textures;
@@ -117,6 +143,13 @@ void relief_textures_free(relief_textures* textures);
  * count of 0 perhaps, when all has stopped. Scales stay. A body that is named twice has its last pose. Since 1.2. */
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
                               const relief_pose* poses, size_t count);
+/* The pose that a clip has at a time; before its first key and behind its last one it rests. The next relief_textures_set_poses()
+ * shows it. `body`: that relief_world_add() returned. Since 1.2. */
+int relief_textures_play(relief_textures* animated_textures, uint32_t body, const char* clip, double seconds);
+/* The same of a pose of your own: for each joint 16 floats, from the space of the mesh's vertices to its own space (glTF's joint
+ * matrices: the joint's transform times its inverse bind matrix), and the weight of each morph target. Since 1.2. */
+int relief_textures_set_joints(relief_textures* animated_textures, uint32_t body, const float* matrices,
+                               size_t joint_count, const float* weights, size_t weight_count);
 /* A world with as much of it in full detail as so many bytes of the GPU hold, up to 2^40; 268435456 is a good number. A coarse
  * collider stands in for each that is not there. Files are read by a thread. Since 1.2. */
 relief_textures* relief_textures_stream_world(const char* world_path, uint64_t gpu_bytes);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -20,26 +21,72 @@ constexpr FieldRange kRotation = within(1.001);
 constexpr float kUnitTolerance = 1e-3F;
 constexpr double kStreamBytesMax = 1099511627776.0;
 
-Result<const WorldBody*> bodyOf(const Call& call, const relief_world* world, std::size_t body) {
-    const auto& bodies = RELIEF_TRY(call.object(world, "world"))->field.world().bodies;
-    RELIEF_TRY(call.number(body, {0.0, static_cast<double>(bodies.size() - 1)}, {"body"}));
-    return &bodies[body];
+std::size_t bodyCount(const WorldObject& world) {
+    return world.field.world().bodies.size() + world.added.size();
 }
 
-/// \param rest  whose scale stays.
-Result<Pose> poseOf(const Call& call, const relief_pose& given, std::size_t i, const Pose& rest) {
-    RELIEF_TRY(call.number(given.position, kAny, {"poses", i, "position"}));
-    RELIEF_TRY(call.number(given.rotation, kRotation, {"poses", i, "rotation"}));
+Result<const WorldObject*> holderOf(const Call& call, const relief_world* world, std::size_t body) {
+    const WorldObject* of = RELIEF_TRY(call.object(world, "world"));
+    if (body >= bodyCount(*of)) {
+        return call.refuse("body is " + std::to_string(body) + ", and the world has " +
+                           std::to_string(bodyCount(*of)) + " bodies");
+    }
+    return of;
+}
+
+Pose poseIn(const WorldObject& world, std::size_t body) {
+    const std::vector<WorldBody>& bodies = world.field.world().bodies;
+    return body < bodies.size() ? poseOf(bodies[body]) : world.added[body - bodies.size()].pose;
+}
+
+/// The bodies of the world on the GPU, those that move by clips behind the others.
+Result<TexturesObject> upload(const WorldObject& world) {
+    const LoadedWorld& loaded = world.field.loaded();
+    std::vector<ColliderBody> bodies = worldBodies(loaded);
+    std::vector<AnimatedBody> animated;
+    for (const AddedBody& added : world.added) {
+        animated.push_back({static_cast<std::uint32_t>(bodies.size() + animated.size()),
+                            RELIEF_TRY(AnimatedCollider::create(added.mesh, added.options))});
+    }
+    for (std::size_t i = 0; i < animated.size(); ++i) {
+        const AnimatedCollider& of = animated[i].collider;
+        bodies.push_back({.collider = &of.frames(), .pose = of.placed(world.added[i].pose), .live = true});
+    }
+    auto textures = RELIEF_TRY(ColliderTextures::create(bodies));
+    auto made = RELIEF_TRY(texturesObject(std::move(textures)));
+    const ColliderView view = worldView(loaded, made.textures());
+    Bounds bounds = view.bounds;
+    made.texel = view.texel;
+    made.poses = worldPoses(loaded.world);
+    for (std::size_t i = 0; i < animated.size(); ++i) {
+        AnimatedCollider& of = animated[i].collider;
+        const Bounds box = toWorld(of.placed(world.added[i].pose), of.frames().bounds);
+        bounds.add(box.min);
+        bounds.add(box.max);
+        made.texel =
+            std::min(made.texel, box.longestSide() / static_cast<float>(of.frames().maps.front().width));
+        made.poses.push_back(world.added[i].pose);
+        RELIEF_TRY(of.update(*made.own, animated[i].body));
+    }
+    made.world = bounds;
+    made.animated = std::move(animated);
+    return made;
+}
+
+}  // namespace
+
+Result<Pose> relief::poseOf(const Call& call, const relief_pose& given, NumberName name, const Pose& rest) {
+    name.field = "position";
+    RELIEF_TRY(call.number(given.position, kAny, name));
+    name.field = "rotation";
+    RELIEF_TRY(call.number(given.rotation, kRotation, name));
     const glm::quat turn(given.rotation[3], given.rotation[0], given.rotation[1], given.rotation[2]);
     if (!(std::abs(glm::length(turn) - 1.0F) <= kUnitTolerance)) {
-        return call.refuse(NumberName{"poses", i, "rotation"}.text() + " has a length of " +
-                           shortest(glm::length(turn)) +
+        return call.refuse(name.text() + " has a length of " + shortest(glm::length(turn)) +
                            ", a unit quaternion one of 1; scale it, or give 0, 0, 0, 1");
     }
     return Pose{vec(given.position), glm::normalize(turn), rest.scale};
 }
-
-}  // namespace
 
 relief_world* relief_world_load(const char* world_path) {
     return create<relief_world>(__func__, [&](const Call& call) -> Result<std::shared_ptr<WorldObject>> {
@@ -54,7 +101,7 @@ void relief_world_free(relief_world* world) {
 
 size_t relief_world_body_count(const relief_world* world) {
     return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
-        return RELIEF_TRY(call.object(world, "world"))->field.world().bodies.size();
+        return bodyCount(*RELIEF_TRY(call.object(world, "world")));
     });
 }
 
@@ -73,13 +120,21 @@ int64_t relief_world_find(const relief_world* world, const char* node) {
 
 const char* relief_world_node(const relief_world* world, size_t body) {
     return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
-        return RELIEF_TRY(bodyOf(call, world, body))->node.c_str();
+        const std::vector<WorldBody>& bodies = RELIEF_TRY(holderOf(call, world, body))->field.world().bodies;
+        return body < bodies.size() ? bodies[body].node.c_str() : "";
     });
 }
 
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]) {
     writeBounds(__func__, min, max, [&](const Call& call) -> Result<Bounds> {
-        return worldBounds(RELIEF_TRY(call.object(world, "world"))->field.world());
+        const WorldObject& of = *RELIEF_TRY(call.object(world, "world"));
+        Bounds bounds = worldBounds(of.field.world());
+        for (const AddedBody& added : of.added) {
+            const Bounds box = toWorld(added.pose, PoseBounds(*added.mesh).of(restPose(*added.mesh)));
+            bounds.add(box.min);
+            bounds.add(box.max);
+        }
+        return bounds;
     });
 }
 
@@ -88,9 +143,11 @@ int relief_world_pose(const relief_world* world, size_t body, relief_pose* pose)
         RELIEF_TRY(call.notNull(pose, "pose"));
         std::fill_n(pose->position, 3, kNan);
         std::fill_n(pose->rotation, 4, kNan);
-        const WorldBody& from = *RELIEF_TRY(bodyOf(call, world, body));
+        const WorldObject& of = *RELIEF_TRY(holderOf(call, world, body));
+        const Pose from = poseIn(of, body);
         put(from.position, pose->position);
-        std::copy_n(from.rotation.begin(), 4, pose->rotation);
+        const std::array<float, 4> turn{from.rotation.x, from.rotation.y, from.rotation.z, from.rotation.w};
+        std::copy_n(turn.begin(), 4, pose->rotation);
         return 0;
     });
 }
@@ -109,15 +166,12 @@ void relief_world_query(const relief_world* world, const float* points, size_t c
 relief_textures* relief_textures_create_world(const relief_world* world) {
     return create<relief_textures>(
         __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
-            const LoadedWorld& loaded = RELIEF_TRY(call.object(world, "world"))->field.loaded();
+            const WorldObject& from = *RELIEF_TRY(call.object(world, "world"));
+            if (bodyCount(from) == 0) {
+                return call.refuse("world has no bodies; relief_world_add() adds one");
+            }
             RELIEF_TRY(call.context());
-            auto textures = RELIEF_TRY(ColliderTextures::create(worldBodies(loaded)));
-            auto made = RELIEF_TRY(texturesObject(std::move(textures)));
-            const ColliderView view = worldView(loaded, made.textures());
-            made.world = view.bounds;
-            made.texel = view.texel;
-            made.poses = worldPoses(loaded.world);
-            return std::make_shared<TexturesObject>(std::move(made));
+            return std::make_shared<TexturesObject>(RELIEF_TRY(upload(from)));
         });
 }
 
@@ -135,13 +189,23 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
         std::vector<Pose> wanted = to.poses;
         for (std::size_t i = 0; i < count; ++i) {
             RELIEF_TRY(call.number(bodies[i], {0.0, static_cast<double>(wanted.size() - 1)}, {"bodies", i}));
-            wanted[bodies[i]] = RELIEF_TRY(poseOf(call, poses[i], i, wanted[bodies[i]]));
+            wanted[bodies[i]] = RELIEF_TRY(poseOf(call, poses[i], {"poses", i}, wanted[bodies[i]]));
         }
         to.poses = std::move(wanted);
         if (to.stream) {
             to.stream->setPoses(to.poses);
-        } else {
-            to.own->setPoses(to.poses);
+            return 0;
+        }
+        std::vector<Pose> placed = to.poses;
+        for (AnimatedBody& one : to.animated) {
+            if (one.next) {
+                RELIEF_TRY(one.collider.setPose(*std::exchange(one.next, std::nullopt)));
+            }
+            placed[one.body] = one.collider.placed(placed[one.body]);
+        }
+        to.own->setPoses(placed);
+        for (AnimatedBody& one : to.animated) {
+            RELIEF_TRY(one.collider.update(*to.own, one.body));
         }
         return 0;
     });

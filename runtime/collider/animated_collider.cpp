@@ -48,10 +48,7 @@ Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const Animated
     return made;
 }
 
-Result<void> AnimatedCollider::setPose(const MeshPose& pose) {
-    if (pose == pose_) {
-        return {};
-    }
+Result<void> AnimatedCollider::check(const MeshPose& pose) const {
     if (pose.joints.size() != mesh_->joints.size() || pose.weights.size() != mesh_->weights.size()) {
         return fail(ErrorCode::kUsage, "a pose of " + std::to_string(pose.joints.size()) + " joints and " +
                                            std::to_string(pose.weights.size()) +
@@ -69,9 +66,18 @@ Result<void> AnimatedCollider::setPose(const MeshPose& pose) {
                                            ", more than the room of the animated collider, " +
                                            sidesText(room_) + "; create it with more");
     }
-    pass_.run(pose, box.center());
+    return {};
+}
+
+Result<void> AnimatedCollider::setPose(const MeshPose& pose) {
+    if (pose == pose_) {
+        return {};
+    }
+    RELIEF_TRY(check(pose));
+    const glm::vec3 middle = bounds_.of(pose).center();
+    pass_.run(pose, middle);
     RELIEF_TRY(live_.setPositions(pass_.buffer().name()));
-    middle_ = box.center();
+    middle_ = middle;
     pose_ = pose;
     return {};
 }

@@ -45,9 +45,11 @@ class AnimatedCollider {
     [[nodiscard]] static Result<AnimatedCollider> create(std::shared_ptr<const AnimatedMesh> mesh,
                                                          const AnimatedColliderOptions& options = {});
 
+    /// Errors: kUsage (another number of joints or weights; a number that is not finite; a pose that takes up more than the
+    /// room).
+    [[nodiscard]] Result<void> check(const MeshPose& pose) const;
     /// Moves the vertices; update() shows it. Once between two updates.
-    /// Errors: kUsage (called twice; another number of joints or weights; a number that is not finite; a pose that takes up
-    /// more than the room). Nothing then changes.
+    /// Fails as check(), and with kUsage (called twice). Nothing then changes.
     [[nodiscard]] Result<void> setPose(const MeshPose& pose);
     /// The last change was a jump: LiveCollider::settle(). Poses of the body are ColliderTextures' own.
     void settle() { live_.settle(); }

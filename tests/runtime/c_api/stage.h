@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "formats/animation/animated_mesh.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
@@ -23,6 +24,7 @@
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
+#include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/analytic_collider.h"
 
 namespace relief::c_api {
@@ -37,8 +39,8 @@ class Stage {
         auto context = GlContext::create(GlApi::kGl33Core);
         EXPECT_TRUE(context) << context.error().message;
         context_ = std::move(*context);
-        const Collider box =
-            analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
+        Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
+        box.animation = writeAnimatedMesh(bendingTube(8, 6));
         path_ =
             std::filesystem::path(testing::TempDir()) / ("c_api-" + std::to_string(::getpid()) + ".relief");
         EXPECT_TRUE(saveCollider(path_, box));
@@ -61,6 +63,8 @@ class Stage {
         relief_particles_free(particles);
         relief_textures_free(textures);
         relief_textures_free(world_textures);
+        relief_textures_free(animated_textures);
+        relief_animation_free(animation);
         relief_collider_free(collider);
         relief_world_free(world);
         std::filesystem::remove(path_);
@@ -77,6 +81,14 @@ class Stage {
         picture = picture != nullptr ? picture : relief_picture_create(textures, collider);
         world = world != nullptr ? world : relief_world_load(world_path_.c_str());
         world_textures = world_textures != nullptr ? world_textures : relief_textures_create_world(world);
+        animation = animation != nullptr ? animation : relief_animation_create(collider);
+        if (animated_textures == nullptr) {
+            relief_world* alone = relief_world_create();
+            EXPECT_EQ(relief_world_add(alone, animation, poses, 64, nullptr), 0) << relief_error();
+            animated_textures = relief_textures_create_world(alone);
+            relief_world_free(alone);
+        }
+        ASSERT_TRUE(animation != nullptr && animated_textures != nullptr) << relief_error();
         ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr &&
                     picture != nullptr && world != nullptr && world_textures != nullptr)
             << relief_error();
@@ -120,24 +132,42 @@ class Stage {
     template <class T>
     T good(const std::string& name) {
         if constexpr (std::is_same_v<T, const char*>) {
-            return name == "node" ? "box 1" : name == "world_path" ? world_path_.c_str() : path_.c_str();
+            return name == "node"         ? "box 1"
+                   : name == "clip"       ? "bend"
+                   : name == "world_path" ? world_path_.c_str()
+                                          : path_.c_str();
         } else if constexpr (std::is_same_v<T, const void*>) {
             return bytes_.data();
         } else if constexpr (std::is_same_v<T, size_t>) {
-            return name == "size"        ? bytes_.size()
-                   : name == "body"      ? 1
-                   : name == "gpu_bytes" ? std::size_t{1} << 20
-                                         : kItems;
+            return name == "size"           ? bytes_.size()
+                   : name == "body"         ? 1
+                   : name == "clip"         ? 1
+                   : name == "joint"        ? 1
+                   : name == "joint_count"  ? 2
+                   : name == "weight_count" ? 1
+                   : name == "gpu_bytes"    ? std::size_t{1} << 20
+                                            : kItems;
         } else if constexpr (std::is_same_v<T, float>) {
             return 0.01F;
         } else if constexpr (std::is_same_v<T, uint32_t>) {
-            return program_.name();
+            return name == "body" ? 0 : name == "resolution" ? 64 : program_.name();
+        } else if constexpr (std::is_same_v<T, const relief_pose*>) {
+            return name == "pose" ? &poses[kWrong] : poses;
+        } else if constexpr (std::is_same_v<T, double>) {
+            return 0.25;
+        } else if constexpr (std::is_same_v<T, const float*>) {
+            return name == "matrices"  ? matrices
+                   : name == "weights" ? weights
+                   : name == "room"    ? room
+                                       : points;
         } else if constexpr (std::is_same_v<T, int>) {
             return 0;
         } else if constexpr (std::is_same_v<T, float*>) {
             return name == "min" ? low : high;
         } else if constexpr (std::is_same_v<T, relief_textures*>) {
-            return name == "world_textures" ? world_textures : textures;
+            return name == "world_textures"      ? world_textures
+                   : name == "animated_textures" ? animated_textures
+                                                 : textures;
         } else {
             return pointer(T{});
         }
@@ -156,7 +186,8 @@ class Stage {
     /// The handle of the kind that an argument's type names, as a number.
     [[nodiscard]] std::uintptr_t handle(const std::string& type) const {
         const auto names = [&](const char* kind) { return type.find(kind) != std::string::npos; };
-        return names("collider")    ? reinterpret_cast<std::uintptr_t>(collider)
+        return names("animation")   ? reinterpret_cast<std::uintptr_t>(animation)
+               : names("collider")  ? reinterpret_cast<std::uintptr_t>(collider)
                : names("textures")  ? reinterpret_cast<std::uintptr_t>(textures)
                : names("particles") ? reinterpret_cast<std::uintptr_t>(particles)
                : names("world")     ? reinterpret_cast<std::uintptr_t>(world)
@@ -172,6 +203,7 @@ class Stage {
         drop(particles);
         drop(picture);
         drop(world);
+        drop(animation);
     }
 
     relief_collider* collider = nullptr;
@@ -180,6 +212,8 @@ class Stage {
     relief_picture* picture = nullptr;
     relief_world* world = nullptr;
     relief_textures* world_textures = nullptr;
+    relief_animation* animation = nullptr;
+    relief_textures* animated_textures = nullptr;  // of a world of it alone
     relief_particles_options options;
     relief_birth births[kItems];
     std::uint32_t bodies[kItems];
@@ -191,6 +225,10 @@ class Stage {
     relief_particle states[kItems];
     relief_sample samples[kItems];
     float points[3 * kItems];
+    float matrices[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                          1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    float weights[1] = {0.0F};
+    float room[3] = {3.0F, 3.0F, 3.0F};
     float low[3];
     float high[3];
 
@@ -222,7 +260,6 @@ class Stage {
     const relief_world* pointer(const relief_world* /*type*/) { return world; }
     relief_world* pointer(relief_world* /*type*/) { return world; }
     const std::uint32_t* pointer(const std::uint32_t* /*type*/) { return bodies; }
-    const relief_pose* pointer(const relief_pose* /*type*/) { return poses; }
     const relief_ball* pointer(const relief_ball* /*type*/) { return balls; }
     relief_pose* pointer(relief_pose* /*type*/) { return &pose; }
     const relief_particles* pointer(const relief_particles* /*type*/) { return particles; }
@@ -234,7 +271,8 @@ class Stage {
     const relief_view* pointer(const relief_view* /*type*/) { return &view; }
     relief_particle* pointer(relief_particle* /*type*/) { return states; }
     relief_sample* pointer(relief_sample* /*type*/) { return samples; }
-    const float* pointer(const float* /*type*/) { return points; }
+    relief_animation* pointer(relief_animation* /*type*/) { return animation; }
+    const relief_animation* pointer(const relief_animation* /*type*/) { return animation; }
 
     std::unique_ptr<GlContext> context_;
     std::filesystem::path path_;
@@ -260,6 +298,9 @@ inline void release(relief_particles* made) {
 }
 inline void release(relief_world* made) {
     relief_world_free(made);
+}
+inline void release(relief_animation* made) {
+    relief_animation_free(made);
 }
 inline void release(relief_picture* made) {
     relief_picture_free(made);
@@ -289,7 +330,7 @@ struct Argument {
         const std::string bare =
             type.substr(type.find("relief_") == std::string::npos ? 0 : type.find("relief_"));
         return bare == "relief_collider*" || bare == "relief_textures*" || bare == "relief_particles*" ||
-               bare == "relief_picture*" || bare == "relief_world*";
+               bare == "relief_picture*" || bare == "relief_world*" || bare == "relief_animation*";
     }
 };
 
