@@ -1,8 +1,8 @@
 #include "runtime/collider/skin_pass.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -29,7 +29,10 @@ struct RestVertex {
 template <class T>
 int padToRows(std::vector<T>& texels) {
     const std::size_t count = std::max<std::size_t>(texels.size(), 1);
-    const int shift = std::min(static_cast<int>(std::bit_width(count - 1)), kWidestShift);
+    int shift = 0;
+    while (shift < kWidestShift && (std::size_t{1} << shift) < count) {
+        ++shift;
+    }
     const std::size_t width = std::size_t{1} << shift;
     texels.resize((count + width - 1) / width * width);
     return shift;
@@ -63,7 +66,7 @@ Result<SkinPass> SkinPass::create(const AnimatedMesh& mesh, std::span<const glm:
     }
     std::vector<glm::uvec2> influences;
     for (const VertexInfluence& by : mesh.influences) {
-        influences.emplace_back(by.joint, std::bit_cast<std::uint32_t>(by.weight));
+        influences.emplace_back(by.joint, glm::floatBitsToUint(by.weight));
     }
     std::vector<glm::vec4> deltas;
     for (const MorphDelta& by : mesh.deltas) {

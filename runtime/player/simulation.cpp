@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "formats/base/file_io.h"
@@ -272,7 +273,7 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
 
 Result<void> Simulation::playClips(double time) {
     for (PlayedBody& body : played_) {
-        RELIEF_TRY(body.collider.setPose(loaded_->played[body.index]->poseAt(time)));
+        RELIEF_TRY(body.collider.setPose(body.pose ? *body.pose : loaded_->played[body.index]->poseAt(time)));
     }
     return {};
 }
@@ -303,9 +304,31 @@ const GpuMesh* Simulation::mesh(std::size_t collider) const {
     if (found != live_.end()) {
         return &found->collider.mesh();
     }
-    const auto played = std::find_if(played_.begin(), played_.end(),
-                                     [&](const PlayedBody& body) { return body.index == collider; });
-    return played == played_.end() ? nullptr : &played->collider.live().mesh();
+    const PlayedBody* played = playedBody(collider);
+    return played == nullptr ? nullptr : &played->collider.live().mesh();
+}
+
+const Simulation::PlayedBody* Simulation::playedBody(std::size_t collider) const {
+    const auto found = std::find_if(played_.begin(), played_.end(),
+                                    [&](const PlayedBody& body) { return body.index == collider; });
+    return found == played_.end() ? nullptr : &*found;
+}
+
+const AnimatedMesh* Simulation::animatedMesh(std::size_t collider) const {
+    const PlayedBody* played = playedBody(collider);
+    return played == nullptr ? nullptr : &played->collider.mesh();
+}
+
+Result<void> Simulation::setPose(std::size_t collider, std::optional<MeshPose> pose) {
+    for (PlayedBody& body : played_) {
+        if (body.index == collider) {
+            RELIEF_TRY(pose ? body.collider.check(*pose) : Result<void>());
+            body.pose = std::move(pose);
+            return {};
+        }
+    }
+    return fail(ErrorCode::kUsage,
+                "collider " + std::to_string(collider) + " plays no clip; give it 'play' in the scene");
 }
 
 }  // namespace relief

@@ -82,6 +82,11 @@ class Simulation {
     /// Places besides the emitters' where a world that is streamed has full detail, in place of the scene's camera. From the next
     /// step on.
     void setPoints(std::vector<PointOfInterest> points) { points_ = std::move(points); }
+    /// A pose of the caller's own for a collider that plays a clip, from the next step on; nullopt: the clip again.
+    /// Errors: kUsage (one that plays none, AnimatedCollider::check()).
+    [[nodiscard]] Result<void> setPose(std::size_t collider, std::optional<MeshPose> pose);
+    /// The mesh of a collider that plays clips; null: that one does not.
+    [[nodiscard]] const AnimatedMesh* animatedMesh(std::size_t collider) const;
     /// Before a step: uploads all of a world that is streamed that is wanted and has come, however many bytes, and requests the
     /// rest. Waits for that as its source does. Fails as WorldStream::finish does.
     [[nodiscard]] Result<void> load();
@@ -104,8 +109,10 @@ class Simulation {
     struct PlayedBody {
         std::size_t index;  // in the scene
         AnimatedCollider collider;
+        std::optional<MeshPose> pose = {};  // in place of the clip's
     };
     Simulation() = default;
+    [[nodiscard]] const PlayedBody* playedBody(std::size_t collider) const;
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }

@@ -28,18 +28,26 @@ MeshPose PlayedMesh::poseAt(double time) const {
     return relief::poseAt(*mesh, of, play.repeat ? repeated(of, seconds) : seconds);
 }
 
-Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<const AnimatedMesh> mesh) {
-    const ScenePlay& play = *from.play;
-    const std::string place = from.origin + ": collider.play.clip = '" + cleanUtf8(play.clip) + "' ";
-    const std::optional<std::size_t> clip = findClip(*mesh, play.clip);
+Result<void> changeClip(PlayedMesh& played, const SceneCollider& from) {
+    const std::optional<std::size_t> clip = findClip(*played.mesh, from.play->clip);
     if (!clip) {
-        return invalidInput(
-            place + "is no clip of " + quotedPath(from.path) +
-            (mesh->clips.empty() ? ", which has none; bake it with --clips" : "; it has " + namesOf(*mesh)));
+        return invalidInput(from.origin + ": collider.play.clip = '" + cleanUtf8(from.play->clip) +
+                            "' is no clip of " + quotedPath(from.path) +
+                            (played.mesh->clips.empty() ? ", which has none; bake it with --clips"
+                                                        : "; it has " + namesOf(*played.mesh)));
     }
-    PlayedMesh played{mesh, *clip, play,
-                      RELIEF_TRY(inFront(place, animatedFrames(poseRoom(*mesh), play.resolution)))};
-    played.frames.bounds = clipBounds(*mesh, mesh->clips[*clip]);
+    played.clip = *clip;
+    played.play = *from.play;
+    return {};
+}
+
+Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<const AnimatedMesh> mesh) {
+    PlayedMesh played;
+    played.mesh = std::move(mesh);
+    RELIEF_TRY(changeClip(played, from));
+    played.frames = RELIEF_TRY(inFront(from.origin + ": collider.play",
+                                       animatedFrames(poseRoom(*played.mesh), played.play.resolution)));
+    played.frames.bounds = clipBounds(*played.mesh, played.mesh->clips[played.clip]);
     return played;
 }
 

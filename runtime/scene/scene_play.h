@@ -22,6 +22,9 @@ struct PlayedMesh {
     [[nodiscard]] MeshPose poseAt(double time) const;
 };
 
+/// Goes over to the clip, the start and the speed that `from` asks for. Fails as loadPlayedMesh(); nothing then changes.
+[[nodiscard]] Result<void> changeClip(PlayedMesh& played, const SceneCollider& from);
+
 /// Finds the clip, and chooses maps that hold it.
 /// \param from  with `play`. \param mesh  of its container.
 /// Errors: kInvalidInput (no such clip: the message lists those there are); they begin with the place in the scene.

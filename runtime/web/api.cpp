@@ -232,19 +232,25 @@ Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bo
     return player.release();
 }
 
-/// The colliders with the poses that are wanted of them, which is all of a collider that may change as it plays.
+/// Whether both play no clip, or both one in maps of the same size.
+bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
+    return a.play.has_value() == b.play.has_value() && (!a.play || a.play->resolution == b.play->resolution);
+}
+
+/// The colliders with the poses and clips that are wanted of them, which is all of a collider that may change as it plays.
 Result<void> takePoses(std::vector<SceneCollider>& now, const std::vector<SceneCollider>& wanted) {
     for (std::size_t i = 0; i < now.size(); ++i) {
         SceneCollider& body = now[i];
         const SceneCollider& to = wanted[i];
-        if (to.path != body.path || to.node != body.node || to.deforms() != body.deforms() ||
-            to.play != body.play || to.keys != body.keys || to.pose.scale != body.pose.scale ||
+        if (to.path != body.path || to.node != body.node || to.live.has_value() != body.live.has_value() ||
+            !sameMaps(to, body) || to.keys != body.keys || to.pose.scale != body.pose.scale ||
             to.restitution != body.restitution || to.friction != body.friction) {
             return fail(ErrorCode::kUsage,
                         "collider " + std::to_string(i) +
-                            ": of a collider that plays only position, axis and angle change; "
+                            ": of a collider that plays only position, axis, angle and clip change; "
                             "make a new system for the rest");
         }
+        body.play = to.play;
         if (to.pose == body.pose) {
             continue;
         }
@@ -289,11 +295,16 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     }
     std::vector<SceneCollider> colliders = now.colliders;
     RELIEF_TRY(takePoses(colliders, wanted.colliders));
+    std::vector<std::optional<PlayedMesh>> played = player.loaded.played;
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        RELIEF_TRY(played[i] ? changeClip(*played[i], colliders[i]) : Result<void>());
+    }
     wanted.air.flow = now.air.flow;
     wanted.render.atlas = now.render.atlas;
     wanted.colliders = std::move(colliders);
     RELIEF_TRY(player.makeSorter(wanted));
     now = std::move(wanted);
+    player.loaded.played = std::move(played);
     player.style = particleStyle(now, player.atlas.get());
     RELIEF_TRY(player.simulation->change(std::move(made)));
     player.setPoints();
@@ -548,6 +559,42 @@ EMSCRIPTEN_KEEPALIVE int relief_player_mesh(const Player* player, int body, int*
     out[3] = mesh->triangleShift();
     out[4] = static_cast<int>(mesh->triangleCount());
     return 1;
+}
+
+/// The clips, joints and morph targets of a collider that plays clips; "null": that one does not.
+EMSCRIPTEN_KEEPALIVE const char* relief_player_animation(const Player* player, int body) {
+    const AnimatedMesh* mesh = player->simulation->animatedMesh(static_cast<std::size_t>(body));
+    if (mesh == nullptr) {
+        return "null";
+    }
+    Json clips = Json::array();
+    for (const MeshClip& clip : mesh->clips) {
+        clips.push_back({{"name", clip.name}, {"seconds", clip.seconds}});
+    }
+    Json joints = Json::array();
+    for (const MeshJoint& joint : mesh->joints) {
+        joints.push_back(mesh->nodes[joint.node].name);
+    }
+    return returned(Json{{"clips", clips}, {"joints", joints}, {"weights", mesh->weights.size()}}.dump());
+}
+
+/// A pose of the page's own for it: matrices of 16 floats by columns, and weights. Without matrices: its clip again. 0, or -1.
+EMSCRIPTEN_KEEPALIVE int relief_player_pose(Player* player, int body, const float* matrices, int joints,
+                                            const float* weights, int weight_count) {
+    return inPass(__func__, -1, [&]() -> Result<int> {
+        std::optional<MeshPose> pose;
+        if (joints > 0) {
+            pose.emplace(MeshPose{{}, {weights, weights + weight_count}});
+            for (const float* at = matrices; at < matrices + 16 * joints; at += 16) {
+                Affine& joint = pose->joints.emplace_back();
+                for (int row = 0; row < 3; ++row) {
+                    joint.row[row] = {at[row], at[row + 4], at[row + 8], at[row + 12]};
+                }
+            }
+        }
+        RELIEF_TRY(player->simulation->setPose(static_cast<std::size_t>(body), std::move(pose)));
+        return 0;
+    });
 }
 
 /// Reads the particles back, and waits for the GPU to that end; how many live, or -1.

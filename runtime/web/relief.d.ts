@@ -284,7 +284,7 @@ export class ParticleSystem {
     /** Births on top of the emitters'. Also 8 numbers each: position, velocity, lifetime, type. Returns how many found room. */
     spawn(births: readonly Birth[] | Numbers): number;
     /**
-     * Changes a part of a scene given as an object; not its capacity or integrator, and of its colliders only the pose:
+     * Changes a part of a scene given as an object; not its capacity or integrator, and of its colliders only the pose and the clip:
      * `set({ collider: { position, axis, angle } })`, or a list with one for each of several, {} for those that stay. Before
      * each step of a collider that moves: it pushes what it meets on its way there. A single collider moves if the scene gave it
      * a pose from the beginning, such as `collider: { position: [0, 0, 0] }`; a body of a world, if the scene named its node, as
@@ -306,6 +306,15 @@ export class ParticleSystem {
     textures(): { position: WebGLTexture; velocity: WebGLTexture; birth: WebGLTexture };
     /** The mesh of a body that deforms, as it is now; null of one that does not. It belongs to the system. */
     mesh(body: number): LiveMesh | null;
+    /** Of a body that plays a clip (`play` of its collider), else null. Joints are glTF's, or the node of a mesh without a skin. */
+    animation(body: number): { clips: { name: string; seconds: number }[]; joints: string[]; weights: number } | null;
+    /**
+     * A pose of one's own for a body that plays a clip, from the next step on; without joints its clip again.
+     * @param joints  a matrix each, by columns: glTF's joint matrices. Of a three.js skeleton: boneMatrices, with the mesh's
+     *                bindMatrix and bindMatrixInverse about them.
+     * @param weights  of the morph targets, as many as there are.
+     */
+    pose(body: number, joints?: Numbers, weights?: Numbers): void;
     dispose(): void;
 }
 

@@ -772,6 +772,20 @@ export class ParticleSystem {
         return { positions: wasm.GL.textures[positions], corners: wasm.GL.textures[corners], vertexShift, triangleShift, triangles };
     }
 
+    animation(body) {
+        this.#ready();
+        return Number.isInteger(body) && body >= 0 ? JSON.parse(textAt(call("relief_player_animation", this.handle, body))) : null;
+    }
+
+    pose(body, joints = [], weights = []) {
+        this.#ready();
+        if (!Number.isInteger(body) || body < 0 || joints.length % 16 !== 0) {
+            throw new ReliefError("pose() takes the number of a body, and 16 numbers a joint");
+        }
+        done("relief_player_pose", this.handle, body, checkFinite("pose()", Float32Array.from(joints)), joints.length / 16,
+             checkFinite("pose()", Float32Array.from(weights)), weights.length);
+    }
+
     read() {
         this.#ready();
         const rows = new Float32Array(12 * done("relief_player_read", this.handle));
