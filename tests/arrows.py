@@ -21,7 +21,7 @@ THIRD_PARTIES = {
     'cairo.h': ['bake/picture'],
     'openvdb': ['runtime/vdb'],
     'png.h': ['runtime/files', 'bake/heights'],
-    'flatbuffers': ['formats'],
+    'flatbuffers': ['formats', 'formats/animation'],
     'zstd.h': ['formats'],
     'xxhash.h': ['formats/base'],
     'pybind11': ['bake/python'],

@@ -99,14 +99,17 @@ struct Rules {
     std::array<std::uint64_t, 5> components;
     bool normalized;  ///< integers may be normalised
 };
-constexpr std::array<Rules, 7> kRules = {
+constexpr std::array<Rules, 10> kRules = {
     {{"VEC3", {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat}, true},
      {"SCALAR", {kUnsignedByte, kUnsignedShort, kUnsignedInt}, false},
      {"VEC4", {kUnsignedByte, kUnsignedShort}, false},
      {"VEC4", {kUnsignedByte, kUnsignedShort, kFloat}, true},
      {"MAT4", {kFloat}, false},
      {"VEC3", {kFloat}, false},
-     {"VEC4", {kByte, kShort, kFloat}, true}}};
+     {"VEC4", {kByte, kShort, kFloat}, true},
+     {"VEC3", {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat}, true},
+     {"SCALAR", {kFloat}, false},
+     {"SCALAR", {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat}, true}}};
 
 std::uint64_t sizeOf(std::uint64_t type) {
     return type <= kUnsignedByte ? 1 : type <= kUnsignedShort ? 2 : 4;
@@ -244,6 +247,13 @@ Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
                       : invalidInput(std::string("it has no JSON, ") + kCutOff);
 }
 
+Result<GltfDocument> openGltf(std::span<const std::byte> bytes) {
+    GltfDocument document{RELIEF_TRY(gltfChunks(bytes)), {}};
+    document.json = RELIEF_TRY(parseGltfJson(document.chunks.json));
+    return document.json.is_object() ? Result<GltfDocument>(std::move(document))
+                                     : invalidInput("its JSON is no object");
+}
+
 Result<std::vector<std::byte>> dataUriBytes(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (!isDataUri(uri) || comma == std::string_view::npos ||
@@ -333,7 +343,7 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
     if (normalized && (!rules.normalized || type == kFloat)) {
         return accessor.wrong("is normalized, which only whole numbers of an attribute can be");
     }
-    if (use == GltfUse::kWeights && !normalized && type != kFloat) {
+    if ((use == GltfUse::kWeights || use == GltfUse::kMorphs) && !normalized && type != kFloat) {
         return accessor.wrong("is not normalized, as weights of whole numbers are");
     }
     const std::uint64_t count = RELIEF_TRY(accessor.number("count"));
@@ -343,7 +353,7 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
     if (accessor.has("bufferView")) {
         // Only attributes may have a stride.
         elements = RELIEF_TRY(elementsOf(accessor, buffers, count, size, kComponents > 1));
-    } else if (!sparse) {
+    } else if (!sparse && use != GltfUse::kDeltas) {
         return accessor.wrong("has no data of its own; export it uncompressed", ErrorCode::kUnsupported);
     }
     if (count > count_max) {
@@ -368,6 +378,7 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
     return values;
 }
 
+template Result<std::vector<float>> readAccessor(const GltfValue&, GltfUse, GltfBuffers&, std::uint64_t);
 template Result<std::vector<glm::vec3>> readAccessor(const GltfValue&, GltfUse, GltfBuffers&, std::uint64_t);
 template Result<std::vector<glm::vec4>> readAccessor(const GltfValue&, GltfUse, GltfBuffers&, std::uint64_t);
 template Result<std::vector<glm::mat4>> readAccessor(const GltfValue&, GltfUse, GltfBuffers&, std::uint64_t);

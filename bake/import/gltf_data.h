@@ -28,6 +28,14 @@ struct GltfChunks {
 /// Takes a GLB apart; any other file is JSON. Errors: kInvalidInput, kUnsupported (another version).
 [[nodiscard]] Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes);
 
+/// A file, taken apart and parsed; borrows its bytes.
+struct GltfDocument {
+    GltfChunks chunks;
+    nlohmann::json json;  ///< an object
+};
+/// Errors: those of gltfChunks and parseGltfJson.
+[[nodiscard]] Result<GltfDocument> openGltf(std::span<const std::byte> bytes);
+
 /// The bytes that a data URI holds. \param uri  "data:…". Errors, without a place: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::byte>> dataUriBytes(std::string_view uri);
 
@@ -62,6 +70,9 @@ enum class GltfUse : std::uint8_t {
     kMatrices,   ///< glm::mat4
     kVectors,    ///< glm::vec3 of floats
     kRotations,  ///< glm::vec4: of floats, or normalized whole numbers of 8 or 16 bits
+    kDeltas,     ///< as positions; those of an accessor without data are 0
+    kTimes,      ///< float
+    kMorphs,     ///< float, or normalized whole numbers of 8 or 16 bits
 };
 
 /// The elements of an accessor. Floats may be no numbers.

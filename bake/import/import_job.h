@@ -1,15 +1,18 @@
 // The request to an importer, and the importer itself.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake/import/import_units.h"
 #include "bake/mesh/mesh.h"
+#include "formats/base/field.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -35,6 +38,16 @@ struct ImportLimits {
     std::uint64_t triangles = 20'000'000;
 };
 
+/// The result of an import.
+enum class ImportKind : std::uint8_t {
+    kMesh,
+    kLevel,     ///< each different mesh once, with its bodies (level.h)
+    kAnimated,  ///< TriangleMesh::animation, of a glTF file
+    kClips,     ///< the same, of nodes and clips alone
+};
+template <>
+inline constexpr std::array<std::string_view, 4> kWordsOf<ImportKind>{"mesh", "level", "animated", "clips"};
+
 /// The input of an importer.
 struct ImportJob {
     std::string shown;      ///< the path for messages: quotedPath
@@ -44,7 +57,7 @@ struct ImportJob {
     int folder = -1;  ///< descriptor; or -1
     ImportOptions options;
     std::uint64_t triangle_max = kTriangleMax;  ///< ImportLimits::triangles
-    bool level = false;  ///< each different mesh once, with its bodies, instead of one mesh (level.h)
+    ImportKind kind = ImportKind::kMesh;
 };
 
 /// Reads the mesh, in the library bake_assimp. \return the input of ImportSource::finish. Errors: as importMesh.

@@ -85,7 +85,10 @@ int work(std::span<char*> arguments) {
     const std::uint64_t memory = parseUnsigned(arguments[2]).value_or(0);
     const std::uint64_t seconds = parseUnsigned(arguments[3]).value_or(0);
     const std::uint64_t triangles = parseUnsigned(arguments[4]).value_or(0);
-    const bool level = arguments[5] == kImportsLevel;
+    const std::optional<ImportKind> kind = fromWord<ImportKind>(arguments[5]);
+    if (!kind) {
+        return kImportExitArguments;
+    }
     ImportOptions options;
     std::size_t next = 6;
     for (; arguments[next] != kImportNamesFollow; next += 2) {
@@ -120,7 +123,7 @@ int work(std::span<char*> arguments) {
                                                 folder,
                                                 options,
                                                 triangles,
-                                                level});
+                                                *kind});
     return sendMessage(raw);
 }
 

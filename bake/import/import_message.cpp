@@ -122,6 +122,7 @@ void exchange(Channel& channel, Mesh& mesh, std::uint64_t triangle_max) {
         channel.number(body.rotation);
         channel.number(body.scale);
     });
+    channel.array(mesh.animation, kImportBytesMax);
 }
 
 void write(Writer& writer, const Result<TriangleMesh>& raw) {

@@ -1,9 +1,9 @@
 // Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
-//     relief-import PATH MEMORY SECONDS TRIANGLES mesh|level [FIELD VALUE]… names [NAME…]
+//     relief-import PATH MEMORY SECONDS TRIANGLES KIND [FIELD VALUE]… names [NAME…]
 //
 // PATH is the mesh as the user named it (for messages, its name and extension); MEMORY in bytes; TRIANGLES as
-// ImportLimits; FIELD and VALUE as fields() of ImportOptions has them; each NAME one of ImportOptions::names.
+// ImportLimits; KIND a word of ImportKind; FIELD and VALUE as fields() of ImportOptions has them; each NAME one of ImportOptions::names.
 // Nothing is read from standard input or written to standard output.
 #pragma once
 
@@ -16,8 +16,6 @@
 namespace relief {
 
 inline constexpr std::string_view kImportNamesFollow = "names";  ///< the end of the fields
-inline constexpr std::string_view kImportsMesh = "mesh";
-inline constexpr std::string_view kImportsLevel = "level";  ///< ImportJob::level
 
 inline constexpr int kImportMeshFd = 3;    ///< the mesh file's bytes, sealed, memfd
 inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none

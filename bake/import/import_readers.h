@@ -46,4 +46,8 @@ namespace relief {
 /// have the pose of the nodes; morph targets are left out; both with a warning.
 [[nodiscard]] Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files);
 
+/// TriangleMesh::animation of a glTF file, for jobs of kAnimated and kClips, with unit and warnings. Reads what readGltf() does,
+/// and also morph targets and animations; which of them become part of the mesh is said in animated_import.h.
+[[nodiscard]] Result<TriangleMesh> readAnimatedGltf(const ImportJob& job, ImportFiles& files);
+
 }  // namespace relief

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bake/import/import_format.h"
+#include "formats/animation/mesh_pose.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -61,10 +62,16 @@ Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) c
     if (!raw.level_meshes.empty() || !raw.level_bodies.empty()) {
         return lies("a level that was not requested");
     }
+    if (!raw.animation.empty()) {
+        return lies("an animation that was not requested");
+    }
     return finishMesh(RELIEF_TRY(named(std::move(raw), names)));
 }
 
 Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names) const {
+    if (!raw.animation.empty()) {
+        return lies("an animation that was not requested");
+    }
     Result<TriangleMesh> all = named(std::move(raw), names);
     if (!all) {
         return forward(all);
@@ -72,6 +79,26 @@ Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names) con
     Result<Level> level = cutLevel(std::move(*all));
     return level ? std::move(level)
                  : fail(level.error().code, quotedPath(path_) + ": " + level.error().message);
+}
+
+Result<AnimatedImport> ImportSource::finishAnimated(TriangleMesh raw, ImportKind kind) const {
+    const bool clips = kind == ImportKind::kClips;
+    Result<AnimatedMesh> mesh = clips ? readAnimatedClips(raw.animation) : readAnimatedMesh(raw.animation);
+    if (!mesh) {
+        return lies("bytes that are no animated mesh");
+    }
+    if (!raw.level_meshes.empty() || !raw.level_bodies.empty() || !raw.positions.empty() ||
+        !raw.triangles.empty() || !raw.surface_names.empty()) {
+        return lies("more than an animated mesh");
+    }
+    raw.animation.clear();
+    raw = RELIEF_TRY(named(std::move(raw), 0));
+    if (!clips) {
+        raw.positions = posed(*mesh, restPose(*mesh));
+        raw.triangles = mesh->triangles;
+        raw = RELIEF_TRY(finishMesh(std::move(raw)));
+    }
+    return AnimatedImport{std::move(*mesh), std::move(raw)};
 }
 
 Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) const {

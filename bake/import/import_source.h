@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/import/animated_import.h"
 #include "bake/import/level.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/descriptor.h"
@@ -37,6 +38,8 @@ class ImportSource {
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
     /// The same of a level, whose meshes are cut apart.
     [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0) const;
+    /// The same of an animated mesh. \param kind  kAnimated, or kClips: then there are no vertices.
+    [[nodiscard]] Result<AnimatedImport> finishAnimated(TriangleMesh raw, ImportKind kind) const;
 
   private:
     [[nodiscard]] tl::unexpected<Error> lies(const char* what) const;

@@ -109,14 +109,21 @@ class Import {
 
     Result<TriangleMesh> mesh() {
         ImportSource source = RELIEF_TRY(open());
-        Result<TriangleMesh> raw = workOn(source, kImportsMesh);
+        Result<TriangleMesh> raw = workOn(source, ImportKind::kMesh);
         return raw ? source.finish(std::move(*raw), options_.names.size()) : raw;
     }
 
     Result<Level> level() {
         ImportSource source = RELIEF_TRY(open());
-        TriangleMesh raw = RELIEF_TRY(workOn(source, kImportsLevel));
+        TriangleMesh raw = RELIEF_TRY(workOn(source, ImportKind::kLevel));
         return source.finishLevel(std::move(raw), options_.names.size());
+    }
+
+    /// \param kind  kAnimated or kClips.
+    Result<AnimatedImport> animated(ImportKind kind) {
+        ImportSource source = RELIEF_TRY(open());
+        TriangleMesh raw = RELIEF_TRY(workOn(source, kind));
+        return source.finishAnimated(std::move(raw), kind);
     }
 
   private:
@@ -143,8 +150,7 @@ class Import {
         return shortOf("could not be started", number);
     }
 
-    /// \param wanted  kImportsMesh or kImportsLevel.
-    Result<TriangleMesh> workOn(ImportSource& source, std::string_view wanted) {
+    Result<TriangleMesh> workOn(ImportSource& source, ImportKind kind) {
         const std::string program = workerProgram();
         if (program.empty()) {
             return error(ErrorCode::kFailure, std::string("the program ") + kWorkerName +
@@ -165,8 +171,8 @@ class Import {
             return notStarted(failed);
         }
         Process worker;
-        if (const int failed = start(program, wanted,
-                                     {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
+        if (const int failed =
+                start(program, kind, {mesh.get(), source.folder(), result.get(), alive_end.get()}, worker)) {
             return notStarted(failed);
         }
         alive_end.reset();
@@ -187,8 +193,8 @@ class Import {
     }
 
     /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null. \return 0 or an errno.
-    [[nodiscard]] int start(const std::string& program, std::string_view wanted,
-                            const std::array<int, 4>& files, Process& worker) const {
+    [[nodiscard]] int start(const std::string& program, ImportKind kind, const std::array<int, 4>& files,
+                            Process& worker) const {
         ProcessStart start;
         start.program = program;
         start.arguments = {kWorkerName,
@@ -196,7 +202,7 @@ class Import {
                            std::to_string(limits_.memory),
                            std::to_string(limits_.seconds),
                            std::to_string(limits_.triangles),
-                           std::string(wanted)};
+                           std::string(wordOf(kind))};
         for (const FieldWords& option : changedFields(options_)) {
             start.arguments.push_back(option.name);
             start.arguments.push_back(option.words.front());
@@ -309,6 +315,11 @@ Result<TriangleMesh> importMeshInWorker(const fs::path& path, const ImportOption
 Result<Level> importLevelInWorker(const fs::path& path, const ImportOptions& options,
                                   const ImportLimits& limits) {
     return Import(path, options, limits).level();
+}
+
+Result<AnimatedImport> importAnimatedFileInWorker(const fs::path& path, ImportKind kind,
+                                                  const ImportOptions& options, const ImportLimits& limits) {
+    return Import(path, options, limits).animated(kind);
 }
 
 }  // namespace relief

@@ -77,6 +77,18 @@ Result<ImportScene> readScene(const MeshFormat& format, const ImportJob& job, Im
     }
 }
 
+Result<TriangleMesh> readAsAsked(const MeshFormat& format, const ImportJob& job, ImportFiles& files) {
+    if (job.kind == ImportKind::kAnimated || job.kind == ImportKind::kClips) {
+        return format.reader == MeshReader::kGltf
+                   ? readAnimatedGltf(job, files)
+                   : fail(ErrorCode::kUnsupported,
+                          "animations of a ." + job.extension + " are not read; convert it to glTF");
+    }
+    ImportScene scene = RELIEF_TRY(readScene(format, job, files));
+    return job.kind == ImportKind::kLevel ? flattenLevel(std::move(scene), job)
+                                          : flatten(std::move(scene), job);
+}
+
 Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
     const MeshFormat* const format = meshFormat(job.extension);
     if (format == nullptr) {
@@ -84,9 +96,7 @@ Result<TriangleMesh> importWhatItIs(const ImportJob& job) {
                                                  "'; convert it to glTF, OBJ or PLY");
     }
     ImportFiles files(job.folder, job.file_name, job.bytes);
-    ImportScene scene = RELIEF_TRY(readScene(*format, job, files));
-    TriangleMesh mesh =
-        RELIEF_TRY(job.level ? flattenLevel(std::move(scene), job) : flatten(std::move(scene), job));
+    TriangleMesh mesh = RELIEF_TRY(readAsAsked(*format, job, files));
     for (const std::string& refused : files.refused()) {
         mesh.warnings.push_back("left out " + refused);
     }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -81,6 +82,8 @@ struct TriangleMesh {
     /// Of a level, on its way from the importer alone (bake/import/level.h); else empty.
     std::vector<LevelMesh> level_meshes;
     std::vector<LevelBody> level_bodies;
+    /// Of an animated mesh, on the same way (bake/import/animated_import.h): bytes of an AnimatedMesh.
+    std::vector<std::byte> animation;
 
     [[nodiscard]] std::uint64_t surfaceTriangles() const { return triangles.size() - cap_triangles; }
     [[nodiscard]] std::uint64_t sourceTriangles() const {

@@ -92,11 +92,12 @@ Result<void> checkInfluences(const AnimatedMesh& mesh) {
     return {};
 }
 
-Result<void> checkDeltas(const AnimatedMesh& mesh) {
+Result<void> checkWeights(const AnimatedMesh& mesh) {
     RELIEF_TRY(atMost("weights", mesh.weights.size(), kMorphTargetsMax));
-    if (!areFinite(mesh.weights)) {
-        return invalidInput("animation.weights are not finite");
-    }
+    return areFinite(mesh.weights) ? Result<void>() : invalidInput("animation.weights are not finite");
+}
+
+Result<void> checkDeltas(const AnimatedMesh& mesh) {
     if (!areStarts(mesh.delta_begin, mesh.positions.size(), mesh.deltas.size())) {
         return invalidInput("animation.delta_begin does not rise from 0 to the number of deltas");
     }
@@ -116,7 +117,6 @@ Result<void> checkDeltas(const AnimatedMesh& mesh) {
 
 Result<void> checkNodes(const AnimatedMesh& mesh) {
     RELIEF_TRY(atMost("nodes", mesh.nodes.size(), kMeshNodesMax));
-    RELIEF_TRY(atMost("joints", mesh.joints.size(), kMeshJointsMax));
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
         const MeshNode& node = mesh.nodes[i];
         if (node.parent < -1 || node.parent >= static_cast<std::int64_t>(i)) {
@@ -137,6 +137,11 @@ Result<void> checkNodes(const AnimatedMesh& mesh) {
             return wrong("nodes", i, "has morph targets that do not exist");
         }
     }
+    return {};
+}
+
+Result<void> checkJoints(const AnimatedMesh& mesh) {
+    RELIEF_TRY(atMost("joints", mesh.joints.size(), kMeshJointsMax));
     for (std::size_t i = 0; i < mesh.joints.size(); ++i) {
         if (mesh.joints[i].node >= mesh.nodes.size() || !hasNumbers(mesh.joints[i].bind)) {
             return wrong("joints", i, "has no such node, or a transform that is not finite");
@@ -211,9 +216,15 @@ std::size_t keyNumbers(const AnimatedMesh& mesh, const ClipChannel& channel) {
 
 Result<void> validate(const AnimatedMesh& mesh) {
     RELIEF_TRY(checkTriangles(mesh));
-    RELIEF_TRY(checkNodes(mesh));
+    RELIEF_TRY(checkJoints(mesh));
     RELIEF_TRY(checkInfluences(mesh));
     RELIEF_TRY(checkDeltas(mesh));
+    return validateClips(mesh);
+}
+
+Result<void> validateClips(const AnimatedMesh& mesh) {
+    RELIEF_TRY(checkWeights(mesh));
+    RELIEF_TRY(checkNodes(mesh));
     return checkClips(mesh);
 }
 

@@ -111,11 +111,15 @@ struct AnimatedMesh {
 
 /// All that is said above, and that every number is finite. Errors: kInvalidInput, kLimit; a message names the member.
 [[nodiscard]] Result<void> validate(const AnimatedMesh& mesh);
+/// The same of nodes, weights and clips alone: a mesh for others to take its clips from has no vertices.
+[[nodiscard]] Result<void> validateClips(const AnimatedMesh& mesh);
 
 /// The bytes of Collider::animation, by animated_mesh.fbs. \param mesh  valid.
 [[nodiscard]] std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh);
 
 /// Reads untrusted bytes. Errors: kInvalidInput, kLimit.
 [[nodiscard]] Result<AnimatedMesh> readAnimatedMesh(std::span<const std::byte> bytes);
+/// Reads nodes, weights and clips, as validateClips() wants them, and leaves all else empty.
+[[nodiscard]] Result<AnimatedMesh> readAnimatedClips(std::span<const std::byte> bytes);
 
 }  // namespace relief

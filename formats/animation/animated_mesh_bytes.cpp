@@ -4,6 +4,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "animated_mesh_generated.h"
 #include "formats/animation/animated_mesh.h"
@@ -111,6 +112,37 @@ MeshClip readClip(const fb::Clip& from) {
     return clip;
 }
 
+/// Not checked but for its structure.
+Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
+    // Accessors need an alignment that `bytes` need not have.
+    const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
+    std::memcpy(aligned.get(), bytes.data(), bytes.size());
+    const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
+    flatbuffers::Verifier verifier(data, bytes.size(), kDepthMax, kTablesMax);
+    if (bytes.empty() || !fb::VerifyAnimatedMeshBuffer(verifier)) {
+        return invalidInput("its animation is no FlatBuffers table of an animated mesh; bake it again");
+    }
+    const fb::AnimatedMesh& from = *fb::GetAnimatedMesh(data);
+    AnimatedMesh mesh;
+    mesh.positions = takeAll<glm::vec3>(*from.positions());
+    mesh.triangles = takeAll<glm::uvec3>(*from.triangles());
+    mesh.influence_begin = takeAll(*from.influence_begin());
+    mesh.influences = takeAll<VertexInfluence>(*from.influences());
+    mesh.delta_begin = takeAll(*from.delta_begin());
+    mesh.deltas = takeAll<MorphDelta>(*from.deltas());
+    for (const fb::Node* node : *from.nodes()) {
+        mesh.nodes.push_back(readNode(*node));
+    }
+    for (const fb::Joint* joint : *from.joints()) {
+        mesh.joints.push_back({joint->node(), fromFb(joint->bind())});
+    }
+    mesh.weights = takeAll(*from.weights());
+    for (const fb::Clip* clip : *from.clips()) {
+        mesh.clips.push_back(readClip(*clip));
+    }
+    return mesh;
+}
+
 }  // namespace
 
 std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh) {
@@ -146,33 +178,18 @@ std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh) {
 }
 
 Result<AnimatedMesh> readAnimatedMesh(std::span<const std::byte> bytes) {
-    // Accessors need an alignment that `bytes` need not have.
-    const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
-    std::memcpy(aligned.get(), bytes.data(), bytes.size());
-    const auto* data = reinterpret_cast<const std::uint8_t*>(aligned.get());
-    flatbuffers::Verifier verifier(data, bytes.size(), kDepthMax, kTablesMax);
-    if (bytes.empty() || !fb::VerifyAnimatedMeshBuffer(verifier)) {
-        return invalidInput("its animation is no FlatBuffers table of an animated mesh; bake it again");
-    }
-    const fb::AnimatedMesh& from = *fb::GetAnimatedMesh(data);
-    AnimatedMesh mesh;
-    mesh.positions = takeAll<glm::vec3>(*from.positions());
-    mesh.triangles = takeAll<glm::uvec3>(*from.triangles());
-    mesh.influence_begin = takeAll(*from.influence_begin());
-    mesh.influences = takeAll<VertexInfluence>(*from.influences());
-    mesh.delta_begin = takeAll(*from.delta_begin());
-    mesh.deltas = takeAll<MorphDelta>(*from.deltas());
-    for (const fb::Node* node : *from.nodes()) {
-        mesh.nodes.push_back(readNode(*node));
-    }
-    for (const fb::Joint* joint : *from.joints()) {
-        mesh.joints.push_back({joint->node(), fromFb(joint->bind())});
-    }
-    mesh.weights = takeAll(*from.weights());
-    for (const fb::Clip* clip : *from.clips()) {
-        mesh.clips.push_back(readClip(*clip));
-    }
+    AnimatedMesh mesh = RELIEF_TRY(unpack(bytes));
     RELIEF_TRY(validate(mesh));
+    return mesh;
+}
+
+Result<AnimatedMesh> readAnimatedClips(std::span<const std::byte> bytes) {
+    AnimatedMesh all = RELIEF_TRY(unpack(bytes));
+    AnimatedMesh mesh;
+    mesh.nodes = std::move(all.nodes);
+    mesh.weights = std::move(all.weights);
+    mesh.clips = std::move(all.clips);
+    RELIEF_TRY(validateClips(mesh));
     return mesh;
 }
 

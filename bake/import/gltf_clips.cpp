@@ -1,0 +1,220 @@
+#include "bake/import/gltf_clips.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "bake/import/animated_import.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// Of an accessor.
+constexpr std::uint64_t kKeysMax = 10'000'000;
+/// Tolerance of a rotation's length, beyond which it is no rotation at all.
+constexpr double kRotationTolerance = 0.1;
+
+constexpr std::array<std::string_view, 4> kPaths = {"translation", "rotation", "scale", "weights"};
+constexpr std::array<std::string_view, 3> kCurves = {"STEP", "LINEAR", "CUBICSPLINE"};
+
+template <std::size_t kCount>
+std::optional<std::uint8_t> indexOf(const std::array<std::string_view, kCount>& words,
+                                    std::string_view word) {
+    const auto found = std::find(words.begin(), words.end(), word);
+    return found == words.end() ? std::nullopt
+                                : std::optional(static_cast<std::uint8_t>(found - words.begin()));
+}
+
+class ClipReader {
+  public:
+    ClipReader(GltfBuffers& buffers, const std::vector<std::optional<std::uint32_t>>& nodes,
+               AnimatedMesh& mesh, std::vector<std::string>& warnings)
+        : buffers_(buffers), nodes_(nodes), mesh_(mesh), warnings_(warnings) {}
+
+    Result<void> read(const GltfValue& place) {
+        MeshClip clip;
+        clip.name = RELIEF_TRY(place.get<std::string>("name", ""));
+        clip.name = clip.name.empty() ? "clip " + std::to_string(place.index()) : clip.name;
+        const std::vector<GltfValue> samplers = RELIEF_TRY(place.objects("samplers"));
+        std::set<std::pair<std::uint64_t, std::string>> moved;
+        for (const GltfValue& from : RELIEF_TRY(place.objects("channels"))) {
+            RELIEF_TRY(readChannel(from, samplers, moved, clip));
+        }
+        if (clip.channels.empty() || !(clip.seconds > 0.0F)) {
+            warnings_.push_back("the animation '" + cleanUtf8(clip.name, kAnimatedNameMax) +
+                                (clip.channels.empty() ? "' moves nothing of the mesh" : "' has no length") +
+                                ", and is left out");
+            return {};
+        }
+        if (clip.seconds > kClipSecondsMax) {
+            return place.wrong("lasts longer than a day; cut it, or mend the times of its keys",
+                               ErrorCode::kLimit);
+        }
+        if (mesh_.clips.size() == kMeshClipsMax) {
+            return fail(ErrorCode::kLimit,
+                        "it has more than " + std::to_string(kMeshClipsMax) + " animations; export fewer");
+        }
+        addClip(mesh_, std::move(clip), warnings_);
+        return {};
+    }
+
+  private:
+    /// Adds the channel, if it moves a node of the mesh. \param moved  nodes of the file, and paths.
+    Result<void> readChannel(const GltfValue& from, const std::vector<GltfValue>& samplers,
+                             std::set<std::pair<std::uint64_t, std::string>>& moved, MeshClip& clip) {
+        const std::optional<GltfValue> target = RELIEF_TRY(from.object("target"));
+        const std::optional<std::string> path =
+            target ? RELIEF_TRY(target->get<std::string>("path")) : std::nullopt;
+        if (!path) {
+            return from.wrong("has no target, or one without a path");
+        }
+        const std::optional<GltfValue> node = RELIEF_TRY(target->named("node", "nodes"));
+        const std::uint64_t number = RELIEF_TRY(from.number("sampler"));
+        if (number >= samplers.size()) {
+            return from.wrong("names by sampler samplers[" + std::to_string(number) +
+                              "], which does not exist");
+        }
+        const std::optional<std::uint8_t> member = indexOf(kPaths, *path);
+        if (!node || !member) {
+            // As extensions have them: a light, a material.
+            return {};
+        }
+        if (!moved.emplace(node->index(), *path).second) {
+            return from.wrong("moves the " + *path + " of nodes[" + std::to_string(node->index()) +
+                              "], which another one moves too");
+        }
+        ClipChannel channel;
+        channel.member = static_cast<NodeMember>(*member);
+        const GltfValue& sampler = samplers[number];
+        channel.times = RELIEF_TRY(readTimes(sampler));
+        clip.seconds = std::max(clip.seconds, channel.times.back());
+        const std::optional<std::uint32_t> of_mesh = nodes_[node->index()];
+        if (!of_mesh) {
+            return {};
+        }
+        channel.node = *of_mesh;
+        if (mesh_.nodes[channel.node].matrix && channel.member != NodeMember::kWeights) {
+            return from.wrong("moves nodes[" + std::to_string(node->index()) +
+                              "], whose matrix is no translation, rotation and scale; export it with these");
+        }
+        if (channel.member == NodeMember::kWeights && mesh_.nodes[channel.node].weights == 0) {
+            return from.wrong("moves the morph targets of nodes[" + std::to_string(node->index()) +
+                              "], which has none");
+        }
+        RELIEF_TRY(readValues(sampler, channel));
+        clip.channels.push_back(std::move(channel));
+        return {};
+    }
+
+    Result<std::vector<float>> readTimes(const GltfValue& sampler) {
+        const GltfValue input = RELIEF_TRY(sampler.needed("input", "accessors"));
+        std::vector<float> times =
+            RELIEF_TRY(readAccessor<float>(input, GltfUse::kTimes, buffers_, kKeysMax));
+        if (times.empty()) {
+            return input.wrong("has no keys");
+        }
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            if (!std::isfinite(times[i]) || times[i] < 0.0F || (i > 0 && times[i] <= times[i - 1])) {
+                return input.wrong("has as time " + std::to_string(i) + " " +
+                                   (std::isfinite(times[i]) ? shortest(times[i]) : "no number") +
+                                   "; times of keys are 0 or more and rise from key to key");
+            }
+        }
+        return times;
+    }
+
+    /// \param channel  gets curve and values.
+    Result<void> readValues(const GltfValue& sampler, ClipChannel& channel) {
+        const std::string word = RELIEF_TRY(sampler.get<std::string>("interpolation", "LINEAR"));
+        const std::optional<std::uint8_t> curve = indexOf(kCurves, word);
+        if (!curve) {
+            return sampler.wrong("has the interpolation '" + cleanUtf8(word, 20) +
+                                 "', which is none of STEP, LINEAR and CUBICSPLINE");
+        }
+        channel.curve = static_cast<KeyCurve>(*curve);
+        const GltfValue output = RELIEF_TRY(sampler.needed("output", "accessors"));
+        switch (channel.member) {
+            case NodeMember::kRotation:
+                channel.values = RELIEF_TRY(numbers<glm::vec4>(output, GltfUse::kRotations));
+                break;
+            case NodeMember::kWeights:
+                channel.values =
+                    RELIEF_TRY(readAccessor<float>(output, GltfUse::kMorphs, buffers_, kKeysMax));
+                break;
+            default:
+                channel.values = RELIEF_TRY(numbers<glm::vec3>(output, GltfUse::kVectors));
+                break;
+        }
+        const std::size_t a_key = keyNumbers(mesh_, channel) * (channel.curve == KeyCurve::kCubic ? 3 : 1);
+        if (channel.values.size() != a_key * channel.times.size()) {
+            return output.wrong("has " + std::to_string(channel.values.size()) + " numbers instead of " +
+                                std::to_string(a_key) + " for each of " +
+                                std::to_string(channel.times.size()) + " keys");
+        }
+        if (!std::all_of(channel.values.begin(), channel.values.end(),
+                         [](float value) { return std::isfinite(value); })) {
+            return output.wrong("has values of keys that are no numbers");
+        }
+        return channel.member == NodeMember::kRotation ? unitRotations(output, channel) : Result<void>();
+    }
+
+    /// Quantised quaternions are no unit ones. Tangents stay as they are.
+    static Result<void> unitRotations(const GltfValue& output, ClipChannel& channel) {
+        const bool cubic = channel.curve == KeyCurve::kCubic;
+        for (std::size_t key = 0; key < channel.times.size(); ++key) {
+            float* const q = &channel.values[cubic ? 12 * key + 4 : 4 * key];
+            double square = 0.0;
+            for (int i = 0; i < 4; ++i) {
+                square += double{q[i]} * double{q[i]};
+            }
+            const double length = std::sqrt(square);
+            if (!(std::abs(length - 1.0) <= kRotationTolerance)) {
+                return output.wrong("has as rotation of key " + std::to_string(key) +
+                                    " no unit quaternion: its length is " +
+                                    shortest(static_cast<float>(length)));
+            }
+            for (int i = 0; i < 4 && !cubic; ++i) {
+                q[i] = static_cast<float>(double{q[i]} / length);
+            }
+        }
+        return {};
+    }
+
+    template <class T>
+    Result<std::vector<float>> numbers(const GltfValue& accessor, GltfUse use) {
+        const std::vector<T> values = RELIEF_TRY(readAccessor<T>(accessor, use, buffers_, kKeysMax));
+        std::vector<float> all;
+        all.reserve(values.size() * static_cast<std::size_t>(T::length()));
+        for (const T& value : values) {
+            for (int i = 0; i < T::length(); ++i) {
+                all.push_back(value[i]);
+            }
+        }
+        return all;
+    }
+
+    GltfBuffers& buffers_;
+    const std::vector<std::optional<std::uint32_t>>& nodes_;
+    AnimatedMesh& mesh_;
+    std::vector<std::string>& warnings_;
+};
+
+}  // namespace
+
+Result<void> readGltfClips(const GltfValue& document, GltfBuffers& buffers,
+                           const std::vector<std::optional<std::uint32_t>>& nodes, AnimatedMesh& mesh,
+                           std::vector<std::string>& warnings) {
+    ClipReader reader(buffers, nodes, mesh, warnings);
+    for (const GltfValue& place : RELIEF_TRY(document.objects("animations"))) {
+        RELIEF_TRY(reader.read(place));
+    }
+    return {};
+}
+
+}  // namespace relief

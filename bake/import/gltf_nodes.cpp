@@ -1,0 +1,267 @@
+#include "bake/import/gltf_nodes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+// --- the document ---
+
+// Required extensions that are read or do not change positions.
+constexpr std::array<std::string_view, 9> kKnown = {
+    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_technique_webgl",
+    "KHR_techniques_webgl",  "KHR_texture_basisu",    "KHR_lights_punctual",
+    "EXT_texture_webp",      "MSFT_texture_dds",      "EXT_mesh_gpu_instancing"};
+
+Result<void> checkVersion(const GltfValue& document) {
+    const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
+    const auto version = asset ? RELIEF_TRY(asset->get<std::string>("version")) : std::nullopt;
+    if (!version) {
+        return invalidInput("it names no glTF version");
+    }
+    const std::string least = RELIEF_TRY(asset->get<std::string>("minVersion", "2.0"));
+    for (const auto& [text, any_minor] : {std::pair(*version, true), std::pair(least, false)}) {
+        const std::vector<std::string_view> parts = split(text, '.');
+        const std::optional<std::uint64_t> major = parseUnsigned(parts[0]);
+        const std::optional<std::uint64_t> minor = parts.size() == 2 ? parseUnsigned(parts[1]) : std::nullopt;
+        if (!major || !minor) {
+            return asset->wrong("has '" + cleanUtf8(text, 20) +
+                                "' where a version belongs; save it as glTF 2.0");
+        }
+        if (*major != 2 || (*minor > 0 && !any_minor)) {
+            return fail(ErrorCode::kUnsupported,
+                        "glTF of version '" + cleanUtf8(text, 20) + "' is not read; save it as glTF 2.0");
+        }
+    }
+    return {};
+}
+
+Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>& warnings) {
+    using Names = std::vector<std::string>;
+    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsRequired", {}))) {
+        const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
+                           std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
+        if (!known) {
+            return fail(ErrorCode::kUnsupported, "it requires the extension '" + cleanUtf8(name, 100) +
+                                                     "', which is not read; export it without");
+        }
+    }
+    // Optional extensions that change the surface.
+    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsUsed", {}))) {
+        if (name == "KHR_node_visibility") {
+            warnings.emplace_back(
+                "nodes that KHR_node_visibility hides are baked too; export it without them");
+        }
+    }
+    return {};
+}
+
+// --- nodes ---
+
+/// Tolerance of a rotation's length, as in the Khronos validator: the rounding of bytes.
+constexpr double kUnitTolerance = 0.00674;
+/// Tolerance of the last row of a matrix, 0 0 0 1.
+constexpr float kRowTolerance = 1e-5F;
+
+glm::dmat3 rotationOf(const glm::dvec3& v, double w) {
+    const double x = v.x;
+    const double y = v.y;
+    const double z = v.z;
+    return {{1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
+            {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
+            {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
+}
+
+/// \param node  for messages.
+Result<Transform> placedBy(const GltfValue& node, const glm::vec3& t, const glm::vec4& q,
+                           const glm::vec3& scale) {
+    const double length =
+        std::sqrt(double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w);
+    if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
+        return node.wrong("has a rotation that is no unit quaternion: its length is " +
+                          shortest(static_cast<float>(length)));
+    }
+    Transform transform{rotationOf(glm::dvec3(q.x, q.y, q.z) / length, q.w / length), t};
+    for (int i = 0; i < 3; ++i) {
+        transform.linear[i] *= double{scale[i]};
+    }
+    return transform;
+}
+
+Result<GltfPlacement> placementOf(const GltfValue& node) {
+    const std::vector<float> matrix = RELIEF_TRY(node.numbers("matrix", 16));
+    const std::vector<float> t = RELIEF_TRY(node.numbers("translation", 3));
+    const std::vector<float> q = RELIEF_TRY(node.numbers("rotation", 4));
+    const std::vector<float> scale = RELIEF_TRY(node.numbers("scale", 3));
+    GltfPlacement at;
+    if (!matrix.empty()) {
+        if (!t.empty() || !q.empty() || !scale.empty()) {
+            return node.wrong("has a matrix and a translation, rotation or scale; only one may be");
+        }
+        const std::optional<Transform> transform = affineOf(matrix.data());
+        if (!transform) {
+            return node.wrong("has a matrix whose last row is not 0 0 0 1 (is it transposed?)");
+        }
+        at.matrix = true;
+        at.transform = *transform;
+        return at;
+    }
+    at.translation = t.empty() ? at.translation : glm::vec3(t[0], t[1], t[2]);
+    at.rotation = q.empty() ? at.rotation : glm::vec4(q[0], q[1], q[2], q[3]);
+    at.scale = scale.empty() ? at.scale : glm::vec3(scale[0], scale[1], scale[2]);
+    at.transform = RELIEF_TRY(placedBy(node, at.translation, at.rotation, at.scale));
+    return at;
+}
+
+/// Links the nodes with their children.
+Result<void> linkNodes(std::vector<GltfNode>& nodes) {
+    for (std::uint32_t index = 0; index < nodes.size(); ++index) {
+        const GltfValue place = nodes[index].place;
+        for (const std::uint64_t child : RELIEF_TRY(place.get<std::vector<std::uint64_t>>("children", {}))) {
+            const std::string name = "nodes[" + std::to_string(child) + "]";
+            if (child >= nodes.size()) {
+                return place.wrong("names a child, " + name + ", that does not exist");
+            }
+            // n nodes could show it 2ⁿ times.
+            if (std::exchange(nodes[child].parent, index)) {
+                return invalidInput(name + " has two parents; nodes must form trees");
+            }
+            nodes[index].children.push_back(static_cast<std::uint32_t>(child));
+        }
+    }
+    return {};
+}
+
+/// Empty where there is no such attribute.
+template <class T>
+Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* name, GltfUse use,
+                                      GltfBuffers& buffers, std::uint64_t count_max) {
+    const std::optional<GltfValue> accessor = RELIEF_TRY(attributes.named(name, "accessors"));
+    return accessor ? readAccessor<T>(*accessor, use, buffers, count_max)
+                    : Result<std::vector<T>>(std::vector<T>());
+}
+
+}  // namespace
+
+Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings) {
+    RELIEF_TRY(checkVersion(document));
+    return checkExtensions(document, warnings);
+}
+
+Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document) {
+    std::vector<GltfNode> nodes;
+    for (const GltfValue& place : RELIEF_TRY(document.objects("nodes"))) {
+        GltfNode& node = nodes.emplace_back(GltfNode{place});
+        node.name = RELIEF_TRY(place.get<std::string>("name", ""));
+        node.at = RELIEF_TRY(placementOf(place));
+        node.mesh = RELIEF_TRY(place.named("mesh", "meshes"));
+        node.skin = RELIEF_TRY(place.named("skin", "skins"));
+    }
+    RELIEF_TRY(linkNodes(nodes));
+    // Each node has at most one parent, so a node that no root reaches is part of a ring.
+    std::vector<std::uint32_t> roots;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        if (!nodes[i].parent) {
+            roots.push_back(i);
+        }
+    }
+    return nodesBelow(roots, nodes).size() == nodes.size()
+               ? Result<std::vector<GltfNode>>(std::move(nodes))
+               : invalidInput("its nodes are their own parents; nodes must form trees");
+}
+
+Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document, const std::vector<GltfNode>& nodes) {
+    const std::vector<GltfValue> scenes = RELIEF_TRY(document.objects("scenes"));
+    const std::uint64_t shown = RELIEF_TRY(document.get<std::uint64_t>("scene", 0));
+    if (scenes.empty()) {
+        return invalidInput("it has no scene, and so shows nothing; export it with a scene");
+    }
+    const GltfValue scene = RELIEF_TRY(document.at(shown, "scenes", "scene"));
+    std::vector<std::uint32_t> roots;
+    std::set<std::uint64_t> seen;
+    for (const std::uint64_t root : RELIEF_TRY(scene.get<std::vector<std::uint64_t>>("nodes", {}))) {
+        if (root >= nodes.size() || nodes[root].parent || !seen.insert(root).second) {
+            return scene.wrong("names nodes[" + std::to_string(root) +
+                               "], which does not exist, has a parent or is named twice");
+        }
+        roots.push_back(static_cast<std::uint32_t>(root));
+    }
+    return roots;
+}
+
+std::vector<std::uint32_t> nodesBelow(const std::vector<std::uint32_t>& roots,
+                                      const std::vector<GltfNode>& nodes) {
+    std::vector<std::uint32_t> below;
+    std::vector<std::uint32_t> pending(roots.rbegin(), roots.rend());
+    while (!pending.empty()) {
+        below.push_back(pending.back());
+        const std::vector<std::uint32_t>& children = nodes[pending.back()].children;
+        pending.pop_back();
+        pending.insert(pending.end(), children.rbegin(), children.rend());
+    }
+    return below;
+}
+
+Transform transformInScene(const std::vector<GltfNode>& nodes, std::uint32_t index) {
+    Transform transform = nodes[index].at.transform;
+    for (auto above = nodes[index].parent; above; above = nodes[*above].parent) {
+        transform = nodes[*above].at.transform * transform;
+    }
+    return transform;
+}
+
+std::optional<Transform> affineOf(const float* m) {
+    for (const int i : {3, 7, 11, 15}) {
+        if (!(std::abs(m[i] - (i == 15 ? 1.0F : 0.0F)) <= kRowTolerance)) {
+            return std::nullopt;
+        }
+    }
+    return Transform{glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]),
+                     {m[12], m[13], m[14]}};
+}
+
+Result<std::optional<std::vector<Transform>>> gltfInstances(const GltfNode& node, GltfBuffers& buffers,
+                                                            std::uint64_t& left) {
+    const std::optional<GltfValue> extensions = RELIEF_TRY(node.place.object("extensions"));
+    const std::optional<GltfValue> instancing =
+        extensions ? RELIEF_TRY(extensions->object("EXT_mesh_gpu_instancing")) : std::nullopt;
+    if (!instancing) {
+        return std::nullopt;
+    }
+    const std::optional<GltfValue> attributes = RELIEF_TRY(instancing->object("attributes"));
+    if (!attributes) {
+        return instancing->wrong("has no attributes");
+    }
+    const auto moves =
+        RELIEF_TRY(instanceValues<glm::vec3>(*attributes, "TRANSLATION", GltfUse::kVectors, buffers, left));
+    const auto turns =
+        RELIEF_TRY(instanceValues<glm::vec4>(*attributes, "ROTATION", GltfUse::kRotations, buffers, left));
+    const auto scales =
+        RELIEF_TRY(instanceValues<glm::vec3>(*attributes, "SCALE", GltfUse::kVectors, buffers, left));
+    const std::size_t count = std::max({moves.size(), turns.size(), scales.size()});
+    for (const std::size_t size : {moves.size(), turns.size(), scales.size()}) {
+        if (size != count && size != 0) {
+            return attributes->wrong("have other counts of TRANSLATION, ROTATION and SCALE");
+        }
+    }
+    if (count == 0) {
+        return attributes->wrong("have none of TRANSLATION, ROTATION and SCALE");
+    }
+    left -= count;
+    std::vector<Transform> instances;
+    for (std::size_t i = 0; i < count; ++i) {
+        instances.push_back(RELIEF_TRY(placedBy(*attributes, moves.empty() ? glm::vec3(0.0F) : moves[i],
+                                                turns.empty() ? glm::vec4(0, 0, 0, 1) : turns[i],
+                                                scales.empty() ? glm::vec3(1.0F) : scales[i])));
+    }
+    return instances;
+}
+
+}  // namespace relief

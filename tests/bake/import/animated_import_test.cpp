@@ -1,0 +1,561 @@
+// Animated meshes of glTF files: their poses against closed forms and another reader, and what is refused.
+#include "bake/import/animated_import.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+
+#include "bake/import/import_source.h"
+#include "formats/animation/mesh_pose.h"
+#include "tests/bake/import/animated_cases.h"
+#include "tests/bake/import/animated_oracle.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr double kPi = std::numbers::pi;
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Result<AnimatedImport> load(const GltfScribe& scribe, const ImportOptions& options = {}) {
+    const TemporaryFolder folder;
+    return importAnimatedInWorker(writeGltf(scribe.file(), folder, "a"), {}, options);
+}
+
+AnimatedImport loaded(const GltfScribe& scribe, const ImportOptions& options = {}) {
+    Result<AnimatedImport> import = load(scribe, options);
+    EXPECT_TRUE(import) << (import ? "" : import.error().message);
+    return import ? std::move(*import) : AnimatedImport{};
+}
+
+std::vector<glm::vec3> at(const AnimatedMesh& mesh, const std::string& clip, double seconds) {
+    const std::optional<std::size_t> index = findClip(mesh, clip);
+    EXPECT_TRUE(index) << clip;
+    return posed(mesh, index ? poseAt(mesh, mesh.clips[*index], seconds) : restPose(mesh));
+}
+
+void expectNear(const glm::vec3& a, const glm::dvec3& b, double tolerance) {
+    EXPECT_LE(glm::distance(glm::dvec3(a), b), tolerance)
+        << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " " << b.z;
+}
+
+/// Six times the enclosed volume; negative where triangles look inwards.
+double volumeOf(const AnimatedMesh& mesh, const std::vector<glm::vec3>& positions, std::size_t first,
+                std::size_t count) {
+    double sum = 0.0;
+    for (std::size_t i = first; i < first + count; ++i) {
+        const glm::uvec3& t = mesh.triangles[i];
+        sum += glm::dot(glm::dvec3(positions[t.x]),
+                        glm::cross(glm::dvec3(positions[t.y]), glm::dvec3(positions[t.z])));
+    }
+    return sum;
+}
+
+// --- closed forms ---
+
+TEST(AnimatedImport, ABarBendsAtItsJoint) {
+    const AnimatedMesh mesh = loaded(bendingBar()).mesh;
+    ASSERT_EQ(mesh.positions.size(), 12U);
+    EXPECT_EQ(mesh.joints.size(), 2U);
+    EXPECT_EQ(mesh.influences.size(), 4U + 8U + 4U) << "weights of 0 are dropped";
+    // Quantised to 16 bits.
+    constexpr double kTolerance = 1e-4;
+    for (const double seconds : {0.0, 0.25, 0.5, 1.0, 2.0}) {
+        SCOPED_TRACE(seconds);
+        const std::vector<glm::vec3> posed = at(mesh, "bend", seconds);
+        const double angle = std::min(seconds, 1.0) * kPi / 2;
+        for (std::size_t i = 0; i < posed.size(); ++i) {
+            const glm::dvec3 p(mesh.positions[i]);
+            const double y = p.y - 1.0;
+            const glm::dvec3 turned(std::cos(angle) * p.x - std::sin(angle) * y,
+                                    1.0 + std::sin(angle) * p.x + std::cos(angle) * y, p.z);
+            expectNear(posed[i], i < 4 ? p : i < 8 ? 0.5 * (p + turned) : turned, kTolerance);
+        }
+    }
+    EXPECT_GT(volumeOf(mesh, posed(mesh, restPose(mesh)), 0, mesh.triangles.size()), 0.0);
+}
+
+TEST(AnimatedImport, ARobotOfRigidNodesMoves) {
+    const AnimatedImport import = loaded(robot());
+    const AnimatedMesh& mesh = import.mesh;
+    ASSERT_EQ(mesh.positions.size(), 24U);
+    // base, arm, hand: parents before their children, below the frame
+    ASSERT_EQ(mesh.nodes.size(), 4U);
+    EXPECT_EQ(mesh.nodes[1].name, "base");
+    EXPECT_EQ(mesh.nodes[2].parent, 1);
+    const std::vector<glm::vec3> driven = at(mesh, "drive", 1.0);
+    const std::vector<glm::vec3> turned = at(mesh, "turn", 2.0);
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner(boxCorner({0, 0, 0}, {1, 2, 3}, i));
+        const auto index = static_cast<std::size_t>(i);
+        expectNear(driven[index], corner + glm::dvec3(2, 0, 0), 1e-6);
+        expectNear(driven[8 + index], corner + glm::dvec3(3, 2, 0), 1e-6);
+        // A quarter turn about z, in steps of 16 bits.
+        expectNear(turned[8 + index], glm::dvec3(1 - corner.y, 2 + corner.x, corner.z), 1e-4);
+        const glm::dvec3 hand(-corner.x, 2 + corner.y, corner.z);
+        expectNear(turned[16 + index], glm::dvec3(1 - hand.y, 2 + hand.x, hand.z), 3e-4);
+    }
+    const std::vector<glm::vec3> rest = posed(mesh, restPose(mesh));
+    for (std::size_t part = 0; part < 3; ++part) {
+        EXPECT_NEAR(volumeOf(mesh, rest, 12 * part, 12), 36.0, 1e-4) << "also of the mirrored hand: " << part;
+    }
+    EXPECT_EQ(mesh.clips[0].seconds, 3.5F);
+    EXPECT_EQ(import.rest.positions.size(), 24U);
+    EXPECT_EQ(import.rest.bounds.max, glm::vec3(2, 6, 3));
+}
+
+TEST(AnimatedImport, ACubeMorphs) {
+    const AnimatedMesh mesh = loaded(morphingCube()).mesh;
+    ASSERT_EQ(mesh.weights, (std::vector<float>{0.5F, 0.0F})) << "the node's, not the mesh's";
+    EXPECT_EQ(mesh.deltas.size(), 4U) << "those that are 0 are dropped";
+    const auto reach = [&](const std::vector<glm::vec3>& positions) { return positions[1].x; };
+    EXPECT_EQ(reach(posed(mesh, restPose(mesh))), 2.0F);
+    EXPECT_EQ(reach(at(mesh, "stretch", 0.0)), 1.0F);
+    EXPECT_FLOAT_EQ(reach(at(mesh, "stretch", 0.5)), 1.5F);
+    EXPECT_EQ(reach(at(mesh, "stretch", 2.0)), 3.0F);
+}
+
+TEST(AnimatedImport, CubicKeysAreHermite) {
+    GltfScribe scribe = robot();
+    const std::size_t times = scribe.floats("SCALAR", {1, 3});
+    scribe.animate(2, "translation", times,
+                   scribe.floats("VEC3", {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 2, 0, 4, 0, 0, 9, 9, 9}),
+                   "CUBICSPLINE", "swing");
+    const AnimatedMesh mesh = loaded(scribe).mesh;
+    for (const double seconds : {1.0, 1.5, 2.0, 2.9, 3.0}) {
+        const double t = (seconds - 1.0) / 2.0;
+        const glm::dvec3 moved((3 * t * t - 2 * t * t * t) * 4 + 2 * (t * t * t - 2 * t * t + t),
+                               2 * (t * t * t - t * t) * 2, 0);
+        expectNear(at(mesh, "swing", seconds)[0], moved, 1e-5);
+    }
+}
+
+TEST(AnimatedImport, UnitAndAxisStandAboveAllNodes) {
+    ImportOptions options;
+    options.unit = "cm";
+    options.up = UpAxis::kPlusZ;
+    const AnimatedImport import = loaded(bendingBar(), options);
+    const std::vector<glm::vec3> plain = at(loaded(bendingBar()).mesh, "bend", 0.7);
+    const std::vector<glm::vec3> turned = at(import.mesh, "bend", 0.7);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        expectNear(turned[i], 0.01 * glm::dvec3(plain[i].x, plain[i].z, -plain[i].y), 1e-7);
+    }
+    EXPECT_EQ(import.rest.unit, "m");
+}
+
+TEST(AnimatedImport, ANodeWithAMatrixMovesIfItIsNoShear) {
+    GltfScribe scribe = robot();
+    scribe.json["nodes"][2].erase("translation");
+    scribe.json["nodes"][2]["matrix"] = {0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
+    const AnimatedMesh mesh = loaded(scribe).mesh;
+    EXPECT_FALSE(mesh.nodes[1].matrix);
+    expectNear(posed(mesh, restPose(mesh))[7], {5 - 6, 2, 3}, 1e-5);
+    expectNear(at(mesh, "drive", 1.5)[7], {4 - 6, 2, 3}, 1e-5);
+    scribe.json["nodes"][2]["matrix"] = {1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
+    const Result<AnimatedImport> sheared = load(scribe);
+    ASSERT_FALSE(sheared);
+    EXPECT_NE(sheared.error().message.find("nodes[2], whose matrix is no translation"), std::string::npos)
+        << sheared.error().message;
+}
+
+TEST(AnimatedImport, InstancesMoveWithTheirNode) {
+    GltfScribe scribe = robot();
+    const std::size_t places = scribe.floats("VEC3", {0, 0, 0, 0, 0, 10});
+    scribe.json["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
+    const AnimatedMesh mesh = loaded(scribe).mesh;
+    ASSERT_EQ(mesh.positions.size(), 32U);
+    expectNear(at(mesh, "drive", 1.5)[8], {4, 0, 10}, 1e-6);
+}
+
+TEST(AnimatedImport, JointsMayStandOutsideTheScene) {
+    GltfScribe scribe = bendingBar();
+    scribe.json["scenes"][0]["nodes"] = {0};
+    EXPECT_EQ(loaded(scribe).mesh.joints.size(), 2U);
+}
+
+TEST(AnimatedImport, WithoutBindMatricesTheyAreNone) {
+    GltfScribe scribe = bendingBar();
+    scribe.json["skins"][0].erase("inverseBindMatrices");
+    const AnimatedMesh mesh = loaded(scribe).mesh;
+    EXPECT_EQ(mesh.joints[1].bind, Affine{});
+    expectNear(posed(mesh, restPose(mesh))[8], {-0.5, 3, -0.5}, 1e-6);
+}
+
+// --- against the book ---
+
+void compareWithTheBook(const fs::path& file, std::size_t clips) {
+    SCOPED_TRACE(file);
+    const Result<AnimatedImport> import = importAnimatedFileInWorker(file, ImportKind::kAnimated, {}, {});
+    ASSERT_TRUE(import) << import.error().message;
+    const AnimatedMesh& mesh = import->mesh;
+    const GltfPoser book(file);
+    ASSERT_EQ(book.animations(), clips);
+    ASSERT_EQ(mesh.clips.size(), clips);
+    const auto compare = [&](const MeshPose& pose, const std::vector<glm::dvec3>& corners) {
+        const std::vector<glm::vec3> positions = posed(mesh, pose);
+        ASSERT_EQ(corners.size(), 3 * mesh.triangles.size());
+        glm::dvec3 low(1e30);
+        glm::dvec3 high(-1e30);
+        for (const glm::dvec3& corner : corners) {
+            low = glm::min(low, corner);
+            high = glm::max(high, corner);
+        }
+        const double tolerance = 1e-5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+        double worst = 0.0;
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const glm::uvec3& t = mesh.triangles[i];
+            const auto off = [&](std::uint32_t vertex, std::size_t k) {
+                return glm::distance(glm::dvec3(positions[vertex]), corners[3 * i + k]);
+            };
+            // Mirrored parts are turned over.
+            worst =
+                std::max({worst, off(t.x, 0),
+                          std::min(std::max(off(t.y, 1), off(t.z, 2)), std::max(off(t.y, 2), off(t.z, 1)))});
+        }
+        EXPECT_LE(worst, tolerance);
+    };
+    compare(restPose(mesh), book.corners(std::nullopt, 0.0));
+    for (std::size_t clip = 0; clip < clips; ++clip) {
+        EXPECT_NEAR(double{mesh.clips[clip].seconds}, book.seconds(clip), 1e-6);
+        for (int i = 0; i < 20; ++i) {
+            const double seconds = book.seconds(clip) * (i + 0.37) / 19.5;
+            compare(poseAt(mesh, mesh.clips[clip], seconds), book.corners(clip, seconds));
+        }
+    }
+}
+
+TEST(AnimatedImport, PosesAreThoseOfTheBook) {
+    const TemporaryFolder folder;
+    compareWithTheBook(writeGltf(bendingBar().file(), folder, "bar"), 1);
+    compareWithTheBook(writeGltf(robot().file(), folder, "robot"), 2);
+    compareWithTheBook(writeGltf(morphingCube().file(), folder, "cube"), 1);
+    GltfScribe swings = robot();
+    const std::size_t times = swings.floats("SCALAR", {0.25F, 1, 3});
+    std::vector<float> spins;
+    for (int i = 0; i < 9; ++i) {
+        const auto number = static_cast<float>(i);
+        spins.insert(spins.end(), {0.3F - 0.1F * number, 0.2F, 0.5F - 0.04F * number, 0.8F});
+    }
+    // Values of cubic rotations need be near unit length.
+    for (const std::size_t key : {4U, 16U, 28U}) {
+        const glm::vec4 q(spins[key], spins[key + 1], spins[key + 2], spins[key + 3]);
+        for (std::size_t k = 0; k < 4; ++k) {
+            spins[key + k] /= glm::length(q);
+        }
+    }
+    swings.animate(1, "rotation", times, swings.floats("VEC4", spins), "CUBICSPLINE", "spin");
+    swings.animate(0, "scale", times, swings.floats("VEC3", {1, 1, 1, 2, 1, 0.5F, 1, 3, 1}), "LINEAR",
+                   "grow");
+    compareWithTheBook(writeGltf(swings.file(), folder, "swings"), 4);
+}
+
+TEST(AnimatedImport, PublishedModelsMoveAsTheBookSays) {
+    const fs::path models = "/usr/share/assimp/models/glTF2";
+    compareWithTheBook(models / "simple_skin/simple_skin.gltf", 1);
+    compareWithTheBook(models / "glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf", 1);
+    compareWithTheBook(models / "2CylinderEngine-glTF-Binary/2CylinderEngine.glb", 0);
+}
+
+// --- names and clips of other files ---
+
+bool warns(const TriangleMesh& mesh, const std::string& text) {
+    return std::any_of(mesh.warnings.begin(), mesh.warnings.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
+    const TemporaryFolder folder;
+    GltfScribe still = robot();
+    still.json.erase("animations");
+    GltfScribe moves = robot();
+    moves.json.erase("meshes");
+    // Other numbers, other places in the tree, one more node.
+    moves.json["nodes"] = {{{"name", "elsewhere"}}, {{"name", "base"}}, {{"name", "arm"}}};
+    moves.json["scenes"][0]["nodes"] = {0, 1, 2};
+    moves.json["animations"][0]["channels"][0]["target"]["node"] = 1;
+    moves.json["animations"][1]["channels"][0]["target"]["node"] = 2;
+    Json lost = moves.json["animations"][0]["channels"][0];
+    lost["target"]["node"] = 0;
+    moves.json["animations"][0]["channels"].push_back(lost);
+    const fs::path file = writeGltf(still.file(), folder, "still");
+    const fs::path clips = writeGltf(moves.file(), folder, "moves");
+    const Result<AnimatedImport> merged = importAnimatedInWorker(file, {clips, clips});
+    ASSERT_TRUE(merged) << merged.error().message;
+    const AnimatedMesh& mesh = merged->mesh;
+    ASSERT_EQ(mesh.clips.size(), 4U);
+    EXPECT_EQ(mesh.clips[2].name, "drive 2");
+    EXPECT_TRUE(warns(merged->rest, "moves.glb: another clip has the name 'drive'"));
+    EXPECT_TRUE(
+        warns(merged->rest, "moves.glb: left out what moves nodes that the mesh does not have: 'elsewhere'"));
+    const AnimatedMesh own = loaded(robot()).mesh;
+    EXPECT_EQ(at(mesh, "drive", 1.2), at(own, "drive", 1.2));
+    EXPECT_EQ(at(mesh, "turn 2", 2.0), at(own, "turn", 2.0));
+    EXPECT_EQ(merged->rest.dependencies.size(), 3U);
+
+    moves.json["nodes"] = {{{"name", "elsewhere"}}, {{"name", "BASE"}}, Json::object()};
+    const fs::path strange = writeGltf(moves.file(), folder, "strange");
+    const Result<AnimatedImport> refused = importAnimatedInWorker(file, {strange});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(
+        refused.error().message.find("strange.glb': none of the nodes that it moves is one of the mesh"),
+        std::string::npos)
+        << refused.error().message;
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    EXPECT_FALSE(importAnimatedInWorker(file, {file})) << "no animation";
+}
+
+TEST(AnimatedImport, ClipsHaveNamesOfTheirOwn) {
+    GltfScribe scribe = robot();
+    scribe.json["animations"][0].erase("name");
+    scribe.json["animations"][1]["name"] = "clip 0";
+    const AnimatedImport import = loaded(scribe);
+    ASSERT_EQ(import.mesh.clips.size(), 2U);
+    EXPECT_EQ(import.mesh.clips[0].name, "clip 0");
+    EXPECT_EQ(import.mesh.clips[1].name, "clip 0 2");
+    EXPECT_TRUE(warns(import.rest, "another clip has the name 'clip 0'; this one gets 'clip 0 2'"));
+}
+
+// --- right and wrong ---
+
+TEST(AnimatedImport, WhatMovesNothingIsLeftOut) {
+    GltfScribe scribe = robot();
+    const std::size_t once = scribe.floats("SCALAR", {0});
+    scribe.animate(2, "translation", once, scribe.floats("VEC3", {0, 0, 0}), "LINEAR", "pose");
+    scribe.json["nodes"].push_back({{"name", "unseen"}});
+    scribe.animate(3, "translation", 2, 3, "LINEAR", "away");
+    scribe.json["animations"][0]["channels"].push_back(
+        {{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", Json::object()}}}});
+    const AnimatedImport import = loaded(scribe);
+    EXPECT_EQ(import.mesh.clips.size(), 2U);
+    EXPECT_TRUE(warns(import.rest, "the animation 'pose' has no length, and is left out"));
+    EXPECT_TRUE(warns(import.rest, "the animation 'away' moves nothing of the mesh, and is left out"));
+}
+
+TEST(AnimatedImport, WeightsOfAnotherSumAreScaled) {
+    GltfScribe scribe = bendingBar();
+    Json& attributes = scribe.json["meshes"][0]["primitives"][0]["attributes"];
+    std::vector<float> weights;
+    for (int i = 0; i < 12; ++i) {
+        weights.insert(weights.end(), {i == 0 ? 3.0F : 0.99F, 0, 0, 0});
+    }
+    attributes["WEIGHTS_0"] = scribe.floats("VEC4", weights);
+    const AnimatedImport import = loaded(scribe);
+    EXPECT_TRUE(warns(import.rest, "1 vertex has joints whose weights have another sum than 1"));
+    EXPECT_EQ(import.mesh.influences[0].weight, 1.0F);
+}
+
+struct Wrong {
+    const char* says;
+    std::function<GltfScribe()> make;
+    ErrorCode code = ErrorCode::kInvalidInput;
+};
+
+TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
+    const auto times = [](std::vector<float> values) {
+        return [values] {
+            GltfScribe scribe = robot();
+            scribe.json["animations"][0]["samplers"][0]["input"] = scribe.floats("SCALAR", values);
+            return scribe;
+        };
+    };
+    const auto morphed = [](const std::function<void(GltfScribe&, Json&)>& change) {
+        return [change] {
+            GltfScribe scribe = morphingCube();
+            change(scribe, scribe.json["meshes"][0]["primitives"][0]);
+            return scribe;
+        };
+    };
+    const auto of = [](GltfScribe (*base)(), const std::function<void(Json&)>& change) {
+        return [base, change] {
+            GltfScribe scribe = base();
+            change(scribe.json);
+            return scribe;
+        };
+    };
+    const std::vector<Wrong> all = {
+        {"skins[0] has no joints", of(bendingBar, [](Json& j) { j["skins"][0]["joints"] = Json::array(); })},
+        {"skins[0] has fewer inverseBindMatrices than joints", of(bendingBar,
+                                                                  [](Json& j) {
+                                                                      j["skins"][0]["joints"] = {2, 1, 0};
+                                                                  })},
+        {"moved by a joint which its skin, skins[0], does not have",
+         of(bendingBar, [](Json& j) { j["skins"][0]["joints"] = {2}; })},
+        {"have weights that are less than 0, no numbers, or 0",
+         [&] {
+             GltfScribe scribe = bendingBar();
+             scribe.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] =
+                 scribe.floats("VEC4", std::vector<float>(48, kNan));
+             return scribe;
+         }},
+        {"has inverseBindMatrices that are no numbers",
+         [&] {
+             GltfScribe scribe = bendingBar();
+             std::vector<float> binds = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, kNan, 0, 0, 1};
+             binds.insert(binds.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+             scribe.json["skins"][0]["inverseBindMatrices"] = scribe.floats("MAT4", binds);
+             return scribe;
+         }},
+        {"has as time 1 0.5; times of keys are 0 or more and rise", times({0.5F, 0.5F, 1})},
+        {"has as time 1 0.25;", times({0.5F, 0.25F, 1})},
+        {"has as time 0 -1;", times({-1, 0, 1})},
+        {"has as time 2 no number;", times({0, 1, kNan})},
+        {"has no keys", times({})},
+        {"has 9 numbers instead of 3 for each of 2 keys", times({0, 1})},
+        {"lasts longer than a day", times({0, 1, 90'000}), ErrorCode::kLimit},
+        {"has values of keys that are no numbers",
+         [&] {
+             GltfScribe scribe = robot();
+             scribe.json["animations"][0]["samplers"][0]["output"] =
+                 scribe.floats("VEC3", std::vector<float>(9, kNan));
+             return scribe;
+         }},
+        {"has as rotation of key 0 no unit quaternion: its length is 0",
+         [&] {
+             GltfScribe scribe = robot();
+             scribe.json["animations"][1]["samplers"][0]["output"] =
+                 scribe.floats("VEC4", std::vector<float>(12, 0.0F));
+             return scribe;
+         }},
+        {"moves the translation of nodes[2], which another one moves too",
+         of(robot,
+            [](Json& j) { j["animations"][0]["channels"].push_back(j["animations"][0]["channels"][0]); })},
+        {"nodes[9], which does not exist",
+         of(robot, [](Json& j) { j["animations"][0]["channels"][0]["target"]["node"] = 9; })},
+        {"samplers[7], which does not exist",
+         of(robot, [](Json& j) { j["animations"][0]["channels"][0]["sampler"] = 7; })},
+        {"accessors[77], which does not exist",
+         of(robot, [](Json& j) { j["animations"][0]["samplers"][0]["output"] = 77; })},
+        {"has the interpolation 'QUADRATIC'",
+         of(robot, [](Json& j) { j["animations"][0]["samplers"][0]["interpolation"] = "QUADRATIC"; })},
+        {"has no target, or one without a path",
+         of(robot, [](Json& j) { j["animations"][0]["channels"][0].erase("target"); })},
+        {"moves the morph targets of nodes[2], which has none",
+         of(robot, [](Json& j) { j["animations"][0]["channels"][0]["target"]["path"] = "weights"; })},
+        {"moves 7 vertices, and the primitive has 8", morphed([](GltfScribe& scribe, Json& primitive) {
+             primitive["targets"][0]["POSITION"] = scribe.floats("VEC3", std::vector<float>(21, 0.0F));
+         })},
+        {"ends behind its buffer view", morphed([](GltfScribe& scribe, Json& primitive) {
+             const std::size_t short_one = scribe.floats("VEC3", std::vector<float>(21, 0.0F));
+             scribe.json["accessors"][short_one]["count"] = 8;
+             primitive["targets"][0]["POSITION"] = short_one;
+         })},
+        {"moves a vertex by what is no number", morphed([](GltfScribe& scribe, Json& primitive) {
+             primitive["targets"][0]["POSITION"] = scribe.floats("VEC3", std::vector<float>(24, kNan));
+         })},
+        {"has 1 morph targets, and one before it 2", morphed([](GltfScribe& scribe, Json& primitive) {
+             Json other = primitive;
+             other["targets"].erase(1);
+             scribe.json["meshes"][0]["primitives"].push_back(other);
+         })},
+        {"has 3 weights for 2 morph targets", of(morphingCube,
+                                                 [](Json& j) {
+                                                     j["nodes"][0]["weights"] = {1, 2, 3};
+                                                 })},
+        {"has more morph targets than can be: 1024",
+         of(morphingCube,
+            [](Json& j) {
+                Json& targets = j["meshes"][0]["primitives"][0]["targets"];
+                targets = Json::array();
+                for (int i = 0; i < 1025; ++i) {
+                    targets.push_back(Json::object());
+                }
+            }),
+         ErrorCode::kLimit},
+        {"and at most 8191 can move",
+         of(robot,
+            [](Json& j) {
+                for (int i = 3; i < 8200; ++i) {
+                    j["nodes"].push_back(Json::object());
+                    j["scenes"][0]["nodes"].push_back(i);
+                }
+            }),
+         ErrorCode::kLimit},
+        {"more than 4096 joints, nodes and instances move its vertices",
+         [&] {
+             GltfScribe scribe = robot();
+             std::vector<float> places;
+             for (int i = 0; i < 5000; ++i) {
+                 places.insert(places.end(), {static_cast<float>(i), 0, 0});
+             }
+             scribe.json["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+                 scribe.floats("VEC3", places);
+             return scribe;
+         },
+         ErrorCode::kLimit},
+        {"nothing in it moves: no skin, no morph target and no animation",
+         of(robot, [](Json& j) { j.erase("animations"); })},
+        {"nodes must form trees", of(robot, [](Json& j) { j["nodes"][0]["children"] = {2}; })},
+        {"no triangles, but 36 points",
+         of(robot, [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; })},
+    };
+    for (const Wrong& wrong : all) {
+        SCOPED_TRACE(wrong.says);
+        const Result<AnimatedImport> import = load(wrong.make());
+        ASSERT_FALSE(import);
+        const std::string& text = import.error().message;
+        EXPECT_EQ(import.error().code, wrong.code) << text;
+        EXPECT_NE(text.find(wrong.says), std::string::npos) << text;
+        EXPECT_NE(text.find("a.glb'"), std::string::npos) << text;
+        EXPECT_NE(text.find("; "), std::string::npos) << "no cure: " << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    }
+}
+
+TEST(AnimatedImport, OtherFormatsAreNotRead) {
+    const TemporaryFolder folder;
+    const Result<AnimatedImport> import =
+        importAnimatedInWorker(folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), {});
+    ASSERT_FALSE(import);
+    EXPECT_EQ(import.error().code, ErrorCode::kUnsupported);
+    EXPECT_NE(import.error().message.find("animations of a .obj are not read; convert it to glTF"),
+              std::string::npos)
+        << import.error().message;
+}
+
+TEST(AnimatedImport, AnswersOfAWorkerThatLiesAreRefused) {
+    const TemporaryFolder folder;
+    const Result<ImportSource> source = ImportSource::open(folder.write("l.glb", "glTF"));
+    ASSERT_TRUE(source);
+    const AnimatedMesh mesh = loaded(robot()).mesh;
+    const auto honest = [&] {
+        TriangleMesh raw;
+        raw.animation = writeAnimatedMesh(mesh);
+        return raw;
+    };
+    ASSERT_TRUE(source->finishAnimated(honest(), ImportKind::kAnimated));
+    EXPECT_TRUE(source->finishAnimated(honest(), ImportKind::kClips)->mesh.positions.empty());
+    EXPECT_FALSE(source->finish(honest())) << "an animation that nobody wanted";
+    EXPECT_FALSE(source->finishLevel(honest()));
+    const std::vector<std::function<void(TriangleMesh&)>> lies = {
+        [](TriangleMesh& raw) { raw.animation.clear(); },
+        [](TriangleMesh& raw) { raw.animation.resize(100); },
+        [](TriangleMesh& raw) { raw.positions.emplace_back(0.0F); },
+        [](TriangleMesh& raw) { raw.level_meshes.emplace_back(); },
+        [](TriangleMesh& raw) { raw.marks = {1}; },
+        [&](TriangleMesh& raw) {
+            AnimatedMesh bad = mesh;
+            bad.triangles[0].x = 999;
+            raw.animation = writeAnimatedMesh(bad);
+        },
+        [&](TriangleMesh& raw) {
+            AnimatedMesh bad = mesh;
+            bad.nodes[1].translation.x = 1e30F;
+            raw.animation = writeAnimatedMesh(bad);
+        },
+    };
+    for (std::size_t i = 0; i < lies.size(); ++i) {
+        TriangleMesh raw = honest();
+        lies[i](raw);
+        EXPECT_FALSE(source->finishAnimated(std::move(raw), ImportKind::kAnimated)) << i;
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
