@@ -62,7 +62,7 @@ float Bounds::longestSide() const {
 }
 
 std::string RecordedOption::text() const {
-    return optionName(name) + " " + shellQuoted(value);
+    return optionName(name) + (value == "true" ? "" : " " + shellQuoted(value));
 }
 
 std::vector<RecordedOption> readRecordedOptions(std::string_view text) {

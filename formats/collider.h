@@ -31,7 +31,7 @@ struct RecordedOption {
     std::string name;   ///< "max_error"
     std::string value;  ///< "2"; clean UTF-8
 
-    /// "--max-error 2", quoted for a shell.
+    /// "--max-error 2", quoted for a shell; of a flag, whose value is "true", its name alone.
     [[nodiscard]] std::string text() const;
     friend bool operator==(const RecordedOption&, const RecordedOption&) = default;
 };

@@ -138,6 +138,7 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"
         "relief bake --recipe colliders.toml -j 4\n"
         "relief bake level.glb --world level --budget 16MB\n"
+        "relief bake hero.glb --animated --clips walk.glb -o hero.relief\n"
         "relief bake heights.png --heights spacing=1,low=0,high=500 -o ground.relief");
     verb.add_option(
             "MESH", command->request.mesh,

@@ -59,7 +59,9 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
 }
 
 void addAdvice(const CheckCommand& command, MeshCheck& run) {
-    if (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent) {
+    // Of one that moves, all maps are given.
+    if (run.recorded.request.animated ||
+        (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent)) {
         return;
     }
     run.advice = adviceFor(run, command.request.mesh, command.file == "-" ? "out.relief" : command.file);
@@ -89,7 +91,9 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
           adviceText(run.advice, run.wrongPercent())}) {
         text += part.empty() ? "" : "\n" + part;
     }
-    return text + "\nMeasured against " + run.mesh->name + (run.repaired ? " repaired, " : ", ") +
+    return text + "\nMeasured against " + run.mesh->name +
+           (run.recorded.request.animated ? " in its rest pose" : "") +
+           (run.repaired ? " repaired, " : ", ") +
            std::to_string((run.repaired ? run.baked : run.mesh)->sourceTriangles()) + " triangles" +
            (run.watertight || run.repaired ? "" : " (not closed)") + "\n" +
            shapeText(run.shape, run.collider.unit) + "\n" +

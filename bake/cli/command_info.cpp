@@ -45,7 +45,7 @@ std::string bakedText(const Provenance& from) {
     return text + "\n";
 }
 
-std::string humanReport(const Collider& collider, const ContainerInfo& info) {
+std::string humanReport(const Collider& collider, const ContainerInfo& info, const AnimatedMesh* animated) {
     const Provenance& from = collider.provenance;
     std::string text = "Relief container " + std::to_string(info.major) + "." + std::to_string(info.minor) +
                        ", " + bytesText(info.file_size) + "\n";
@@ -54,6 +54,9 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info) {
     text += "mesh     " + from.mesh_name + ", " + std::to_string(from.triangles) + " triangles, XXH3-128 " +
             (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) + "\n";
     text += bakedText(from);
+    if (animated != nullptr) {
+        text += "moves    " + animationText(*animated);
+    }
     std::vector<std::vector<std::string>> rows = {
         {"map", "format", "projection", "keeps", "size>", "bytes>", "stored>", "encloses", "empty is"}};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
@@ -85,8 +88,13 @@ Result<void> runInfo(const InfoCommand& command) {
     const ColliderFile shown = RELIEF_TRY(readColliderFile(command.file, command.limits));
     const ContainerInfo info =
         RELIEF_TRY(inFront(shownInput(command.file), readContainerInfo(shown.bytes, command.limits)));
-    return printOut(command.json ? jsonText(jsonOf(infoReport(shown.collider, info)))
-                                 : humanReport(shown.collider, info));
+    std::optional<AnimatedMesh> mesh;
+    if (!shown.collider.animation.empty()) {
+        mesh = RELIEF_TRY(inFront(shownInput(command.file), readAnimatedMesh(shown.collider.animation)));
+    }
+    const AnimatedMesh* const animated = mesh ? &*mesh : nullptr;
+    return printOut(command.json ? jsonText(jsonOf(infoReport(shown.collider, info, animated)))
+                                 : humanReport(shown.collider, info, animated));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "bake/director/bake_request.h"
+#include "bake/import/animated_import.h"
 #include "bake/import/import_format.h"
 #include "bake/import/mesh_import.h"
 #include "bake/recipe/bake_cache.h"
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr std::string_view kPlan = "--plan=";
+constexpr std::string_view kClips = "--clips=";
 
 /// Options of a bake that a run of a recipe has its own place for: they are no keys.
 constexpr std::array<std::string_view, 4> kOfTheRun = {"threads", "plan_out", "json", "depfile"};
@@ -237,6 +239,13 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
     return result;
 }
 
+/// Adds the file that it was read from, and those that this refers to.
+void addFiles(const TriangleMesh& mesh, const fs::path& folder, std::vector<InputFile>& files) {
+    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
+        files.push_back({nameInRecipe(mesh.dependencies[i], folder), mesh.dependency_hashes[i]});
+    }
+}
+
 /// The mesh and all that it refers to; nullopt if that cannot be read.
 std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
     const std::string extension = job.mesh_path.extension().string();
@@ -250,16 +259,22 @@ std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs
         return std::nullopt;
     }
     std::vector<InputFile> files;
-    for (std::size_t i = 0; i < mesh->dependencies.size(); ++i) {
-        files.push_back(
-            {i == 0 ? job.mesh : nameInRecipe(mesh->dependencies[i], folder), mesh->dependency_hashes[i]});
-    }
+    addFiles(*mesh, folder, files);
+    files.front().path = job.mesh;
     return files;
 }
 
 std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& tool, const fs::path& folder) {
     std::optional<std::vector<InputFile>> files = filesOfMesh(job, folder);
     for (const std::string& argument : job.arguments) {
+        if (files && argument.starts_with(kClips)) {
+            const Result<AnimatedImport> clips = importAnimatedFileInWorker(
+                argument.substr(kClips.size()), ImportKind::kClips, {}, ImportLimits());
+            if (!clips) {
+                return std::nullopt;
+            }
+            addFiles(clips->rest, folder, *files);
+        }
         if (files && argument.starts_with(kPlan)) {
             const fs::path plan = argument.substr(kPlan.size());
             const std::optional<std::string> hash = hashOfFile(plan);
@@ -325,6 +340,9 @@ Result<void> preflightBake(const BakeRequest& request, const std::string& output
     }
     RELIEF_TRY(files.reads(request.mesh));
     RELIEF_TRY(files.reads(request.plan));
+    for (const std::string& clips : request.clips) {
+        RELIEF_TRY(files.reads(clips));
+    }
     if (outputs.json) {
         RELIEF_TRY(files.writes("-", "--json"));
     }

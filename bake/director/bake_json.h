@@ -22,7 +22,8 @@ struct BakeJson {
 
     [[nodiscard]] ColliderReport<BakedMapReport> collider() const {
         const Baked& baked = result.baked;
-        ColliderReport<BakedMapReport> report{baked.collider, info};
+        ColliderReport<BakedMapReport> report{
+            baked.collider, info, {}, result.animated ? &*result.animated : nullptr};
         for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
             report.maps.push_back({{i, baked.collider.maps[i], info.payloads[i]}, baked.report.maps[i]});
         }
@@ -60,6 +61,8 @@ void fields(Visitor& visit, R& report) {
         visit_setting("threads", result.threads(), {"Threads used", {}, kFromOne});
         visit_setting("compress", report.compress, {"zstd level; 0: none", {}, {0.0, 19.0}});
         visit_setting("holes", request.holes, {"--holes"});
+        visit_setting("animated", request.animated, {"--animated"});
+        visit_setting("clips", request.clips, {"--clips, in their order"});
     };
     visit("settings", group(settings), {"Effective options"});
     visit("plan", result.plan, {"Plan of the maps; null if they were given"});

@@ -11,6 +11,11 @@
 namespace relief {
 namespace {
 
+/// The runtime draws the maps of an animated mesh anew in the same directions (runtime/collider/live_collider.h).
+constexpr std::array<const char*, 3> kAnimatedMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
+                                                      "front-back:dir=-z,up=+y"};
+constexpr std::uint32_t kAnimatedResolution = 256;
+
 /// \return the option that chooses the maps. Errors: kUsage: there are two.
 Result<MapSource> sourceOf(const BakeRequest& request) {
     struct Chooser {
@@ -51,10 +56,29 @@ std::string otherThanHeights(const BakeRequest& request) {
     return {};
 }
 
+/// Options that have no place beside --animated.
+std::string otherThanAnimated(const BakeRequest& request) {
+    constexpr std::array<std::string_view, 12> kOfBoth = {
+        "animated", "clips", "resolution",    "quality",     "prefer",        "threads",
+        "unit",     "up",    "import_memory", "import_time", "max_triangles", "time_limit"};
+    for (const FieldWords& field : changedFields(request)) {
+        if (std::ranges::find(kOfBoth, field.name) == kOfBoth.end()) {
+            return optionName(field.name) + " does nothing with --animated; leave one out";
+        }
+    }
+    return {};
+}
+
 /// The fault of options that do nothing together; empty: there is none.
 std::string conflictOf(const BakeRequest& request, const BakeSettings& settings) {
     if (!request.heights.empty()) {
         return otherThanHeights(request);
+    }
+    if (request.animated) {
+        return otherThanAnimated(request);
+    }
+    if (!request.clips.empty()) {
+        return "--clips does nothing without --animated; add it";
     }
     if (!request.plan_out.empty() && settings.source != MapSource::kPlanner) {
         return "--plan-out writes what was planned, but the maps were named; leave it out";
@@ -103,6 +127,13 @@ Result<void> readMaps(const BakeRequest& request, BakeSettings& settings) {
     for (const std::string& text : request.map) {
         const MapSpec spec = RELIEF_TRY(parseMapSpec(text, defaults));
         settings.bake.maps.push_back(spec);
+    }
+    if (request.animated) {
+        settings.source = MapSource::kMaps;
+        settings.bake.resolution = kAnimatedResolution;
+        for (const char* const text : kAnimatedMaps) {
+            settings.bake.maps.push_back(RELIEF_TRY(parseMapSpec(text, defaults)));
+        }
     }
     if (settings.source == MapSource::kPaper) {
         settings.bake.maps = paperMapSpecs();

@@ -57,6 +57,8 @@ struct BakeRequest {
     std::vector<std::string> as;
     std::optional<Thickness> thickness;
     std::optional<VoidsAs> voids;
+    bool animated = false;
+    std::vector<std::string> clips;   ///< files, beside `mesh`, of `animated`
     std::string heights;              ///< HeightsSpec: `mesh` is a height map; empty: it is a mesh
     std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
     /// Object units: a box that the roots of planned patches hold beside the mesh. No option; it is not recorded.
@@ -92,7 +94,8 @@ void fields(Visitor& visit, Request& request) {
         {.help = "Bake the paper's maps instead of planned ones: front-back along -x, -y and -z and a cube, "
                  "depth=half, decode=projected"});
     visit("resolution", request.resolution,
-          {.help = "Texels along a side of --map without size, and of --paper", .fallback = "512"});
+          {.help = "Texels along a side of --map without size, of --paper and of --animated",
+           .fallback = "512; with --animated, 256"});
     visit("budget", request.budget,
           {.help =
                "Plan for this many bytes: what all maps together take on the GPU. The file has some hundred "
@@ -178,6 +181,17 @@ void fields(Visitor& visit, Request& request) {
                  "or hollow",
          .fallback = "full",
          .recorded = true});
+    visit(
+        "animated", request.animated,
+        {.help = "Bake a glTF file that moves: the collider also has its skins, morph targets, moving nodes "
+                 "and clips, by which the runtime poses it. Its maps, three of front-back along the axes, "
+                 "are of the rest pose, and of --resolution, 256 by default",
+         .recorded = true});
+    visit(
+        "clips", request.clips,
+        {.help = "With --animated: add the animations of this glTF file, once for each, by nodes of the same "
+                 "name",
+         .value = "FILE"});
     visit("heights", request.heights,
           {.help =
                "Bake the ground below a height map, in place of a mesh: a grey PNG of 16 or 8 bits, an EXR\n"

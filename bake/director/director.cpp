@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "bake/import/animated_import.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/budget_search.h"
 #include "bake/plan/plan_file.h"
@@ -127,6 +128,13 @@ class Director {
         if (given && !import.empty()) {
             return fail(ErrorCode::kUsage, import + " is for a mesh that is read from a file; leave it out");
         }
+        if (given && request().animated) {
+            return fail(ErrorCode::kUsage, "--animated is for a mesh that is read from a file; leave it out");
+        }
+        if (request().animated) {
+            // Its parts pass through each other as it moves, and are drawn as they are.
+            request().holes = Holes::kKeep;
+        }
         if (given && given->marks.empty() && !result_.settings.shape.named.empty()) {
             return fail(ErrorCode::kUsage,
                         "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
@@ -166,7 +174,9 @@ class Director {
         if (!given) {
             ImportOptions import = request().import;
             import.names = result_.settings.shape.names();
-            given = RELIEF_TRY(importMeshInWorker(request().mesh, import, request().import_limits));
+            given = request().animated
+                        ? RELIEF_TRY(readAnimated())
+                        : RELIEF_TRY(importMeshInWorker(request().mesh, import, request().import_limits));
         }
         TriangleMesh mesh = std::move(*given);
         result_.times.import_ms = watch.ms();
@@ -181,6 +191,14 @@ class Director {
         tell(watcher_.begin, repairs ? "repairing the mesh" : "examining the mesh");
         result_.mesh = RELIEF_TRY(repairMesh(std::move(mesh), request().repair));
         return makeSolidOf(result_.mesh.mesh);
+    }
+
+    /// \return its rest pose.
+    Result<TriangleMesh> readAnimated() {
+        AnimatedImport animated = RELIEF_TRY(importAnimatedInWorker(
+            request().mesh, request().clips, request().import, request().import_limits));
+        result_.animated = std::move(animated.mesh);
+        return std::move(animated.rest);
     }
 
     /// Turns a non-solid mesh into a solid.
@@ -261,6 +279,13 @@ class Director {
             }
         }
         result_.baked = RELIEF_TRY(std::move(baked));
+        if (result_.animated) {
+            Collider& collider = result_.baked.collider;
+            collider.animation = writeAnimatedMesh(*result_.animated);
+            for (DepthMap& map : collider.maps) {
+                map.encloses = false;  // the mesh may leave the box of its rest pose
+            }
+        }
         // The maps have recorded themselves; beside them, the mesh as it was made.
         BakeRequest made;
         made.holes = request().holes;
@@ -269,6 +294,7 @@ class Director {
         made.as = asWords(result_.shape);
         made.thickness = thicknessOf(result_.shape);
         made.texel = request().texel;
+        made.animated = request().animated;
         made.voids = result_.shape.voids > 0 ? VoidsAs::kFull : request().voids;
         for (const FieldWords& field : changedFields(made)) {
             for (const std::string& word : field.words) {
@@ -374,7 +400,11 @@ class Director {
 }  // namespace
 
 BakeSummary BakeResult::summary(bool verbose) const {
-    return {*mesh.mesh, baked, plan, times, mesh.report, shape, wrong, unused_vertices, verbose};
+    return {*mesh.mesh,  baked,
+            plan,        times,
+            mesh.report, shape,
+            wrong,       unused_vertices,
+            verbose,     animated ? &*animated : nullptr};
 }
 
 int BakeResult::threads() const {

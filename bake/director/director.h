@@ -11,6 +11,7 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/recipe/depfile.h"
 #include "bake/report/bake_report.h"
+#include "formats/animation/animated_mesh.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 
@@ -41,6 +42,7 @@ struct BakeResult {
     std::vector<std::string> notices;            ///< one line each; ready to be shown
     std::vector<InputFile> inputs;               ///< the mesh, the files that it refers to, the plan
     BakeTimes times;
+    std::optional<AnimatedMesh> animated;  ///< of the collider, with --animated
 
     /// For bakeText. Valid as long as the result.
     [[nodiscard]] BakeSummary summary(bool verbose) const;

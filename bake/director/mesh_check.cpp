@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "bake/director/director.h"
+#include "bake/import/animated_import.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/sight.h"
 #include "bake/repair/winding.h"
@@ -39,8 +40,14 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
     return {};
 }
 
-/// The mesh, with the names that the collider was baked by.
-Result<TriangleMesh> importFor(const std::vector<std::string>& names, const CheckRequest& request) {
+/// The mesh, with the names that the collider was baked by; of one that moves, its rest pose.
+Result<TriangleMesh> importFor(const std::vector<std::string>& names, bool animated,
+                               const CheckRequest& request) {
+    if (animated) {
+        return RELIEF_TRY(importAnimatedFileInWorker(request.mesh, ImportKind::kAnimated, request.import,
+                                                     request.import_limits))
+            .rest;
+    }
     ImportOptions options = request.import;
     options.names = names;
     Result<TriangleMesh> mesh = importMeshInWorker(request.mesh, options, request.import_limits);
@@ -57,7 +64,7 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
     const BakeRequest& recorded = run.recorded.request;
     const std::vector<std::string> names = RELIEF_TRY(parseShapeOptions(recorded.as)).names();
     if (!given) {
-        given = RELIEF_TRY(importFor(names, request));
+        given = RELIEF_TRY(importFor(names, recorded.animated, request));
     } else if (const std::string option = importOptionOf(request.import, request.import_limits);
                !option.empty()) {
         return fail(ErrorCode::kUsage, option + " is for a mesh that is read from a file; leave it out");

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Options whose value is a file to be read.
-constexpr std::array<std::string_view, 1> kFileOptions = {"plan"};
+constexpr std::array<std::string_view, 2> kFileOptions = {"plan", "clips"};
 
 tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
                          ErrorCode code = ErrorCode::kInvalidInput) {

@@ -157,6 +157,9 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     }
     text += "\nbox " + boxText(summary.mesh.bounds, summary.mesh.unit);
     text += "\n" + careText(summary.care, summary.verbose) + shapeText(summary.shape, summary.mesh.unit);
+    if (summary.animated != nullptr) {
+        text += animationText(*summary.animated);
+    }
     if (summary.plan) {
         text += planLine(*summary.plan, summary.mesh.unit);
     }

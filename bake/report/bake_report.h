@@ -44,6 +44,7 @@ struct BakeSummary {
     const std::optional<WrongShare>& wrong;  ///< near the surface, if measured
     std::uint64_t unused_vertices = 0;       ///< of the mesh file (TriangleMesh)
     bool verbose = false;
+    const AnimatedMesh* animated = nullptr;  ///< if it moves
 };
 
 /// For people: a few lines and a table. \param output  as on the command line

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/report/report_text.h"
+#include "formats/animation/animated_mesh.h"
 #include "formats/collider.h"
 #include "formats/container.h"
 #include "formats/fields/field.h"
@@ -68,17 +69,38 @@ void fields(Visitor& visit, R& report) {
     visit("empty_is_outside", map.empty_is_outside, {"A point on a ray that meets no surface is outside"});
 }
 
+template <class Visitor, FieldsOf<MeshClip> C>
+void fields(Visitor& visit, C& clip) {
+    visit("name", clip.name, {"Name, which no other clip has"});
+    visit("seconds", clip.seconds, {"Length", "s", kFromZero});
+}
+
+/// An animated mesh, without what it is made of.
+template <class Visitor, FieldsOf<AnimatedMesh> M>
+void fields(Visitor& visit, M& mesh) {
+    visit("vertices", mesh.positions.size(), {"Vertices, instances counted one by one"});
+    visit("triangles", mesh.triangles.size(), {"Triangles"});
+    visit("nodes", mesh.nodes.size(), {"Nodes, those of the skeleton included"});
+    visit("joints", mesh.joints.size(), {"Joints: nodes that move vertices"});
+    visit("morph_targets", mesh.weights.size(), {"Morph targets"});
+    visit("clips", mesh.clips, {"Clips, those of the mesh file first"});
+}
+
+/// A line, and a table of the clips, if there are any.
+[[nodiscard]] std::string animationText(const AnimatedMesh& mesh);
+
 /// \tparam Map  ColliderMapReport, or more than that.
 template <class Map>
 struct ColliderReport {
     const Collider& collider = kNone<Collider>;
     const ContainerInfo& info = kNone<ContainerInfo>;
     std::vector<Map> maps = {};
+    const AnimatedMesh* animated = nullptr;  ///< of the collider
 };
 
 template <class Visitor, class Map>
 void fields(Visitor& visit, const ColliderReport<Map>& report) {
-    const auto& [collider, info, maps] = report;
+    const auto& [collider, info, maps, animated] = report;
     visit("version", std::to_string(info.major) + "." + std::to_string(info.minor),
           {.help = "Version of the container format", .pattern = "^[0-9]+\\.[0-9]+$"});
     visit("file_size", info.file_size, {"Size of the file", "bytes"});
@@ -86,13 +108,17 @@ void fields(Visitor& visit, const ColliderReport<Map>& report) {
     visit("unit", collider.unit, {"Unit of lengths: m, or empty if the source names none"});
     visit("texel_bytes", collider.gpuBytes(), {"Size of all maps on the GPU", "bytes"});
     visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
+    visit("animation", animated == nullptr ? std::nullopt : std::optional(*animated),
+          {"How it moves; null if it does not"});
     visit("provenance", collider.provenance, {"Origin of the collider"});
 }
 
 /// The report of `relief info`.
+/// \param animated  of the collider, if it has one.
 [[nodiscard]] inline ColliderReport<ColliderMapReport> infoReport(const Collider& collider,
-                                                                  const ContainerInfo& info) {
-    ColliderReport<ColliderMapReport> report{collider, info};
+                                                                  const ContainerInfo& info,
+                                                                  const AnimatedMesh* animated) {
+    ColliderReport<ColliderMapReport> report{collider, info, {}, animated};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         report.maps.push_back({i, collider.maps[i], info.payloads[i]});
     }

@@ -500,7 +500,7 @@ std::uint64_t WorldBakeResult::gpuBytes() const {
 }
 
 Result<void> checkWorldRequest(const BakeRequest& request) {
-    const std::array<std::pair<const char*, bool>, 8> of_one = {{
+    const std::array<std::pair<const char*, bool>, 9> of_one = {{
         {"--map", !request.map.empty()},
         {"--paper", request.paper},
         {"--resolution", request.resolution.has_value()},
@@ -509,6 +509,7 @@ Result<void> checkWorldRequest(const BakeRequest& request) {
         {"--plan", !request.plan.empty()},
         {"--plan-out", !request.plan_out.empty()},
         {"--max-error", request.max_error.has_value()},
+        {"--animated", request.animated},
     }};
     for (const auto& [option, given] : of_one) {
         if (given) {

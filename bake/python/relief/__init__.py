@@ -408,6 +408,8 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
          as_: Union[str, Sequence[str], None] = None,
          thickness: Optional[Number] = None,
          voids: Optional[str] = None,
+         animated: bool = False,
+         clips: Union[str, Sequence[str], None] = None,
          heights: Optional[str] = None,
          time_limit: Optional[Number] = None,
          # end of bake-arguments by scripts/generate.sh
