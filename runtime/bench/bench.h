@@ -16,7 +16,7 @@ namespace relief {
 using Json = nlohmann::ordered_json;
 
 struct Bench {
-    std::string file;             ///< the collider, the mesh or the world
+    std::string file;             ///< the collider, the animated container, the mesh or the world
     std::uint32_t particles = 0;  ///< 0: the case's own number
     StepPath path = StepPath::kFragment;
     std::string only;                 ///< a variant of the step; empty: all
@@ -61,6 +61,7 @@ void warmUp(const Bench& bench, double ms, const std::function<void()>& run);
 [[nodiscard]] Result<Json> benchStep(const Bench& bench);
 [[nodiscard]] Result<Json> benchPicture(const Bench& bench);
 [[nodiscard]] Result<Json> benchMesh(const Bench& bench);
+[[nodiscard]] Result<Json> benchAnimated(const Bench& bench);
 /// Its rows are flights: each of 2000 frames, of which the median and the worst are told.
 [[nodiscard]] Result<Json> benchStream(const Bench& bench);
 

@@ -12,8 +12,11 @@ namespace relief {
 namespace {
 
 using Case = Result<Json> (*)(const Bench&);
-const std::map<std::string_view, Case> kCases{
-    {"step", benchStep}, {"picture", benchPicture}, {"mesh", benchMesh}, {"stream", benchStream}};
+const std::map<std::string_view, Case> kCases{{"step", benchStep},
+                                              {"picture", benchPicture},
+                                              {"mesh", benchMesh},
+                                              {"animated", benchAnimated},
+                                              {"stream", benchStream}};
 
 Result<void> run(int argc, char** argv) {
     CLI::App app("Times of the runtime's parts, as JSON", "relief-bench");
@@ -21,11 +24,12 @@ Result<void> run(int argc, char** argv) {
     app.footer("relief-bench step bunny.relief --path compute --particles 1048576");
     std::string name;
     Bench bench;
-    app.add_option("CASE", name, "step, picture, mesh or stream")
+    app.add_option("CASE", name, "step, picture, mesh, animated or stream")
         ->required()
-        ->transform(oneOf(kWords<"step", "picture", "mesh", "stream">));
-    app.add_option("FILE", bench.file,
-                   "The collider of step and picture; the .obj or .ply of mesh; the world.json of stream")
+        ->transform(oneOf(kWords<"step", "picture", "mesh", "animated", "stream">));
+    app.add_option(
+           "FILE", bench.file,
+           "The collider of step, picture and animated; the .obj or .ply of mesh; the world.json of stream")
         ->required();
     app.add_option("--particles", bench.particles, "For step, a multiple of 1024")
         ->option_text("N")

@@ -1,0 +1,153 @@
+// The GPU's maps of a mesh that plays its clips, against the solid of the mesh that the CPU has posed. RELIEF_ANIMATED names a
+// container of one's own: every frame of every clip, at 30 a second.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <glm/glm.hpp>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bake/mesh/inside.h"
+#include "bake/mesh/mesh_query.h"
+#include "formats/container.h"
+#include "runtime/collider/animated_collider.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/field_query.h"
+#include "tests/runtime/gl/gl_test.h"
+
+namespace relief {
+namespace {
+
+constexpr std::size_t kPoints = 2000;
+constexpr double kWrongMax = 0.02;
+
+/// The posed mesh. Its inside is where the surface winds about a point, so that shells may overlap.
+class PosedSolid {
+  public:
+    PosedSolid(std::vector<glm::vec3> positions, const std::vector<glm::uvec3>& triangles) {
+        TriangleMesh mesh;
+        mesh.positions = std::move(positions);
+        mesh.triangles = triangles;
+        for (const glm::vec3& p : mesh.positions) {
+            mesh.bounds.add(p);
+        }
+        Result<MeshQuery> query = MeshQuery::build(PreparedMesh(std::move(mesh)));
+        EXPECT_TRUE(query);
+        query_ = std::make_unique<MeshQuery>(std::move(*query));
+    }
+    /// By two of three lines.
+    [[nodiscard]] bool inside(const glm::vec3& p) const {
+        int votes = 0;
+        std::vector<LineHit> hits;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::dvec3& direction = kParityDirections[i];
+            query_->hitsAlong(p, direction, hits);
+            int winding = 0;
+            for (const LineHit& hit : hits) {
+                const glm::uvec3& t = query_->mesh().triangles[hit.triangle];
+                const glm::dvec3 a = query_->mesh().positions[t.x];
+                const glm::dvec3 b = query_->mesh().positions[t.y];
+                const glm::dvec3 c = query_->mesh().positions[t.z];
+                const double leaves = glm::dot(glm::cross(b - a, c - a), direction);
+                winding += hit.at <= 0.0 ? 0 : leaves > 0.0 ? 1 : -1;
+            }
+            votes += winding > 0 ? 1 : 0;
+        }
+        return votes >= 2;
+    }
+    /// On the surface by its area, moved by a Gaussian of a two hundredth of the longest side.
+    [[nodiscard]] std::vector<glm::vec3> near(std::size_t count, std::uint32_t seed) const {
+        const TriangleMesh& mesh = query_->mesh();
+        std::vector<double> areas;
+        for (const glm::uvec3& t : mesh.triangles) {
+            areas.push_back(double{glm::length(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
+                                                          mesh.positions[t.z] - mesh.positions[t.x]))});
+        }
+        std::mt19937 random(seed);
+        std::discrete_distribution<std::size_t> any(areas.begin(), areas.end());
+        std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+        std::normal_distribution<float> off(0.0F, 0.005F * mesh.bounds.longestSide());
+        std::vector<glm::vec3> points;
+        while (points.size() < count) {
+            const glm::uvec3& t = mesh.triangles[any(random)];
+            const float u = unit(random);
+            const float v = unit(random);
+            glm::vec3 away;
+            for (int k = 0; k < 3; ++k) {
+                away[k] = off(random);
+            }
+            if (u + v <= 1.0F) {
+                points.push_back(mesh.positions[t.x] + u * (mesh.positions[t.y] - mesh.positions[t.x]) +
+                                 v * (mesh.positions[t.z] - mesh.positions[t.x]) + away);
+            }
+        }
+        return points;
+    }
+
+  private:
+    std::unique_ptr<MeshQuery> query_;
+};
+
+class AnimatedAccuracyGlTest : public GlTest {
+  protected:
+    void measure(const AnimatedMesh& mesh, double frames_a_second) {
+        const auto shared = std::make_shared<const AnimatedMesh>(mesh);
+        auto made = AnimatedCollider::create(shared);
+        ASSERT_TRUE(made) << made.error().message;
+        AnimatedCollider& animated = *made;
+        ColliderBody body;
+        body.collider = &animated.frames();
+        body.live = true;
+        auto textures = ColliderTextures::create({&body, 1});
+        ASSERT_TRUE(textures) << textures.error().message;
+        auto query = FieldQuery::create(*textures);
+        ASSERT_TRUE(query) << query.error().message;
+        for (const MeshClip& clip : mesh.clips) {
+            double sum = 0.0;
+            double worst = 0.0;
+            int frames = 0;
+            for (double time = 0.0; time <= double{clip.seconds}; time += 1.0 / frames_a_second, ++frames) {
+                const MeshPose pose = poseAt(mesh, clip, time);
+                ASSERT_TRUE(animated.setPose(pose));
+                const Pose placed = animated.placed({});
+                textures->setPoses({&placed, 1});
+                ASSERT_TRUE(animated.update(*textures, 0));
+                const PosedSolid solid(posed(mesh, pose), mesh.triangles);
+                const std::vector<glm::vec3> points = solid.near(kPoints, static_cast<std::uint32_t>(frames));
+                const auto samples = query->evaluate(points);
+                ASSERT_TRUE(samples);
+                std::size_t wrong = 0;
+                for (std::size_t i = 0; i < kPoints; ++i) {
+                    wrong += (*samples)[i].inside() == solid.inside(points[i]) ? 0 : 1;
+                }
+                const double share = static_cast<double>(wrong) / static_cast<double>(kPoints);
+                EXPECT_LE(share, kWrongMax) << clip.name << " at " << time;
+                sum += share;
+                worst = std::max(worst, share);
+            }
+            std::cout << clip.name << ": " << frames << " frames, " << 100.0 * sum / frames
+                      << " % wrong, the worst " << 100.0 * worst << " %\n";
+        }
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Api, AnimatedAccuracyGlTest, testing::Values(GlApi::kGl33Core), glApiTestName);
+
+TEST_P(AnimatedAccuracyGlTest, FewPointsAreOnTheWrongSide) {
+    const char* file = std::getenv("RELIEF_ANIMATED");
+    if (file == nullptr) {
+        measure(bendingTube(), 5.0);
+        return;
+    }
+    const auto collider = loadCollider(file);
+    ASSERT_TRUE(collider) << collider.error().message;
+    const auto mesh = readAnimatedMesh(collider->animation);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    measure(*mesh, 30.0);
+}
+
+}  // namespace
+}  // namespace relief

@@ -1,0 +1,145 @@
+// A body that plays a clip pushes particles as in relief-sim; set() changes its clip, and pose() has a pose of the page's own.
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+
+import { libraryPage } from "./lib/library.mjs";
+import { run, scratch } from "./lib/native.mjs";
+
+const kSteps = 48;
+const kScene = `[time]
+dt = 0.015625
+steps = ${kSteps}
+[particles]
+capacity = 500
+[emitter]
+box_min = [-0.9, 1.02, -0.9]
+box_max = [0.9, 1.5, 0.9]
+burst = 400
+rate = 0.0
+lifetime = 50.0
+velocity = [0.0, 0.0, 0.0]
+velocity_spread = [0.0, 0.0, 0.0]
+[forces]
+gravity = [0.0, 0.0, 0.0]
+drag = 0.0
+[ground]
+enabled = false
+[[collider]]
+file = "lift.relief"
+play = { clip = "rise", resolution = 128 }
+`;
+
+/** A cube of side 2 whose node rises by 1 in 1 s, or sinks. */
+function writeLift(file) {
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1]);
+    const faces = [0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6];
+    const bytes = Buffer.concat([Buffer.from(new Float32Array([...corners, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0]).buffer),
+                                 Buffer.from(new Uint16Array(faces).buffer)]);
+    const view = (byteOffset, byteLength) => ({ buffer: 0, byteOffset, byteLength });
+    const clip = (name, output) => ({ name, samplers: [{ input: 1, output }],
+                                      channels: [{ sampler: 0, target: { node: 0, path: "translation" } }] });
+    writeFileSync(file, JSON.stringify({
+        asset: { version: "2.0" }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ name: "lift", mesh: 0 }],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 4 }] }],
+        animations: [clip("rise", 2), clip("sink", 3)],
+        buffers: [{ byteLength: bytes.length, uri: `data:application/octet-stream;base64,${bytes.toString("base64")}` }],
+        bufferViews: [view(0, 96), view(96, 8), view(104, 24), view(128, 24), view(152, 72)],
+        accessors: [{ bufferView: 0, componentType: 5126, count: 8, type: "VEC3", min: [-1, -1, -1], max: [1, 1, 1] },
+                    { bufferView: 1, componentType: 5126, count: 2, type: "SCALAR", min: [0], max: [1] },
+                    { bufferView: 2, componentType: 5126, count: 2, type: "VEC3" },
+                    { bufferView: 3, componentType: 5126, count: 2, type: "VEC3" },
+                    { bufferView: 4, componentType: 5123, count: 36, type: "SCALAR" }],
+    }));
+}
+
+test("a body that plays a clip pushes as natively", { timeout: 60_000 }, async (t) => {
+    const folder = scratch(t);
+    writeLift(path.join(folder, "lift.gltf"));
+    run("relief", "bake", path.join(folder, "lift.gltf"), "--animated", "-q", "-o", path.join(folder, "lift.relief"));
+    writeFileSync(path.join(folder, "scene.toml"), kScene);
+    run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"));
+    const bytes = readFileSync(path.join(folder, "final.ply"));
+    const native = new Map();
+    for (let at = bytes.indexOf("end_header\n") + 11; at < bytes.length; at += 40) {
+        native.set(bytes.readUInt32LE(at + 32), [0, 4, 8].map((k) => bytes.readFloatLE(at + k)));
+    }
+    assert.equal(native.size, 400);
+
+    const { page, said } = await libraryPage(t, folder);
+    const { rows, posed, animation, still, tops, triangles, errors, gl } = await page.evaluate(async (steps) => {
+        const lift = await relief.load("/files/lift.relief");
+        const scene = {
+            time: { dt: 0.015625, steps }, particles: { capacity: 500 },
+            emitter: { box_min: [-0.9, 1.02, -0.9], box_max: [0.9, 1.5, 0.9], burst: 400, rate: 0, lifetime: 50, velocity: [0, 0, 0],
+                       velocity_spread: [0, 0, 0] },
+            forces: { gravity: [0, 0, 0], drag: 0 }, ground: { enabled: false },
+            collider: [{ file: "lift.relief", play: { clip: "rise", resolution: 128 } }],
+        };
+        const make = () => new relief.ParticleSystem(gl, { scene, files: { "lift.relief": lift } });
+        const system = make();
+        for (let i = 1; i <= steps; ++i) {
+            system.step();
+        }
+        const rows = [...system.read()];
+        const animation = system.animation(0);
+        const still = system.animation(1);
+        const { triangles } = system.mesh(0);
+        const tops = [system.info.bodies[0].matrix[13]];
+        system.set({ collider: [{ play: { clip: "sink" } }] });
+        system.step();
+        tops.push(system.info.bodies[0].matrix[13]);
+        // The same way by matrices of the page.
+        const own = make();
+        for (let i = 1; i <= steps; ++i) {
+            own.pose(0, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, i / 64, 0, 1]);
+            own.step();
+        }
+        const posed = [...own.read()];
+        own.pose(0);
+        const error = (f) => {
+            try {
+                f();
+                return "no error";
+            } catch (one) {
+                return one.message;
+            }
+        };
+        return {
+            rows, posed, animation, still, tops, triangles,
+            errors: [error(() => system.set({ collider: [{ play: { clip: "run" } }] })),
+                     error(() => system.set({ collider: [{ play: { clip: "rise", resolution: 64 } }] })),
+                     error(() => system.pose(0, [1, 2, 3])),
+                     error(() => system.pose(0, new Float32Array(32))),
+                     error(() => system.pose(7, new Float32Array(16)))],
+            gl: gl.getError(),
+        };
+    }, kSteps);
+    for (const found of [rows, posed]) {
+        assert.equal(found.length / 12, 400);
+        let far = 0;
+        let pushed = 0;
+        let inside = 0;
+        for (let i = 0; i < found.length; i += 12) {
+            const other = native.get(found[i + 11]);
+            far = Math.max(far, Math.hypot(...other.map((x, k) => x - found[i + k])));
+            pushed += found[i + 1] > 1.6;
+            inside += found[i + 1] < 1 + kSteps / 64 - 0.02;
+        }
+        assert.ok(far < 1e-3, `a particle is ${far} from where relief-sim has it`);
+        assert.ok(pushed > 300, `${pushed} of 400 were pushed up`);
+        assert.equal(inside, 0);
+    }
+    assert.deepEqual(animation, { clips: [{ name: "rise", seconds: 1 }, { name: "sink", seconds: 1 }], joints: ["lift"], weights: 0 });
+    assert.equal(still, null);
+    assert.equal(triangles, 12);
+    assert.ok(Math.abs(tops[0] - kSteps / 64) < 1e-5 && tops[1] < -0.7, `${tops}`);
+    assert.match(errors[0], /'run' is no clip of .*'rise', 'sink'/);
+    assert.match(errors[1], /only position, axis, angle and clip change/);
+    assert.match(errors[2], /16 numbers a joint/);
+    assert.match(errors[3], /2 joints/);
+    assert.match(errors[4], /plays no clip/);
+    assert.equal(gl, 0);
+    assert.deepEqual(said, []);
+});
