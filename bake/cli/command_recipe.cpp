@@ -12,12 +12,14 @@
 #include "bake/director/bake_request.h"
 #include "bake/import/animated_import.h"
 #include "bake/import/import_format.h"
+#include "bake/import/level_folder.h"
 #include "bake/import/mesh_import.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/recipe_run.h"
 #include "bake/report/recipe_report.h"
 #include "bake/report/report_text.h"
+#include "bake/world/world_bake.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
@@ -33,6 +35,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kShardsMax = 1'000'000;
 constexpr std::string_view kPlan = "--plan=";
 constexpr std::string_view kClips = "--clips=";
+constexpr std::string_view kHeights = "--heights=";
 
 /// Options of a bake that a run of a recipe has its own place for: they are no keys.
 constexpr std::array<std::string_view, 4> kOfTheRun = {"threads", "plan_out", "json", "depfile"};
@@ -74,7 +77,7 @@ Result<void> checkOptions(const RecipeCall& call) {
 }
 
 /// Whether a bake takes these options.
-Result<void> checkAsset(const RecipeOptions& options) {
+Result<void> checkAsset(const RecipeOptions& options, bool is_world) {
     BakeRequest request;
     BakeOutputs outputs;
     for (const auto& [key, value] : options) {
@@ -86,17 +89,17 @@ Result<void> checkAsset(const RecipeOptions& options) {
         }
     }
     static_cast<void>(RELIEF_TRY(settingsOf(request)));
-    return {};
+    return is_world ? checkWorldRequest(request) : Result<void>();
 }
 
 /// Every different set of options is tried before anything is baked.
 Result<void> checkAssets(const std::vector<RecipeAsset>& assets) {
-    std::set<std::vector<std::string>> known;
+    std::set<std::pair<bool, std::vector<std::string>>> known;
     for (const RecipeAsset& asset : assets) {
-        if (!known.insert(recipeArguments(asset.options)).second) {
+        if (!known.emplace(asset.isWorld(), recipeArguments(asset.options)).second) {
             continue;
         }
-        if (const Result<void> fits = checkAsset(asset.options); !fits) {
+        if (const Result<void> fits = checkAsset(asset.options, asset.isWorld()); !fits) {
             const Error& error = fits.error();
             RecipePlace place = asset.place;
             for (const auto& [name, value] : asset.options) {
@@ -240,28 +243,50 @@ Result<RecipeResult> bakeAll(RecipeWork& work, bool shown, RecipeEvents& events)
 }
 
 /// Adds the file that it was read from, and those that this refers to.
-void addFiles(const TriangleMesh& mesh, const fs::path& folder, std::vector<InputFile>& files) {
-    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
-        files.push_back({nameInRecipe(mesh.dependencies[i], folder), mesh.dependency_hashes[i]});
+/// \param from  with dependencies and their hashes.
+void addFiles(const auto& from, const fs::path& folder, std::vector<InputFile>& files) {
+    for (std::size_t i = 0; i < from.dependencies.size(); ++i) {
+        files.push_back({nameInRecipe(from.dependencies[i], folder), from.dependency_hashes[i]});
     }
+}
+
+/// Whether a bake reads the file alone: a height map, or a mesh that refers to no other.
+bool isWhole(const RecipeJob& job) {
+    if (std::ranges::any_of(job.options, [](const auto& word) { return word.starts_with(kHeights); })) {
+        return true;
+    }
+    const std::string extension = job.mesh_path.extension().string();
+    const MeshFormat* const format = extension.empty() ? nullptr : meshFormat(extension.substr(1));
+    return !job.mesh_is_folder && format != nullptr && format->whole;
 }
 
 /// The mesh and all that it refers to; nullopt if that cannot be read.
 std::optional<std::vector<InputFile>> filesOfMesh(const RecipeJob& job, const fs::path& folder) {
-    const std::string extension = job.mesh_path.extension().string();
-    const MeshFormat* const format = extension.empty() ? nullptr : meshFormat(extension.substr(1));
-    if (format != nullptr && format->whole) {
-        const std::optional<std::string> hash = hashOfFile(job.mesh_path);
-        return hash ? std::optional(std::vector<InputFile>{{job.mesh, *hash}}) : std::nullopt;
+    std::vector<InputFile> files;
+    if (isWhole(job) || job.mesh_is_folder) {
+        const std::optional<std::string> hash = hashOfInput(job.mesh_path);
+        if (!hash) {
+            return std::nullopt;
+        }
+        files.push_back({job.mesh, *hash});
+    }
+    if (isWhole(job)) {
+        return files;
+    }
+    const auto add = [&](const auto& from) {
+        const bool named = !files.empty();
+        addFiles(from, folder, files);
+        if (!named && !files.empty()) {
+            files.front().path = job.mesh;
+        }
+        return files;
+    };
+    if (job.world) {
+        const Result<Level> level = importLevel(job.mesh_path);
+        return level ? std::optional(add(*level)) : std::nullopt;
     }
     const Result<TriangleMesh> mesh = importMeshInWorker(job.mesh_path);
-    if (!mesh) {
-        return std::nullopt;
-    }
-    std::vector<InputFile> files;
-    addFiles(*mesh, folder, files);
-    files.front().path = job.mesh;
-    return files;
+    return mesh ? std::optional(add(*mesh)) : std::nullopt;
 }
 
 std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& tool, const fs::path& folder) {

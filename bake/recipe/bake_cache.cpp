@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <system_error>
 
@@ -13,6 +14,7 @@
 #include "formats/base/hash.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"
+#include "formats/world/world.h"
 
 namespace relief {
 namespace {
@@ -49,6 +51,9 @@ BakeCacheEntry entryOf(const Json& json) {
     for (const Json& input : inputs) {
         entry.inputs.push_back({input.at("file").get<std::string>(), input.at("hash").get<std::string>()});
     }
+    if (json.contains("containers")) {
+        entry.containers = json["containers"].get<std::map<std::string, std::string>>();
+    }
     return entry;
 }
 
@@ -74,6 +79,26 @@ std::optional<std::string> hashOfFile(const fs::path& path) {
     }
     const auto bytes = readFile(path);
     return bytes ? std::optional(xxh3_128Hex(*bytes)) : std::nullopt;
+}
+
+std::optional<std::string> hashOfInput(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+        return hashOfFile(path);
+    }
+    std::set<std::string> names;
+    fs::directory_iterator entry(path, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (!name.starts_with('.') && !name.ends_with(kColliderExtension) && name != kWorldFileName) {
+            names.insert(name);
+        }
+    }
+    std::string text;
+    for (const std::string& name : names) {
+        text += name + '\0';
+    }
+    return error ? std::nullopt : std::optional(xxh3_128Hex(std::as_bytes(std::span(text))));
 }
 
 Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
@@ -104,6 +129,9 @@ std::string bakeCacheText(const BakeCacheEntries& entries) {
                                     {"inputs", std::move(inputs)},
                                     {"output_hash", entry.output_hash},
                                     {"output_bytes", entry.output_bytes}};
+        if (!entry.containers.empty()) {
+            outputs[cleanUtf8(name)]["containers"] = entry.containers;
+        }
     }
     const Json json = {{"format", kFormat}, {"version", kCacheVersion}, {"outputs", std::move(outputs)}};
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -172,7 +200,7 @@ std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry*
     if (!fs::exists(job.output_path, error)) {
         return entry == nullptr ? "new" : "the output is gone";
     }
-    if (entry == nullptr) {
+    if (entry == nullptr || entry->containers.empty() == job.world) {
         return "nothing is known of the output";
     }
     if (entry->tool != tool) {
@@ -185,12 +213,18 @@ std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry*
         return "the mesh is another";
     }
     for (const InputFile& input : entry->inputs) {
-        if (hashOfFile(recipe_folder / input.path) != input.hash) {
+        if (hashOfInput(recipe_folder / input.path) != input.hash) {
             return quotedPath(input.path) + " changed";
         }
     }
     if (hashOfFile(job.output_path) != entry->output_hash) {
         return "the output changed";
+    }
+    for (const auto& [file, hash] : entry->containers) {
+        const fs::path path = job.output_path.parent_path() / file;
+        if (hashOfFile(path) != hash) {
+            return "its " + quotedPath(file) + (fs::exists(path, error) ? " changed" : " is gone");
+        }
     }
     return std::nullopt;
 }

@@ -22,7 +22,9 @@ struct BakeCacheEntry {
     std::vector<std::string> options;  ///< RecipeJob::options
     std::vector<InputFile> inputs;     ///< from the recipe's folder; the mesh first
     std::string output_hash;           ///< XXH3-128
-    std::uint64_t output_bytes = 0;
+    std::uint64_t output_bytes = 0;    ///< with the containers
+    /// Of a world: the XXH3-128 of its containers, by their names in its folder.
+    std::map<std::string, std::string> containers = {};
 
     bool operator==(const BakeCacheEntry&) const = default;
 };
@@ -35,6 +37,9 @@ using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 
 /// XXH3-128 of a regular file's bytes; nullopt for anything else, or what cannot be read.
 [[nodiscard]] std::optional<std::string> hashOfFile(const std::filesystem::path& path);
+
+/// The same of an input; of a folder that of the names in it, but for those that start with a dot or that bakes write.
+[[nodiscard]] std::optional<std::string> hashOfInput(const std::filesystem::path& path);
 
 /// The entries of a cache file's text. Errors: kInvalidInput: no cache file of this version.
 [[nodiscard]] Result<BakeCacheEntries> parseBakeCache(std::string_view text);

@@ -42,7 +42,8 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
         }
         pattern.wild_ = pattern.wild_ || part.find_first_of("*?[\\") != std::string_view::npos;
     }
-    if (pattern.parts_.empty() || text.ends_with('/')) {
+    pattern.of_folders_ = text.ends_with('/');
+    if (pattern.parts_.empty()) {
         return invalid("names no file; name one, or several as in rocks/*.obj");
     }
     if (pattern.parts_.back() == kFolders) {
@@ -101,6 +102,10 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
         std::size_t depth;
     };
     GlobResult result;
+    const auto take = [&](std::string name) {
+        result.files.push_back(std::move(name));
+        return result.files.size() <= kFilesMax;
+    };
     std::vector<Pending> pending{{"", pattern.start(), 0}};
     std::size_t names = 0;
     const auto tooMuch = [](const std::string& what) {
@@ -122,6 +127,11 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
             const bool is_folder = entry->is_directory(none);
             GlobPattern::State next =
                 pattern.step(here.state, name.c_str(), is_folder && entry->is_symlink(none));
+            const bool accepted = pattern.accepts(next) && is_folder == pattern.ofFolders() &&
+                                  (is_folder || entry->is_regular_file(none));
+            if (accepted && !take(here.path + name)) {
+                return tooMuch("it matches more than " + std::to_string(kFilesMax) + " files");
+            }
             if (is_folder) {
                 if (std::find(next.begin(), next.end() - 1, true) == next.end() - 1) {
                     continue;
@@ -130,11 +140,6 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
                     return tooMuch("its folders are more than " + std::to_string(kPartsMax) + " deep");
                 }
                 pending.push_back({here.path + name + "/", std::move(next), here.depth + 1});
-            } else if (pattern.accepts(next) && entry->is_regular_file(none)) {
-                if (result.files.size() == kFilesMax) {
-                    return tooMuch("it matches more than " + std::to_string(kFilesMax) + " files");
-                }
-                result.files.push_back(here.path + name);
             }
         }
         if (error) {

@@ -3,7 +3,7 @@
 // A pattern is a relative path. In a part of it `*` stands for any characters, `?` for one, `[a-f]` and
 // `[!a-f]` for one of some, and a backslash takes the next character as it is; a part that is `**` alone
 // stands for any number of folders, none included. No wildcard stands for a dot at the start of a name. Bytes
-// are compared, whatever the locale.
+// are compared, whatever the locale. A slash at the end makes it a pattern of folders.
 #pragma once
 
 #include <filesystem>
@@ -23,6 +23,8 @@ class GlobPattern {
 
     /// Whether any part has a wildcard.
     [[nodiscard]] bool wild() const { return wild_; }
+    /// Whether folders are meant, and no files.
+    [[nodiscard]] bool ofFolders() const { return of_folders_; }
     /// \param path  relative, without `.` and `..`, parts separated by one `/`.
     [[nodiscard]] bool matches(std::string_view path) const;
 
@@ -36,6 +38,7 @@ class GlobPattern {
   private:
     std::vector<std::string> parts_;
     bool wild_ = false;
+    bool of_folders_ = false;
 };
 
 struct GlobResult {
@@ -43,7 +46,7 @@ struct GlobResult {
     std::vector<std::string> folders;  ///< that were looked through, from `folder`, "" for itself; sorted
 };
 
-/// The files below a folder that a pattern matches: regular files, symbolic links to such included.
+/// The files below a folder that a pattern matches: regular files, or folders; symbolic links to such included.
 /// \param folder  empty for the current one.
 /// Errors: kIo (a folder cannot be read), kLimit (a million names looked at, 100,000 files found, 64 deep).
 [[nodiscard]] Result<GlobResult> globFiles(const std::filesystem::path& folder, const GlobPattern& pattern);

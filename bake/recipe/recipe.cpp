@@ -9,6 +9,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/config/toml_reader.h"
+#include "formats/world/world.h"
 
 namespace relief {
 namespace {
@@ -27,6 +28,9 @@ constexpr std::size_t kChoosers = 6;
 constexpr std::size_t kNamers = 3;
 /// Options about what is planned: an asset that names its maps takes none from the defaults.
 constexpr std::array<std::string_view, 2> kPlanning = {"layout", "max-maps"};
+
+/// What an asset with a height map of its own takes from the defaults: all else is for meshes.
+constexpr std::array<std::string_view, 2> kOfHeights = {"compress", "time-limit"};
 
 /// Thrown where a recipe exceeds a limit.
 struct BeyondLimit {
@@ -155,10 +159,13 @@ void merge(RecipeAsset& asset, const RecipeAsset& defaults) {
     const auto is_one_of = [](std::span<const std::string_view> names, const std::string& name) {
         return std::ranges::find(names, name) != names.end();
     };
-    const bool chooses = has_one_of(kChoosers);
+    // A budget for one mesh is none for a level.
+    const bool chooses = has_one_of(kChoosers) || asset.isWorld();
     const bool names_maps = has_one_of(kNamers);
+    const bool is_ground = asset.options.contains("heights");
     for (const auto& [name, value] : defaults.options) {
-        if (!(chooses && is_one_of(kMapChoice, name)) && !(names_maps && is_one_of(kPlanning, name))) {
+        if (!(chooses && is_one_of(kMapChoice, name)) && !(names_maps && is_one_of(kPlanning, name)) &&
+            !(is_ground && !is_one_of(kOfHeights, name))) {
             asset.options.emplace(name, value);  // the asset's own stays
         }
     }
@@ -199,6 +206,10 @@ std::vector<RecipeAsset> readRecipe(const TomlValue& top, const std::vector<Reci
 }
 
 }  // namespace
+
+bool RecipeAsset::isWorld() const {
+    return fs::path(output).filename() == kWorldFileName;
+}
 
 Result<std::vector<RecipeAsset>> parseRecipe(std::string_view text, const std::vector<RecipeKey>& keys,
                                              const fs::path& path) {

@@ -45,6 +45,9 @@ struct RecipeAsset {
     RecipePlace place;
     RecipePlace mesh_place;
     RecipePlace output_place;
+
+    /// Whether it bakes levels or height maps into worlds: `output` names their kWorldFileName.
+    [[nodiscard]] bool isWorld() const;
 };
 
 /// \param keys  the options that may be set.

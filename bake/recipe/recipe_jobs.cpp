@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <set>
 #include <span>
+#include <system_error>
 
 #include "bake/recipe/glob.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
+#include "formats/world/world.h"
 
 namespace relief {
 namespace {
@@ -27,6 +31,24 @@ tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
 /// "x" -> "'x'", on one line.
 std::string inQuotes(const std::string& text) {
     return "'" + cleanUtf8(text, 400) + "'";
+}
+
+/// A link in a folder that leads out of `root`, so that anybody's file would be read or written there.
+/// \param inside  the folder, from `root`; may be missing.
+/// \param ending  of the names that matter; empty: all do.
+std::optional<std::string> linkOut(const fs::path& root, const fs::path& inside, std::string_view ending) {
+    std::set<std::string> out;
+    std::error_code error;
+    for (fs::directory_iterator entry(root / inside, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        std::error_code unknown;
+        if (name.ends_with(ending) && entry->is_symlink(unknown) &&
+            !resolveInside(root, (inside / name).string())) {
+            out.insert(name);
+        }
+    }
+    return out.empty() ? std::nullopt : std::optional(*out.begin());
 }
 
 class Expander {
@@ -54,7 +76,10 @@ class Expander {
             }
         }
         const std::vector<std::string> arguments = recipeArguments(opened);
-        const std::vector<std::string> options = recipeArguments(asset.options);
+        std::vector<std::string> options = recipeArguments(asset.options);
+        if (asset.isWorld()) {
+            options.insert(std::ranges::lower_bound(options, kWorldOption), kWorldOption);
+        }
         for (const std::string& mesh : meshes) {
             if (result_.jobs.size() == kRecipeJobsMax) {
                 return at(asset.place,
@@ -86,6 +111,7 @@ class Expander {
                                           "; tell them apart by {stem}, {name} or {dir}");
             }
         }
+        RELIEF_TRY(keepWorldsApart());
         std::sort(result_.folders.begin(), result_.folders.end());
         result_.folders.erase(std::unique(result_.folders.begin(), result_.folders.end()),
                               result_.folders.end());
@@ -93,6 +119,60 @@ class Expander {
     }
 
   private:
+    /// A world removes containers that it no longer names, and names others by their contents: nothing else is
+    /// written into its folder.
+    Result<void> keepWorldsApart() {
+        if (std::ranges::none_of(result_.jobs, &RecipeJob::world)) {
+            return {};
+        }
+        std::map<fs::path, std::size_t> worlds;  // jobs by their folders
+        std::vector<fs::path> folders;           // of all outputs
+        for (std::size_t i = 0; i < result_.jobs.size(); ++i) {
+            const RecipeJob& job = result_.jobs[i];
+            std::error_code error;
+            folders.push_back(destination(job.output_path.parent_path(), error));
+            if (job.world) {
+                worlds.emplace(folders.back(), i);
+                RELIEF_TRY(checkWorldFolder(job, places_[i]));
+            }
+        }
+        for (std::size_t i = 0; i < folders.size(); ++i) {
+            for (fs::path folder = folders[i];; folder = folder.parent_path()) {
+                const auto found = worlds.find(folder);
+                if (found != worlds.end() && found->second != i) {
+                    return at(places_[i], "the output " + inQuotes(result_.jobs[i].output) +
+                                              " lies in the folder of the world " +
+                                              inQuotes(result_.jobs[found->second].output) +
+                                              ", which has it for itself; name another folder");
+                }
+                if (!folder.has_relative_path()) {
+                    break;
+                }
+            }
+        }
+        return {};
+    }
+
+    Result<void> checkWorldFolder(const RecipeJob& job, const RecipePlace& place) {
+        const fs::path inside = fs::path(job.output).parent_path();
+        if (const auto link = linkOut(output_folder_, inside, kColliderExtension)) {
+            return at(place, "the folder of the output " + inQuotes(job.output) + " has a link " +
+                                 inQuotes(*link) + ", which leads out of the output folder " +
+                                 quotedPath(output_folder_) + "; remove it");
+        }
+        // The world's own cache, which in the output folder is the recipe's as well.
+        const fs::path cache = job.output_path.parent_path() / kBakeCacheName;
+        std::error_code error;
+        const FileGuard::File* const other =
+            inside.empty() || fs::is_symlink(fs::symlink_status(cache, error))
+                ? nullptr
+                : result_.files.claim(cache, job.mesh);
+        return other == nullptr
+                   ? Result<void>()
+                   : at(place, quotedPath(other->path) + " is where the world " + inQuotes(job.output) +
+                                   " keeps its cache; name another folder");
+    }
+
     /// The files of all patterns, each once, without the excluded ones.
     Result<std::vector<std::string>> meshesOf(const RecipeAsset& asset) {
         std::vector<GlobPattern> excluded;
@@ -105,6 +185,7 @@ class Expander {
             excluded.push_back(std::move(*pattern));
         }
         std::vector<std::string> meshes;
+        bool of_folders = false;
         std::set<std::string> seen;
         for (const std::string& text : asset.meshes) {
             const Result<GlobPattern> pattern = GlobPattern::parse(text);
@@ -117,9 +198,21 @@ class Expander {
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + ": " + found.error().message,
                           found.error().code);
             }
+            of_folders = of_folders || pattern->ofFolders();
+            if (pattern->ofFolders() && !asset.isWorld()) {
+                return at(asset.mesh_place,
+                          "mesh " + inQuotes(text) +
+                              " names folders, which are levels; write */* for the files in "
+                              "them, or let output end in /world.json");
+            }
             if (found->files.empty() && !asset.optional) {
-                return at(asset.mesh_place, "mesh " + inQuotes(text) + " matches no file in " +
-                                                quotedPath(folder_) + "; mend it, or set optional = true");
+                std::error_code error;
+                const bool folder = !pattern->ofFolders() && fs::is_directory(folder_ / text, error);
+                return at(asset.mesh_place, "mesh " + inQuotes(text) + " matches no " +
+                                                (pattern->ofFolders() ? "folder" : "file") + " in " +
+                                                quotedPath(folder_) +
+                                                (folder ? "; it is a folder: end it with / for a level"
+                                                        : "; mend it, or set optional = true"));
             }
             for (const std::string& mesh : found->files) {
                 const bool out = std::any_of(excluded.begin(), excluded.end(),
@@ -134,6 +227,14 @@ class Expander {
                 }
             }
         }
+        for (std::size_t i = 0; i < excluded.size(); ++i) {
+            if (excluded[i].ofFolders() && !of_folders) {
+                return at(asset.place,
+                          "exclude " + inQuotes(asset.exclude[i]) +
+                              " names folders, and mesh names files; write **/* for the files in "
+                              "them");
+            }
+        }
         return meshes;
     }
 
@@ -146,8 +247,17 @@ class Expander {
             return at(asset.mesh_place, "mesh " + path.error().message);
         }
         job.mesh_path = *path;
-        std::string output = RELIEF_TRY(outputOf(asset, mesh));
+        std::error_code error;
+        job.mesh_is_folder = fs::is_directory(*path, error);
+        if (job.mesh_is_folder) {
+            if (const auto link = linkOut(folder_, mesh, "")) {
+                return at(asset.mesh_place, "mesh " + inQuotes(mesh) + " has a link " + inQuotes(*link) +
+                                                ", which leads out of the recipe's folder; remove it");
+            }
+        }
+        std::string output = RELIEF_TRY(outputOf(asset, mesh, job.mesh_is_folder));
         job.output = std::move(output);
+        job.world = asset.isWorld();
         if (!resolveInside(output_folder_, job.output)) {
             return at(asset.output_place, "the output " + inQuotes(job.output) +
                                               " leads out of the output folder " +
@@ -163,7 +273,7 @@ class Expander {
     }
 
     /// The output's name for a mesh, in its shortest form.
-    static Result<std::string> outputOf(const RecipeAsset& asset, const std::string& mesh) {
+    static Result<std::string> outputOf(const RecipeAsset& asset, const std::string& mesh, bool is_folder) {
         const fs::path path(mesh);
         std::string name;
         for (std::size_t i = 0; i < asset.output.size(); ++i) {
@@ -179,7 +289,7 @@ class Expander {
             const std::string word =
                 asset.output.substr(i + 1, end == std::string::npos ? std::string::npos : end - i - 1);
             if (word == "stem") {
-                name += path.stem().string();
+                name += (is_folder ? path.filename() : path.stem()).string();
             } else if (word == "name") {
                 name += path.filename().string();
             } else if (word == "dir") {
@@ -195,9 +305,12 @@ class Expander {
                                               " must be a relative path; choose the folder by --output");
         }
         name = fs::path(name).lexically_normal().string();
-        if (!name.ends_with(kColliderExtension) || fs::path(name).filename() == kColliderExtension) {
-            return at(asset.output_place,
-                      "the output " + inQuotes(name) + " must end in .relief: a recipe writes nothing else");
+        const fs::path file = fs::path(name).filename();
+        if (asset.isWorld() ? file != kWorldFileName
+                            : !name.ends_with(kColliderExtension) || file == kColliderExtension) {
+            return at(asset.output_place, "the output " + inQuotes(name) +
+                                              " must end in .relief, or for a level in /world.json: a recipe "
+                                              "writes nothing else");
         }
         return name;
     }

@@ -14,20 +14,25 @@
 namespace relief {
 
 inline constexpr std::size_t kRecipeJobsMax = 100'000;
-/// The extension of every output.
+/// The extension of every collider.
 inline constexpr std::string_view kColliderExtension = ".relief";
 /// Beside the outputs: the inputs of each.
 inline constexpr const char* kBakeCacheName = ".relief-cache.json";
 
-/// One mesh to be baked into one collider.
+/// In RecipeJob::options of a world.
+inline constexpr const char* kWorldOption = "--world";
+
+/// One mesh to be baked into one collider, or one level or height map into a world.
 struct RecipeJob {
     std::string mesh;                    ///< from the recipe's folder
     std::filesystem::path mesh_path;     ///< ready to be opened
     std::string output;                  ///< from the output folder, without `.` and `..`
     std::filesystem::path output_path;   ///< ready to be written; its folder may be missing
+    bool mesh_is_folder = false;         ///< a level of the mesh files in it
+    bool world = false;                  ///< `output` is a world's file, and the folder of that is its alone
     std::vector<std::string> arguments;  ///< of `relief bake`, files as they can be opened; sorted
-    std::vector<std::string>
-        options;  ///< the same, files from the recipe's folder: the output depends on them
+    std::vector<std::string> options;    ///< the same, files from the recipe's folder, and kWorldOption: the
+                                         ///< output depends on them
 };
 
 struct RecipeJobs {
@@ -40,8 +45,8 @@ struct RecipeJobs {
 /// \param output_folder  need not exist; empty for the recipe's folder.
 /// \param files  holds what else is read. Errors, at a place of
 /// the recipe: kInvalidInput (a pattern that matches nothing, a file outside of the recipe's folder, an
-/// output outside of the output folder, without .relief at its end, or the same as another output or as an
-/// input), kLimit (kRecipeJobsMax), those of globFiles.
+/// output outside of the output folder, neither a collider nor a world, the same as another output or as an
+/// input, or in the folder of another world), kLimit (kRecipeJobsMax), those of globFiles.
 [[nodiscard]] Result<RecipeJobs> recipeJobs(const std::vector<RecipeAsset>& assets,
                                             const std::filesystem::path& recipe,
                                             const std::filesystem::path& output_folder, FileGuard files = {});

@@ -13,6 +13,7 @@
 #include "bake/recipe/child_process.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
+#include "formats/world/world.h"
 
 namespace relief {
 namespace {
@@ -39,6 +40,33 @@ void removeTemporaries(const fs::path& folder, pid_t pid) {
     for (const fs::path& path : left) {
         ::unlink(path.c_str());
     }
+}
+
+/// What a job has made, as an entry of the cache: its output's bytes and hashes. Errors: none, or no world.
+Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
+    BakeCacheEntry entry;
+    const std::optional<std::string> hash = hashOfFile(job.output_path);
+    std::error_code error;
+    entry.output_bytes = fs::file_size(job.output_path, error);
+    if (!hash || error) {
+        return fail(ErrorCode::kFailure, "its bake left no output; bake it alone to see more");
+    }
+    entry.output_hash = *hash;
+    if (!job.world) {
+        return entry;
+    }
+    const World world = RELIEF_TRY(loadWorldFile(job.output_path));
+    for (const WorldCollider& collider : world.colliders) {
+        entry.containers[collider.file] = collider.hash;
+        if (collider.coarse) {
+            entry.containers[collider.coarse->file] = collider.coarse->hash;
+        }
+    }
+    for (const auto& [file, file_hash] : entry.containers) {
+        const std::uintmax_t bytes = fs::file_size(job.output_path.parent_path() / file, error);
+        entry.output_bytes += error ? 0 : bytes;  // the next run finds it gone
+    }
+    return entry;
 }
 
 class Runner {
@@ -93,17 +121,24 @@ class Runner {
                     ? "not looked at"
                     : staleness(asset.job, known ? &entry->second : nullptr, tool_, folder);
             if (!reason) {
-                asset.state = AssetState::kUpToDate;
-                asset.hash = entry->second.output_hash;
-                asset.bytes = entry->second.output_bytes;
-                asset.inputs = entry->second.inputs;
-                asset.key = assetKey(tool_, asset.job.options, asset.inputs);
-                tell(run_.ended, asset);
+                made(asset, AssetState::kUpToDate, entry->second);
             } else {
                 asset.reason = *reason;
             }
             result_.assets.push_back(std::move(asset));
         }
+    }
+
+    void made(AssetResult& asset, AssetState state, const BakeCacheEntry& entry) {
+        asset.state = state;
+        asset.hash = entry.output_hash;
+        asset.bytes = entry.output_bytes;
+        asset.inputs = entry.inputs;
+        asset.key = assetKey(tool_, asset.job.options, asset.inputs);
+        for (const auto& [file, hash] : entry.containers) {
+            asset.containers.push_back((fs::path(asset.job.output).parent_path() / file).string());
+        }
+        tell(run_.ended, asset);
     }
 
     void bakeStale() {
@@ -146,9 +181,15 @@ class Runner {
                                            ": " + error.message() + "; choose another output"});
             return;
         }
+        if (asset.job.mesh_is_folder) {
+            // As it is before its files are read: what comes later is noticed by the next run.
+            asset.inputs = {{asset.job.mesh, hashOfInput(asset.job.mesh_path).value_or("")}};
+        }
         std::vector<std::string> arguments = {"bake", asset.job.mesh_path.string(),
-                                              "--output=" + asset.job.output_path.string(), "--json",
-                                              "--threads=" + std::to_string(run_.threads)};
+                                              asset.job.world
+                                                  ? "--world=" + asset.job.output_path.parent_path().string()
+                                                  : "--output=" + asset.job.output_path.string(),
+                                              "--json", "--threads=" + std::to_string(run_.threads)};
         const std::vector<std::string>& own = asset.job.arguments;
         arguments.insert(arguments.end(), own.begin(), own.end());
         if (std::ranges::none_of(own,
@@ -214,21 +255,19 @@ class Runner {
                                         input["hash"].get<std::string>()});
             }
         }
-        const std::optional<std::string> hash = hashOfFile(asset.job.output_path);
-        std::error_code error;
-        const std::uintmax_t bytes = fs::file_size(asset.job.output_path, error);
-        if (asset.inputs.empty() || !hash || error) {
-            failAsset(asset, {ErrorCode::kFailure,
-                              "its bake left no report or no output; bake it alone to see more"});
+        Result<BakeCacheEntry> entry = entryOf(asset.job);
+        if (!entry || asset.inputs.empty()) {
+            failAsset(asset,
+                      entry ? Error{ErrorCode::kFailure, "its bake left no report; bake it alone to see more"}
+                            : entry.error());
             return;
         }
         asset.inputs.front().path = asset.job.mesh;
-        asset.key = assetKey(tool_, asset.job.options, asset.inputs);
-        asset.state = AssetState::kBaked;
-        asset.hash = *hash;
-        asset.bytes = bytes;
-        fresh_[asset.job.output] = {tool_, asset.job.options, asset.inputs, asset.hash, asset.bytes};
-        tell(run_.ended, asset);
+        entry->tool = tool_;
+        entry->options = asset.job.options;
+        entry->inputs = asset.inputs;
+        made(asset, AssetState::kBaked, *entry);
+        fresh_[asset.job.output] = std::move(*entry);
     }
 
     const RecipeRun& run_;
@@ -263,6 +302,7 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
     if (run.recipe != "-") {
         inputs.push_back(name(run.recipe));
     }
+    std::vector<fs::path> looked_through = folders;
     std::set<fs::path> written = {realFolder(run.output_folder)};
     for (const std::string& file : beside) {
         if (!file.empty()) {
@@ -273,11 +313,14 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
     for (const AssetResult& asset : assets) {
         targets.push_back(name(asset.job.output_path));
         written.insert(realFolder(asset.job.output_path.parent_path()));
-        for (const InputFile& input : asset.inputs) {
-            inputs.push_back(name(folder / input.path));
+        if (asset.job.mesh_is_folder) {
+            looked_through.push_back(asset.job.mesh_path);
+        }
+        for (std::size_t i = asset.job.mesh_is_folder ? 1 : 0; i < asset.inputs.size(); ++i) {
+            inputs.push_back(name(folder / asset.inputs[i].path));
         }
     }
-    for (const fs::path& searched : folders) {
+    for (const fs::path& searched : looked_through) {
         if (!written.contains(realFolder(searched))) {
             // "rocks/" and "rocks" are two files to Make.
             const fs::path normal = (searched / "").lexically_normal();

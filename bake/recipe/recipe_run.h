@@ -28,14 +28,15 @@ inline constexpr std::array<std::string_view, 5> kWordsOf<AssetState>{"stale", "
 struct AssetResult {
     RecipeJob job;
     AssetState state = AssetState::kStale;
-    std::string reason;                 ///< why it was to be baked; "" if up to date
-    double ms = 0.0;                    ///< time of its bake
-    std::string hash;                   ///< XXH3-128 of the output; baked or up to date
-    std::uint64_t bytes = 0;            ///< of the output; baked or up to date
-    Error error;                        ///< failed
-    std::vector<std::string> warnings;  ///< of its baking
-    std::vector<InputFile> inputs;      ///< from the recipe's folder, the mesh first; known as the hash is
-    std::string key;                    ///< assetKey(); known as the inputs are
+    std::string reason;                   ///< why it was to be baked; "" if up to date
+    double ms = 0.0;                      ///< time of its bake
+    std::string hash;                     ///< XXH3-128 of the output; baked or up to date
+    std::uint64_t bytes = 0;              ///< of the output, with the containers; baked or up to date
+    std::vector<std::string> containers;  ///< of a world, from the output folder; baked or up to date
+    Error error;                          ///< failed
+    std::vector<std::string> warnings;    ///< of its baking
+    std::vector<InputFile> inputs;        ///< from the recipe's folder, the mesh first; known as the hash is
+    std::string key;                      ///< assetKey(); known as the inputs are
 };
 
 struct RecipeRun {

@@ -47,8 +47,8 @@ void fields(Visitor& visit, R& report) {
     const bool made = state == AssetState::kBaked || state == AssetState::kUpToDate;
     const bool failed = state == AssetState::kFailed;
     const bool tried = state == AssetState::kBaked || failed;
-    visit("asset", asset.job.output, {"Output, relative to the output folder"});
-    visit("mesh", asset.job.mesh, {"Its mesh, relative to the folder of the recipe"});
+    visit("asset", asset.job.output, {"Output, relative to the output folder: a collider, or a world"});
+    visit("mesh", asset.job.mesh, {"Its mesh, level or height map, relative to the folder of the recipe"});
     visit("state", wordOf(state),
           {.help = "State of the asset", .words = {&kWordsOf<AssetState>[std::size_t(state)], 1}});
     if (state != AssetState::kUpToDate) {
@@ -58,8 +58,12 @@ void fields(Visitor& visit, R& report) {
         visit("ms", asset.ms, {"Time", "ms", kFromZero});
     }
     if (made) {
-        visit("bytes", asset.bytes, {"Size of the output", "bytes"});
-        visit("hash", asset.hash, {.help = "XXH3-128 of the output", .pattern = kHashPattern});
+        visit("bytes", asset.bytes, {"Size of the output, with its containers", "bytes"});
+        visit("hash", asset.hash,
+              {.help = "XXH3-128 of the output; that of a world has those of its containers",
+               .pattern = kHashPattern});
+        visit("containers", asset.containers,
+              {.help = "Containers of a world, relative to the output folder", .left_out = true});
         visit("inputs", asset.inputs, {.help = "All files that it was made from", .items = kFromOne});
     }
     if (made || !report.event) {

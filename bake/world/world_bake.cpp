@@ -514,7 +514,7 @@ Result<void> checkWorldRequest(const BakeRequest& request) {
     for (const auto& [option, given] : of_one) {
         if (given) {
             return fail(ErrorCode::kUsage,
-                        std::string(option) + " is for one mesh; leave it out beside --world");
+                        std::string(option) + " is for one mesh, and a level has many; leave it out");
         }
     }
     static_cast<void>(RELIEF_TRY(settingsOf(request)));

@@ -32,8 +32,9 @@
 #           nothing else (tests/long/try_packages.sh). Needs root.
 #   sanitize  every test passes under the address and undefined-behaviour sanitizers, those of numbers too
 #   embree4 a build for Embree 4's functions, done by Embree 3 (tests/bake/mesh/embree4), bakes the same bytes.
-#   slurm   samples/slurm bakes the models of sweethome3d-furniture on a cluster of one node, with a task that is begun again,
-#           one that is killed, and broken meshes; a second run bakes the rest, and a third nothing. Needs root.
+#   slurm   samples/slurm bakes the models of sweethome3d-furniture and a level on a cluster of one node, with a task that is begun
+#           again, one that is killed, and broken meshes; a second run bakes the rest, a third nothing, and a fourth the level,
+#           of which a container is gone. Needs root.
 #   outputs 20 rounds of kills, errors, signals and eight writers leave no torn file (tests/long/all_or_nothing.sh)
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -215,8 +216,10 @@ slurm() {
     find "$work/farm" -name '*.obj' | sort | tail -n +486 | xargs -r rm
     printf 'v 0 0 0\nf 1 2 9\n' >"$work/farm/broken_index.obj"
     printf 'no mesh\n' >"$work/farm/broken_text.obj"
+    python3 tests/cli/level.py "$work/farm/yard.gltf"
     printf 'version = 1\n[defaults]\nbudget = "60kB"\nquality = "fast"\n[[asset]]\nmesh = "**/*.obj"\noutput = "{dir}/{stem}.relief"\n' \
         >"$work/farm/r.toml"
+    printf '[[asset]]\nmesh = "*.gltf"\noutput = "worlds/{stem}/world.json"\nbudget = "200kB"\n' >>"$work/farm/r.toml"
     slurm_cluster "$work/slurm" || return 1
     export RELIEF=$bin/relief
     local out=$work/farm_out begun=$SECONDS
@@ -235,13 +238,21 @@ slurm() {
             slurm_wait "$job" &&
             [ "$(report "d['unfinished_tasks'] == [] and d['failed']")" = 2 ] &&
             grep -q broken_index "$out/reports/failures.txt" &&
-            [ "$(find "$out" -name '*.relief' | wc -l)" = "$(report "d['baked'] + d['up_to_date']")" ] &&
-            echo "slurm: $(report "d['baked'] + d['up_to_date']") of $(find "$work/farm" -name '*.obj' | wc -l) models, $((SECONDS - begun)) s" &&
+            [ "$(find "$out" ! -path '*/worlds/*/*.relief' \( -name '*.relief' -o -name world.json \) | wc -l)" = \
+                "$(report "d['baked'] + d['up_to_date']")" ] &&
+            "$RELIEF" check "$out/worlds/yard/world.json" --mesh "$work/farm/yard.gltf" --max-error 1 >/dev/null &&
+            echo "slurm: $(report "d['baked'] + d['up_to_date']") of $(find "$work/farm" -name '*.obj' | wc -l) models and a level, $((SECONDS - begun)) s" &&
             rm "$work"/farm/broken_*.obj &&
             job=$(samples/slurm/submit.sh "$work/farm/r.toml" "$out" $tasks -- --cpus-per-task=1) &&
             slurm_wait "$job" &&
             [ "$(report "[d['baked'], d['failed'], d['unfinished_tasks']]")" = '[0, 0, []]' ] &&
-            echo "slurm: another run bakes nothing"
+            echo "slurm: another run bakes nothing" &&
+            rm "$out"/worlds/yard/floor-*.relief &&
+            job=$(samples/slurm/submit.sh "$work/farm/r.toml" "$out" $tasks -- --cpus-per-task=1) &&
+            slurm_wait "$job" &&
+            [ "$(report "[d['baked'], d['failed'], d['unfinished_tasks']]")" = '[1, 0, []]' ] &&
+            "$RELIEF" check "$out/worlds/yard/world.json" >/dev/null &&
+            echo "slurm: and then the level alone"
     } || {
         status=1
         cat "$out"/reports/report.json "$out"/reports/report.log >&2

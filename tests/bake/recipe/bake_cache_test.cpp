@@ -110,6 +110,50 @@ TEST_F(BakeCache, APipeIsNoInput) {
     EXPECT_FALSE(hashOfFile("/dev/zero"));
 }
 
+TEST_F(BakeCache, AWorldIsUpToDateWithAllItsContainers) {
+    fs::create_directory(folder_ / "w");
+    for (const char* file : {"w/world.json", "w/a.relief", "w/b.relief"}) {
+        put(file, file);
+    }
+    job_.output = "w/world.json";
+    job_.output_path = folder_ / job_.output;
+    job_.world = true;
+    entry_.output_hash = hash("w/world.json");
+    EXPECT_EQ(why(), "nothing is known of the output") << "a world has containers";
+    entry_.containers = {{"a.relief", hash("w/a.relief")}, {"b.relief", hash("w/b.relief")}};
+    EXPECT_EQ(why(), "up to date");
+    put("w/b.relief", "w/B.relief");
+    EXPECT_EQ(why(), "its 'b.relief' changed");
+    fs::remove(folder_ / "w/b.relief");
+    EXPECT_EQ(why(), "its 'b.relief' is gone");
+    put("w/b.relief", "w/b.relief");
+    put("w/world.json", "{}");
+    EXPECT_EQ(why(), "the output changed");
+    ASSERT_TRUE(updateBakeCache(folder_, {{job_.output, entry_}}));
+    EXPECT_EQ(*loadBakeCache(folder_), (BakeCacheEntries{{job_.output, entry_}}));
+}
+
+TEST_F(BakeCache, AFolderIsTheNamesInIt) {
+    fs::create_directory(folder_ / "parts");
+    put("parts/a.obj", "a");
+    const auto now = [&] { return hashOfInput(folder_ / "parts"); };
+    const auto before = now();
+    ASSERT_TRUE(before);
+    for (const char* file :
+         {"parts/a.obj", "parts/x.relief", "parts/world.json", "parts/.relief-cache.json"}) {
+        put(file, "b");
+        EXPECT_EQ(now(), before) << file << ": contents are inputs of their own, and a bake may write there";
+    }
+    put("parts/b.obj", "a");
+    EXPECT_NE(now(), before);
+    fs::rename(folder_ / "parts/b.obj", folder_ / "parts/c.obj");
+    fs::remove(folder_ / "parts/a.obj");
+    EXPECT_NE(now(), before);
+    fs::rename(folder_ / "parts/c.obj", folder_ / "parts/a.obj");
+    EXPECT_EQ(now(), before);
+    EXPECT_FALSE(hashOfInput(folder_ / "gone"));
+}
+
 TEST_F(BakeCache, ReadsWhatItWrites) {
     EXPECT_TRUE(loadBakeCache(folder_)->empty());
     ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}}));
@@ -157,7 +201,8 @@ TEST_F(BakeCache, WhatIsNoCacheIsRefused) {
           replaced("\"version\": 1", "\"version\": 2"), replaced("\"version\": 1", "\"version\": \"1\""),
           replaced("\"output_bytes\": 8", "\"output_bytes\": -8"), replaced("\"tool\"", "\"tol\""),
           replaced("\"inputs\": [", "\"inputs\": [1,"), replaced("\"options\": [", "\"options\": [1,"),
-          replaced("\"hash\"", "\"hsh\""),
+          replaced("\"hash\"", "\"hsh\""), replaced("\"output_hash\"", "\"containers\": [], \"output_hash\""),
+          replaced("\"output_hash\"", "\"containers\": {\"a\": 1}, \"output_hash\""),
           std::string(R"({"format":"relief-cache","version":1,"outputs":[]})"),
           std::string(R"({"format":"relief-cache","version":1,"outputs":{"a":1}})"),
           // Without inputs nothing could ever change.

@@ -65,7 +65,8 @@ TEST(Glob, SaysWhatIsNoPattern) {
     for (const auto& [text, says] : std::vector<std::pair<std::string, const char*>>{
              {"", "names no file"},
              {".", "names no file"},
-             {"x/", "names no file"},
+             {"./", "names no file"},
+             {"x/**/", "ends with **"},
              {"/x", "absolute"},
              {"../x", "upwards"},
              {"x/../y", "upwards"},
@@ -103,6 +104,10 @@ TEST(Glob, WalksFoldersOnceAndSorted) {
     const Result<GlobResult> through = globFiles(folder, *GlobPattern::parse("x/up.d/*.obj"));
     ASSERT_TRUE(through);
     EXPECT_EQ(through->files.size(), 3U) << "a link that is named is followed";
+    const Result<GlobResult> folders = globFiles(folder, *GlobPattern::parse("**/x*/"));
+    ASSERT_TRUE(folders);
+    EXPECT_EQ(folders->files, (std::vector<std::string>{"x", "x-", "x.obj"})) << "a slash at the end";
+    EXPECT_TRUE(globFiles(folder, *GlobPattern::parse("a.obj/"))->files.empty());
     EXPECT_EQ(globFiles(folder / "gone", *GlobPattern::parse("*")).error().code, ErrorCode::kIo);
     fs::remove_all(folder);
 }

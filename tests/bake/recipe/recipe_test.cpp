@@ -17,11 +17,11 @@ namespace fs = std::filesystem;
 
 const std::vector<RecipeKey>& keys() {
     using Kind = FieldKind;
-    static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},        {"paper", Kind::kFlag},
-                                                 {"plan", Kind::kValue},      {"budget", Kind::kValue},
-                                                 {"decode", Kind::kValue},    {"prefer", Kind::kValue},
-                                                 {"max-error", Kind::kValue}, {"compress", Kind::kValue},
-                                                 {"layout", Kind::kValue},    {"max-maps", Kind::kValue}};
+    static const std::vector<RecipeKey> kKeys = {
+        {"map", Kind::kList},        {"paper", Kind::kFlag},     {"plan", Kind::kValue},
+        {"budget", Kind::kValue},    {"decode", Kind::kValue},   {"prefer", Kind::kValue},
+        {"max-error", Kind::kValue}, {"compress", Kind::kValue}, {"layout", Kind::kValue},
+        {"max-maps", Kind::kValue},  {"heights", Kind::kValue},  {"texel", Kind::kValue}};
     return kKeys;
 }
 
@@ -83,6 +83,34 @@ TEST(Recipe, AnAssetThatNamesItsMapsTakesNothingAboutPlanning) {
     ASSERT_EQ(assets->size(), wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         EXPECT_EQ(recipeArguments((*assets)[i].options), wanted[i]);
+    }
+}
+
+// Otherwise defaults for meshes would shrink a level to the bytes of one, or be a mistake beside a height map.
+TEST(Recipe, DefaultsForMeshesAreNoneOfLevelsAndHeightMaps) {
+    const std::string defaults =
+        "[defaults]\noutput = '{stem}/world.json'\nmax-error = 1\nmap = 'float'\n"
+        "prefer = 'inside'\ncompress = 3\n";
+    const auto assets =
+        parseRecipe(recipe(defaults + "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '4MB'\n"
+                                      "[[asset]]\nmesh = 'c'\noutput = 'c.relief'\n"
+                                      "[[asset]]\nmesh = 'd'\nheights = 'low=0'\n"
+                                      "[[asset]]\nmesh = 'e'\nheights = 'low=0'\noutput = 'e.relief'\n"
+                                      "[[asset]]\nmesh = 'f'\noutput = 'fworld.json'\ntexel = '1cm'\n"),
+                    keys(), "r.toml");
+    ASSERT_TRUE(assets) << assets.error().message;
+    using Arguments = std::vector<std::string>;
+    const std::vector<std::pair<bool, Arguments>> wanted = {
+        {true, {"--compress=3", "--prefer=inside"}},
+        {true, {"--budget=4MB", "--compress=3", "--prefer=inside"}},
+        {false, {"--compress=3", "--map=float", "--max-error=1", "--prefer=inside"}},
+        {true, {"--compress=3", "--heights=low=0"}},
+        {false, {"--compress=3", "--heights=low=0"}},
+        {false, {"--compress=3", "--prefer=inside", "--texel=1cm"}}};
+    ASSERT_EQ(assets->size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        EXPECT_EQ((*assets)[i].isWorld(), wanted[i].first) << i;
+        EXPECT_EQ(recipeArguments((*assets)[i].options), wanted[i].second) << i;
     }
 }
 
@@ -213,6 +241,28 @@ TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAMistake) {
     EXPECT_TRUE(found->jobs.empty());
 }
 
+TEST_F(RecipeJobsTest, AWorldHasItsFolderForItself) {
+    const auto found = jobs(
+        "[[asset]]\nmesh = 'ro*/'\noutput = 'w/{stem}/world.json'\n"
+        "[[asset]]\nmesh = 'hill.off'\noutput = 'w/hill.relief'\n");
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(outputs(found),
+              (std::vector<std::string>{"rocks>w/rocks/world.json", "hill.off>w/hill.relief"}));
+    EXPECT_TRUE(found->jobs[0].world && found->jobs[0].mesh_is_folder);
+    EXPECT_FALSE(found->jobs[1].world || found->jobs[1].mesh_is_folder);
+    EXPECT_TRUE(found->jobs[0].arguments.empty());
+    EXPECT_EQ(found->jobs[0].options, std::vector<std::string>{kWorldOption})
+        << "or its key were a collider's";
+    fs::create_symlink("w", folder_ / "link");
+    const std::string level = "[[asset]]\nmesh = 'rocks/'\noutput = 'w/world.json'\n";
+    for (const char* other : {"w/x/world.json", "link/x.relief", "w/a/b/c.relief"}) {
+        fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = '" + other + "'\n",
+              std::string("the output '") + other + "' lies in the folder of the world 'w/world.json'");
+    }
+    fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'link/world.json'\n", "would both be baked into");
+    EXPECT_TRUE(jobs(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'wx/world.json'\n"));
+}
+
 TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
     const std::string rocks = "[[asset]]\nmesh = '**/a.obj'\n";
     fails(rocks + "output = '{stem}.relief'\n",
@@ -262,6 +312,9 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
     fails(output("/x.relief"), "must be a relative path");
     fails(output("hill.off"), "must end in .relief");
     fails(output("{stem}/.relief"), "must end in .relief");
+    fails(output("{stem}/world.json/"), "must end in .relief");
+    fails(output("{dir}world.json"), "must end in .relief");
+    fails(output("up/world.json"), "leads out of the output folder");
     fails(output("{sten}.relief"), "{sten}");
     fails(output("{stem.relief"), "known are");
     fails(output("stem}.relief"), "} without {");
