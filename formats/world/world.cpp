@@ -130,13 +130,14 @@ void appendLines(std::string& text, const char* name, const std::vector<T>& all)
 
 }  // namespace
 
-std::optional<std::size_t> findBody(const World& world, std::string_view node, std::size_t first) {
-    for (std::size_t i = first; i < world.bodies.size(); ++i) {
+std::vector<std::size_t> findBodies(const World& world, std::string_view node) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         if (world.bodies[i].node == node) {
-            return i;
+            found.push_back(i);
         }
     }
-    return std::nullopt;
+    return found;
 }
 
 bool looksLikeWorld(std::string_view bytes) {

@@ -151,9 +151,9 @@ void fields(Visitor& visit, W& world) {
            .items = {1.0, double{kWorldBodiesMax}}});
 }
 
-/// The number of the first body of a node, from `first` on; nullopt: there is none.
-[[nodiscard]] std::optional<std::size_t> findBody(const World& world, std::string_view node,
-                                                  std::size_t first = 0);
+/// The numbers of the bodies of a node, in the world's order: several in one place where its mesh was cut into tiles, which move
+/// as one; those of all nodes that share the name. Empty: there is none.
+[[nodiscard]] std::vector<std::size_t> findBodies(const World& world, std::string_view node);
 
 /// Whether bytes begin as a world does, and as no container: with a brace, after any white space.
 [[nodiscard]] bool looksLikeWorld(std::string_view bytes);

@@ -88,8 +88,9 @@ relief_world* relief_world_load(const char* world_path);
 void relief_world_free(relief_world* world);
 
 size_t relief_world_body_count(const relief_world* world);
-/* The first body of the node of this name; that there is none is an error. */
-int64_t relief_world_find(const relief_world* world, const char* node);
+/* The bodies of the node of this name, in their order: several in one place where its mesh was cut into tiles, which move as one.
+ * Writes the first `count` of them, and returns how many there are; that there is none is an error, and 0. */
+size_t relief_world_find(const relief_world* world, const char* node, uint32_t* bodies, size_t count);
 const char* relief_world_node(const relief_world* world, size_t body); /* as long as the world */
 /* The box that holds all bodies, those of clips in their first pose. */
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]);

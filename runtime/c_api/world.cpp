@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/base/text.h"
 #include "runtime/c_api/objects.h"
@@ -105,16 +106,20 @@ size_t relief_world_body_count(const relief_world* world) {
     });
 }
 
-int64_t relief_world_find(const relief_world* world, const char* node) {
-    return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
+size_t relief_world_find(const relief_world* world, const char* node, uint32_t* bodies, size_t count) {
+    return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
         const World& all = RELIEF_TRY(call.object(world, "world"))->field.world();
         RELIEF_TRY(call.notNull(node, "node"));
-        const auto body = findBody(all, node);
-        if (!body) {
+        RELIEF_TRY(call.array(bodies, "bodies", count, "count"));
+        const std::vector<std::size_t> found = findBodies(all, node);
+        if (found.empty()) {
             return call.refuse("node is '" + cleanUtf8(node) +
                                "', and no body of the world is of one named so");
         }
-        return static_cast<int64_t>(*body);
+        std::transform(found.begin(),
+                       found.begin() + static_cast<std::ptrdiff_t>(std::min(count, found.size())), bodies,
+                       [](std::size_t body) { return static_cast<std::uint32_t>(body); });
+        return found.size();
     });
 }
 

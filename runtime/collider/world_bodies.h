@@ -3,8 +3,10 @@
 //     const LoadedWorld level = *loadWorld("level/world.json");
 //     ColliderTextures textures = *ColliderTextures::create(worldBodies(level));
 //     std::vector<Pose> poses = worldPoses(level.world);
-//     poses[*findBody(level.world, "door")].position.y += 0.1F;   // before each step while the door moves, and once more
-//     textures.setPoses(poses);                                   // when it has stopped
+//     for (const std::size_t tile : findBodies(level.world, "door")) {
+//         poses[tile].position.y += 0.1F;
+//     }
+//     textures.setPoses(poses);   // before each step while the door moves, and once more when it has stopped
 #pragma once
 
 #include <vector>

@@ -135,7 +135,7 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
     std::set<std::string> warned;  // names of files: a world has a file many times
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
-        const Fastest fastest = of_groups[std::min(i, of_groups.size() - 1)];
+        const Fastest fastest = of_groups[std::min(body.tile_of.value_or(i), of_groups.size() - 1)];
         const float speed = fastest.speed;
         const float step = scene.collision.sweep > 0.0F
                                ? std::min(speed * scene.time.dt, scene.collision.sweep)

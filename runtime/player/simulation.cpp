@@ -26,6 +26,9 @@ std::vector<ColliderBody> bodiesOf(const LoadedScene& loaded, std::span<const Po
         const SceneCollider& from = loaded.scene.colliders[i];
         bodies.push_back(
             {loaded.colliders[i].get(), poses[i], from.restitution, from.friction, from.deforms()});
+        if (from.tile_of) {
+            bodies.back().group = std::min<std::size_t>(*from.tile_of, ColliderTextures::kGroups - 1);
+        }
     }
     return bodies;
 }

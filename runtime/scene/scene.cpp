@@ -97,9 +97,15 @@ std::optional<FieldFault> checkCells(const Scene& scene) {
     return std::nullopt;
 }
 
+/// The colliders that have a number of their own.
+std::size_t numbered(const Scene& scene) {
+    return static_cast<std::size_t>(std::count_if(scene.colliders.begin(), scene.colliders.end(),
+                                                  [](const SceneCollider& c) { return !c.tile_of; }));
+}
+
 /// As ParticleType::collides.
 std::uint32_t bodiesOf(const Scene& scene) {
-    const auto groups = std::min<std::size_t>(scene.colliders.size(), ColliderTextures::kGroups);
+    const auto groups = std::min<std::size_t>(numbered(scene), ColliderTextures::kGroups);
     return (1U << groups) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
 }
 
@@ -288,7 +294,7 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
             return fail(ErrorCode::kInvalidInput,
                         nth("type", i, ".collides") +
                             " names a body that the scene does not have; with those of its world there are " +
-                            std::to_string(scene.colliders.size()) + ", numbered from 0");
+                            std::to_string(numbered(scene)) + ", numbered from 0");
         }
         type.collides &= bodiesOf(scene);
     }

@@ -103,6 +103,8 @@ struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;          ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
     std::string node;            ///< of a body of the scene's world, which completes the rest; empty: none
+    /// The number of the collider that named its node, of whose mesh it is another tile: it moves and is met as that one.
+    std::optional<std::size_t> tile_of{};
     ScenePose given_pose;
     float scale = 1.0F;
     float restitution = 1.0F;        ///< factor of the particles' own
@@ -133,7 +135,7 @@ void fields(Visitor& visit, C& c) {
         leftOut(
             {"An .obj or .ply file that deforms; it is not baked", {}, {}, "none", {.instead_of = "file"}}));
     visit("node", c.node,
-          leftOut({"Name of a node of the scene's world, to place or move its body; needs world",
+          leftOut({"Name of a node of the scene's world, to place or move it; needs world",
                    {},
                    {},
                    "none",

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/base/file_io.h"
@@ -23,20 +24,27 @@ BodiesOfNodes bodiesOfNodes(const World& world) {
     return nodes;
 }
 
-/// \return its number in the world.
-Result<std::size_t> bodyNamed(const Scene& scene, const BodiesOfNodes& nodes, std::size_t collider) {
+/// \return their numbers in the world, one at least; all are in one place.
+Result<std::vector<std::size_t>> bodiesNamed(const Scene& scene, const World& world,
+                                             const BodiesOfNodes& nodes, std::size_t collider) {
     const std::string& node = scene.colliders[collider].node;
-    const auto found = nodes.find(node);
-    const std::size_t bodies = found == nodes.end() ? 0 : found->second.size();
-    if (bodies == 1) {
-        return found->second.front();
-    }
     const std::string named =
         scene.world_origin + ": collider[" + std::to_string(collider) + "].node = '" + cleanUtf8(node) + "' ";
-    return bodies == 0 ? invalidInput(named + "is the name of no body of " + quotedPath(scene.world) +
-                                      "; take one that its \"bodies\" list as \"node\"")
-                       : invalidInput(named + "is the name of " + std::to_string(bodies) + " bodies of " +
-                                      quotedPath(scene.world) + "; give their nodes names of their own");
+    const auto found = nodes.find(node);
+    if (found == nodes.end()) {
+        return invalidInput(named + "is the name of no body of " + quotedPath(scene.world) +
+                            "; take one that its \"bodies\" list as \"node\"");
+    }
+    const std::vector<std::size_t>& bodies = found->second;
+    const Pose first = poseOf(world.bodies[bodies.front()]);
+    for (const std::size_t body : bodies) {
+        if (!(poseOf(world.bodies[body]) == first)) {
+            return invalidInput(named + "is the name of " + std::to_string(bodies.size()) + " bodies of " +
+                                quotedPath(scene.world) +
+                                " in different places; give their nodes names of their own");
+        }
+    }
+    return bodies;
 }
 
 /// \param to  its keys are kept, and as much of its pose as it has.
@@ -60,23 +68,38 @@ std::filesystem::path containerOf(const Scene& scene, const WorldFile& file) {
 Result<void> placeBodies(Scene& scene, const World& world) {
     const BodiesOfNodes nodes = bodiesOfNodes(world);
     std::vector<bool> placed(world.bodies.size());
+    std::vector<std::pair<std::size_t, std::size_t>> tiles;  // the collider that named them, and their body
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         SceneCollider& collider = scene.colliders[i];
         if (collider.node.empty()) {
             continue;
         }
-        const std::size_t body = RELIEF_TRY(bodyNamed(scene, nodes, i));
-        if (placed[body]) {
+        const std::vector<std::size_t> bodies = RELIEF_TRY(bodiesNamed(scene, world, nodes, i));
+        if (placed[bodies.front()]) {
             return invalidInput(scene.world_origin + ": collider[" + std::to_string(i) + "].node = '" +
                                 cleanUtf8(collider.node) + "' is named by two colliders; remove one of them");
         }
-        placed[body] = true;
-        place(collider, world.bodies[body], scene, world);
+        place(collider, world.bodies[bodies.front()], scene, world);
+        for (const std::size_t body : bodies) {
+            placed[body] = true;
+            if (body != bodies.front()) {
+                tiles.emplace_back(i, body);
+            }
+        }
     }
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         if (!placed[i]) {
             place(scene.colliders.emplace_back(), world.bodies[i], scene, world);
         }
+    }
+    // Last, so that the numbers of all others are those of a mesh that is whole.
+    for (const auto& [collider, body] : tiles) {
+        SceneCollider tile = scene.colliders[collider];  // with its poses, to the bit
+        tile.tile_of = collider;
+        tile.path = containerOf(scene, world.colliders[world.bodies[body].collider]);
+        tile.restitution = world.bodies[body].restitution;
+        tile.friction = world.bodies[body].friction;
+        scene.colliders.push_back(std::move(tile));
     }
     if (scene.colliders.size() > ColliderTextures::kBodiesMax) {
         return fail(ErrorCode::kLimit, scene.world_origin + ": the world's " +

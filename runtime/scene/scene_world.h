@@ -13,9 +13,11 @@ namespace relief {
 [[nodiscard]] std::filesystem::path containerOf(const Scene& scene, const WorldFile& file);
 
 /// Gives the colliders that name a node the body that it places, where they leave its pose open; the other bodies of the
-/// world follow behind all colliders, in the world's order.
+/// world follow behind all colliders, in the world's order, and last the other bodies of those nodes, in the same place: the
+/// tiles of a large mesh.
 /// \param world  of scene.world.
-/// Errors, with the place in the scene: kInvalidInput (a node without a body, with several, or that two colliders name);
+/// Errors, with the place in the scene: kInvalidInput (a node without a body, with several in different places, or that two
+/// colliders name);
 /// kLimit (more bodies than ColliderTextures takes).
 [[nodiscard]] Result<void> placeBodies(Scene& scene, const World& world);
 

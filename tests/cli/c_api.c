@@ -146,13 +146,14 @@ static void simulateWorld(const char* file) {
     CHECK(relief_world_load("no such world.json") == NULL && strstr(relief_error(), "no such world.json") != NULL);
     relief_world* world = relief_world_load(file);
     CHECK(world != NULL && relief_world_body_count(world) == 5);
-    const int64_t second = relief_world_find(world, "second");
-    CHECK(second == 2 && strcmp(relief_world_node(world, 2), "second") == 0 && relief_world_find(world, "none") < 0);
+    uint32_t second = 0;
+    CHECK(relief_world_find(world, "second", &second, 1) == 1 && second == 2);
+    CHECK(strcmp(relief_world_node(world, 2), "second") == 0 && relief_world_find(world, "none", NULL, 0) == 0);
     float min[3], max[3];
     relief_world_bounds(world, min, max);
     CHECK(min[0] < -19.0F && max[1] > 1.9F);
     relief_pose pose;
-    CHECK(relief_world_pose(world, (size_t)second, &pose) == 0 && pose.position[0] == 5.0F);
+    CHECK(relief_world_pose(world, second, &pose) == 0 && pose.position[0] == 5.0F);
     const float above[3] = {5.0F, 1.9F, 5.0F};
     relief_sample sample;
     relief_world_query(world, above, 1, &sample);
@@ -162,9 +163,8 @@ static void simulateWorld(const char* file) {
     CHECK(textures != NULL);
     relief_particles_options options = {.size = sizeof(options), .capacity = 8, .gravity = {0.0F, -10.0F, 0.0F}};
     for (int lifted = 0; lifted < 2; ++lifted) {
-        const uint32_t body = (uint32_t)second;
         pose.position[1] = lifted ? 10.0F : 0.0F;
-        CHECK(relief_textures_set_poses(textures, &body, &pose, 1) == 0);
+        CHECK(relief_textures_set_poses(textures, &second, &pose, 1) == 0);
         CHECK(relief_textures_set_poses(textures, NULL, NULL, 0) == 0);
         relief_particles* particles = relief_particles_create(textures, &options);
         const relief_birth birth = {.position = {5.0F, 3.0F, 5.0F}, .lifetime = 100.0F};

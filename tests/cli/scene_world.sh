@@ -12,11 +12,17 @@ d['bodies'] = [{**body, 'collider': floor, 'node': 'ground', 'position': [0, -0.
                {**body, 'collider': box, 'node': 'first', 'position': [1, 0, 0], 'scale': 2},
                {**body, 'collider': box, 'node': 'second', 'position': [-3, 0.25, 0], 'friction': 0.5}]
 json.dump(d, open('w/three.json', 'w'))
+json.dump({**d, 'bodies': d['bodies'] + d['bodies'][2:]}, open('w/tiles.json', 'w'))  # of the second node two, in one place
 file = [f'file = "w/{d["colliders"][i]["file"]}"\n' for i in (floor, box)]
 rest = '''[time]
 steps = 60
 [particles]
 capacity = 2000
+[emitter]
+box_min = [-4.5, 3.5, -1.0]
+box_max = [9.0, 4.5, 1.0]
+rate = 2000.0
+lifetime = 9.0
 [[type]]
 radius = 0.02
 restitution = 0.4
@@ -34,24 +40,31 @@ scenes = {'world': 'world = "w/three.json"\n' + rest,
           'moved_hand': table + second + keys + table + first.replace('[1, ', '[2, ') + table + ground + rest,
           'beside': 'world = "w/three.json"\n' + table + file[1] + 'position = [8, 0, 0]\n' + rest,
           'beside_hand': table + file[1] + 'position = [8, 0, 0]\n' + table + ground + table + first + table + second + rest}
+# As many tiles move and are met as one body; by the number of the node's table, of all that are left out.
+scenes['tiles'], scenes['tiles_hand'] = scenes['moved'].replace('three', 'tiles'), scenes['moved_hand']
+scenes['through'] = scenes['tiles'].replace('[0, 1, 2]', '[1, 2]')
+scenes['through_hand'] = scenes['moved_hand'].replace('[0, 1, 2]', '[1, 2]')
 for name, text in scenes.items():
     open(name + '.toml', 'w').write(text)
 P
 
-for scene in world moved beside; do
+for scene in world moved beside tiles through; do
     for one in $scene ${scene}_hand; do
         expect 0 "$relief_sim" $([ $one = world_hand ] && echo hand || echo $one).toml --dump $one.ply --events $one.jsonl --json
         mv stdout $one.json
     done
     cmp $scene.ply ${scene}_hand.ply || die "$scene: other particles than by hand"
     cmp $scene.jsonl ${scene}_hand.jsonl || die "$scene: other hits than by hand"
-    [ "$(wc -l <$scene.jsonl)" -gt 100 ] || die "$scene: nearly nothing is hit"
+    [ "$(grep -o '"body":.' $scene.jsonl | sort | uniq -c | awk '$1 > 20' | wc -l)" = "$([ $scene = through ] && echo 2 || echo 3)" ] ||
+        die "$scene: nearly nothing is hit: $(grep -o '"body":.' $scene.jsonl | sort | uniq -c)"
 done
 ! cmp -s world.ply moved.ply || die "a moved body moves nothing"
 json world.json "[c['node'] for c in d['settings']['collider']] == ['ground', 'first', 'second'] and d['settings']['world'] == 'w/three.json'"
 json world.json "d['settings']['type'][0]['collides'] == [0, 1, 2] and d['settings']['collider'][1]['scale'] == 2"
 json moved.json "[c['node'] for c in d['settings']['collider']] == ['second', 'first', 'ground']"
 json moved.json "d['settings']['collider'][0]['key'][0]['position'] == [-3, 0.25, 0] and d['settings']['collider'][1]['position'] == [2, 0, 0]"
+! cmp -s tiles.ply through.ply || die "a node that is passed through changes nothing"
+json tiles.json "[c['node'] for c in d['settings']['collider']] == ['second', 'first', 'ground', 'second']"
 # Each file is on the GPU once, also where a collider names it again.
 json beside.json "d['collider'] == $(python3 -c "import json; print(json.load(open('world.json'))['collider'])")"
 
@@ -85,13 +98,14 @@ scene 3 "collider.node.*collider.file|collider.file.*collider.node" 'world = "w/
 scene 3 "render.mesh is drawn for a single collider, and not for a world; " 'world = "w/world.json"\n[render]\nmesh = "a.obj"\n'
 scene 3 "collides" 'world = "w/world.json"\n[[type]]\ncollides = [65536]\n'
 scene 3 "type.0..collides names a body that the scene does not have; .* there are 5, numbered from 0" 'world = "w/world.json"\n[[type]]\ncollides = [9]\n'
+scene 3 "type.0..collides names a body that the scene does not have; .* there are 3, numbered from 0" 'world = "w/tiles.json"\n[[collider]]\nnode = "second"\n[[type]]\ncollides = [3]\n'
 python3 - <<'P'
 import json
 d = json.load(open('w/world.json'))
-for name, bodies in (('twice', d['bodies'] + d['bodies'][1:2]), ('many', d['bodies'][:1] * 65536), ('far', [{**d['bodies'][0], 'position': [1e12, 0, 0]}])):
+for name, bodies in (('twice', d['bodies'] + [{**d['bodies'][1], 'scale': 2}]), ('many', d['bodies'][:1] * 65536), ('far', [{**d['bodies'][0], 'position': [1e12, 0, 0]}])):
     json.dump({**d, 'bodies': bodies}, open(f'w/{name}.json', 'w'))
 P
-scene 3 "node = 'first' is the name of 2 bodies of 'w/twice.json'; " 'world = "w/twice.json"\n[[collider]]\nnode = "first"\n'
+scene 3 "node = 'first' is the name of 2 bodies of 'w/twice.json' in different places; " 'world = "w/twice.json"\n[[collider]]\nnode = "first"\n'
 scene 6 "bad.toml:1:9: the world's 65536 bodies and the scene's other colliders are more than 65536; " "world = \"w/many.json\"\n[[collider]]\n$(sed -n '2s/$/\\n/p' hand.toml)position = [9, 9, 9]\n"
 scene 3 "bad.toml:1:9: its position and scale bring" 'world = "w/far.json"\n'
 expect_error 3 "w/far.json'?: .*reach beyond" "$relief_sim" w/far.json --check

@@ -198,13 +198,13 @@ class World:
         """Each different shape once."""
         return [Collider(self._handle.collider(i)) for i in range(self._handle.collider_count)]
 
-    def find(self, node: str) -> int:
-        """The first body of the node of this name."""
+    def find(self, node: str) -> list[int]:
+        """The bodies of the node of this name: several in one place where its mesh was cut into tiles."""
         if not isinstance(node, str):
             _wrong_type(node, "node", "text")
         if node not in self._nodes:
             raise UsageError(f"node is {node!r}, and no body of the world is of one named so; nodes has all")
-        return self._nodes.index(node)
+        return [body for body, name in enumerate(self._nodes) if name == node]
 
     def query(self, points: Any) -> WorldSamples:
         """Evaluates the union of all bodies at points, (n, 3), of the world. Takes time by the number of bodies."""

@@ -38,7 +38,9 @@ def test_it_is_its_file(folder, world):
     file = json.loads((folder / "world.json").read_text())
     assert len(world) == 5 and repr(world) == "<World: 5 bodies of 3 colliders>" and world.unit == "m"
     assert world.nodes == [body["node"] for body in file["bodies"]]
-    assert world.find("third") == 3
+    assert world.find("third") == [3]
+    (folder / "tiles.json").write_text(json.dumps({**file, "bodies": file["bodies"] + file["bodies"][3:4]}))
+    assert relief.World(folder / "tiles.json").find("third") == [3, 5]
     assert np.array_equal(world.positions, np.float32([body["position"] for body in file["bodies"]]))
     assert np.allclose(world.rotations, [body["rotation"] for body in file["bodies"]], atol=1e-7)
     assert np.array_equal(world.scales, np.float32([body["scale"] for body in file["bodies"]]))

@@ -189,6 +189,38 @@ TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
     EXPECT_EQ(other->warnings.size(), 1U);
 }
 
+TEST_F(WorldTiles, ANodeMovesByAllItsBodies) {
+    static_cast<void>(bake("w"));
+    LoadedWorld hills = load("w").loaded();
+    ASSERT_EQ(findBodies(hills.world, "box").size(), 1U);
+    hills.world.bodies.erase(hills.world.bodies.begin() +
+                             static_cast<std::ptrdiff_t>(findBodies(hills.world, "box").front()));
+    const WorldField still(hills);
+    const std::vector<std::size_t> bodies = findBodies(hills.world, "hills");
+    ASSERT_GE(bodies.size(), 4U);
+    const glm::vec3 shift(16.0F, 32.0F, -8.0F);
+    LoadedWorld by_first = hills;
+    by_first.world.bodies[bodies.front()].position += shift;
+    for (const std::size_t body : bodies) {
+        hills.world.bodies[body].position += shift;
+    }
+    const WorldField moved(std::move(hills));
+    const WorldField torn(std::move(by_first));
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> share(-1.0F, 1.0F);
+    int other = 0;
+    int torn_apart = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        glm::vec3 p(share(random) * kHillsHalf, 0.0F, share(random) * kHillsHalf);
+        p.y = hillsAt(p.x, p.z) + 4.0F * share(random);
+        const bool inside = still.evaluate(p).inside();
+        other += inside != moved.evaluate(p + shift).inside() ? 1 : 0;
+        torn_apart += inside != torn.evaluate(p + shift).inside() ? 1 : 0;
+    }
+    EXPECT_LE(other, 5) << "sums of floats are rounded";
+    EXPECT_GT(torn_apart, 2000);
+}
+
 TEST_F(WorldTiles, ThreadsChangeNoByte) {
     static_cast<void>(bake("w"));
     static_cast<void>(bake("one", kBudget, 1));

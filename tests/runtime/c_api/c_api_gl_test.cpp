@@ -475,9 +475,24 @@ TEST_F(CApi, RandomCallsFailWhereAHandleIsWrong) {
 // A world of four boxes is what C++ makes of the same bodies, bit for bit, while one of them moves and once it rests.
 TEST_F(CApi, AWorldIsThatOfItsBodies) {
     ASSERT_EQ(relief_world_body_count(stage_.world), kItems);
-    EXPECT_EQ(relief_world_find(stage_.world, "box 3"), 3);
-    EXPECT_EQ(relief_world_find(stage_.world, "box 4"), -1);
+    std::uint32_t found[] = {9, 9};
+    EXPECT_EQ(relief_world_find(stage_.world, "box 3", found, 2), 1U);
+    EXPECT_EQ(found[0], 3U);
+    EXPECT_EQ(found[1], 9U) << "beyond what there is";
+    EXPECT_EQ(relief_world_find(stage_.world, "box 4", found, 2), 0U);
     EXPECT_NE(std::string(relief_error()).find("'box 4'"), std::string::npos) << relief_error();
+    World tiles = loadWorldFile(stage_.worldPath()).value();
+    tiles.bodies[1].node = tiles.bodies[3].node = "box 0";
+    const std::filesystem::path path = stage_.worldPath().string() + ".tiles.json";
+    const std::string text = worldText(tiles);
+    ASSERT_TRUE(writeFile(path, std::as_bytes(std::span(text))));
+    relief_world* const cut = relief_world_load(path.c_str());
+    EXPECT_EQ(relief_world_find(cut, "box 0", found, 2), 3U);
+    EXPECT_EQ(found[0], 0U);
+    EXPECT_EQ(found[1], 1U);
+    EXPECT_EQ(relief_world_find(cut, "box 0", nullptr, 0), 3U);
+    relief_world_free(cut);
+    std::filesystem::remove(path);
     EXPECT_STREQ(relief_world_node(stage_.world, 2), "box 2");
     relief_pose pose;
     ASSERT_EQ(relief_world_pose(stage_.world, 1, &pose), 0);

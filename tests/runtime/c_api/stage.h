@@ -217,6 +217,7 @@ class Stage {
     relief_particles_options options;
     relief_birth births[kItems];
     std::uint32_t bodies[kItems];
+    std::uint32_t bodies_found[kItems];
     relief_pose poses[kItems];
     relief_ball balls[kItems];
     relief_pose pose;  // that is read
@@ -260,6 +261,7 @@ class Stage {
     const relief_world* pointer(const relief_world* /*type*/) { return world; }
     relief_world* pointer(relief_world* /*type*/) { return world; }
     const std::uint32_t* pointer(const std::uint32_t* /*type*/) { return bodies; }
+    std::uint32_t* pointer(std::uint32_t* /*type*/) { return bodies_found; }
     const relief_ball* pointer(const relief_ball* /*type*/) { return balls; }
     relief_pose* pointer(relief_pose* /*type*/) { return &pose; }
     const relief_particles* pointer(const relief_particles* /*type*/) { return particles; }

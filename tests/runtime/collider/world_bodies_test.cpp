@@ -20,9 +20,8 @@ TEST(WorldBodies, BodiesPosesAndBoxAreThoseOfTheWorld) {
     const std::vector<Pose> poses = worldPoses(loaded.world);
     ASSERT_EQ(poses.size(), 3U);
     EXPECT_EQ(poses[1], bodies[1].pose);
-    const std::size_t door = findBody(loaded.world, "door").value_or(9);
-    EXPECT_EQ(door, 1U);
-    EXPECT_FALSE(findBody(loaded.world, "door", 2));
+    EXPECT_EQ(findBodies(loaded.world, "door"), std::vector<std::size_t>{1});
+    EXPECT_TRUE(findBodies(loaded.world, "doo").empty());
     const Bounds box = worldBounds(loaded.world);
     EXPECT_EQ(box.min, glm::vec3(-9.0F));
     EXPECT_EQ(box.max, glm::vec3(9.0F));

@@ -54,6 +54,57 @@ TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
     EXPECT_EQ(scene.colliders[3].node, "gate");
 }
 
+/// Of the door another tile, in the same place, and before the gate.
+World threeBodiesAndATile() {
+    World world = test::threeBodies();
+    world.colliders.push_back(world.colliders[1]);
+    world.colliders[2].file = "door-1.relief";
+    WorldBody tile = world.bodies[1];
+    tile.collider = 2;
+    world.bodies.insert(world.bodies.begin() + 2, tile);
+    return world;
+}
+
+TEST(SceneWorld, ATableOfANodeMovesAllItsTiles) {
+    const auto scene = [](const std::string& text) {
+        auto read = parseScene("world = \"w.json\"\n" + text, "dir/scene.toml");
+        EXPECT_TRUE(read) << read.error().message;
+        EXPECT_TRUE(placeBodies(*read, threeBodiesAndATile()));
+        return *read;
+    };
+    const Scene moved = scene(
+        "[[collider]]\nnode = \"door\"\nangle = 30\n[[collider.key]]\ntime = 1\n[[collider.key]]\ntime = 2\n"
+        "position = [4, 0.5, 1]\n");
+    ASSERT_EQ(moved.colliders.size(), 4U);
+    EXPECT_EQ(moved.colliders[1].node, "floor");
+    EXPECT_EQ(moved.colliders[2].node, "gate") << "has the number that it has without the tile";
+    const SceneCollider& door = moved.colliders[0];
+    const SceneCollider& tile = moved.colliders[3];
+    EXPECT_EQ(tile.path, std::filesystem::path("dir/door-1.relief"));
+    EXPECT_EQ(tile.tile_of, 0U);
+    EXPECT_FALSE(door.tile_of);
+    EXPECT_NE(door.pose, poseOf(test::threeBodies().bodies[1]));
+    for (const double time : {0.0, 1.25, 1.5, 3.0}) {
+        EXPECT_EQ(poseAt(tile, time), poseAt(door, time));
+    }
+    EXPECT_EQ(tile.restitution, 0.25F);
+    const Scene still = scene("");
+    ASSERT_EQ(still.colliders.size(), 4U);
+    EXPECT_EQ(still.colliders[2].path, std::filesystem::path("dir/door-1.relief")) << "in the world's order";
+    EXPECT_FALSE(still.colliders[2].tile_of);
+}
+
+TEST(SceneWorld, ANameOfTwoNodesIsRefused) {
+    World world = threeBodiesAndATile();
+    world.bodies[2].position.x += 1.0F;
+    auto scene = parseScene("world = \"w.json\"\n[[collider]]\nnode = \"door\"\n", "dir/scene.toml");
+    const auto done = placeBodies(*scene, world);
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().message,
+              "dir/scene.toml:1:9: collider[0].node = 'door' is the name of 2 bodies of 'dir/w.json' in "
+              "different places; give their nodes names of their own");
+}
+
 TEST(SceneWorld, MistakesAreNamed) {
     const std::string world = "world = \"w.json\"\n";
     expectSceneError("[[collider]]\nnode = \"door\"\n", "dir/scene.toml:2:8: ", "needs world");
