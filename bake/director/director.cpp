@@ -98,7 +98,8 @@ class Director {
         result_.request = request;
     }
 
-    Result<BakeResult> run(std::optional<TriangleMesh> mesh) {
+    /// \param mesh  instead of the file's. \param solid  instead of one, if not null.
+    Result<BakeResult> run(std::optional<TriangleMesh> mesh, const SolidMesh* solid = nullptr) {
         tell(watcher_.begin, "reading its options");
         RELIEF_TRY(readOptions(mesh));
         // Planning and measuring keep to --threads too.
@@ -106,12 +107,23 @@ class Director {
         if (request().threads) {
             control.emplace(tbb::global_control::max_allowed_parallelism, *request().threads);
         }
-        RELIEF_TRY(readMesh(std::move(mesh)));
+        if (solid != nullptr) {
+            take(*solid);
+        } else {
+            RELIEF_TRY(readMesh(std::move(mesh)));
+        }
         RELIEF_TRY(protectInputs());
         RELIEF_TRY(makeCollider());
         RELIEF_TRY(measure());
         gatherWarnings();
         return std::move(result_);
+    }
+
+    Result<SolidMesh> prepare(TriangleMesh mesh) {
+        result_.settings = RELIEF_TRY(settingsOf(request()));
+        RELIEF_TRY(readMesh(std::move(mesh)));
+        return SolidMesh{result_.unused_vertices, std::move(result_.mesh), std::move(result_.shape),
+                         std::move(result_.parts)};
     }
 
   private:
@@ -199,6 +211,13 @@ class Director {
             request().mesh, request().clips, request().import, request().import_limits));
         result_.animated = std::move(animated.mesh);
         return std::move(animated.rest);
+    }
+
+    void take(const SolidMesh& solid) {
+        result_.unused_vertices = solid.unused_vertices;
+        result_.mesh = solid.mesh;
+        result_.shape = solid.shape;
+        result_.parts = solid.parts;
     }
 
     /// Turns a non-solid mesh into a solid.
@@ -414,6 +433,19 @@ int BakeResult::threads() const {
 Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher,
                         std::optional<TriangleMesh> mesh) {
     return Director(request, watcher).run(std::move(mesh));
+}
+
+Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid) {
+    return Director(request, {}).run({}, &solid);
+}
+
+Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh) {
+    return Director(request, {}).prepare(std::move(mesh));
+}
+
+Result<MistakeCurve> planMistakes(const BakeRequest& request, const SolidMesh& solid, std::uint64_t bytes) {
+    const BakeSettings settings = RELIEF_TRY(settingsOf(request));
+    return planMistakes(solid.mesh.mesh, settings.bake, bytes);
 }
 
 Result<void> writePlanOut(const BakeResult& result) {

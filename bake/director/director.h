@@ -57,6 +57,29 @@ struct BakeResult {
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
                                       std::optional<TriangleMesh> mesh = {});
 
+/// A mesh that is ready to be baked. Copies share it.
+struct SolidMesh {
+    std::uint64_t unused_vertices = 0;
+    RepairedMesh mesh;
+    ShapeReport shape;
+    SurfaceParts parts;
+
+    /// It is the same with any budget: it has no shells.
+    [[nodiscard]] bool suitsAnyBudget() const { return shape.sheets == 0; }
+};
+
+/// Errors: as bake().
+[[nodiscard]] Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh);
+
+/// The same as bake() of the mesh that prepareSolid() had, with that request or one of another budget that it suits.
+[[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid);
+
+/// The mistakes of its tree of patches against the bytes (bake/patches/patch_planner.h).
+/// \param request  of patches. \param bytes  of the largest tree.
+/// Errors: as bake().
+[[nodiscard]] Result<MistakeCurve> planMistakes(const BakeRequest& request, const SolidMesh& solid,
+                                                std::uint64_t bytes);
+
 /// Writes --plan-out, if there is one. Errors: kIo.
 [[nodiscard]] Result<void> writePlanOut(const BakeResult& result);
 

@@ -32,6 +32,8 @@ constexpr double kSearchShare = 0.7;
 constexpr int kNarrowings = 12;
 /// Of the bytes: a tree that leaves less is large enough.
 constexpr double kSpare = 3e-4;
+/// The same of a curve, so that it does not end long before.
+constexpr double kSpareOfCurve = 0.3;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
@@ -79,7 +81,9 @@ class Planner {
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
-            searchByte();
+            if (const std::optional<ByteRange> range = descend()) {
+                narrow(*range, kSpare);
+            }
         }
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
@@ -89,6 +93,22 @@ class Planner {
             report(kSearchShare + (1.0 - kSearchShare) * share);
         });
         return PatchTree{std::move(map), texel_};
+    }
+
+    MistakeCurve mistakes() {
+        roots_.size = rootSizeByBytes();
+        makeRoots();
+        if (const std::optional<ByteRange> range = descend()) {
+            narrow(*range, kSpareOfCurve);
+        }
+        std::ranges::stable_sort(tried_, {}, &MistakePoint::bytes);
+        MistakeCurve curve;
+        for (const MistakePoint& tree : tried_) {
+            if (curve.empty() || (tree.bytes > curve.back().bytes && tree.wrong < curve.back().wrong)) {
+                curve.push_back(tree);
+            }
+        }
+        return curve;
     }
 
   private:
@@ -217,6 +237,7 @@ class Planner {
             wrong_ += node.wrong;
         }
         taken_ = takenBytes();
+        tried_.push_back({taken_, wrong_});
         return taken_;
     }
 
@@ -231,36 +252,51 @@ class Planner {
         return kPatchTexelBytes * size.width * size.height;
     }
 
-    /// The least worth of a byte at which the tree fits, nearly.
-    void searchByte() {
-        double byte = 1e-3 * static_cast<double>(roots_.size * roots_.size * roots_.size);
-        double dear = byte;
+    /// Worths of a byte, and what their trees take: one that fits, and one that does not.
+    struct ByteRange {
+        double dear = 0.0;
         double taken_dear = 0.0;
+        double cheap = 0.0;
+        double taken_cheap = 0.0;
+    };
+
+    /// Plans larger and larger trees.
+    /// \return nullopt: the last one is without mistakes.
+    std::optional<ByteRange> descend() {
+        double byte = 1e-3 * static_cast<double>(roots_.size * roots_.size * roots_.size);
+        ByteRange range{.dear = byte};
         double taken = chooseAll(byte);
         for (int i = 0; i < kSteps && taken <= bytes_; ++i) {
-            dear = byte;
-            taken_dear = taken;
+            range.dear = byte;
+            range.taken_dear = taken;
             if (!(wrong_ > 0.0)) {
-                return;
+                return std::nullopt;
             }
             // Bytes go by about the square root of their worth.
             const double share = taken / bytes_;
             byte *= std::clamp(share * share, 1.0 / 16.0, 0.8);
             taken = chooseAll(byte);
         }
-        double cheap = byte;
-        double taken_cheap = taken;
+        range.cheap = byte;
+        range.taken_cheap = taken;
+        return range;
+    }
+
+    /// Takes the least worth of a byte at which the tree fits, nearly.
+    /// \param spare  of the bytes, that it may leave.
+    void narrow(ByteRange range, double spare) {
+        double byte = range.cheap;
         const auto square = [](double x) { return x * x; };
-        for (int i = 0; i < kNarrowings && taken_dear < (1.0 - kSpare) * bytes_; ++i) {
-            const double share = (square(bytes_ / taken_dear) - 1.0) /
-                                 (square(bytes_ / taken_dear) - square(bytes_ / taken_cheap));
-            byte = dear + std::clamp(share, 0.1, 0.9) * (cheap - dear);
-            taken = chooseAll(byte);
-            (taken > bytes_ ? cheap : dear) = byte;
-            (taken > bytes_ ? taken_cheap : taken_dear) = taken;
+        for (int i = 0; i < kNarrowings && range.taken_dear < (1.0 - spare) * bytes_; ++i) {
+            const double share = (square(bytes_ / range.taken_dear) - 1.0) /
+                                 (square(bytes_ / range.taken_dear) - square(bytes_ / range.taken_cheap));
+            byte = range.dear + std::clamp(share, 0.1, 0.9) * (range.cheap - range.dear);
+            const double taken = chooseAll(byte);
+            (taken > bytes_ ? range.cheap : range.dear) = byte;
+            (taken > bytes_ ? range.taken_cheap : range.taken_dear) = taken;
         }
-        if (byte != dear) {
-            chooseAll(dear);
+        if (byte != range.dear) {
+            chooseAll(range.dear);
         }
     }
 
@@ -423,6 +459,7 @@ class Planner {
     std::vector<PatchNode> nodes_;
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the tree tried last
+    std::vector<MistakePoint> tried_;
     std::atomic<std::size_t> looked_at_ = 0;
     double texel_ = 0.0;                     // that the nodes were chosen by
     std::uint32_t levels_ = 0;               // below the roots, by texel
@@ -436,6 +473,10 @@ class Planner {
 
 Result<PatchTree> bakePatches(const MeshQuery& query, const PatchOptions& options) {
     return Planner(query, options).run();
+}
+
+MistakeCurve planMistakes(const MeshQuery& query, const PatchOptions& options) {
+    return Planner(query, options).mistakes();
 }
 
 }  // namespace relief

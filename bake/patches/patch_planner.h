@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "bake/mesh/mesh_query.h"
 #include "bake/patches/leaf_fitter.h"
@@ -37,6 +38,21 @@ struct PatchTree {
     DepthMap map;        ///< of MapFormat::kPatches
     double texel = 0.0;  ///< object units: that of the options or, coarsened, a larger one; 0: by bytes
 };
+
+/// A tree by bytes.
+struct MistakePoint {
+    double bytes = 0.0;
+    double wrong = 0.0;  ///< its mistakes: volume, object units cubed, times its costs
+
+    bool operator==(const MistakePoint&) const = default;
+};
+/// By bytes; each tree is larger and has fewer mistakes than the one before.
+using MistakeCurve = std::vector<MistakePoint>;
+
+/// Trees that bakePatches() tries on the way to the one that it takes, some of them too large: a curve for the time of a plan
+/// without its encoding. The same for any number of threads.
+/// \param options  whose texel is 0.
+[[nodiscard]] MistakeCurve planMistakes(const MeshQuery& query, const PatchOptions& options);
 
 /// The same for any number of threads.
 /// Errors: kUsage (a texel that floats do not resolve), kLimit (one that takes more bytes, without `coarsen`).

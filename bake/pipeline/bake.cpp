@@ -516,4 +516,11 @@ Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
     return std::move(*result);
 }
 
+Result<MistakeCurve> planMistakes(const PreparedMesh& mesh, const BakeOptions& options, std::uint64_t bytes) {
+    MapSpec spec;
+    spec.bytes = bytes;
+    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
+    return planMistakes(query, patchOptions(options, spec));
+}
+
 }  // namespace relief

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/mesh/prepared_mesh.h"
+#include "bake/patches/patch_planner.h"
 #include "bake/plan/map_spec.h"
 #include "bake/plan/prefer.h"
 #include "formats/base/result.h"
@@ -56,5 +57,11 @@ struct Baked {
 /// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
 /// any map meets the mesh).
 [[nodiscard]] Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options);
+
+/// The mistakes of planned patches against their bytes (planMistakes).
+/// \param bytes  of the largest tree, kPatchBytesMin to kPatchBytesMax.
+/// Errors: kFailure (Embree).
+[[nodiscard]] Result<MistakeCurve> planMistakes(const PreparedMesh& mesh, const BakeOptions& options,
+                                                std::uint64_t bytes);
 
 }  // namespace relief

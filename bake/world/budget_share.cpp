@@ -1,9 +1,18 @@
 #include "bake/world/budget_share.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "bake/world/worth_curve.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
@@ -18,6 +27,98 @@ constexpr std::array<double, 8> kEighths = {1.0,
                                             1.681792830507429,
                                             1.8340080864093424};
 
+/// A curve is planned again to so many times its bytes, or more: a power law goes wrong beyond.
+constexpr std::uint64_t kReach = 2;
+/// Of an even share: the least one.
+constexpr double kEvenShare = 0.125;
+/// Natural logarithms of the worth of a byte, either way, and bisections between them.
+constexpr double kLogWorthMost = 700.0;
+constexpr int kBisections = 64;
+
+Result<void> checkBudget(std::uint64_t budget, std::size_t shares) {
+    if (budget / 2 / shares < kShareMin) {
+        return fail(ErrorCode::kUsage, "--budget is " + std::to_string(budget) + " bytes, too few for " +
+                                           std::to_string(shares) + " colliders; give at least " +
+                                           std::to_string(2 * kShareMin * shares));
+    }
+    return {};
+}
+
+/// Bytes, a power of two, that a share of so many is planned with.
+std::uint64_t plannedOf(std::uint64_t share) {
+    return std::bit_floor(std::clamp(share / kSharePerPlan, kPatchBytesMin, kPatchBytesMax));
+}
+
+class Sharer {
+  public:
+    Sharer(std::uint64_t budget, std::span<BudgetShare> shares, const PlanMistakes& plan)
+        : budget_(budget), shares_(shares), plan_(plan), planned_(shares.size()), curves_(shares.size()) {}
+
+    void run() {
+        for (BudgetShare& share : shares_) {
+            share.bytes = budget_ / shares_.size();
+        }
+        std::vector<std::size_t> todo(shares_.size());
+        std::iota(todo.begin(), todo.end(), std::size_t{0});
+        while (!todo.empty()) {
+            tbb::parallel_for(std::size_t{0}, todo.size(), [&](std::size_t k) {
+                // Or a thread that waits for a loop of one plan would begin another within it.
+                tbb::this_task_arena::isolate([&] { plan(todo[k]); });
+            });
+            share();
+            todo.clear();
+            for (std::size_t i = 0; i < shares_.size(); ++i) {
+                if (curves_[i] && plannedOf(shares_[i].bytes) >= kReach * planned_[i]) {
+                    todo.push_back(i);
+                }
+            }
+        }
+        for (BudgetShare& share : shares_) {
+            share.bytes = roundDownToEighth(share.bytes);
+        }
+    }
+
+  private:
+    void plan(std::size_t i) {
+        planned_[i] = plannedOf(shares_[i].bytes);
+        const Result<MistakeCurve> curve = plan_(i, planned_[i]);
+        curves_[i].reset();
+        if (curve && !curve->empty()) {
+            curves_[i].emplace(*curve, shares_[i].weight);
+        }
+    }
+
+    [[nodiscard]] double bytesOf(std::size_t i, double log_worth) const {
+        const double even = static_cast<double>(budget_) / static_cast<double>(shares_.size());
+        const double least = std::max(static_cast<double>(kShareMin), kEvenShare * even);
+        const double most = std::max(least, static_cast<double>(kPatchBytesMax));
+        return curves_[i] ? std::clamp(curves_[i]->bytesAt(log_worth), least, most) : even;
+    }
+
+    /// At the least worth of a byte with which all fit.
+    void share() {
+        double dear = kLogWorthMost;
+        double cheap = -kLogWorthMost;
+        for (int step = 0; step < kBisections; ++step) {
+            const double middle = 0.5 * (dear + cheap);
+            double sum = 0.0;
+            for (std::size_t i = 0; i < shares_.size(); ++i) {
+                sum += bytesOf(i, middle);
+            }
+            (sum > static_cast<double>(budget_) ? cheap : dear) = middle;
+        }
+        for (std::size_t i = 0; i < shares_.size(); ++i) {
+            shares_[i].bytes = static_cast<std::uint64_t>(bytesOf(i, dear));
+        }
+    }
+
+    std::uint64_t budget_;
+    std::span<BudgetShare> shares_;
+    const PlanMistakes& plan_;
+    std::vector<std::uint64_t> planned_;  // bytes
+    std::vector<std::optional<WorthCurve>> curves_;
+};
+
 }  // namespace
 
 std::uint64_t roundDownToEighth(std::uint64_t bytes) {
@@ -30,12 +131,18 @@ std::uint64_t roundDownToEighth(std::uint64_t bytes) {
     return best;
 }
 
-Result<void> shareBudget(std::uint64_t budget, std::span<BudgetShare> shares) {
-    if (budget / 2 / shares.size() < kShareMin) {
-        return fail(ErrorCode::kUsage, "--budget is " + std::to_string(budget) + " bytes, too few for " +
-                                           std::to_string(shares.size()) + " colliders; give at least " +
-                                           std::to_string(2 * kShareMin * shares.size()));
+Result<void> shareByMistakes(std::uint64_t budget, std::span<BudgetShare> shares, const PlanMistakes& plan) {
+    RELIEF_TRY(checkBudget(budget, shares.size()));
+    if (shares.size() == 1) {
+        shares[0].bytes = roundDownToEighth(budget);
+    } else {
+        Sharer(budget, shares, plan).run();
     }
+    return {};
+}
+
+Result<void> shareByArea(std::uint64_t budget, std::span<BudgetShare> shares) {
+    RELIEF_TRY(checkBudget(budget, shares.size()));
     double sum = 0.0;
     for (const BudgetShare& share : shares) {
         sum += share.weight;

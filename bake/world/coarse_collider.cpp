@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "bake/director/director.h"
 #include "bake/patches/patch_tiles.h"
 #include "formats/patch_tree.h"
 
@@ -26,14 +25,15 @@ FineCollider FineCollider::of(const Collider& fine) {
     return {solidBox(fine), fine.bounds, fine.gpuBytes()};
 }
 
-Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine, TriangleMesh mesh) {
+Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,
+                            const std::function<Result<BakeResult>(const BakeRequest&)>& bake) {
     BakeRequest coarse = request;
     coarse.budget = fine.gpu_bytes / kCoarser;
     coarse.texel.reset();
     coarse.no_check = true;
     const glm::vec3 margin(kMargin * fine.box.longestSide());
     coarse.roots_hold = Bounds{fine.box.min - margin, fine.box.max + margin};
-    Collider collider = RELIEF_TRY(bake(coarse, {}, std::move(mesh))).baked.collider;
+    Collider collider = RELIEF_TRY(bake(coarse)).baked.collider;
     collider.bounds = fine.bounds;  // its own have thicker shells
     return collider;
 }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
-#include "bake/director/bake_request.h"
-#include "bake/mesh/mesh.h"
+#include "bake/director/director.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
@@ -28,10 +28,10 @@ struct FineCollider {
 /// One of a sixteenth of the bytes, whose box holds that of the fine one, so that a program need not sort its bodies anew when
 /// it takes one for the other. Shells of open sheets are as thick as its texels ask for.
 /// \param request  that the fine one was baked by.
-/// \param mesh     the same that it was baked from.
+/// \param bake  bakes the same mesh by another request.
 /// Errors: those of bake().
 [[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,
-                                          TriangleMesh mesh);
+                                          const std::function<Result<BakeResult>(const BakeRequest&)>& bake);
 
 /// The roots of a coarse one that hold the box of a tile, as a collider of their own.
 /// \param coarse  bakeCoarse() of the whole that the tile was cut from.

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "bake/shape/shape_options.h"
 #include "bake/world/budget_share.h"
 #include "bake/world/coarse_collider.h"
+#include "bake/world/mistake_curves.h"
 #include "bake/world/world_files.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
@@ -39,6 +41,8 @@ constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "ti
 constexpr std::uint32_t kCheckPoints = 4000;
 constexpr double kWarnFrom = 5.0;  ///< percent of them on the wrong side
 constexpr std::size_t kKeyDigits = 16;
+/// Of the solids that wait for their bakes since they were planned, about; others are made again.
+constexpr std::uint64_t kTrianglesKept = 4'000'000;
 /// In the cache, before the names of all tiles of a mesh.
 constexpr std::string_view kTilesWord = "--tiles=";
 
@@ -71,6 +75,21 @@ std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t c
     return words;
 }
 
+/// The import's options have done their work on the mesh.
+BakeRequest withoutImport(BakeRequest request) {
+    request.import = {};
+    request.import_limits = {};
+    request.threads.reset();
+    request.no_check = true;
+    return request;
+}
+
+/// Of wrong volume in the space of a mesh, without its bodies: what it is worth by the area to 3/4. By volume alone large
+/// meshes take nearly all, by area those that are small take too much.
+double mistakeWeight(double area) {
+    return area > 0.0 ? 1.0 / (std::sqrt(area) * std::sqrt(std::sqrt(area))) : 0.0;
+}
+
 /// Without its collider.
 WorldBody bodyOf(const LevelBody& from) {
     WorldBody body;
@@ -97,6 +116,7 @@ class WorldBaker {
             control.emplace(tbb::global_control::max_allowed_parallelism, *request_.bake.threads);
         }
         RELIEF_TRY(readLevel());
+        RELIEF_TRY(describeMeshes());
         RELIEF_TRY(share());
         RELIEF_TRY(findUpToDate());
         RELIEF_TRY(bakeStale());
@@ -121,9 +141,12 @@ class WorldBaker {
         return {};
     }
 
-    Result<void> share() {
+    Result<void> describeMeshes() {
+        tool_ = RELIEF_TRY(toolIdentity());
+        by_patches_ = RELIEF_TRY(settingsOf(request_.bake)).layout == Layout::kPatches;
         meshes_.resize(level_.meshes.size());
         parts_.resize(level_.meshes.size());
+        solids_.resize(level_.meshes.size());
         tiles_.bytes = request_.tile_bytes;
         tiles_.most = tilesMost(level_.meshes.size(), level_.bodies.size());
         for (const LevelBody& body : level_.bodies) {
@@ -131,52 +154,107 @@ class WorldBaker {
             ++collider.bodies;
             collider.largest_scale = std::max(collider.largest_scale, body.scale);
         }
-        std::vector<BudgetShare> shares;
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
-            WorldColliderResult& collider = meshes_[i];
-            collider.mesh = level_.meshes[i].name;
-            collider.area = areaOf(level_.meshes[i]);
-            shares.push_back({collider.area * collider.largest_scale * collider.largest_scale});
+            TriangleMesh& mesh = level_.meshes[i];
+            meshes_[i].mesh = mesh.name;
+            meshes_[i].area = areaOf(mesh);
+            requests_.push_back(requestOf(request_.bake, names_, mesh));
+            inputs_.push_back({{mesh.name, mesh.content_hash},
+                               {"marks", xxh3_128Hex(std::as_bytes(std::span(mesh.marks)))}});
         }
+        return {};
+    }
+
+    Result<void> share() {
         if (request_.bake.texel && !request_.bake.budget) {
             return {};
         }
         result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
-        RELIEF_TRY(shareBudget(*result_.budget, shares));
+        std::vector<BudgetShare> shares;
+        if (by_patches_ && !request_.bake.texel) {
+            tell(watcher_.begin, "sharing the budget");
+            shares.resize(meshes_.size());
+            for (const LevelBody& body : level_.bodies) {
+                // Volume / area^(3/4), in the world.
+                shares[body.mesh].weight +=
+                    mistakeWeight(meshes_[body.mesh].area) * body.scale * std::sqrt(body.scale);
+            }
+            RELIEF_TRY(shareKnowing(shares));
+        } else {
+            for (const WorldColliderResult& collider : meshes_) {
+                shares.push_back({collider.area * collider.largest_scale * collider.largest_scale});
+            }
+            RELIEF_TRY(shareByArea(*result_.budget, shares));
+        }
         for (std::size_t i = 0; i < shares.size(); ++i) {
             meshes_[i].budget = shares[i].bytes;
         }
         return {};
     }
 
+    /// By the curves of the meshes, which are kept for the next run.
+    Result<void> shareKnowing(std::span<BudgetShare> shares) {
+        Result<MistakeCurves> known = loadMistakeCurves(request_.folder);
+        if (!known) {
+            result_.warnings.push_back(known.error().message +
+                                       "; the shares of the budget are planned again");
+            known = MistakeCurves{};
+        }
+        MistakeCurves used;
+        std::mutex mutex;
+        const auto plan = [&](std::size_t i, std::uint64_t bytes) -> Result<MistakeCurve> {
+            const std::string key = curveKey(i, bytes);
+            const auto found = known->find(key);
+            MistakeCurve curve = found != known->end() ? found->second : RELIEF_TRY(planMesh(i, bytes));
+            const std::lock_guard lock(mutex);
+            return used.insert_or_assign(key, std::move(curve)).first->second;
+        };
+        RELIEF_TRY(shareByMistakes(*result_.budget, shares, plan));
+        return *known == used ? Result<void>() : saveMistakeCurves(request_.folder, used);
+    }
+
+    [[nodiscard]] std::string curveKey(std::size_t mesh, std::uint64_t bytes) const {
+        BakeRequest request = requests_[mesh];
+        request.budget = bytes;
+        return assetKey(tool_, optionWords(request, 0), inputs_[mesh]);
+    }
+
+    /// Keeps the solid for the bake.
+    [[nodiscard]] Result<MistakeCurve> planMesh(std::size_t mesh, std::uint64_t bytes) {
+        BakeRequest request = withoutImport(requests_[mesh]);
+        request.budget = kSharePerPlan * bytes;  // of which shells are as thick
+        SolidMesh solid = RELIEF_TRY(solidFor(request, mesh));
+        Result<MistakeCurve> curve = planMistakes(request, solid, bytes);
+        if (!solids_[mesh] && solid.suitsAnyBudget() && kept_triangles_ < kTrianglesKept) {
+            kept_triangles_ += solid.mesh.mesh->triangles.size();
+            solids_[mesh] = std::move(solid);
+        }
+        return curve;
+    }
+
+    [[nodiscard]] Result<SolidMesh> solidFor(const BakeRequest& request, std::size_t mesh) const {
+        return solids_[mesh] ? *solids_[mesh] : prepareSolid(request, level_.meshes[mesh]);
+    }
+
     /// Names the containers, and compares those that are there.
     Result<void> findUpToDate() {
         tell(watcher_.begin, "looking for what is up to date");
-        tool_ = RELIEF_TRY(toolIdentity());
         Result<BakeCacheEntries> cache = loadBakeCache(request_.folder);
         if (!cache) {
             result_.warnings.push_back(cache.error().message + "; everything is baked again");
             cache = BakeCacheEntries{};
         }
-        const bool by_patches = RELIEF_TRY(settingsOf(request_.bake)).layout == Layout::kPatches;
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
-            TriangleMesh& mesh = level_.meshes[i];
             WorldColliderResult& collider = meshes_[i];
-            BakeRequest request = requestOf(request_.bake, names_, mesh);
+            BakeRequest& request = requests_[i];
             if (collider.budget) {
-                request.budget = by_patches ? bytesBeforeCut(*collider.budget, tiles_) : *collider.budget;
+                request.budget = by_patches_ ? bytesBeforeCut(*collider.budget, tiles_) : *collider.budget;
             }
             if (request.texel) {
                 request.texel = static_cast<float>(double{*request.texel} / collider.largest_scale);
             }
-            BakeCacheEntry entry{tool_, optionWords(request, request_.compress), {}, "", 0};
-            // The import's options have done their work on the mesh.
-            request.import = {};
-            request.import_limits = {};
-            request.threads.reset();
-            request.no_check = true;
-            entry.inputs = {{mesh.name, mesh.content_hash},
-                            {"marks", xxh3_128Hex(std::as_bytes(std::span(mesh.marks)))}};
+            BakeCacheEntry entry{tool_, optionWords(request, request_.compress), inputs_[i], "", 0};
+            request = withoutImport(request);
             if (!collider.budget || *collider.budget > tiles_.bytes) {
                 entry.options.push_back("--tile-bytes=" + std::to_string(tiles_.bytes));
                 if (tiles_.most < PatchTileOptions().most) {
@@ -184,7 +262,7 @@ class WorldBaker {
                 }
             }
             names_of_files_.push_back(
-                {fileStem(mesh.name) + "-",
+                {fileStem(collider.mesh) + "-",
                  "-" + assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
                      std::string(kColliderExtension)});
             collider.file = fileOf(i, "");
@@ -193,7 +271,6 @@ class WorldBaker {
                 collider.state = WorldColliderState::kFailed;  // until it is baked
                 stale_.push_back(i);
             }
-            requests_.push_back(std::move(request));
             entries_.push_back(std::move(entry));
         }
         return {};
@@ -350,7 +427,9 @@ class WorldBaker {
 
     /// \return the colliders of a mesh, which are written.
     Result<std::vector<WorldColliderResult>> tryBake(std::size_t i, WorldColliderResult& collider) {
-        BakeResult result = RELIEF_TRY(bake(requests_[i], {}, level_.meshes[i]));
+        const SolidMesh solid = RELIEF_TRY(solidFor(requests_[i], i));
+        solids_[i].reset();
+        BakeResult result = RELIEF_TRY(bake(requests_[i], solid));
         if (!request_.bake.no_check) {
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(result.mesh.mesh));
             AccuracyOptions options;
@@ -386,7 +465,10 @@ class WorldBaker {
         }
         TriangleMesh mesh = std::move(level_.meshes[i]);
         if (std::ranges::any_of(parts, &WorldColliderResult::has_coarse)) {
-            const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, std::move(mesh)));
+            const auto by = [&](const BakeRequest& request) {
+                return solid.suitsAnyBudget() ? bake(request, solid) : bake(request, {}, std::move(mesh));
+            };
+            const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, by));
             for (std::size_t k = 0; k < parts.size(); ++k) {
                 if (parts[k].has_coarse) {
                     RELIEF_TRY(writeCoarse(
@@ -470,6 +552,7 @@ class WorldBaker {
     std::vector<std::string> names_;  // of --as
     Level level_;                     // whose stale meshes are moved away
     std::string tool_;
+    bool by_patches_ = true;
     PatchTileOptions tiles_;
     std::vector<WorldColliderResult> meshes_;              // what the colliders of each have in common
     std::vector<std::vector<WorldColliderResult>> parts_;  // those colliders; none yet of a stale mesh
@@ -479,9 +562,12 @@ class WorldBaker {
     };
     std::vector<FileName> names_of_files_;  // of the meshes
     std::vector<BakeRequest> requests_;     // of the meshes
-    std::vector<BakeCacheEntry> entries_;   // the same, without outputs
-    std::vector<std::size_t> stale_;        // meshes
-    BakeCacheEntries fresh_;                // not yet in the cache file
+    std::vector<std::vector<InputFile>> inputs_;
+    std::vector<std::optional<SolidMesh>> solids_;  // of meshes that were planned
+    std::atomic<std::uint64_t> kept_triangles_ = 0;
+    std::vector<BakeCacheEntry> entries_;  // the same, without outputs
+    std::vector<std::size_t> stale_;       // meshes
+    BakeCacheEntries fresh_;               // not yet in the cache file
     Stopwatch since_cached_;
 };
 

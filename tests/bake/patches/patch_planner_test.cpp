@@ -95,6 +95,42 @@ void expectColumnsAgree(const MeshQuery& query, int wrong_max) {
     EXPECT_LE(wrong, wrong_max);
 }
 
+/// Of a tree, in the box of the mesh and a bit beyond.
+double wrongVolume(const MeshQuery& query, const DepthMap& map, int points) {
+    const Bounds& box = query.mesh().bounds;
+    const glm::vec3 size = 1.1F * box.size();
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> unit(-0.5F, 0.5F);
+    int wrong = 0;
+    for (int i = 0; i < points; ++i) {
+        const float x = unit(random);
+        const float y = unit(random);
+        const float z = unit(random);
+        const glm::vec3 p = box.center() + size * glm::vec3(x, y, z);
+        wrong += (vote(map, p)->distance < 0.0F) != query.inside(p) ? 1 : 0;
+    }
+    return double{size.x} * double{size.y} * double{size.z} * wrong / points;
+}
+
+TEST(PatchPlanner, ItsCurveHasTheMistakesOfTheTreesThatItBakes) {
+    const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.35, 48, 32));
+    const MistakeCurve curve = planMistakes(query, {.bytes = 20'000});
+    ASSERT_GE(curve.size(), 3U);
+    for (std::size_t i = 1; i < curve.size(); ++i) {
+        EXPECT_GT(curve[i].bytes, curve[i - 1].bytes);
+        EXPECT_LT(curve[i].wrong, curve[i - 1].wrong);
+        if (curve[i].bytes > 4000.0) {
+            const auto bytes = static_cast<std::uint64_t>(curve[i].bytes);
+            const double wrong = wrongVolume(query, bakePatches(query, {.bytes = bytes})->map, 400'000);
+            // A tree of its own has other roots, and heights that are fitted anew.
+            EXPECT_NEAR(curve[i].wrong / wrong, 1.0, 0.4) << bytes;
+        }
+    }
+    EXPECT_GT(curve.back().bytes, 12'000.0);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_TRUE(planMistakes(query, {.bytes = 20'000}) == curve);
+}
+
 TEST(CellColumns, AgreeWithRaysThroughTheMesh) {
     expectColumnsAgree(queryOf(makeTorusMesh(1.0, 0.4, 48, 24)), 0);
     // Even numbers, in whose planes the cells' faces would lie.

@@ -3,22 +3,73 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <numeric>
 #include <vector>
 
 namespace relief {
 namespace {
 
-std::vector<std::uint64_t> shared(std::uint64_t budget, const std::vector<double>& weights) {
-    std::vector<BudgetShare> shares;
-    for (const double weight : weights) {
-        shares.push_back({weight});
-    }
-    EXPECT_TRUE(shareBudget(budget, shares));
+std::vector<std::uint64_t> bytesOf(const std::vector<BudgetShare>& shares) {
     std::vector<std::uint64_t> bytes;
     for (const BudgetShare& share : shares) {
         bytes.push_back(share.bytes);
     }
     return bytes;
+}
+
+std::uint64_t sumOf(const std::vector<std::uint64_t>& bytes) {
+    return std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0});
+}
+
+std::vector<std::uint64_t> byArea(std::uint64_t budget, const std::vector<double>& weights) {
+    std::vector<BudgetShare> shares;
+    for (const double weight : weights) {
+        shares.push_back({weight});
+    }
+    EXPECT_TRUE(shareByArea(budget, shares));
+    return bytesOf(shares);
+}
+
+/// Mistakes against bytes in closed form.
+using Mistakes = std::function<double(double bytes)>;
+
+Mistakes powerLaw(double mistakes, double power) {
+    return [=](double bytes) { return mistakes * std::pow(bytes, -power); };
+}
+
+/// Shares by curves, of which plans have some points; and what was planned.
+struct Shared {
+    std::vector<std::uint64_t> bytes;
+    std::vector<std::vector<std::uint64_t>> planned;
+};
+Shared byMistakes(std::uint64_t budget, const std::vector<Mistakes>& meshes,
+                  std::vector<double> weights = {}) {
+    weights.resize(meshes.size(), 1.0);
+    std::vector<BudgetShare> shares;
+    for (const double weight : weights) {
+        shares.push_back({weight});
+    }
+    Shared shared;
+    shared.planned.resize(meshes.size());
+    EXPECT_TRUE(
+        shareByMistakes(budget, shares, [&](std::size_t mesh, std::uint64_t bytes) -> Result<MistakeCurve> {
+            shared.planned[mesh].push_back(bytes);  // each mesh by one thread at a time
+            if (!meshes[mesh]) {
+                return fail(ErrorCode::kFailure, "no solid");
+            }
+            MistakeCurve curve;
+            for (double at = 1000.0; at <= static_cast<double>(bytes); at *= 1.7) {
+                const double wrong = meshes[mesh](at);
+                if (curve.empty() || wrong < curve.back().wrong) {
+                    curve.push_back({at, wrong});
+                }
+            }
+            return curve;
+        }));
+    shared.bytes = bytesOf(shares);
+    return shared;
 }
 
 TEST(BudgetShares, StepsAreEighthsOfAnOctave) {
@@ -33,37 +84,131 @@ TEST(BudgetShares, StepsAreEighthsOfAnOctave) {
 }
 
 TEST(BudgetShares, HalfIsByAreaAndHalfIsEven) {
-    const std::vector<std::uint64_t> bytes = shared(1 << 20, {3.0, 1.0});
+    const std::vector<std::uint64_t> bytes = byArea(1 << 20, {3.0, 1.0});
     EXPECT_EQ(bytes[0], roundDownToEighth((1 << 18) + (1 << 17) * 3));
     EXPECT_EQ(bytes[1], roundDownToEighth((1 << 18) + (1 << 17)));
-    EXPECT_EQ(shared(1 << 20, {0.0, 0.0}), (std::vector<std::uint64_t>(2, 1 << 18))) << "no area at all";
+    EXPECT_EQ(byArea(1 << 20, {0.0, 0.0}), (std::vector<std::uint64_t>(2, 1 << 18))) << "no area at all";
 }
 
 TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheirHalf) {
     std::vector<double> weights(51, 8.0);
     weights[0] = 1e6;
-    const std::vector<std::uint64_t> bytes = shared(16'000'000, weights);
+    const std::vector<std::uint64_t> bytes = byArea(16'000'000, weights);
     EXPECT_GT(bytes[1], 140'000U);
     EXPECT_GT(bytes[0], 7'000'000U);
-    std::uint64_t sum = 0;
-    for (const std::uint64_t share : bytes) {
-        sum += share;
-    }
-    EXPECT_LE(sum, 16'000'000U);
+    EXPECT_LE(sumOf(bytes), 16'000'000U);
     // A prop that grows leaves the others theirs.
     weights[7] = 16.0;
-    std::vector<std::uint64_t> after = shared(16'000'000, weights);
+    std::vector<std::uint64_t> after = byArea(16'000'000, weights);
     after[7] = bytes[7];
     EXPECT_EQ(after, bytes);
 }
 
+TEST(BudgetShares, ByMistakesEachByteMendsAsMuch) {
+    // Of the least w·c·b^-p in sum, with one power, shares are as (w·c)^(1 / (1 + p)).
+    const std::vector<double> mistakes = {1.0, 2.0, 4.0, 1.0};
+    const std::vector<double> weights = {1.0, 1.0, 1.0, 8.0};
+    for (const double power : {0.5, 0.73, 1.0}) {
+        std::vector<Mistakes> meshes;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < mistakes.size(); ++i) {
+            meshes.push_back(powerLaw(mistakes[i], power));
+            sum += std::pow(weights[i] * mistakes[i], 1.0 / (1.0 + power));
+        }
+        const std::vector<std::uint64_t> bytes = byMistakes(4'000'000, meshes, weights).bytes;
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            const double best = 4e6 * std::pow(weights[i] * mistakes[i], 1.0 / (1.0 + power)) / sum;
+            // Half of an eighth of an octave below, on the mean, and half of one for the curves.
+            EXPECT_NEAR(std::log2(static_cast<double>(bytes[i]) / best), -1.0 / 16.0, 1.0 / 8.0)
+                << power << " " << i;
+        }
+        EXPECT_LE(sumOf(bytes), 4'000'000U);
+        EXPECT_GT(sumOf(bytes), 3'600'000U);
+    }
+}
+
+TEST(BudgetShares, OfAMeshWithoutMistakesTheOthersGetWhatItLeaves) {
+    // A box is exact with 3000 bytes.
+    const Mistakes box = [](double bytes) { return bytes < 3000.0 ? 1.0 : 0.0; };
+    const Mistakes rock = powerLaw(1.0, 0.73);
+    const std::vector<std::uint64_t> bytes = byMistakes(800'000, {box, box, box, rock}).bytes;
+    EXPECT_LE(bytes[0], 25'000U) << "an eighth of an even share";
+    EXPECT_EQ(bytes[0], bytes[1]);
+    EXPECT_GT(bytes[3], 650'000U);
+    EXPECT_LE(sumOf(bytes), 800'000U);
+}
+
+TEST(BudgetShares, NoMeshIsLost) {
+    const std::vector<std::uint64_t> bytes =
+        byMistakes(8'000'000, {powerLaw(1e9, 0.7), powerLaw(1e-9, 0.7), powerLaw(1.0, 0.7)}).bytes;
+    EXPECT_GE(bytes[1], roundDownToEighth(8'000'000 / 3 / 8));
+    EXPECT_GT(bytes[0], 7'000'000U);
+    EXPECT_GE(byMistakes(2 * 2 * kShareMin, {powerLaw(1e9, 0.7), powerLaw(1.0, 0.7)}).bytes[1], kShareMin);
+}
+
+TEST(BudgetShares, WhatGetsFarMoreIsPlannedAgain) {
+    // From 50 kB on, more bytes mend next to nothing, which a plan of an eighth of an even share does not see.
+    const Mistakes knee = [](double bytes) {
+        return 1e3 * std::pow(std::min(bytes, 5e4), -0.7) - 1e-9 * bytes;
+    };
+    std::vector<Mistakes> meshes(20, powerLaw(1.0, 0.7));
+    meshes[7] = knee;
+    const Shared shared = byMistakes(4'000'000, meshes);
+    EXPECT_EQ(shared.planned[0], std::vector<std::uint64_t>{16'384});
+    EXPECT_GT(shared.planned[7].size(), 1U);
+    EXPECT_GT(shared.bytes[7], 40'000U);
+    EXPECT_LT(shared.bytes[7], 400'000U) << "by the power law 3 MB";
+    std::uint64_t planned = 0;
+    for (const std::vector<std::uint64_t>& plans : shared.planned) {
+        planned += sumOf(plans);
+    }
+    EXPECT_LT(planned, 4'000'000U / 2);
+}
+
+TEST(BudgetShares, AMeshThatCannotBePlannedHasAnEvenShare) {
+    const std::vector<std::uint64_t> bytes =
+        byMistakes(1 << 20, {powerLaw(1.0, 0.7), {}, powerLaw(100.0, 0.7), powerLaw(1.0, 0.7)}).bytes;
+    EXPECT_EQ(bytes[1], 1U << 18U);
+    EXPECT_LE(sumOf(bytes), 1U << 20U);
+    EXPECT_GT(bytes[2], bytes[0]);
+}
+
+TEST(BudgetShares, AMeshThatChangesLeavesMostOthersTheirs) {
+    std::vector<Mistakes> meshes;
+    for (int i = 0; i < 51; ++i) {
+        meshes.push_back(powerLaw(std::pow(1.13, i), 0.73));
+    }
+    const std::vector<std::uint64_t> before = byMistakes(16'000'000, meshes).bytes;
+    std::size_t moved = 0;
+    for (std::size_t i = 0; i < meshes.size(); i += 5) {
+        std::vector<Mistakes> other = meshes;
+        other[i] = powerLaw(2.0 * std::pow(1.13, i), 0.73);
+        const std::vector<std::uint64_t> after = byMistakes(16'000'000, other).bytes;
+        EXPECT_GT(after[i], before[i]);
+        for (std::size_t k = 0; k < after.size(); ++k) {
+            moved += k != i && after[k] != before[k] ? 1 : 0;
+            EXPECT_GE(after[k], before[k] * 9 / 10) << "by one step";
+        }
+    }
+    EXPECT_LT(moved, 11 * 51 / 4) << "of eleven changes";
+}
+
+TEST(BudgetShares, OneMeshTakesAllWithoutAPlan) {
+    const Shared shared = byMistakes(1 << 20, {powerLaw(1.0, 0.7)});
+    EXPECT_EQ(shared.bytes, std::vector<std::uint64_t>{1 << 20});
+    EXPECT_TRUE(shared.planned[0].empty());
+}
+
 TEST(BudgetShares, TooFewBytesAreRefusedWithTheLeastThatWouldDo) {
     std::vector<BudgetShare> shares(100);
-    const Result<void> shared = shareBudget(819'199, shares);
+    const Result<void> shared = shareByArea(819'199, shares);
     ASSERT_FALSE(shared);
     EXPECT_EQ(shared.error().code, ErrorCode::kUsage);
     EXPECT_NE(shared.error().message.find("at least 819200"), std::string::npos) << shared.error().message;
-    EXPECT_TRUE(shareBudget(819'200, shares));
+    EXPECT_TRUE(shareByArea(819'200, shares));
+    const PlanMistakes none = [](std::size_t, std::uint64_t) { return MistakeCurve(); };
+    EXPECT_EQ(shareByMistakes(819'199, shares, none).error().message, shared.error().message);
+    EXPECT_TRUE(shareByMistakes(819'200, shares, none));
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+// The curves by which the bytes of a level are shared, kept beside its containers, so that a run with nothing to do plans
+// nothing.
+//
+//     {"format": "relief-curves", "version": 1, "curves": {"KEY": [bytes, mistakes, bytes, mistakes, …], …}}
+//
+// A key is the hash of all that its curve depends on (assetKey). The file is trusted as much as the cache of containers is: to
+// delete it costs a plan of each mesh.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "bake/patches/patch_planner.h"
+#include "formats/base/result.h"
+
+namespace relief {
+
+inline constexpr const char* kMistakeCurvesName = ".relief-curves.json";
+
+/// By key.
+using MistakeCurves = std::map<std::string, MistakeCurve>;
+
+/// Errors: kInvalidInput: no file of this version; kLimit.
+[[nodiscard]] Result<MistakeCurves> parseMistakeCurves(std::string_view text);
+[[nodiscard]] std::string mistakeCurvesText(const MistakeCurves& curves);
+
+/// Those of a folder; no file is no error. Does not follow a symbolic link. Errors: kInvalidInput, kIo, kLimit.
+[[nodiscard]] Result<MistakeCurves> loadMistakeCurves(const std::filesystem::path& folder);
+
+/// In place of those that are there. Errors: kIo.
+[[nodiscard]] Result<void> saveMistakeCurves(const std::filesystem::path& folder,
+                                             const MistakeCurves& curves);
+
+}  // namespace relief

@@ -1,0 +1,54 @@
+// The file of the curves that a level's bytes are shared by.
+#include "bake/world/mistake_curves.h"
+
+#include <gtest/gtest.h>
+
+#include "formats/base/file_io.h"
+#include "tests/temporary_folder.h"
+
+namespace relief::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const MistakeCurves kCurves = {{"a", {{1024.0, 0.1}, {3000.0, 1e-17}}}, {"b", {{4096.0, 0.0}}}};
+
+TEST(MistakeCurves, ComeBackAsTheyWere) {
+    const TemporaryFolder folder;
+    EXPECT_TRUE(loadMistakeCurves(folder.path())->empty());
+    ASSERT_TRUE(saveMistakeCurves(folder.path(), kCurves));
+    EXPECT_TRUE(*loadMistakeCurves(folder.path()) == kCurves);
+}
+
+TEST(MistakeCurves, OtherContentsAreRefused) {
+    const auto text = [](const char* curve) {
+        return std::string(R"({"format":"relief-curves","version":1,"curves":{"a":)") + curve + "}}";
+    };
+    EXPECT_TRUE(parseMistakeCurves(text("[1024,2,2048,1]")));
+    for (const char* curve : {"[]", "[1024]", "[1024,2,2048]", "[0,2]", "[-1,2]", "[1024,-2]",
+                              "[1024,2,1024,1]", "[1024,2,2048,2]", "[1024,2,512,1]", "[\"1024\",2]",
+                              "[[1024,2]]", "[1e999,2]", "[1024,null]", "{}", "1"}) {
+        EXPECT_FALSE(parseMistakeCurves(text(curve))) << curve;
+    }
+    for (const char* other :
+         {"", "{", "[]", "1", R"({"format":"relief-curves","version":2,"curves":{}})",
+          R"({"format":"relief-cache","version":1,"curves":{}})", R"({"format":"relief-curves","version":1})",
+          R"({"format":"relief-curves","version":1,"curves":[]})"}) {
+        EXPECT_FALSE(parseMistakeCurves(other)) << other;
+    }
+}
+
+TEST(MistakeCurves, ALinkIsNotFollowed) {
+    const TemporaryFolder folder;
+    const fs::path elsewhere = folder.write("elsewhere.json", mistakeCurvesText(kCurves));
+    fs::create_directory(folder.path() / "w");
+    fs::create_symlink(elsewhere, folder.path() / "w" / kMistakeCurvesName);
+    EXPECT_FALSE(loadMistakeCurves(folder.path() / "w"));
+    ASSERT_TRUE(saveMistakeCurves(folder.path() / "w", {}));
+    EXPECT_TRUE(loadMistakeCurves(folder.path() / "w")->empty());
+    const auto kept = readFile(elsewhere);
+    EXPECT_EQ(kept->size(), mistakeCurvesText(kCurves).size());
+}
+
+}  // namespace
+}  // namespace relief::test
