@@ -18,8 +18,8 @@ tools=(
     # formats
     flatbuffers-compiler libexpected-dev libflatbuffers-dev libglm-dev libxxhash-dev libzstd-dev
     # bake
-    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libopenexr-dev libpugixml-dev
-    libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev
+    libassimp-dev libcairo2-dev libcgal-dev libcli11-dev libeigen3-dev libembree-dev libmeshoptimizer-dev libopenexr-dev
+    libpugixml-dev libseccomp-dev libspdlog-dev libtbb-dev nlohmann-json3-dev
     fonts-dejavu-core
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri

@@ -12,6 +12,7 @@ import sys
 # Third parties that only some folders may include; those of the standard library and the system are free.
 THIRD_PARTIES = {
     'assimp': ['bake/import'],
+    'meshoptimizer.h': ['bake/import'],
     'seccomp.h': ['bake/import'],
     'pugixml.hpp': ['bake/import'],
     'embree3': ['bake/mesh'],

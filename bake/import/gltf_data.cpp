@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "bake/import/gltf_meshopt.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -267,22 +268,38 @@ Result<std::vector<std::byte>> dataUriBytes(std::string_view uri) {
 
 Result<GltfView> GltfBuffers::view(const GltfValue& from) {
     const GltfValue place = RELIEF_TRY(from.needed("bufferView", "bufferViews"));
-    const std::optional<GltfValue> extensions = RELIEF_TRY(place.object("extensions"));
-    if (extensions &&
-        (extensions->has("EXT_meshopt_compression") || extensions->has("KHR_meshopt_compression"))) {
-        return place.wrong("is compressed by meshopt, which is not read; export it without",
-                           ErrorCode::kUnsupported);
+    const std::optional<std::uint64_t> stride = RELIEF_TRY(place.get<std::uint64_t>("byteStride"));
+    if (stride == std::uint64_t{0}) {
+        return place.wrong("has a byteStride of 0");
     }
+    const std::optional<GltfValue> extensions = RELIEF_TRY(place.object("extensions"));
+    if (extensions && extensions->has("KHR_meshopt_compression")) {
+        return place.wrong(
+            "is compressed by KHR_meshopt_compression, which is not read; export it without, or by "
+            "EXT_meshopt_compression",
+            ErrorCode::kUnsupported);
+    }
+    const std::optional<GltfValue> packed =
+        extensions ? RELIEF_TRY(extensions->object("EXT_meshopt_compression")) : std::nullopt;
+    if (!packed) {
+        return GltfView{RELIEF_TRY(part(place)), stride};
+    }
+    if (!unpacked_.contains(place.index())) {
+        const std::uint64_t size = RELIEF_TRY(place.number("byteLength"));
+        const std::span<const std::byte> bytes = RELIEF_TRY(part(*packed));
+        unpacked_[place.index()] = RELIEF_TRY(unpackMeshopt(*packed, bytes, size));
+    }
+    return GltfView{unpacked_[place.index()], stride};
+}
+
+/// \param place  with a buffer, and a part of it.
+Result<std::span<const std::byte>> GltfBuffers::part(const GltfValue& place) {
     const GltfValue buffer = RELIEF_TRY(place.needed("buffer", "buffers"));
     const std::uint64_t offset = RELIEF_TRY(place.get<std::uint64_t>("byteOffset", 0));
     const std::uint64_t length = RELIEF_TRY(place.number("byteLength"));
-    const std::optional<std::uint64_t> stride = RELIEF_TRY(place.get<std::uint64_t>("byteStride"));
     const std::uint64_t announced = RELIEF_TRY(buffer.number("byteLength"));
     if (offset > announced || length > announced - offset) {
         return place.wrong("ends behind its buffer");
-    }
-    if (stride == std::uint64_t{0}) {
-        return place.wrong("has a byteStride of 0");
     }
     const std::optional<std::string> uri = RELIEF_TRY(buffer.get<std::string>("uri"));
     if (!uri && (buffer.index() != 0 || !chunks_.binary)) {
@@ -300,7 +317,7 @@ Result<GltfView> GltfBuffers::view(const GltfValue& from) {
         return buffer.wrong("has " + std::to_string(bytes.size()) + " of the " + std::to_string(announced) +
                             " bytes that it announces, " + kCutOff);
     }
-    return GltfView{bytes.subspan(offset, length), stride};
+    return bytes.subspan(offset, length);
 }
 
 Result<std::vector<std::byte>> GltfBuffers::read(const std::string& uri) {

@@ -45,21 +45,23 @@ struct GltfView {
     std::optional<std::uint64_t> stride;  ///< bytes, more than 0
 };
 
-/// Buffers are read when a view of them is first used.
+/// Buffers are read, and compressed views unpacked, when a view is first used.
 class GltfBuffers {
   public:
     /// All is borrowed.
     GltfBuffers(const GltfChunks& chunks, ImportFiles& files) : chunks_(chunks), files_(files) {}
 
-    /// The view that `from` names by its bufferView. Errors: kInvalidInput, kUnsupported (it is compressed).
+    /// The view that `from` names by its bufferView. Errors: kInvalidInput, kUnsupported (a compression).
     [[nodiscard]] Result<GltfView> view(const GltfValue& from);
 
   private:
+    [[nodiscard]] Result<std::span<const std::byte>> part(const GltfValue& place);
     [[nodiscard]] Result<std::vector<std::byte>> read(const std::string& uri);
 
     const GltfChunks& chunks_;
     ImportFiles& files_;
-    std::map<std::uint64_t, std::vector<std::byte>> read_;  // buffers
+    std::map<std::uint64_t, std::vector<std::byte>> read_;      // buffers
+    std::map<std::uint64_t, std::vector<std::byte>> unpacked_;  // views (EXT_meshopt_compression)
 };
 
 enum class GltfUse : std::uint8_t {

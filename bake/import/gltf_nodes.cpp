@@ -15,10 +15,10 @@ namespace {
 // --- the document ---
 
 // Required extensions that are read or do not change positions.
-constexpr std::array<std::string_view, 9> kKnown = {
-    "KHR_mesh_quantization", "KHR_texture_transform", "KHR_technique_webgl",
-    "KHR_techniques_webgl",  "KHR_texture_basisu",    "KHR_lights_punctual",
-    "EXT_texture_webp",      "MSFT_texture_dds",      "EXT_mesh_gpu_instancing"};
+constexpr std::array<std::string_view, 10> kKnown = {
+    "KHR_mesh_quantization",   "KHR_texture_transform",  "KHR_technique_webgl", "KHR_techniques_webgl",
+    "KHR_texture_basisu",      "KHR_lights_punctual",    "EXT_texture_webp",    "MSFT_texture_dds",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression"};
 
 Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));

@@ -485,11 +485,11 @@ TEST(ImportGltf, SkinnedMorphedSparseAndQuantised) {
           "accessors[0].sparse.indices are not in ascending order, or name an element that does not exist");
 }
 
-TEST(ImportGltf, CompressedByMeshoptIsRefused) {
+TEST(ImportGltf, CompressedByALaterMeshoptIsRefused) {
     const std::string view = R"({"buffer":0,"byteOffset":0,"byteLength":48)";
     expectError(
-        load(replaced(tetrahedronGltf(), view, view + R"(,"extensions":{"EXT_meshopt_compression":{}})")),
-        ErrorCode::kUnsupported, "bufferViews[0] is compressed by meshopt");
+        load(replaced(tetrahedronGltf(), view, view + R"(,"extensions":{"KHR_meshopt_compression":{}})")),
+        ErrorCode::kUnsupported, "bufferViews[0] is compressed by KHR_meshopt_compression");
 }
 
 TEST(ImportGltf, CompressedByDracoIsRefusedWhereItIsRequired) {

@@ -175,7 +175,7 @@ TEST(ImportWorker, GltfThatIsNotReadIsRefused) {
     };
     constexpr ErrorCode kUnread = ErrorCode::kUnsupported;
     constexpr ErrorCode kWrong = ErrorCode::kInvalidInput;
-    for (const char* name : {"KHR_meshopt_compression", "EXT_meshopt_compression", "VENDOR_unheard_of"}) {
+    for (const char* name : {"KHR_meshopt_compression", "KHR_draco_mesh_compression", "VENDOR_unheard_of"}) {
         refused({.more = std::string(R"("extensionsRequired":[")") + name + "\"],"}, kUnread, name);
     }
     refused({.position = R"("bufferView":0,"componentType":5125,"count":4,"type":"VEC3")"}, kUnread, "5125");

@@ -1,0 +1,214 @@
+// EXT_meshopt_compression: what the library packs comes back, filters against their formulas, and hostile sizes.
+#include "bake/import/gltf_meshopt.h"
+
+#include <gtest/gtest.h>
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "bake/import/animated_import.h"
+#include "tests/bake/import/animated_cases.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+namespace {
+
+using Json = nlohmann::json;
+using Bytes = std::vector<std::byte>;
+
+Bytes packAttributes(const void* values, std::size_t count, std::size_t stride) {
+    std::vector<unsigned char> packed(meshopt_encodeVertexBufferBound(count, stride));
+    meshopt_encodeVertexVersion(0);
+    packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), values, count, stride));
+    const auto bytes = std::as_bytes(std::span(packed));
+    return {bytes.begin(), bytes.end()};
+}
+
+Bytes packIndices(const std::vector<std::uint32_t>& indices, bool triangles) {
+    const std::size_t vertices = 1 + *std::max_element(indices.begin(), indices.end());
+    std::vector<unsigned char> packed(triangles ? meshopt_encodeIndexBufferBound(indices.size(), vertices)
+                                                : meshopt_encodeIndexSequenceBound(indices.size(), vertices));
+    meshopt_encodeIndexVersion(1);
+    packed.resize(
+        triangles
+            ? meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), indices.size())
+            : meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), indices.size()));
+    const auto bytes = std::as_bytes(std::span(packed));
+    return {bytes.begin(), bytes.end()};
+}
+
+Result<Bytes> unpack(const Json& extension, const Bytes& packed, std::uint64_t size) {
+    return unpackMeshopt(GltfValue(extension), packed, size);
+}
+
+template <class T>
+std::vector<T> unpacked(const Json& extension, const Bytes& packed, std::size_t count) {
+    const Result<Bytes> bytes = unpack(extension, packed, count * sizeof(T));
+    EXPECT_TRUE(bytes) << (bytes ? "" : bytes.error().message);
+    std::vector<T> values(count);
+    if (bytes) {
+        std::memcpy(values.data(), bytes->data(), bytes->size());
+    }
+    return values;
+}
+
+TEST(GltfMeshopt, WhatWasPackedComesBack) {
+    Dice dice(5);
+    for (const std::size_t stride : {4U, 12U, 16U, 256U}) {
+        std::vector<std::uint8_t> values(300 * stride);
+        for (std::uint8_t& value : values) {
+            value = static_cast<std::uint8_t>(dice.roll(256));
+        }
+        const Json extension = {{"mode", "ATTRIBUTES"}, {"count", 300}, {"byteStride", stride}};
+        EXPECT_EQ(
+            unpacked<std::uint8_t>(extension, packAttributes(values.data(), 300, stride), values.size()),
+            values);
+    }
+    const std::vector<std::uint32_t> indices = {0, 1, 2, 2, 1, 3, 7, 3, 1, 70, 2, 9};
+    const Bytes sequence = packIndices(indices, false);
+    EXPECT_EQ(unpacked<std::uint32_t>({{"mode", "INDICES"}, {"count", 12}, {"byteStride", 4}}, sequence, 12),
+              indices);
+    EXPECT_EQ(unpacked<std::uint16_t>({{"mode", "INDICES"}, {"count", 12}, {"byteStride", 2}}, sequence, 12),
+              std::vector<std::uint16_t>(indices.begin(), indices.end()));
+    const auto triangles = unpacked<std::uint16_t>({{"mode", "TRIANGLES"}, {"count", 12}, {"byteStride", 2}},
+                                                   packIndices(indices, true), 12);
+    for (std::size_t i = 0; i < 12; i += 3) {
+        // The first corner may be another one.
+        std::vector<std::uint32_t> turned(indices.begin() + static_cast<std::ptrdiff_t>(i),
+                                          indices.begin() + static_cast<std::ptrdiff_t>(i + 3));
+        const auto first = std::find(turned.begin(), turned.end(), triangles[i]);
+        ASSERT_NE(first, turned.end());
+        std::rotate(turned.begin(), first, turned.end());
+        EXPECT_TRUE(turned[1] == triangles[i + 1] && turned[2] == triangles[i + 2]) << i;
+    }
+}
+
+TEST(GltfMeshopt, FiltersAreThoseOfTheExtension) {
+    // 2 to the power of the high byte, times the low 24 bits, both signed.
+    const std::vector<std::uint32_t> powers = {0xFE000003, 0x02FFFFFF, 0x00000000, 0x01000007};
+    EXPECT_EQ(
+        unpacked<float>({{"mode", "ATTRIBUTES"}, {"filter", "EXPONENTIAL"}, {"count", 2}, {"byteStride", 8}},
+                        packAttributes(powers.data(), 2, 8), 4),
+        (std::vector<float>{0.75F, -4.0F, 0.0F, 14.0F}));
+    // x, y on the octahedron whose third coordinate is 1 − |x| − |y|, of a length of 64.
+    const std::vector<std::int8_t> directions = {64, 0, 64, 9, 0, 0, 64, 8, 32, 32, 64, 7, 48, 48, 64, 6};
+    const auto normals = unpacked<std::int8_t>(
+        {{"mode", "ATTRIBUTES"}, {"filter", "OCTAHEDRAL"}, {"count", 4}, {"byteStride", 4}},
+        packAttributes(directions.data(), 4, 4), 16);
+    for (std::size_t i = 0; i < 4; ++i) {
+        double x = directions[4 * i] / 64.0;
+        double y = directions[4 * i + 1] / 64.0;
+        const double z = 1 - std::abs(x) - std::abs(y);
+        const double folded = std::max(-z, 0.0);
+        x -= std::copysign(folded, x);
+        y -= std::copysign(folded, y);
+        const double length = std::sqrt(x * x + y * y + z * z);
+        EXPECT_NEAR(normals[4 * i], 127 * x / length, 1.0);
+        EXPECT_NEAR(normals[4 * i + 1], 127 * y / length, 1.0);
+        EXPECT_NEAR(normals[4 * i + 2], 127 * z / length, 1.0);
+        EXPECT_EQ(normals[4 * i + 3], directions[4 * i + 3]);
+    }
+    // Three components in units of √½, and the index of the largest, which is missing.
+    const std::vector<std::int16_t> packed = {1000, -500, 200, (2047 & ~3) | 2, 0, 0, 0, (2047 & ~3) | 3};
+    const auto turns = unpacked<std::int16_t>(
+        {{"mode", "ATTRIBUTES"}, {"filter", "QUATERNION"}, {"count", 2}, {"byteStride", 8}},
+        packAttributes(packed.data(), 2, 8), 8);
+    const double unit = std::sqrt(0.5) / 2047.0;
+    const double x = 1000 * unit;
+    const double y = -500 * unit;
+    const double z = 200 * unit;
+    const double missing = std::sqrt(1 - x * x - y * y - z * z);
+    EXPECT_NEAR(turns[3], 32767 * x, 1.5);
+    EXPECT_NEAR(turns[0], 32767 * y, 1.5);
+    EXPECT_NEAR(turns[1], 32767 * z, 1.5);
+    EXPECT_NEAR(turns[2], 32767 * missing, 1.5);
+    EXPECT_EQ(turns[7], 32767);
+}
+
+/// The file with every view packed whose elements are of 4 bytes or indices, in a second buffer; the first is none.
+GltfCase packedFile(const GltfScribe& scribe) {
+    GltfCase file = scribe.file();
+    std::string buffer;
+    Json& json = file.document;
+    for (const Json& accessor : json["accessors"]) {
+        Json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+        const std::size_t count = accessor["count"];
+        const std::size_t size = view["byteLength"];
+        const std::size_t stride = size / count;
+        const std::string values = file.buffer.substr(view["byteOffset"], size);
+        const bool index = accessor["componentType"] == 5123 && accessor["type"] == "SCALAR";
+        Bytes packed;
+        if (index) {
+            std::vector<std::uint16_t> numbers(count);
+            std::memcpy(numbers.data(), values.data(), size);
+            packed = packIndices({numbers.begin(), numbers.end()}, false);
+        } else {
+            packed = packAttributes(values.data(), count, stride);
+        }
+        view["extensions"]["EXT_meshopt_compression"] = {
+            {"buffer", 0},          {"byteOffset", buffer.size()},
+            {"count", count},       {"byteLength", packed.size()},
+            {"byteStride", stride}, {"mode", index ? "INDICES" : "ATTRIBUTES"}};
+        view["buffer"] = 1;
+        buffer.append(reinterpret_cast<const char*>(packed.data()), packed.size());
+    }
+    json["buffers"] = {{{"byteLength", buffer.size()}},
+                       {{"byteLength", file.buffer.size()},
+                        {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+    json["extensionsRequired"] = {"EXT_meshopt_compression"};
+    file.buffer = buffer;
+    return file;
+}
+
+TEST(GltfMeshopt, PackedFilesAreTheSameMeshes) {
+    const TemporaryFolder folder;
+    for (const GltfScribe& scribe : {bendingBar(), robot()}) {
+        const auto plain = importAnimatedInWorker(writeGltf(scribe.file(), folder, "plain"), {});
+        const auto packed = importAnimatedInWorker(writeGltf(packedFile(scribe), folder, "packed"), {});
+        ASSERT_TRUE(plain);
+        ASSERT_TRUE(packed) << packed.error().message;
+        EXPECT_EQ(plain->mesh, packed->mesh);
+    }
+}
+
+TEST(GltfMeshopt, HostileSizesAreRefusedBeforeTheyAreUnpacked) {
+    const std::vector<float> values(300, 1.5F);
+    const Bytes packed = packAttributes(values.data(), 100, 12);
+    const Json right = {{"mode", "ATTRIBUTES"}, {"count", 100}, {"byteStride", 12}};
+    ASSERT_TRUE(unpack(right, packed, 1200));
+    const auto refuse = [&](const Json& changes, const char* says, std::uint64_t size = 1200,
+                            ErrorCode code = ErrorCode::kInvalidInput) {
+        SCOPED_TRACE(says);
+        Json extension = right;
+        extension.update(changes);
+        const Result<Bytes> bytes = unpack(extension, packed, size);
+        ASSERT_FALSE(bytes);
+        EXPECT_EQ(bytes.error().code, code);
+        EXPECT_NE(bytes.error().message.find(says), std::string::npos) << bytes.error().message;
+    };
+    refuse({{"count", 101}}, "unpacks to another length");
+    refuse(Json::object(), "unpacks to another length", 1201);
+    refuse({{"byteStride", 0}}, "has a byteStride or a count that its mode, ATTRIBUTES, does not have");
+    refuse({{"byteStride", 6}}, "has a byteStride or a count");
+    refuse({{"byteStride", 260}}, "has a byteStride or a count");
+    refuse({{"byteStride", 4}, {"count", std::uint64_t{1} << 40}}, "has too few bytes for its count",
+           std::uint64_t{1} << 42);
+    refuse({{"mode", "INDICES"}, {"byteStride", 4}, {"count", 300'000}}, "has too few bytes", 1'200'000);
+    refuse({{"mode", "TRIANGLES"}, {"byteStride", 4}, {"count", 299}}, "has a byteStride or a count", 1196);
+    refuse({{"mode", "INDICES"}, {"byteStride", 8}, {"count", 150}}, "has a byteStride or a count");
+    refuse({{"mode", "MESHLETS"}}, "has the mode 'MESHLETS'", 1200, ErrorCode::kUnsupported);
+    refuse({{"filter", "COLOR"}}, "has the filter 'COLOR'", 1200, ErrorCode::kUnsupported);
+    refuse({{"filter", "OCTAHEDRAL"}}, "has a filter that does not go with");
+    refuse({{"filter", "QUATERNION"}}, "has a filter that does not go with");
+    refuse({{"mode", "TRIANGLES"}, {"byteStride", 4}, {"count", 30}}, "meshopt cannot unpack", 120);
+    for (std::size_t size = 0; size < packed.size(); ++size) {
+        EXPECT_FALSE(
+            unpack(right, Bytes(packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size)), 1200))
+            << size;
+    }
+}
+
+}  // namespace
+}  // namespace relief::test
