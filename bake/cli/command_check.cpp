@@ -11,6 +11,7 @@
 #include "bake/report/inspect_report.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
+#include "formats/animation/animated_mesh.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"
@@ -35,12 +36,25 @@ struct CheckCommand {
     bool json = false;
 };
 
+/// The animation of a sound container, which the inspection does not look into.
+Result<void> checkAnimation(const std::vector<std::byte>& bytes, const ContainerLimits& limits) {
+    const Collider collider = RELIEF_TRY(readContainer(bytes, limits));
+    if (!collider.animation.empty()) {
+        const Result<AnimatedMesh> mesh = readAnimatedMesh(collider.animation);
+        return mesh ? Result<void>() : fail(mesh.error().code, mesh.error().message + "; bake it again");
+    }
+    return {};
+}
+
 /// Without --mesh: prints the report of inspectContainer, also of a damaged file.
 /// Errors: kIo, kLimit; kInvalidInput or Inspection::errorCode() if the file is damaged.
 Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
     const std::string quoted = shownInput(file);
     const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes, limits)));
+    if (!inspection.damaged()) {
+        RELIEF_TRY(inFront(quoted, checkAnimation(bytes, limits)));
+    }
     const std::string name = inputName(file);
     const Result<void> printed = printOut(json ? jsonText(jsonOf(InspectionReport{inspection, name}))
                                                : inspectionText(inspection, name));

@@ -95,7 +95,8 @@ void fields(Visitor& visit, Request& request) {
                  "depth=half, decode=projected"});
     visit("resolution", request.resolution,
           {.help = "Texels along a side of --map without size, of --paper and of --animated",
-           .fallback = "512; with --animated, 256"});
+           .fallback = "512; with --animated, 256",
+           .recorded = true});
     visit("budget", request.budget,
           {.help =
                "Plan for this many bytes: what all maps together take on the GPU. The file has some hundred "

@@ -12,6 +12,7 @@
 #include "bake/plan/plan_file.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
+#include "formats/animation/mesh_pose.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
@@ -90,6 +91,22 @@ class MapMaker {
     const BakeSettings& settings_;
     const BakeWatcher& watcher_;
 };
+
+/// Turns those triangles of an animated mesh that were turned in its rest pose.
+/// \param rest   the pose's vertices. \param before, wound  its triangles with an area, as they came and as they are.
+void turnAlike(const std::vector<glm::vec3>& rest, const std::vector<glm::uvec3>& before,
+               const std::vector<glm::uvec3>& wound, AnimatedMesh& mesh) {
+    std::size_t next = 0;
+    for (glm::uvec3& t : mesh.triangles) {
+        if (!hasArea(planeOf(rest, t))) {
+            continue;  // finishMesh has dropped it
+        }
+        if (next < before.size() && next < wound.size() && before[next] != wound[next]) {
+            t = {t.x, t.z, t.y};
+        }
+        ++next;
+    }
+}
 
 /// A bake, and what its stages leave for the next.
 class Director {
@@ -201,7 +218,12 @@ class Director {
             imported_ = mesh;
         }
         tell(watcher_.begin, repairs ? "repairing the mesh" : "examining the mesh");
+        const std::vector<glm::uvec3> before = result_.animated ? mesh.triangles : std::vector<glm::uvec3>();
         result_.mesh = RELIEF_TRY(repairMesh(std::move(mesh), request().repair));
+        if (result_.animated && result_.mesh.report.turned > 0) {
+            AnimatedMesh& animated = *result_.animated;
+            turnAlike(posed(animated, restPose(animated)), before, result_.mesh.mesh->triangles, animated);
+        }
         return makeSolidOf(result_.mesh.mesh);
     }
 
@@ -307,13 +329,20 @@ class Director {
         }
         // The maps have recorded themselves; beside them, the mesh as it was made.
         BakeRequest made;
-        made.holes = request().holes;
+        if (request().animated) {
+            // Which maps these are follows from it, and that its holes stay.
+            std::erase_if(result_.baked.collider.provenance.options,
+                          [](const RecordedOption& option) { return option.name == "map"; });
+            made.animated = true;
+            made.resolution = result_.settings.bake.resolution;
+        } else {
+            made.holes = request().holes;
+        }
         made.import = request().import;
         made.repair.method = result_.mesh.report.repair;
         made.as = asWords(result_.shape);
         made.thickness = thicknessOf(result_.shape);
         made.texel = request().texel;
-        made.animated = request().animated;
         made.voids = result_.shape.voids > 0 ? VoidsAs::kFull : request().voids;
         for (const FieldWords& field : changedFields(made)) {
             for (const std::string& word : field.words) {
@@ -466,7 +495,7 @@ Result<void> writePlanOut(const BakeResult& result) {
 }
 
 Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh) {
-    if (request.holes == Holes::kKeep) {
+    if (request.holes == Holes::kKeep || request.animated) {
         return ShapedMesh{mesh, {}, surfacePartsOf(mesh)};
     }
     ShapeOptions options = RELIEF_TRY(parseShapeOptions(request.as));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bake/import/import_readers.h"
+#include "formats/animation/animated_mesh.h"
 #include "tests/fuzz/target.h"
 
 namespace {
@@ -51,6 +52,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         const std::string& words = mesh.error().message;
         mustHold(isLine(words), "an error is one line");
+    }
+    job.options.names.clear();
+    for (const relief::ImportKind kind : {relief::ImportKind::kAnimated, relief::ImportKind::kClips}) {
+        job.kind = kind;
+        relief::ImportFiles files(-1, job.file_name, job.bytes);
+        const relief::Result<relief::TriangleMesh> mesh = readAnimatedGltf(job, files);
+        mustHold(mesh || isLine(mesh.error().message), "an error is one line");
+        mustHold(!mesh || (kind == relief::ImportKind::kClips ? relief::readAnimatedClips(mesh->animation)
+                                                              : relief::readAnimatedMesh(mesh->animation)),
+                 "an animated mesh can be read back");
     }
     return 0;
 }

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <glm/geometric.hpp>
+
 #include "bake/director/director.h"
 #include "bake/director/mesh_check.h"
+#include "formats/animation/mesh_pose.h"
 #include "formats/container.h"
 #include "tests/bake/meshes.h"
 
@@ -114,6 +118,10 @@ TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
     EXPECT_TRUE(fault({{"paper", "true"}, {"plan_out", "x"}}).starts_with("--plan-out writes"));
     EXPECT_TRUE(fault({{"as", "a=shell"}, {"holes", "keep"}}).starts_with("--as NAME=KIND does nothing"));
     EXPECT_TRUE(fault({{"repair", "magic"}}).starts_with("--repair is 'magic'"));
+    EXPECT_EQ(fault({{"animated", "true"}, {"clips", "walk.glb"}, {"resolution", "64"}, {"up", "+z"}}), "");
+    EXPECT_TRUE(fault({{"animated", "true"}, {"holes", "keep"}}).starts_with("--holes does nothing with"));
+    EXPECT_TRUE(fault({{"animated", "true"}, {"map", "cube"}}).starts_with("--map does nothing with"));
+    EXPECT_TRUE(fault({{"clips", "walk.glb"}}).starts_with("--clips does nothing without --animated"));
 }
 
 TEST(RecordedBake, ReadsWhatBakeWrites) {
@@ -242,6 +250,62 @@ TEST(RecordedBake, MakesTheSolidThatWasBaked) {
     EXPECT_TRUE(wrapped->mesh.closed());
     // A record like this must not make a check run for hours.
     EXPECT_FALSE(repairedSolid(recorded("--repair wrap=0.001").request, box));
+}
+
+TEST(Director, BakesTheRestPoseOfAMeshThatMoves) {
+    // A cube whose left half is wound inwards, on a node that moves.
+    const std::string document = R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],)"
+                                 R"("nodes":[{"name":"box","mesh":0,"translation":[0,0,5]}],)"
+                                 R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+                                 R"("animations":[{"name":"go","samplers":[{"input":2,"output":3}],)"
+                                 R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}],)"
+                                 R"("accessors":[)"
+                                 R"({"bufferView":0,"componentType":5126,"count":8,"type":"VEC3"},)"
+                                 R"({"bufferView":1,"componentType":5121,"count":39,"type":"SCALAR"},)"
+                                 R"({"bufferView":2,"componentType":5126,"count":2,"type":"SCALAR"},)"
+                                 R"({"bufferView":3,"componentType":5126,"count":2,"type":"VEC3"}],)"
+                                 R"("bufferViews":[{"buffer":0,"byteLength":96},)"
+                                 R"({"buffer":0,"byteOffset":96,"byteLength":39},)"
+                                 R"({"buffer":0,"byteOffset":136,"byteLength":8},)"
+                                 R"({"buffer":0,"byteOffset":144,"byteLength":24}],)"
+                                 R"("buffers":[{"byteLength":168,"uri":"b.bin"}]})";
+    std::string bytes(168, '\0');
+    const auto put = [&bytes](std::size_t at, float value) { std::memcpy(&bytes[at], &value, 4); };
+    for (std::size_t i = 0; i < 8; ++i) {
+        put(12 * i, i % 2 == 0 ? 0.0F : 1.0F);
+        put(12 * i + 4, i / 2 % 2 == 0 ? 0.0F : 1.0F);
+        put(12 * i + 8, i < 4 ? 0.0F : 1.0F);
+    }
+    // The first has no area; half of the others are turned.
+    const std::vector<int> corners = {0, 0, 1, 0, 1, 2, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5,
+                                      4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    std::copy(corners.begin(), corners.end(), bytes.begin() + 96);
+    put(140, 2.0F);
+    put(156, 10.0F);
+    const TemporaryFolder folder;
+    folder.write("b.bin", bytes);
+    BakeRequest request;
+    request.mesh = folder.write("box.gltf", document).string();
+    request.animated = true;
+    request.resolution = 32;
+    const Result<BakeResult> baked = bake(request);
+    ASSERT_TRUE(baked) << baked.error().message;
+    const Collider& collider = baked->baked.collider;
+    EXPECT_EQ(collider.bounds.min, glm::vec3(0, 0, 5)) << "where it is at rest";
+    EXPECT_EQ(collider.maps.size(), 3U);
+    EXPECT_EQ(collider.provenance.optionsText(), "--quality normal --resolution 32 --animated");
+    const RecordedBake again = recordedBake(collider.provenance.options);
+    EXPECT_TRUE(again.understood && again.request.animated && settingsOf(again.request));
+    const Result<AnimatedMesh> mesh = readAnimatedMesh(collider.animation);
+    ASSERT_TRUE(mesh);
+    ASSERT_EQ(mesh->triangles.size(), 13U);
+    // What the maps take for outside is outside where the mesh is drawn too.
+    double volume = 0.0;
+    for (const glm::uvec3& t : mesh->triangles) {
+        volume += glm::dot(mesh->positions[t.x], glm::cross(mesh->positions[t.y], mesh->positions[t.z]));
+    }
+    EXPECT_NEAR(volume, 6.0, 1e-5);
+    EXPECT_EQ(findClip(*mesh, "go"), 0U);
 }
 
 TEST(Director, BakesAMeshInMemory) {

@@ -1,7 +1,6 @@
 #include "tests/bake/import/animated_cases.h"
 
 #include <cmath>
-#include <cstring>
 #include <map>
 
 namespace relief::test {
@@ -14,9 +13,7 @@ const std::map<std::string, std::size_t> kComponents = {
 
 template <class T>
 std::string bytesOf(const std::vector<T>& values) {
-    std::string bytes(values.size() * sizeof(T), '\0');
-    std::memcpy(bytes.data(), values.data(), bytes.size());
-    return bytes;
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
 }  // namespace

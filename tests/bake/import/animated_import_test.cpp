@@ -10,10 +10,13 @@
 #include <numbers>
 
 #include "bake/import/import_source.h"
+#include "bake/import/mesh_import.h"
 #include "formats/animation/mesh_pose.h"
+#include "formats/base/file_io.h"
 #include "tests/bake/import/animated_cases.h"
 #include "tests/bake/import/animated_oracle.h"
 #include "tests/bake/meshes.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -506,6 +509,35 @@ TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
         EXPECT_NE(text.find("; "), std::string::npos) << "no cure: " << text;
         EXPECT_EQ(text.find('\n'), std::string::npos) << text;
     }
+}
+
+TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
+    const TemporaryFolder folder;
+    Dice dice(seedFrom(11));
+    int read = 0;
+    int refused = 0;
+    for (int i = 0; i < 600; ++i) {
+        GltfCase file = (i % 3 == 0 ? bendingBar() : i % 3 == 1 ? robot() : morphingCube()).file();
+        const std::string change = mutateGltf(file.document, dice);
+        SCOPED_TRACE(change);
+        const Result<std::vector<std::byte>> bytes = readFile(writeGltf(file, folder, "m"));
+        ASSERT_TRUE(bytes);
+        const auto kind = i % 2 == 0 ? ImportKind::kAnimated : ImportKind::kClips;
+        ImportJob job{"'m.glb'", "m.glb", "glb", *bytes, -1, {}};
+        job.kind = kind;
+        const Result<TriangleMesh> raw = importRaw(job);
+        ++(raw ? read : refused);
+        if (raw) {
+            EXPECT_TRUE(kind == ImportKind::kClips ? readAnimatedClips(raw->animation)
+                                                   : readAnimatedMesh(raw->animation));
+        } else {
+            const std::string& text = raw.error().message;
+            EXPECT_NE(text.find("; "), std::string::npos) << "no cure: " << text;
+            EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+        }
+    }
+    EXPECT_GT(read, 60);
+    EXPECT_GT(refused, 60);
 }
 
 TEST(AnimatedImport, OtherFormatsAreNotRead) {
