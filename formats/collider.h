@@ -56,7 +56,7 @@ struct Collider {
     std::string unit;  ///< of lengths: "m", or "" where the source does not say
     Provenance provenance;
     std::vector<DepthMap> maps;
-    /// An animated mesh (animation/animated_mesh.h), unchecked, whose first pose the maps are of; empty: it does not move.
+    /// An animated mesh (animation/animated_mesh.h), unchecked, whose pose at rest the maps are of; empty: it does not move.
     std::vector<std::byte> animation{};
 
     /// Bytes of all maps' texels, in memory.

@@ -160,17 +160,19 @@ class Expander {
                                  inQuotes(*link) + ", which leads out of the output folder " +
                                  quotedPath(output_folder_) + "; remove it");
         }
-        // The world's own cache, which in the output folder is the recipe's as well.
-        const fs::path cache = job.output_path.parent_path() / kBakeCacheName;
-        std::error_code error;
-        const FileGuard::File* const other =
-            inside.empty() || fs::is_symlink(fs::symlink_status(cache, error))
-                ? nullptr
-                : result_.files.claim(cache, job.mesh);
-        return other == nullptr
-                   ? Result<void>()
-                   : at(place, quotedPath(other->path) + " is where the world " + inQuotes(job.output) +
-                                   " keeps its cache; name another folder");
+        // The world's own files; in the output folder the cache is the recipe's as well.
+        for (const char* name : {kBakeCacheName, kMistakeCurvesName}) {
+            const fs::path cache = job.output_path.parent_path() / name;
+            std::error_code error;
+            const bool skipped = (inside.empty() && name == kBakeCacheName) ||
+                                 fs::is_symlink(fs::symlink_status(cache, error));
+            const FileGuard::File* const other = skipped ? nullptr : result_.files.claim(cache, job.mesh);
+            if (other != nullptr) {
+                return at(place, quotedPath(other->path) + " is where the world " + inQuotes(job.output) +
+                                     " keeps its cache; name another folder");
+            }
+        }
+        return {};
     }
 
     /// The files of all patterns, each once, without the excluded ones.

@@ -13,11 +13,10 @@
 #include <string_view>
 
 #include "bake/patches/patch_planner.h"
+#include "bake/recipe/recipe_jobs.h"
 #include "formats/base/result.h"
 
 namespace relief {
-
-inline constexpr const char* kMistakeCurvesName = ".relief-curves.json";
 
 /// By key.
 using MistakeCurves = std::map<std::string, MistakeCurve>;

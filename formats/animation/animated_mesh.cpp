@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-constexpr float kWeightSumTolerance = 1e-3F;
+constexpr float kWeightSumTolerance = 1e-5F;
 constexpr float kUnitTolerance = 1e-3F;
 
 tl::unexpected<Error> wrong(const char* list, std::size_t index, const std::string& fault) {

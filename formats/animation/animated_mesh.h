@@ -85,7 +85,7 @@ struct ClipChannel {
 
 struct MeshClip {
     std::string name;                   ///< clean UTF-8, not that of another clip, not empty
-    float seconds = 0.0F;               ///< up to its last key; above 0
+    float seconds = 0.0F;               ///< no key is later; above 0
     std::vector<ClipChannel> channels;  ///< no two of the same member of a node
     friend bool operator==(const MeshClip&, const MeshClip&) = default;
 };

@@ -112,6 +112,24 @@ MeshClip readClip(const fb::Clip& from) {
     return clip;
 }
 
+/// Tables of a file may lie in the same bytes: whether all that would be copied of them takes no more than the file.
+bool fits(const fb::AnimatedMesh& from, std::size_t file_bytes) {
+    if (from.nodes()->size() > kMeshNodesMax || from.clips()->size() > kMeshClipsMax) {
+        return false;
+    }
+    std::uint64_t bytes = 0;
+    for (const fb::Node* node : *from.nodes()) {
+        bytes += node->name()->size();
+    }
+    for (const fb::Clip* clip : *from.clips()) {
+        bytes += clip->name()->size();
+        for (const fb::Channel* channel : *clip->channels()) {
+            bytes += sizeof(float) * (std::uint64_t{channel->times()->size()} + channel->values()->size());
+        }
+    }
+    return bytes <= file_bytes;
+}
+
 /// Not checked but for its structure.
 Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
     // Accessors need an alignment that `bytes` need not have.
@@ -123,6 +141,10 @@ Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
         return invalidInput("its animation is no FlatBuffers table of an animated mesh; bake it again");
     }
     const fb::AnimatedMesh& from = *fb::GetAnimatedMesh(data);
+    if (!fits(from, bytes.size())) {
+        return fail(ErrorCode::kLimit,
+                    "its animation has more nodes, clips or keys than such a file holds; bake it again");
+    }
     AnimatedMesh mesh;
     mesh.positions = takeAll<glm::vec3>(*from.positions());
     mesh.triangles = takeAll<glm::uvec3>(*from.triangles());

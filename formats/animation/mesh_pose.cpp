@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -14,7 +15,12 @@ namespace {
 
 /// Above this cosine of two rotations' half angle, a straight line is as good as an arc.
 constexpr double kStraightCosine = 0.9999999;
-constexpr double kPoseSeconds = 1.0 / 60.0;
+/// What turns ten times a second turns by 15 degrees in that time, and its box grows by less than kRoom in between.
+constexpr double kPoseSeconds = 1.0 / 240.0;
+/// Of all times together: nodes and joints.
+constexpr double kPoseWork = 2e7;
+/// Of the longest side.
+constexpr float kSeam = 0.02F;
 /// Between those times.
 constexpr float kRoom = 0.02F;
 
@@ -136,17 +142,21 @@ MeshPose poseOf(const AnimatedMesh& mesh, const std::vector<NodeState>& states, 
     return pose;
 }
 
-/// Of all keys, and kPoseSeconds apart, rising.
-std::vector<double> timesOf(const MeshClip& clip) {
+/// `apart` or less, rising: with all keys, unless these are more.
+std::vector<double> timesOf(const MeshClip& clip, double apart) {
     std::vector<double> times{double{clip.seconds}};
-    for (const ClipChannel& channel : clip.channels) {
-        times.insert(times.end(), channel.times.begin(), channel.times.end());
-    }
-    for (double t = 0.0; t < double{clip.seconds}; t += kPoseSeconds) {
+    for (double t = 0.0; t < double{clip.seconds}; t += apart) {
         times.push_back(t);
     }
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
+    const std::size_t least = times.size();
+    std::set<float> keys;
+    for (const ClipChannel& channel : clip.channels) {
+        keys.insert(channel.times.begin(), channel.times.end());
+    }
+    if (keys.size() <= least) {
+        times.insert(times.end(), keys.begin(), keys.end());
+        std::sort(times.begin(), times.end());
+    }
     return times;
 }
 
@@ -162,6 +172,10 @@ std::vector<NodeState> statesOf(const AnimatedMesh& mesh) {
 
 MeshPose restPose(const AnimatedMesh& mesh) {
     return poseOf(mesh, statesOf(mesh), mesh.weights);
+}
+
+MeshPose firstPose(const AnimatedMesh& mesh) {
+    return mesh.clips.empty() ? restPose(mesh) : poseAt(mesh, mesh.clips.front(), 0.0);
 }
 
 MeshPose poseAt(const AnimatedMesh& mesh, const MeshClip& clip, double seconds) {
@@ -259,26 +273,36 @@ Bounds PoseBounds::of(const MeshPose& pose) const {
     return all;
 }
 
-Bounds clipBounds(const AnimatedMesh& mesh, const MeshClip& clip) {
+PoseExtent poseExtent(const AnimatedMesh& mesh) {
     const PoseBounds bounds(mesh);
-    Bounds all;
-    for (const double t : timesOf(clip)) {
-        const Bounds box = bounds.of(poseAt(mesh, clip, t));
-        all.add(box.min);
-        all.add(box.max);
-    }
-    return all;
-}
-
-glm::vec3 poseRoom(const AnimatedMesh& mesh) {
-    const PoseBounds bounds(mesh);
-    glm::vec3 room = bounds.of(restPose(mesh)).size();
+    PoseExtent extent;
+    const auto add = [&](const MeshPose& pose) {
+        const Bounds box = bounds.of(pose);
+        extent.box.add(box.min);
+        extent.box.add(box.max);
+        extent.room = glm::max(extent.room, (1.0F + kRoom) * box.size());
+    };
+    add(firstPose(mesh));
+    double seconds = 0.0;
     for (const MeshClip& clip : mesh.clips) {
-        for (const double t : timesOf(clip)) {
-            room = glm::max(room, bounds.of(poseAt(mesh, clip, t)).size());
+        seconds += double{clip.seconds};
+    }
+    const double most = kPoseWork / static_cast<double>(mesh.nodes.size() + mesh.joints.size());
+    const double apart = std::max(kPoseSeconds, seconds / most);
+    for (const MeshClip& clip : mesh.clips) {
+        for (const double t : timesOf(clip, apart)) {
+            add(poseAt(mesh, clip, t));
         }
     }
-    return (1.0F + kRoom) * room;
+    return extent;
+}
+
+bool isCyclic(const AnimatedMesh& mesh, const MeshClip& clip) {
+    const PoseBounds bounds(mesh);
+    const Bounds begin = bounds.of(poseAt(mesh, clip, 0.0));
+    const Bounds end = bounds.of(poseAt(mesh, clip, double{clip.seconds}));
+    const float off = std::max(glm::length(begin.min - end.min), glm::length(begin.max - end.max));
+    return off <= kSeam * begin.longestSide();
 }
 
 }  // namespace relief

@@ -22,6 +22,9 @@ struct MeshPose {
 /// The pose that the nodes have by themselves. \param mesh  valid, as that of every function here.
 [[nodiscard]] MeshPose restPose(const AnimatedMesh& mesh);
 
+/// The pose that its first clip begins with; at rest where it has none.
+[[nodiscard]] MeshPose firstPose(const AnimatedMesh& mesh);
+
 /// The pose of a clip. Before the first key of a channel its value holds, and after the last one that.
 /// \param clip  of mesh.clips. \param seconds  finite
 [[nodiscard]] MeshPose poseAt(const AnimatedMesh& mesh, const MeshClip& clip, double seconds);
@@ -50,11 +53,15 @@ class PoseBounds {
     std::vector<glm::vec3> reach_;  // of each morph target: the most that it moves a vertex, along each axis
 };
 
-/// A box that holds every vertex at all times of a clip, at the times of poseRoom().
-[[nodiscard]] Bounds clipBounds(const AnimatedMesh& mesh, const MeshClip& clip);
+/// The space that a mesh takes up, by times of all its clips 1/240 s apart and 2 % more; of clips of hours these are farther apart.
+struct PoseExtent {
+    Bounds box;            ///< of all poses, object space
+    glm::vec3 room{0.0F};  ///< sides of a box that holds any one of them
+};
+/// At rest, where arms are often spread, only if there is no clip.
+[[nodiscard]] PoseExtent poseExtent(const AnimatedMesh& mesh);
 
-/// The sides of a box, with room for them at any time of any clip and at rest.
-/// The times are those of keys, and 1/60 s apart.
-[[nodiscard]] glm::vec3 poseRoom(const AnimatedMesh& mesh);
+/// The clip ends about where it began, so that repeating it is no jump.
+[[nodiscard]] bool isCyclic(const AnimatedMesh& mesh, const MeshClip& clip);
 
 }  // namespace relief

@@ -119,7 +119,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
         RELIEF_TRY(call.number(resolution, kResolution, {"resolution"}));
         if (resolution > 0 && resolution < kResolutionMin) {
             return call.refuse("resolution is " + std::to_string(resolution) + "; choose " +
-                               std::to_string(kResolutionMin) + " to 4096, or 0 for 384");
+                               std::to_string(kResolutionMin) + " to 4096, or 0 for 512");
         }
         added.options.resolution = resolution > 0 ? resolution : added.options.resolution;
         if (room != nullptr) {

@@ -25,6 +25,7 @@ struct AnimatedBody {
     std::uint32_t body;  // of the world's textures
     AnimatedCollider collider;
     std::optional<MeshPose> next = {};  // that it gets with the poses
+    bool fresh = true;                  // it has had no pose of the caller's: the first one is no motion
 };
 
 struct TexturesObject {
@@ -36,6 +37,8 @@ struct TexturesObject {
     std::optional<Bounds> world = {};  // of bodies, where they were placed; nullopt: of a single collider
     float texel = 0.0F;                // the finest of a world
     std::vector<Pose> poses = {};      // of its bodies, at the end of the next step
+    std::vector<Pose> placed =
+        {};  // the same of what lies on the GPU: those of animated bodies have their middle
     std::vector<AnimatedBody> animated = {};
     std::vector<std::string> warnings = {};  // of the stream, not told yet
     std::string warning = {};                // that was told last

@@ -92,7 +92,7 @@ size_t relief_world_body_count(const relief_world* world);
  * Writes the first `count` of them, and returns how many there are; that there is none is an error, and 0. */
 size_t relief_world_find(const relief_world* world, const char* node, uint32_t* bodies, size_t count);
 const char* relief_world_node(const relief_world* world, size_t body); /* as long as the world */
-/* The box that holds all bodies, those of clips in their first pose. */
+/* The box that holds all bodies, those of clips at any time of them. */
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]);
 
 typedef struct relief_pose {
@@ -126,7 +126,7 @@ const char* relief_animation_joint_name(const relief_animation* animation,
 size_t relief_animation_weight_count(const relief_animation* animation); /* of morph targets */
 
 /* Adds a body that moves by clips, behind the others, and returns its number; relief_world_query() leaves it out. The animation may be
- * freed at once. `pose` is that of the mesh's origin; `resolution` texels along a side of its three maps, 16 to 4096, or 0: 384; `room`
+ * freed at once. `pose` is that of the mesh's origin; `resolution` texels of its three maps along its longest side, 16 to 4096, or 0: 512; `room`
  * the sides of a box that holds it in every pose, or NULL: those that its clips need. */
 int64_t relief_world_add(relief_world* world, const relief_animation* animation, const relief_pose* pose,
                          uint32_t resolution, const float room[3]);
@@ -145,7 +145,7 @@ void relief_textures_free(relief_textures* textures);
 int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* bodies,
                               const relief_pose* poses, size_t count);
 /* The pose that a clip has at a time; before its first key and behind its last one it rests. The next relief_textures_set_poses()
- * shows it. `body`: that relief_world_add() returned. Since 1.2. */
+ * shows it; after a jump, to another clip say, call that twice, or the jump throws what it meets. `body`: that relief_world_add() returned. Since 1.2. */
 int relief_textures_play(relief_textures* animated_textures, uint32_t body, const char* clip, double seconds);
 /* The same of a pose of your own: for each joint 16 floats, from the space of the mesh's vertices to its own space (glTF's joint
  * matrices: the joint's transform times its inverse bind matrix), and the weight of each morph target. Since 1.2. */

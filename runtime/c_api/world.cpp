@@ -59,6 +59,7 @@ Result<TexturesObject> upload(const WorldObject& world) {
     Bounds bounds = view.bounds;
     made.texel = view.texel;
     made.poses = worldPoses(loaded.world);
+    made.placed = made.poses;
     for (std::size_t i = 0; i < animated.size(); ++i) {
         AnimatedCollider& of = animated[i].collider;
         const Bounds box = toWorld(of.placed(world.added[i].pose), of.frames().bounds);
@@ -67,6 +68,7 @@ Result<TexturesObject> upload(const WorldObject& world) {
         made.texel =
             std::min(made.texel, box.longestSide() / static_cast<float>(of.frames().maps.front().width));
         made.poses.push_back(world.added[i].pose);
+        made.placed.push_back(of.placed(world.added[i].pose));
         RELIEF_TRY(of.update(*made.own, animated[i].body));
     }
     made.world = bounds;
@@ -133,9 +135,12 @@ const char* relief_world_node(const relief_world* world, size_t body) {
 void relief_world_bounds(const relief_world* world, float min[3], float max[3]) {
     writeBounds(__func__, min, max, [&](const Call& call) -> Result<Bounds> {
         const WorldObject& of = *RELIEF_TRY(call.object(world, "world"));
+        if (bodyCount(of) == 0) {
+            return call.refuse("world has no bodies; relief_world_add() adds one");
+        }
         Bounds bounds = worldBounds(of.field.world());
         for (const AddedBody& added : of.added) {
-            const Bounds box = toWorld(added.pose, PoseBounds(*added.mesh).of(restPose(*added.mesh)));
+            const Bounds box = toWorld(added.pose, poseExtent(*added.mesh).box);
             bounds.add(box.min);
             bounds.add(box.max);
         }
@@ -202,13 +207,25 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
             return 0;
         }
         std::vector<Pose> placed = to.poses;
+        bool jumps = false;
         for (AnimatedBody& one : to.animated) {
+            const bool first = one.fresh && one.next;
             if (one.next) {
                 RELIEF_TRY(one.collider.setPose(*std::exchange(one.next, std::nullopt)));
+                one.fresh = false;
             }
             placed[one.body] = one.collider.placed(placed[one.body]);
+            if (first) {
+                one.collider.settle();
+                to.placed[one.body] = placed[one.body];
+                jumps = true;
+            }
+        }
+        if (jumps) {
+            to.own->setPoses(to.placed);
         }
         to.own->setPoses(placed);
+        to.placed = std::move(placed);
         for (AnimatedBody& one : to.animated) {
             RELIEF_TRY(one.collider.update(*to.own, one.body));
         }

@@ -28,7 +28,8 @@ std::string sidesText(const glm::vec3& sides) {
 }  // namespace
 
 Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution) {
-    Collider frames = RELIEF_TRY(liveFrames({-0.5F * room, 0.5F * room}, resolution));
+    Collider frames =
+        RELIEF_TRY(liveFrames({-0.5F * room, 0.5F * room}, resolution, LiveSize::kSquareTexels));
     for (DepthMap& map : frames.maps) {
         map.encloses = true;
         map.empty_is_outside = true;
@@ -38,13 +39,13 @@ Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution)
 
 Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const AnimatedMesh> mesh,
                                                   const AnimatedColliderOptions& options) {
-    const glm::vec3 room = options.room ? *options.room : poseRoom(*mesh);
+    const glm::vec3 room = options.room ? *options.room : poseExtent(*mesh).room;
     Collider frames = RELIEF_TRY(animatedFrames(room, options.resolution));
     SkinPass pass = RELIEF_TRY(SkinPass::create(*mesh));
     // Where they are does not matter: setPose() moves all of them before anything is drawn.
     LiveCollider live = RELIEF_TRY(LiveCollider::create(mesh->positions, mesh->triangles, std::move(frames)));
     AnimatedCollider made(std::move(mesh), room, std::move(pass), std::move(live));
-    RELIEF_TRY(made.setPose(restPose(*made.mesh_)));
+    RELIEF_TRY(made.setPose(firstPose(*made.mesh_)));
     return made;
 }
 

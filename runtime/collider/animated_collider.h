@@ -27,19 +27,19 @@
 namespace relief {
 
 /// Maps for a mesh that takes up a box of these sides: liveFrames() about the origin, that know free space around the mesh.
-/// \param room  object units, as poseRoom() finds it. Errors: as liveFrames().
+/// \param room  object units, as poseExtent() finds it. Errors: as liveFrames().
 [[nodiscard]] Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution);
 
 struct AnimatedColliderOptions {
-    std::uint32_t resolution = 384;  ///< texels along a side of its three maps
-    /// Sides of the box that holds it in every pose, object units; nullopt: poseRoom(), for the poses of its clips.
+    std::uint32_t resolution = 512;  ///< texels along the longest side of its box
+    /// Sides of the box that holds it in every pose, object units; nullopt: that of poseExtent().
     std::optional<glm::vec3> room{};
 };
 
 class AnimatedCollider {
   public:
     /// Needs a current context, as every call but placed() does; every call restores the GL state that it touches, and none
-    /// waits. It has the pose at rest.
+    /// waits. It has its firstPose().
     /// \param mesh  valid; shared by all that move as it does.
     /// Fails as animatedFrames(), LiveCollider and SkinPass do.
     [[nodiscard]] static Result<AnimatedCollider> create(std::shared_ptr<const AnimatedMesh> mesh,

@@ -19,6 +19,8 @@ constexpr int kMotionZUnit = 1;
 // As in baked tight boxes: a little free space and a least thickness, in longest sides.
 constexpr float kPadding = 1e-4F;
 constexpr float kThinnest = 1e-2F;
+/// Of a side that is short in proportion.
+constexpr std::uint32_t kLeastTexels = 16;
 
 /// True if a vertex lies in the volume of the map.
 bool holds(const DepthMap& map, const glm::vec3& p) {
@@ -30,15 +32,14 @@ bool holds(const DepthMap& map, const glm::vec3& p) {
 }
 
 /// As liveFrames() makes them.
-bool isLiveMap(const DepthMap& map, const DepthMap& first) {
+bool isLiveMap(const DepthMap& map) {
     return map.format == MapFormat::kFrontBackFixed && map.compare == Compare::kBoth &&
-           map.decode == Decode::kPlane && map.width == first.width && map.height == first.height &&
-           validateFrame(map);
+           map.decode == Decode::kPlane && validateFrame(map);
 }
 
 }  // namespace
 
-Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
+Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution, LiveSize size) {
     if (resolution < kMapSizeMin || resolution > kMapSizeMax) {
         return fail(ErrorCode::kUsage, "live maps of " + std::to_string(resolution) +
                                            " texels along a side are not possible; choose " +
@@ -63,7 +64,14 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
     const glm::vec3 y(0, 1, 0);
     const glm::vec3 z(0, 0, 1);
     const glm::vec3 frames[3][3] = {{z, y, x}, {x, -z, -y}, {x, y, -z}};
-    const float inner = 1.0F - 2.0F / static_cast<float>(resolution);  // without the rim
+    const float longest_half = std::max({half.x, half.y, half.z});
+    // Texels along a direction of the box.
+    const auto texels = [&](const glm::vec3& axis) {
+        const float share = glm::dot(glm::abs(axis), half) / longest_half;
+        const auto count = static_cast<std::uint32_t>(std::ceil(share * static_cast<float>(resolution)));
+        return size == LiveSize::kEqual ? resolution
+                                        : std::clamp(count, std::min(kLeastTexels, resolution), resolution);
+    };
     Collider collider;
     collider.bounds = box;
     for (const auto& axes : frames) {
@@ -71,10 +79,13 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
         map.format = MapFormat::kFrontBackFixed;
         map.compare = Compare::kBoth;
         map.decode = Decode::kPlane;
-        map.width = resolution;
-        map.height = resolution;
+        map.width = texels(axes[0]);
+        map.height = texels(axes[1]);
         for (int i = 0; i < 3; ++i) {
-            const float side = 2.0F * glm::dot(glm::abs(axes[i]), half) / (i < 2 ? inner : 1.0F);
+            // The rim has nothing.
+            const float inner =
+                i < 2 ? 1.0F - 2.0F / static_cast<float>(i == 0 ? map.width : map.height) : 1.0F;
+            const float side = 2.0F * glm::dot(glm::abs(axes[i]), half) / inner;
             const glm::vec3 row = axes[i] / side;
             map.object_to_map.row[i] = glm::vec4(row, 0.5F - glm::dot(row, middle));
             map.object_per_map[i] = side;
@@ -87,17 +98,18 @@ Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution) {
 Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
                                           std::span<const glm::uvec3> triangles, Collider frames) {
     RELIEF_TRY(checkContext());
-    if (frames.maps.empty() || !std::all_of(frames.maps.begin(), frames.maps.end(), [&](const DepthMap& map) {
-            return isLiveMap(map, frames.maps.front());
-        })) {
+    if (frames.maps.empty() || !std::all_of(frames.maps.begin(), frames.maps.end(), isLiveMap)) {
         return fail(ErrorCode::kUsage, "a live collider needs maps as liveFrames() makes them");
     }
     auto mesh = RELIEF_TRY(GpuMesh::create(positions, triangles));
-    auto renderer =
-        RELIEF_TRY(DepthMapRenderer::create(frames.maps.front().width, frames.maps.front().height));
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
     for (DepthMap& map : frames.maps) {
         map.texels.clear();
+        width = std::max(width, map.width);
+        height = std::max(height, map.height);
     }
+    auto renderer = RELIEF_TRY(DepthMapRenderer::create(width, height));
     LiveCollider live(std::move(mesh), std::move(renderer), std::move(frames));
     const PassState state;
     live.motion_program_ = RELIEF_TRY(makeScreenProgram("collider/live_motion.frag"));
@@ -163,8 +175,8 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
     const PassState state;
     for (std::size_t m = 0; m < slots.size(); ++m) {
         renderer_.render(mesh_, frames_.maps[m]);
-        copyTexels(slots[m]);
-        copyMotion(slots[m]);
+        copyTexels(slots[m], frames_.maps[m]);
+        copyMotion(slots[m], frames_.maps[m]);
     }
     moving_ = shown_ && moved_;
     shown_ = true;
@@ -173,26 +185,26 @@ Result<void> LiveCollider::update(ColliderTextures& textures, std::size_t body) 
     return {};
 }
 
-void LiveCollider::copyTexels(const LiveSlot& slot) const {
+void LiveCollider::copyTexels(const LiveSlot& slot, const DepthMap& map) const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, renderer_.framebuffer());
     glReadBuffer(GL_COLOR_ATTACHMENT0);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, texel_target_.name());
     glFramebufferTexture2D(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.texels->name(), 0);
     // Not glCopyTexSubImage2D: an H200's driver took integers by way of the CPU, 13 ms a map.
-    const auto width = static_cast<GLint>(renderer_.width());
-    const auto height = static_cast<GLint>(renderer_.height());
+    const auto width = static_cast<GLint>(map.width);
+    const auto height = static_cast<GLint>(map.height);
     glBlitFramebuffer(0, 0, width, height, slot.x, slot.y, slot.x + width, slot.y + height,
                       GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-void LiveCollider::copyMotion(const LiveSlot& slot) const {
+void LiveCollider::copyMotion(const LiveSlot& slot, const DepthMap& map) const {
     glBindFramebuffer(GL_FRAMEBUFFER, motion_target_.name());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
     useTexture(kMotionXyUnit, renderer_.motion(0));
     useTexture(kMotionZUnit, renderer_.motion(1));
     motion_program_.use();
-    const auto width = static_cast<GLsizei>(renderer_.width());
-    const auto height = static_cast<GLsizei>(renderer_.height());
+    const auto width = static_cast<GLsizei>(map.width);
+    const auto height = static_cast<GLsizei>(map.height);
     glEnable(GL_SCISSOR_TEST);
     for (int end = 0; end < 2; ++end) {
         const GLint y = slot.motion_y + end * height;

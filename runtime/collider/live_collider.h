@@ -23,18 +23,25 @@
 
 namespace relief {
 
+/// The sizes of live maps.
+enum class LiveSize : std::uint8_t {
+    kEqual,  ///< `resolution` texels along each side
+    kSquareTexels,  ///< `resolution` texels along the longest side of the box, and as many in proportion along the others
+};
+
 /// Three front-back maps of planes along the axes, without texels, which enclose `box`.
 /// \param box         object units: what the mesh never leaves, whatever it does.
 /// \param resolution  texels along a side, kMapSizeMin…kMapSizeMax.
 /// Errors: kUsage (an empty box or one that is not finite, a resolution out of range).
-[[nodiscard]] Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution = 256);
+[[nodiscard]] Result<Collider> liveFrames(const Bounds& box, std::uint32_t resolution = 256,
+                                          LiveSize size = LiveSize::kEqual);
 
 class LiveCollider {
   public:
     /// Needs a current context, as every call does; every call restores the GL state that it touches, and
     /// none waits.
     /// \param positions, triangles  as GpuMesh::create wants them: the mesh before its first change.
-    /// \param frames  maps as liveFrames() makes them, all of one size. A map's box must hold the mesh at all times: what
+    /// \param frames  maps as liveFrames() makes them. A map's box must hold the mesh at all times: what
     ///                leaves it is cut off, and a map that encloses everything then calls that free.
     /// Fails as GpuMesh and DepthMapRenderer do, and with kUsage (other maps).
     [[nodiscard]] static Result<LiveCollider> create(std::span<const glm::vec3> positions,
@@ -66,8 +73,8 @@ class LiveCollider {
     LiveCollider(GpuMesh mesh, DepthMapRenderer renderer, Collider frames)
         : mesh_(std::move(mesh)), renderer_(std::move(renderer)), frames_(std::move(frames)) {}
     [[nodiscard]] Result<void> refuseSecondChange() const;
-    void copyTexels(const LiveSlot& slot) const;
-    void copyMotion(const LiveSlot& slot) const;
+    void copyTexels(const LiveSlot& slot, const DepthMap& map) const;
+    void copyMotion(const LiveSlot& slot, const DepthMap& map) const;
 
     GpuMesh mesh_;
     DepthMapRenderer renderer_;  // of one map after another

@@ -16,7 +16,7 @@ namespace {
 constexpr int kPoseUnit = 0;
 constexpr int kInfluencesUnit = 1;
 constexpr int kDeltasUnit = 2;
-/// Of the widest of the textures; every GL has ten more.
+/// Of the widest of the textures: the least that OpenGL ES 3.0 promises.
 constexpr int kWidestShift = 11;
 
 struct RestVertex {

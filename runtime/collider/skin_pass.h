@@ -1,7 +1,7 @@
 // Poses an animated mesh on the GPU, by shaders/collider/skin.vert and transform feedback into a buffer: for
 // LiveCollider::setPositions(buffer), and for the mesh's picture.
 //
-//     bytes on the GPU = 40 · vertices + 8 · influences + 16 · deltas + 48 · joints + 16 · targets,
+//     bytes on the GPU = 40 · vertices + 8 · influences + 16 · deltas + 96 · joints + 32 · targets,
 //                        and the buffer that is written: 12 or 24 a vertex
 #pragma once
 

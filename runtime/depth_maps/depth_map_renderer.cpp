@@ -90,7 +90,7 @@ void DepthMapRenderer::setUniforms(const GpuMesh& mesh, const DepthMap& map) con
     }
     // The middle of the volume as a float: points are relative to it exactly.
     const glm::vec3 center(origin + 0.5 * (axis[0] + axis[1] + axis[2]));
-    const glm::dvec3 size(width_, height_, 1.0);
+    const glm::dvec3 size(map.width, map.height, 1.0);
     std::array<glm::vec4, 3> rows;
     for (int k = 0; k < 3; ++k) {
         const glm::dvec3 unit = axis[k] / glm::dot(axis[k], axis[k]);
@@ -106,7 +106,7 @@ void DepthMapRenderer::setUniforms(const GpuMesh& mesh, const DepthMap& map) con
     program_.set("u_object", glm::mat3(axis[0] / size.x, axis[1] / size.y, axis[2]));
     program_.set("u_size", glm::vec2(size));
     program_.set("u_ray", scale.z * glm::vec3(glm::normalize(axis[2])));
-    program_.set("u_range", standingRange(Projection::kOrthographic, scale, width_, height_));
+    program_.set("u_range", standingRange(Projection::kOrthographic, scale, map.width, map.height));
     program_.set("u_starts_free", map.encloses);
 }
 
@@ -120,17 +120,18 @@ void DepthMapRenderer::render(GpuMesh& mesh, const DepthMap& map) const {
     useTexture(kPreviousUnit, mesh.previousPositions());
     program_.use();
     setUniforms(mesh, map);
-    const auto width = static_cast<GLsizei>(width_);
-    const auto height = static_cast<GLsizei>(height_);
+    const auto width = static_cast<GLsizei>(map.width);
+    const auto height = static_cast<GLsizei>(map.height);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.name());
     glViewport(0, 0, width, height);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, width, height);
     const GLuint nothing[4] = {};
     const GLfloat still[4] = {};
     glClearBufferuiv(GL_COLOR, 0, nothing);
     glClearBufferfv(GL_COLOR, 1, still);
     glClearBufferfv(GL_COLOR, 2, still);
     glEnable(GL_DEPTH_TEST);
-    glEnable(GL_SCISSOR_TEST);
     glScissor(1, 1, width - 2, height - 2);  // planes leave the border empty
     for (const bool far : {false, true}) {
         program_.set("u_far", far);

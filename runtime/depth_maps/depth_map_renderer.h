@@ -21,13 +21,13 @@ namespace relief {
 /// Needs a current context, as every call does. Every call restores the GL state that it touches; none waits.
 class DepthMapRenderer {
   public:
-    /// \param width, height  texels of the maps.
+    /// \param width, height  texels of the largest maps.
     /// Errors: kLimit (beyond this GL's textures, no room), kUnsupported (does not render to them), kFailure.
     [[nodiscard]] static Result<DepthMapRenderer> create(std::uint32_t width, std::uint32_t height);
 
-    /// Draws a whole map over the last one.
-    /// \param map  valid (formats/validate.h), MapFormat::kFrontBackFixed and Decode::kPlane, of this size; texels may be
-    ///             missing. Its rays start in free space if `encloses` is set; otherwise a surface met from its inner side
+    /// Draws a whole map over the last one, from texel (0, 0) on.
+    /// \param map  valid (formats/validate.h), MapFormat::kFrontBackFixed and Decode::kPlane, no larger than the size of
+    ///             create(); texels may be missing. Its rays start in free space if `encloses` is set; otherwise a surface met from its inner side
     ///             leaves the texel empty.
     void render(GpuMesh& mesh, const DepthMap& map) const;
 

@@ -219,11 +219,7 @@ Result<void> Simulation::giveBirth(float dt) {
 Result<void> Simulation::moveColliders(double time) {
     RELIEF_TRY(playClips(time));
     if (poses_change_) {
-        if (stream_) {
-            stream_->setPoses(posesNow(time));
-        } else {
-            textures_->setPoses(posesNow(time));
-        }
+        setPoses(time);
     }
     return showLive(time);
 }
@@ -265,9 +261,10 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
     }
     for (std::size_t i = 0; i < loaded.played.size(); ++i) {
         if (const auto& played = loaded.played[i]) {
-            auto collider = RELIEF_TRY(inFront(
-                loaded.scene.colliders[i].origin + ": collider.play",
-                AnimatedCollider::create(played->mesh, {.resolution = played->play.resolution, .room = {}})));
+            auto collider = RELIEF_TRY(
+                inFront(loaded.scene.colliders[i].origin + ": collider.play",
+                        AnimatedCollider::create(
+                            played->mesh, {.resolution = played->play.resolution, .room = played->room})));
             played_.push_back({i, std::move(collider)});
         }
     }
@@ -275,10 +272,48 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
 }
 
 Result<void> Simulation::playClips(double time) {
-    for (PlayedBody& body : played_) {
-        RELIEF_TRY(body.collider.setPose(body.pose ? *body.pose : loaded_->played[body.index]->poseAt(time)));
+    std::vector<MeshPose> poses;
+    for (const PlayedBody& body : played_) {
+        poses.push_back(body.pose ? *body.pose : loaded_->played[body.index]->poseAt(time));
+        RELIEF_TRY(inFront(scene_->colliders[body.index].origin + ": collider.play",
+                           body.collider.check(poses.back())));
+    }
+    for (std::size_t i = 0; i < played_.size(); ++i) {
+        PlayedBody& body = played_[i];
+        const PlayedMesh& played = *loaded_->played[body.index];
+        const bool own = body.pose.has_value();
+        const PlayedBody::Source source{own ? std::nullopt : played.clip,
+                                        own || played.cyclic ? 0.0 : played.run(time), own};
+        RELIEF_TRY(body.collider.setPose(poses[i]));
+        body.jumps = body.source != source;
+        body.source = source;
+        if (body.jumps) {
+            body.collider.settle();
+        }
     }
     return {};
+}
+
+void Simulation::setPoses(double time) {
+    const auto give = [&](const std::vector<Pose>& poses) {
+        if (stream_) {
+            stream_->setPoses(poses);
+        } else {
+            textures_->setPoses(poses);
+        }
+    };
+    std::vector<Pose> poses = posesNow(time);
+    const bool jumps =
+        std::any_of(played_.begin(), played_.end(), [](const PlayedBody& body) { return body.jumps; });
+    if (jumps && !shown_.empty()) {
+        // Where those begin the step that end it elsewhere without a way there.
+        for (const PlayedBody& body : played_) {
+            shown_[body.index] = body.jumps ? poses[body.index] : shown_[body.index];
+        }
+        give(shown_);
+    }
+    give(poses);
+    shown_ = std::move(poses);
 }
 
 std::vector<Pose> Simulation::posesNow(double time) const {

@@ -110,14 +110,25 @@ class Simulation {
         std::size_t index;  // in the scene
         AnimatedCollider collider;
         std::optional<MeshPose> pose = {};  // in place of the clip's
+        /// What the last pose was of: a run of a clip, or a program's. From one to the next is a jump.
+        struct Source {
+            std::optional<std::size_t> clip;
+            double run = 0.0;
+            bool own = false;
+            friend bool operator==(const Source&, const Source&) = default;
+        };
+        std::optional<Source> source = {};
+        bool jumps = false;  // by the last pose
     };
     Simulation() = default;
     [[nodiscard]] const PlayedBody* playedBody(std::size_t collider) const;
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
-    /// Gives those that play a clip its pose at a time, in seconds. Their bodies go with it: posesNow().
+    /// Gives those that play a clip its pose at a time, in seconds; of an error none. Their bodies go with it: posesNow().
     [[nodiscard]] Result<void> playClips(double time);
+    /// Moves the bodies; those that jump are there at once.
+    void setPoses(double time);
     /// Of all bodies, at a time whose clips have been played.
     [[nodiscard]] std::vector<Pose> posesNow(double time) const;
     /// Of a world that is streamed, for a step from now on.
@@ -140,6 +151,7 @@ class Simulation {
     const Scene* scene_ = nullptr;  // of those
     bool poses_change_ = false;
     std::vector<Pose> poses_;  // at the beginning
+    std::vector<Pose> shown_;  // of the bodies on the GPU
     std::vector<Emitter> emitters_;
     std::vector<EmitterMotion> motions_;          // as many
     std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it

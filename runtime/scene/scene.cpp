@@ -70,6 +70,9 @@ std::optional<FieldFault> checkMesh(const Scene& scene) {
                           "is drawn where it was baked, and for a single collider; remove the mesh, or the "
                           "collider's position, angle, scale and keys"};
     }
+    if (first.play) {
+        return FieldFault{"render.mesh", "does not move as the clip does; remove it, and the maps are drawn"};
+    }
     if (first.live && scene.render.mesh != first.path) {
         return FieldFault{"render.mesh", "is not the mesh that deforms; name collider.mesh"};
     }

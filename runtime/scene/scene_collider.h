@@ -84,19 +84,22 @@ struct ScenePlay {
     float start = 0.0F;
     float speed = 1.0F;
     bool repeat = true;
-    std::uint32_t resolution = 384;
+    float room = 1.0F;
+    std::uint32_t resolution = 512;
     friend bool operator==(const ScenePlay&, const ScenePlay&) = default;
 };
 
 template <class Visitor, FieldsOf<ScenePlay> P>
 void fields(Visitor& visit, P& play) {
     visit("clip", play.clip,
-          {"Name of a clip of the container, baked with --animated", {}, {}, {}, kRequired});
+          leftOut({"Name of a clip of the container, baked with --animated", {}, {}, "its first"}));
     visit("start", play.start, {"Place in the clip at time 0", "s", within(kClipStartMax)});
     visit("speed", play.speed,
           {"Seconds of the clip a second; below 0 it runs backwards", "1", within(kClipSpeedMax)});
     visit("repeat", play.repeat, {"The clip begins again where it ends"});
-    visit("resolution", play.resolution, {"Texels along a side of its maps", {}, {16.0, 4096.0}});
+    visit("room", play.room,
+          {"Factor of the space that its clips take up, for poses of a program", {}, {1.0, 100.0}});
+    visit("resolution", play.resolution, {"Texels of its maps along its longest side", {}, {16.0, 4096.0}});
 }
 
 struct SceneCollider {

@@ -1,6 +1,7 @@
 #include "runtime/scene/scene_play.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "formats/base/file_io.h"
@@ -23,20 +24,30 @@ std::string namesOf(const AnimatedMesh& mesh) {
 }  // namespace
 
 MeshPose PlayedMesh::poseAt(double time) const {
-    const MeshClip& of = mesh->clips[clip];
+    if (!clip) {
+        return restPose(*mesh);
+    }
+    const MeshClip& of = mesh->clips[*clip];
     const double seconds = double{play.start} + double{play.speed} * time;
     return relief::poseAt(*mesh, of, play.repeat ? repeated(of, seconds) : seconds);
 }
 
+double PlayedMesh::run(double time) const {
+    const double seconds = double{play.start} + double{play.speed} * time;
+    return clip && play.repeat ? std::floor(seconds / double{mesh->clips[*clip].seconds}) : 0.0;
+}
+
 Result<void> changeClip(PlayedMesh& played, const SceneCollider& from) {
-    const std::optional<std::size_t> clip = findClip(*played.mesh, from.play->clip);
-    if (!clip) {
-        return invalidInput(from.origin + ": collider.play.clip = '" + cleanUtf8(from.play->clip) +
-                            "' is no clip of " + quotedPath(from.path) +
-                            (played.mesh->clips.empty() ? ", which has none; bake it with --clips"
-                                                        : "; it has " + namesOf(*played.mesh)));
+    const AnimatedMesh& mesh = *played.mesh;
+    const std::optional<std::size_t> clip = findClip(mesh, from.play->clip);
+    if (!clip && !from.play->clip.empty()) {
+        return invalidInput(
+            from.origin + ": collider.play.clip = '" + cleanUtf8(from.play->clip) + "' is no clip of " +
+            quotedPath(from.path) +
+            (mesh.clips.empty() ? ", which has none; bake it with --clips" : "; it has " + namesOf(mesh)));
     }
-    played.clip = *clip;
+    played.clip = clip;
+    played.cyclic = clip && isCyclic(mesh, mesh.clips[*clip]);
     played.play = *from.play;
     return {};
 }
@@ -45,9 +56,11 @@ Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<con
     PlayedMesh played;
     played.mesh = std::move(mesh);
     RELIEF_TRY(changeClip(played, from));
-    played.frames = RELIEF_TRY(inFront(from.origin + ": collider.play",
-                                       animatedFrames(poseRoom(*played.mesh), played.play.resolution)));
-    played.frames.bounds = clipBounds(*played.mesh, played.mesh->clips[played.clip]);
+    const PoseExtent extent = poseExtent(*played.mesh);
+    played.room = played.play.room * extent.room;
+    played.frames = RELIEF_TRY(
+        inFront(from.origin + ": collider.play", animatedFrames(played.room, played.play.resolution)));
+    played.frames.bounds = extent.box;
     return played;
 }
 

@@ -234,7 +234,8 @@ Result<Player*> createPlayer(const char* text, const char* path, bool shaded, bo
 
 /// Whether both play no clip, or both one in maps of the same size.
 bool sameMaps(const SceneCollider& a, const SceneCollider& b) {
-    return a.play.has_value() == b.play.has_value() && (!a.play || a.play->resolution == b.play->resolution);
+    return a.play.has_value() == b.play.has_value() &&
+           (!a.play || (a.play->resolution == b.play->resolution && a.play->room == b.play->room));
 }
 
 /// The colliders with the poses and clips that are wanted of them, which is all of a collider that may change as it plays.
@@ -303,10 +304,14 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     wanted.render.atlas = now.render.atlas;
     wanted.colliders = std::move(colliders);
     RELIEF_TRY(player.makeSorter(wanted));
-    now = std::move(wanted);
-    player.loaded.played = std::move(played);
+    std::swap(now, wanted);
+    std::swap(player.loaded.played, played);
+    if (const Result<void> done = player.simulation->change(std::move(made)); !done) {
+        now = std::move(wanted);
+        player.loaded.played = std::move(played);
+        return forward(done);
+    }
     player.style = particleStyle(now, player.atlas.get());
-    RELIEF_TRY(player.simulation->change(std::move(made)));
     player.setPoints();
     return 0;
 }

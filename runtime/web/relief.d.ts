@@ -309,7 +309,8 @@ export class ParticleSystem {
     /** Of a body that plays a clip (`play` of its collider), else null. Joints are glTF's, or the node of a mesh without a skin. */
     animation(body: number): { clips: { name: string; seconds: number }[]; joints: string[]; weights: number } | null;
     /**
-     * A pose of one's own for a body that plays a clip, from the next step on; without joints its clip again.
+     * A pose of one's own for a body that plays a clip, from the next step on; without joints its clip again. It may take up as much
+     * space as the clips do, times `room` of `play`.
      * @param joints  a matrix each, by columns: glTF's joint matrices. Of a three.js skeleton: boneMatrices, with the mesh's
      *                bindMatrix and bindMatrixInverse about them.
      * @param weights  of the morph targets, as many as there are.

@@ -84,6 +84,24 @@ expect_error 3 "nothing in it moves" "$relief" bake "$models/glTF2/2CylinderEngi
 expect_error 2 "absent.glb" "$relief" bake $cube --animated --clips absent.glb -o no.relief
 expect_error 1 "--budget does nothing with --animated; leave one out" "$relief" bake $cube --animated --budget 1MB -o no.relief
 expect_error 1 "--clips does nothing without --animated; add it" "$relief" bake $cube --clips $cube -o no.relief
-expect_error 1 "--animated is for one mesh; leave it out beside --world" "$relief" bake $cube --animated --world w
+expect_error 1 "--animated is for one mesh, and a level has many" "$relief" bake $cube --animated --world w
 expect_error 1 "the same file|overwrite|input" "$relief" bake $cube --animated --clips clips.gltf -o clips.gltf
 [ ! -e no.relief ] || die "an output beside an error"
+
+# A scene plays the clip; what the clip is not, is refused where it stands.
+cat >scene.toml <<'T'
+time = { steps = 20 }
+[particles]
+capacity = 1024
+[[collider]]
+file = "cube.relief"
+play = { clip = "Square", speed = 2 }
+[[collider]]
+file = "cube.relief"
+position = [5, 0, 0]
+T
+expect 0 "$relief_sim" scene.toml -q
+sed -i 's/Square/Circle/' scene.toml
+expect_error 3 "scene.toml:.*'Circle' is no clip of .*'Square'" "$relief_sim" scene.toml -q
+sed -i 's/cube.relief/still.relief/; s/Circle/Square/' scene.toml
+expect_error 3 "has no animated mesh; bake it with --animated" "$relief_sim" scene.toml -q

@@ -84,7 +84,7 @@ def by_themselves():
     for name, kind, *_ in relief._relief.bake_fields():
         option = "--" + name.replace("_", "-")
         values = re.search(rf"{option} ([^ \[]+\|[^ \[]+)", said)
-        if name not in tried and kind == "flag":
+        if name not in (*tried, "animated") and kind == "flag":
             yield {**PLANNED, name: True}, ["--budget", "60kB", option]
         elif name not in tried and values:
             last = values[1].split("|")[-1]
@@ -150,7 +150,7 @@ def test_no_option_of_the_tool_is_missing():
     assert others < said
     assert {"map" if name == "maps" else name.rstrip("_").replace("_", "-") for name in has} == said - others
     used = set().union(*(arguments for arguments, _ in WAYS))
-    assert has - used == {"plan", "plan_out", "heights"}  # the next tests'
+    assert has - used == {"plan", "plan_out", "heights", "animated", "clips"}  # the next tests'
 
 
 def test_height_maps_are_ground(mesh, tmp_path):

@@ -85,7 +85,7 @@ TEST(MeshPose, RepeatsClips) {
 TEST(MeshPose, BoundsHoldEveryVertexAtEveryTime) {
     const AnimatedMesh mesh = bendingTube();
     const PoseBounds bounds(mesh);
-    const glm::vec3 room = poseRoom(mesh);
+    const PoseExtent extent = poseExtent(mesh);
     for (const MeshClip& clip : mesh.clips) {
         for (double t = 0.0; t < double{clip.seconds}; t += 0.013) {
             const MeshPose pose = poseAt(mesh, clip, t);
@@ -96,10 +96,38 @@ TEST(MeshPose, BoundsHoldEveryVertexAtEveryTime) {
             }
             EXPECT_TRUE(glm::all(glm::lessThanEqual(box.min, exact.min + 1e-6F))) << t;
             EXPECT_TRUE(glm::all(glm::greaterThanEqual(box.max, exact.max - 1e-6F))) << t;
-            EXPECT_TRUE(glm::all(glm::lessThanEqual(box.size(), room))) << t;
+            EXPECT_TRUE(glm::all(glm::lessThanEqual(box.size(), extent.room))) << t;
             EXPECT_LE(box.longestSide(), 1.4F * exact.longestSide()) << t;
         }
     }
+}
+
+// A square that turns ten times a second, with keys where it stands straight: its box is largest between them.
+TEST(MeshPose, TheRoomHoldsWhatTurnsFast) {
+    AnimatedMesh mesh = movingBox({1.0F, 0.1F, 1.0F});
+    ClipChannel& channel = mesh.clips[1].channels[0];
+    channel.times.clear();
+    channel.values.clear();
+    for (int quarter = 0; quarter <= 40; ++quarter) {
+        const float angle = 0.25F * 3.14159265F * static_cast<float>(quarter);
+        channel.times.push_back(0.025F * static_cast<float>(quarter));
+        channel.values.insert(channel.values.end(), {0.0F, std::sin(angle), 0.0F, std::cos(angle)});
+    }
+    mesh.clips[1].seconds = 1.0F;
+    ASSERT_TRUE(validate(mesh)) << validate(mesh).error().message;
+    EXPECT_GE(poseExtent(mesh).room.x, 2.0F * std::sqrt(2.0F));
+    EXPECT_LE(poseExtent(mesh).room.x, 2.0F * std::sqrt(2.0F) * 1.021F);
+    EXPECT_TRUE(isCyclic(mesh, mesh.clips[1]));
+    EXPECT_FALSE(isCyclic(mesh, mesh.clips[0]));
+}
+
+TEST(MeshPose, ADayOfNothingIsNoWork) {
+    AnimatedMesh mesh = bendingTube(8, 6);
+    mesh.nodes.resize(kMeshNodesMax, mesh.nodes[0]);
+    mesh.clips[0].seconds = kClipSecondsMax;
+    mesh.clips[0].channels[0].times = {0.0F, 1.0F, kClipSecondsMax};
+    ASSERT_TRUE(validate(mesh)) << validate(mesh).error().message;
+    EXPECT_GT(poseExtent(mesh).room.x, 1.0F);
 }
 
 TEST(AnimatedMesh, ComesBackFromItsBytes) {

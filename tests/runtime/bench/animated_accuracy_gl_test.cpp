@@ -94,9 +94,10 @@ class PosedSolid {
 
 class AnimatedAccuracyGlTest : public GlTest {
   protected:
-    void measure(const AnimatedMesh& mesh, double frames_a_second) {
+    void measure(const AnimatedMesh& mesh, double frames_a_second,
+                 const AnimatedColliderOptions& options = {}) {
         const auto shared = std::make_shared<const AnimatedMesh>(mesh);
-        auto made = AnimatedCollider::create(shared);
+        auto made = AnimatedCollider::create(shared, options);
         ASSERT_TRUE(made) << made.error().message;
         AnimatedCollider& animated = *made;
         ColliderBody body;
@@ -139,7 +140,8 @@ INSTANTIATE_TEST_SUITE_P(Api, AnimatedAccuracyGlTest, testing::Values(GlApi::kGl
 TEST_P(AnimatedAccuracyGlTest, FewPointsAreOnTheWrongSide) {
     const char* file = std::getenv("RELIEF_ANIMATED");
     if (file == nullptr) {
-        measure(bendingTube(), 5.0);
+        // Thin: a twenty-fifth of the box, with half a texel lost at its silhouettes.
+        measure(bendingTube(), 5.0, {.resolution = 768, .room = {}});
         return;
     }
     const auto collider = loadCollider(file);

@@ -19,7 +19,7 @@ RELIEF_INSTANTIATE_GL_TESTS(SimulationGlTest);
 
 /// A container of the mesh, whose maps at rest are empty: what plays draws its own.
 void save(const std::filesystem::path& path, const AnimatedMesh& mesh) {
-    Collider collider = *animatedFrames(poseRoom(mesh), 16);
+    Collider collider = *animatedFrames(poseExtent(mesh).room, 16);
     for (DepthMap& map : collider.maps) {
         map.texels.resize(map.texelBytes());
     }

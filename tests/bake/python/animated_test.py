@@ -1,0 +1,82 @@
+"""Animated colliders in Python: baked with the options of the tool, played by a scene, and nothing falls into them."""
+import base64
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import relief
+
+BIN = pathlib.Path(os.environ["RELIEF_BIN"])
+
+
+def lift(clips):
+    """A cube of side 2, whose node moves as clips say: name, to where within 1 s."""
+    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], np.float32)
+    faces = np.array([0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6],
+                     np.uint16)
+    parts = [corners, faces, np.array([0, 1], np.float32)] + [np.array([[0, 0, 0], to], np.float32) for to in clips.values()]
+    data = b"".join(part.tobytes() for part in parts)
+    views, begin = [], 0
+    for part in parts:
+        views.append({"buffer": 0, "byteOffset": begin, "byteLength": part.nbytes})
+        begin += part.nbytes
+    vectors = [{"bufferView": 3 + i, "componentType": 5126, "count": 2, "type": "VEC3"} for i in range(len(clips))]
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "lift", "mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "animations": [{"name": name, "samplers": [{"input": 2, "output": 3 + i}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}
+                       for i, name in enumerate(clips)],
+        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+        "bufferViews": views,
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [-1] * 3, "max": [1] * 3},
+                      {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
+                      {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]}] + vectors})
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "lift.gltf").write_text(lift({"rise": (0, 1, 0)}))
+    (tmp_path / "more.gltf").write_text(lift({"slide": (2, 0, 0)}))
+    return tmp_path
+
+
+def test_it_is_what_the_tool_bakes(folder):
+    done = subprocess.run([BIN / "relief", "bake", folder / "lift.gltf", "--animated", "--clips", folder / "more.gltf", "-q",
+                           "-o", folder / "tool.relief"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    baked = relief.bake(folder / "lift.gltf", animated=True, clips=str(folder / "more.gltf"))
+    assert baked.to_bytes() == (folder / "tool.relief").read_bytes()
+
+
+def test_what_lies_on_it_rises_with_it(folder):
+    relief.bake(folder / "lift.gltf", animated=True, clips=str(folder / "more.gltf")).save(folder / "lift.relief")
+    (folder / "scene.toml").write_text("""
+time = { dt = 0.015625 }
+particles = { capacity = 2048 }
+forces = { gravity = [0, -2, 0], drag = 0 }
+ground = { enabled = false }
+[[collider]]
+file = "lift.relief"
+play = { clip = "rise", repeat = false, resolution = 128 }
+[[emitter]]
+box_min = [-0.8, 1.1, -0.8]
+box_max = [0.8, 1.6, 0.8]
+burst = 1000
+rate = 0
+lifetime = 50
+velocity = [0, 0, 0]
+velocity_spread = [0, 0, 0]
+""")
+    with relief.Simulation(folder / "scene.toml") as simulation:
+        simulation.step(48)
+        top = 1 + simulation.time
+        assert simulation.alive == 1000
+        assert (simulation.positions[:, 1] > top - 0.03).sum() == 1000
+        assert (simulation.collisions > 0).sum() > 900
+        simulation.step(64)
+        assert (np.abs(simulation.positions[:, 1] - 2) < 0.6).all() and (simulation.positions[:, 1] > 1.97).all()
