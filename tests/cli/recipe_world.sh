@@ -123,14 +123,14 @@ numbers | grep -v folders/parts/world.json | diff <(grep -v folders/parts/world.
 # A level that was baked by hand is completed.
 mkdir -p hand/levels
 cp -r yard hand/levels/yard
-rm hand/levels/yard/floor-coarse-*
+rm hand/levels/yard/floor-*
 (cd hand && stat -c '%n %i' levels/yard/box-*) >before
 expect 0 "$relief" bake --recipe in/r.toml -o hand -q
 (cd hand && stat -c '%n %i' levels/yard/box-*) | cmp - before || die "what was baked by hand is baked again"
 baked hand | diff first - || die "completed, it is another"
 
 # A container, a coarse one, or the world's file that is gone or changed: that world again, and of a level just what is missing.
-for file in levels/yard/box-*.relief levels/yard/floor-coarse-*.relief levels/yard/world.json ground/hills-1-1-*.relief; do
+for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard/world.json ground/hills-1-1-*.relief; do
     file=$(cd out && ls $file | head -n 1)
     asset=$(dirname "$file")/world.json
     rm "out/$file"
