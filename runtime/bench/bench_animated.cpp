@@ -17,7 +17,7 @@ Result<Json> benchAnimated(const Bench& bench) {
     }
     const MeshClip& clip = mesh->clips.front();
     Json tables = Json::array();
-    for (const std::uint32_t resolution : {384U, 448U, 512U}) {
+    for (const std::uint32_t resolution : {384U, 512U}) {
         auto animated = RELIEF_TRY(AnimatedCollider::create(mesh, {.resolution = resolution, .room = {}}));
         ColliderBody body;
         body.collider = &animated.frames();

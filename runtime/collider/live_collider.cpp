@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMotionXyUnit = 0;
 constexpr int kMotionZUnit = 1;
+constexpr int kTexelUnit = 2;
 
 // As in baked tight boxes: a little free space and a least thickness, in longest sides.
 constexpr float kPadding = 1e-4F;
@@ -116,6 +117,7 @@ Result<LiveCollider> LiveCollider::create(std::span<const glm::vec3> positions,
     live.motion_program_.use();
     live.motion_program_.set("u_motion_xy", kMotionXyUnit);
     live.motion_program_.set("u_motion_z", kMotionZUnit);
+    live.motion_program_.set("u_texels", kTexelUnit);
     live.motion_target_ = makeFramebuffer();
     live.texel_target_ = makeFramebuffer();
     return live;
@@ -202,6 +204,7 @@ void LiveCollider::copyMotion(const LiveSlot& slot, const DepthMap& map) const {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, slot.motion->name(), 0);
     useTexture(kMotionXyUnit, renderer_.motion(0));
     useTexture(kMotionZUnit, renderer_.motion(1));
+    useTexture(kTexelUnit, renderer_.texels());
     motion_program_.use();
     const auto width = static_cast<GLsizei>(map.width);
     const auto height = static_cast<GLsizei>(map.height);

@@ -127,10 +127,7 @@ void DepthMapRenderer::render(GpuMesh& mesh, const DepthMap& map) const {
     glEnable(GL_SCISSOR_TEST);
     glScissor(0, 0, width, height);
     const GLuint nothing[4] = {};
-    const GLfloat still[4] = {};
     glClearBufferuiv(GL_COLOR, 0, nothing);
-    glClearBufferfv(GL_COLOR, 1, still);
-    glClearBufferfv(GL_COLOR, 2, still);
     glEnable(GL_DEPTH_TEST);
     glScissor(1, 1, width - 2, height - 2);  // planes leave the border empty
     for (const bool far : {false, true}) {

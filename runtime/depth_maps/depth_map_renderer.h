@@ -35,9 +35,10 @@ class DepthMapRenderer {
     [[nodiscard]] std::uint32_t height() const { return height_; }
     /// The motion of the surface between the mesh's previous and its present positions, object units. Of
     /// end e (0: the front, 1: the back) x is component e of texture 0, y component 2 + e of it, z component e of texture
-    /// 1. 0 where the texel is empty.
+    /// 1. Whatever was there before where the end is empty.
     /// \param i  0 or 1.
     [[nodiscard]] GLuint motion(int i) const { return motion_[i].name(); }
+    [[nodiscard]] GLuint texels() const { return texels_.name(); }  ///< RGBA16UI, as the container has them
     /// To read from: attachment 0 has the texels as the container has them, RGBA16UI; 1 and 2 the motion.
     [[nodiscard]] GLuint framebuffer() const { return framebuffer_.name(); }
 

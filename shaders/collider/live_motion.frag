@@ -2,6 +2,7 @@
 // collider.glsl.
 uniform highp sampler2D u_motion_xy;  // x of either end, then y
 uniform highp sampler2D u_motion_z;
+uniform highp usampler2D u_texels;  // depth codes of the ends in z and w
 uniform int u_end;
 uniform ivec2 u_origin;  // of the rectangle that is drawn to
 
@@ -9,6 +10,10 @@ layout(location = 0) out vec4 o_motion;
 
 void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy) - u_origin;
+    uvec4 codes = texelFetch(u_texels, texel, 0);
+    if ((u_end == 0 ? codes.z : codes.w) == 0u) {
+        discard;  // nobody asks for its motion, and most of a box is empty
+    }
     vec4 xy = texelFetch(u_motion_xy, texel, 0);
     vec4 z = texelFetch(u_motion_z, texel, 0);
     o_motion = u_end == 0 ? vec4(xy.x, xy.z, z.x, 0.0) : vec4(xy.y, xy.w, z.y, 0.0);
