@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain wobbling_torus)
+all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain walker wobbling_torus)
 names=("$@")
 [ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 for name in "${names[@]}"; do
@@ -43,6 +43,10 @@ prepare() {
         mesh torus.obj
         cp samples/linked_tori.csv "$out/"
         bake "$out/torus.obj" -o "$out/torus.relief" --budget 200kB
+        ;;
+    walker)
+        python3 samples/walker.py "$out/walker.gltf"
+        bake "$out/walker.gltf" --animated -o "$out/walker.relief"
         ;;
     wobbling_torus)
         mesh torus.obj

@@ -9,17 +9,21 @@ mesh() { python3 "$samples/meshes.py" "${1%.*}" "$1"; }
 mesh basin.obj
 mesh torus.obj
 mesh terrain.obj
+python3 "$samples/walker.py" walker.gltf
 cp "$samples"/{linked_tori.csv,streak.png} .
 "$relief" bake "$bunny" -o bunny.relief --prefer inside --budget 300kB --quality fast -q
 "$relief" bake $models_glmark2/horse.3ds -o horse.relief --budget 200kB --quality fast -q
 "$relief" bake basin.obj -o basin.relief --map front-back:dir=-y,size=200x200 -q
 "$relief" bake torus.obj -o torus.relief --budget 200kB -q
 "$relief" bake terrain.obj -o terrain.relief --map fixed8:dir=-y,size=256x256,box=-4/-1.5/-4/4/1.5/4 --quality fast -q
+"$relief" bake walker.gltf --animated -o walker.relief -q
 
 # Meshes have the same bytes each time, and wrong arguments are refused.
 mesh torus.obj
 python3 "$samples/meshes.py" torus again.obj
 cmp torus.obj again.obj || die "meshes.py makes another torus each time"
+python3 "$samples/walker.py" again.gltf
+cmp walker.gltf again.gltf || die "walker.py makes another figure each time"
 ! python3 "$samples/meshes.py" cube cube.obj 2>/dev/null || die "meshes.py makes what it does not know"
 
 # Every scene in the folder passes --check, so that none is forgotten.
@@ -60,6 +64,7 @@ play fountain 150
 play linked_tori 180
 play rain 300
 play wobbling_torus 90
+play walker 100
 
 cat >particles.py <<'P'
 import struct
@@ -123,6 +128,33 @@ assert 1.1 < max(p[1] for p, _, _ in drops) < 1.5, max(p[1] for p, _, _ in drops
 assert min(p[1] for p, _, _ in drops) > -1e-3, min(p[1] for p, _, _ in drops)
 held = sum(p[0] ** 2 + p[2] ** 2 < 1.44 ** 2 for p, _, _ in drops)
 assert held > 0.85 * len(drops), (held, len(drops))
+P
+
+# Walkers, at 100/120 s: outside all their capsules, which walker.py places, wherever these were driven to.
+python3 - <<'P'
+import math, particles, walker
+time = 100 / 120
+bodies = [((-0.55, -1.6 + 4.727 * time / 4), 0, time), ((0.55, -2.3 + 4.727 * time / 4), 0, 0.4 + time),
+          ((1.5 - 3.686 * time / 4, 1.4 + 2.128 * time / 4), -60, 0.75 + 0.9 * time)]
+drops = [p for p, _, _ in particles.read('walker.ply')]
+assert len(drops) > 1000, len(drops)
+
+def distance(p, a, b, radius):
+    way = [y - x for x, y in zip(a, b)]
+    t = sum((x - y) * w for x, y, w in zip(p, a, way)) / sum(w * w for w in way)
+    return math.dist(p, [x + min(max(t, 0), 1) * w for x, w in zip(a, way)]) - radius
+
+depths = []
+for (x, z), degrees, seconds in bodies:
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    solids = walker.capsules(seconds / walker.SECONDS % 1)
+    for p in drops:
+        dx, dz = p[0] - x, p[2] - z
+        depths.append(min(distance((c * dx - s * dz, p[1], s * dx + c * dz), *solid) for solid in solids))
+# A texel is 4 mm; a hand swings as far in a step.
+assert sum(depth < 0.1 for depth in depths) > 10, sorted(depths)[:20]
+assert min(depths) > -0.02, min(depths)
+assert sum(depth < -0.008 for depth in depths) <= 3, sorted(depths)[:9]
 P
 
 # Tori, at 3 s, where the second one turns round: outside both, by the distance to a torus.

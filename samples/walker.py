@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Makes a figure of capsules that walks on the spot, as glTF with one clip: walker.py OUT.gltf
+
+The same argument gives the same bytes. Needs nothing but Python itself.
+"""
+import base64
+import json
+import math
+import struct
+import sys
+
+SECONDS = 1.1  # of two steps
+KEYS = 44
+STRIDE = 1.30  # metres that the ground goes back in that time
+
+# Name, parent, place in the parent, the capsule's other end, and its radius; metres, y up, facing +z.
+PARTS = [
+    ("hips", None, (0.0, 0.93, 0.0), (0.0, 0.12, 0.0), 0.125),
+    ("chest", "hips", (0.0, 0.20, 0.0), (0.0, 0.24, 0.0), 0.15),
+    ("neck", "chest", (0.0, 0.36, 0.0), (0.0, 0.12, 0.01), 0.055),
+    ("head", "neck", (0.0, 0.16, 0.02), (0.0, 0.09, 0.015), 0.1),
+    ("left arm", "chest", (0.205, 0.27, 0.0), (0.05, -0.27, 0.0), 0.052),
+    ("left forearm", "left arm", (0.05, -0.28, 0.0), (0.0, -0.27, 0.0), 0.043),
+    ("right arm", "chest", (-0.205, 0.27, 0.0), (-0.05, -0.27, 0.0), 0.052),
+    ("right forearm", "right arm", (-0.05, -0.28, 0.0), (0.0, -0.27, 0.0), 0.043),
+    ("left thigh", "hips", (0.095, 0.0, 0.0), (0.0, -0.41, 0.0), 0.082),
+    ("left shin", "left thigh", (0.0, -0.43, 0.0), (0.0, -0.38, 0.0), 0.06),
+    ("left foot", "left shin", (0.0, -0.41, 0.0), (0.0, -0.01, 0.15), 0.052),
+    ("right thigh", "hips", (-0.095, 0.0, 0.0), (0.0, -0.41, 0.0), 0.082),
+    ("right shin", "right thigh", (0.0, -0.43, 0.0), (0.0, -0.38, 0.0), 0.06),
+    ("right foot", "right shin", (0.0, -0.41, 0.0), (0.0, -0.01, 0.15), 0.052),
+]
+
+
+def bend(name, phase):
+    """The turn of a joint about x, in radians: below 0 forwards. phase: 0 to 1, of two steps."""
+    side = 0.5 if name.startswith("right") else 0.0
+    swing = math.sin(2 * math.pi * (phase + side))
+    lift = max(0.0, math.sin(2 * math.pi * (phase + side) + 1.1))
+    return {
+        "arm": 0.55 * swing, "forearm": -0.45 - 0.2 * swing, "thigh": -0.52 * swing - 0.08,
+        "shin": 0.12 + 0.95 * lift * lift, "foot": -0.04 - 0.25 * lift, "chest": 0.05, "neck": 0.08, "head": -0.1, "hips": 0.0,
+    }[name.split()[-1]]
+
+
+def rise(phase):
+    """Of the hips, in metres: highest where one leg passes the other."""
+    return 0.022 * math.cos(4 * math.pi * phase)
+
+
+def capsules(phase):
+    """The figure's solids at a phase: (one end, the other, radius)."""
+    frames, solids = {}, []
+    for name, parent, place, end, radius in PARTS:
+        x, y, z = place
+        angle = bend(name, phase)
+        if parent is None:
+            y += rise(phase)
+        else:
+            (px, py, pz), turn = frames[parent]
+            c, s = math.cos(turn), math.sin(turn)
+            x, y, z = px + x, py + c * y - s * z, pz + s * y + c * z
+            angle += turn
+        frames[name] = (x, y, z), angle
+        c, s = math.cos(angle), math.sin(angle)
+        solids.append(((x, y, z), (x + end[0], y + c * end[1] - s * end[2], z + s * end[1] + c * end[2]), radius))
+    return solids
+
+
+def capsule(end, radius, sides=24, rings=8):
+    """Positions and triangles of a capsule from the origin to `end`."""
+    length = math.sqrt(sum(x * x for x in end))
+    up = [x / length for x in end]
+    side = (1.0, 0.0, 0.0) if abs(up[0]) < 0.9 else (0.0, 1.0, 0.0)
+    u = [side[1] * up[2] - side[2] * up[1], side[2] * up[0] - side[0] * up[2], side[0] * up[1] - side[1] * up[0]]
+    size = math.sqrt(sum(x * x for x in u))
+    u = [x / size for x in u]
+    v = [up[1] * u[2] - up[2] * u[1], up[2] * u[0] - up[0] * u[2], up[0] * u[1] - up[1] * u[0]]
+    profile = [(radius * math.sin(a), -radius * math.cos(a)) for a in (math.pi / 2 * i / rings for i in range(rings + 1))]
+    profile += [(r, length - h) for r, h in reversed(profile)]
+    positions, triangles = [], []
+    for r, h in profile:
+        for k in range(sides):
+            a = 2 * math.pi * k / sides
+            positions.append([r * (math.cos(a) * u[i] + math.sin(a) * v[i]) + h * up[i] for i in range(3)])
+    for ring in range(len(profile) - 1):
+        for k in range(sides):
+            a, b = ring * sides + k, ring * sides + (k + 1) % sides
+            # The ends are points, round which one of the two has no area.
+            triangles += [a, b, b + sides] if ring > 0 else []
+            triangles += [a, b + sides, a + sides] if ring + 2 < len(profile) else []
+    return positions, triangles
+
+
+def gltf():
+    data, views, accessors, meshes, nodes, channels, samplers = b"", [], [], [], [], [], []
+
+    def add(kind, component, numbers, width, **more):
+        nonlocal data
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 4 * len(numbers)})
+        data += struct.pack(f"<{len(numbers)}{'f' if component == 5126 else 'I'}", *numbers)
+        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(numbers) // width,
+                          "type": kind, **more})
+        return len(accessors) - 1
+
+    phases = [key / KEYS for key in range(KEYS + 1)]
+    times = add("SCALAR", 5126, [SECONDS * phase for phase in phases], 1, min=[0.0], max=[SECONDS])
+
+    def channel(node, path, kind, numbers, width):
+        samplers.append({"input": times, "output": add(kind, 5126, numbers, width)})
+        channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+
+    names = [part[0] for part in PARTS]
+    for i, (name, _, place, end, radius) in enumerate(PARTS):
+        positions, triangles = capsule(end, radius)
+        low = [min(p[k] for p in positions) for k in range(3)]
+        high = [max(p[k] for p in positions) for k in range(3)]
+        at = add("VEC3", 5126, [x for p in positions for x in p], 3, min=low, max=high)
+        meshes.append({"primitives": [{"attributes": {"POSITION": at}, "indices": add("SCALAR", 5125, triangles, 1)}]})
+        nodes.append({"name": name, "mesh": i, "translation": place})
+        children = [names.index(part[0]) for part in PARTS if part[1] == name]
+        if children:
+            nodes[-1]["children"] = children
+        turns = [0.5 * bend(name, phase) for phase in phases]
+        channel(i, "rotation", "VEC4", [x for t in turns for x in (math.sin(t), 0.0, 0.0, math.cos(t))], 4)
+        if i == 0:
+            channel(i, "translation", "VEC3",
+                    [x for phase in phases for x in (place[0], place[1] + rise(phase), place[2])], 3)
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes, "meshes": meshes,
+        "animations": [{"name": "walk", "channels": channels, "samplers": samplers}],
+        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+        "bufferViews": views, "accessors": accessors})
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: walker.py OUT.gltf")
+    with open(sys.argv[1], "w", encoding="ascii") as out:
+        out.write(gltf())
