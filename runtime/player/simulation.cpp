@@ -306,7 +306,7 @@ void Simulation::setPoses(double time) {
     const bool jumps =
         std::any_of(played_.begin(), played_.end(), [](const PlayedBody& body) { return body.jumps; });
     if (jumps && !shown_.empty()) {
-        // Where those begin the step that end it elsewhere without a way there.
+        // Those that jump begin the step where they end it.
         for (const PlayedBody& body : played_) {
             shown_[body.index] = body.jumps ? poses[body.index] : shown_[body.index];
         }

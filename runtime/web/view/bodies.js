@@ -123,7 +123,9 @@ export class Bodies {
             if (p.some((v, k) => v < box.min[k] - room || v > box.max[k] + room)) {
                 return;
             }
-            const distance = Math.abs(collider.query(p).distance[0]) * scale;
+            // In its box, for beyond that a collider may know no more than that it is outside.
+            const inside = p.map((v, k) => Math.min(Math.max(v, box.min[k]), box.max[k]));
+            const distance = (Math.abs(collider.query(inside).distance[0]) + length(sub(p, inside))) * scale;
             if (distance < least) {
                 [best, least] = [i, distance];
             }
