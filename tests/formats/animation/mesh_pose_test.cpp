@@ -74,7 +74,8 @@ TEST(MeshPose, FollowsParentsAndMatrices) {
 }
 
 TEST(MeshPose, RepeatsClips) {
-    const MeshClip& clip = bendingTube().clips[0];
+    const AnimatedMesh mesh = bendingTube();
+    const MeshClip& clip = mesh.clips[0];
     EXPECT_EQ(repeated(clip, 0.5), 0.5);
     EXPECT_EQ(repeated(clip, 2.0), 0.0);
     EXPECT_EQ(repeated(clip, 5.25), 1.25);
