@@ -42,7 +42,7 @@ void removeTemporaries(const fs::path& folder, pid_t pid) {
     }
 }
 
-/// What a job has made, as an entry of the cache: its output's bytes and hashes. Errors: none, or no world.
+/// The output of a job as an entry of the cache: its bytes and hashes. Errors: none, or no world.
 Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     BakeCacheEntry entry;
     const std::optional<std::string> hash = hashOfFile(job.output_path);

@@ -1,4 +1,4 @@
-// What a byte more mends of a mesh, against the bytes that it has.
+// The mistakes of a mesh that a byte more mends, against the bytes that it has.
 #pragma once
 
 #include <limits>

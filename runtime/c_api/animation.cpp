@@ -52,8 +52,9 @@ relief_animation* relief_animation_create(const relief_collider* collider) {
             if (from.animation.empty()) {
                 return call.refuse("collider has no animated mesh; bake it with --animated");
             }
-            return std::make_shared<AnimationObject>(AnimationObject{
-                std::make_shared<const AnimatedMesh>(RELIEF_TRY(readAnimatedMesh(from.animation)))});
+            auto mesh = std::make_shared<const AnimatedMesh>(RELIEF_TRY(readAnimatedMesh(from.animation)));
+            const PoseExtent extent = poseExtent(*mesh);
+            return std::make_shared<AnimationObject>(AnimationObject{std::move(mesh), extent});
         });
 }
 
@@ -113,7 +114,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
                          uint32_t resolution, const float room[3]) {
     return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
         WorldObject& to = *RELIEF_TRY(call.object(world, "world"));
-        AddedBody added{.mesh = RELIEF_TRY(call.object(animation, "animation"))->mesh};
+        AddedBody added{.animation = *RELIEF_TRY(call.object(animation, "animation"))};
         RELIEF_TRY(call.notNull(pose, "pose"));
         added.pose = RELIEF_TRY(poseOf(call, *pose, {"pose"}, {}));
         RELIEF_TRY(call.number(resolution, kResolution, {"resolution"}));
@@ -122,6 +123,7 @@ int64_t relief_world_add(relief_world* world, const relief_animation* animation,
                                std::to_string(kResolutionMin) + " to 4096, or 0 for 512");
         }
         added.options.resolution = resolution > 0 ? resolution : added.options.resolution;
+        added.options.room = added.animation.extent.room;
         if (room != nullptr) {
             glm::vec3 sides;
             for (std::size_t i = 0; i < 3; ++i) {

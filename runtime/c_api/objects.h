@@ -60,11 +60,12 @@ struct PictureObject {
 
 struct AnimationObject {
     std::shared_ptr<const AnimatedMesh> mesh;
+    PoseExtent extent;
 };
 
 /// A body of a world that moves by clips, behind those of its file.
 struct AddedBody {
-    std::shared_ptr<const AnimatedMesh> mesh;
+    AnimationObject animation;
     Pose pose{};
     AnimatedColliderOptions options{};
 };

@@ -47,7 +47,7 @@ Result<TexturesObject> upload(const WorldObject& world) {
     std::vector<AnimatedBody> animated;
     for (const AddedBody& added : world.added) {
         animated.push_back({static_cast<std::uint32_t>(bodies.size() + animated.size()),
-                            RELIEF_TRY(AnimatedCollider::create(added.mesh, added.options))});
+                            RELIEF_TRY(AnimatedCollider::create(added.animation.mesh, added.options))});
     }
     for (std::size_t i = 0; i < animated.size(); ++i) {
         const AnimatedCollider& of = animated[i].collider;
@@ -140,7 +140,7 @@ void relief_world_bounds(const relief_world* world, float min[3], float max[3]) 
         }
         Bounds bounds = worldBounds(of.field.world());
         for (const AddedBody& added : of.added) {
-            const Bounds box = toWorld(added.pose, poseExtent(*added.mesh).box);
+            const Bounds box = toWorld(added.pose, added.animation.extent.box);
             bounds.add(box.min);
             bounds.add(box.max);
         }

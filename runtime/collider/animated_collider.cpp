@@ -42,7 +42,7 @@ Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const Animated
     const glm::vec3 room = options.room ? *options.room : poseExtent(*mesh).room;
     Collider frames = RELIEF_TRY(animatedFrames(room, options.resolution));
     SkinPass pass = RELIEF_TRY(SkinPass::create(*mesh));
-    // Where they are does not matter: setPose() moves all of them before anything is drawn.
+    // Any places would do: setPose() moves all of them before anything is drawn.
     LiveCollider live = RELIEF_TRY(LiveCollider::create(mesh->positions, mesh->triangles, std::move(frames)));
     AnimatedCollider made(std::move(mesh), room, std::move(pass), std::move(live));
     RELIEF_TRY(made.setPose(firstPose(*made.mesh_)));

@@ -94,7 +94,7 @@ class Simulation {
     [[nodiscard]] std::optional<StreamCounts> streamCounts() const {
         return stream_ ? std::optional(stream_->counts()) : std::nullopt;
     }
-    /// Where the colliders are now: a pose each, in the scene's order. Of one that plays a clip it is that of mesh()'s origin.
+    /// The places of the colliders now: a pose each, in the scene's order. Of one that plays a clip it is that of mesh()'s origin.
     [[nodiscard]] std::vector<Pose> poses() const { return posesNow(particles_->time()); }
     /// The mesh of a collider that deforms, as it is now; null: that one does not.
     [[nodiscard]] const GpuMesh* mesh(std::size_t collider) const;
@@ -110,7 +110,7 @@ class Simulation {
         std::size_t index;  // in the scene
         AnimatedCollider collider;
         std::optional<MeshPose> pose = {};  // in place of the clip's
-        /// What the last pose was of: a run of a clip, or a program's. From one to the next is a jump.
+        /// The origin of the last pose: a run of a clip, or a program. From one to the next is a jump.
         struct Source {
             std::optional<std::size_t> clip;
             double run = 0.0;

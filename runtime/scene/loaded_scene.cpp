@@ -51,22 +51,28 @@ Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& 
 }
 
 using Colliders = std::map<fs::path, std::shared_ptr<const Collider>>;
-using AnimatedMeshes = std::map<fs::path, std::shared_ptr<const AnimatedMesh>>;
+/// The animated mesh of a container, and the space that it takes up.
+struct AnimatedFile {
+    std::shared_ptr<const AnimatedMesh> mesh;
+    PoseExtent extent;
+};
+using AnimatedFiles = std::map<fs::path, AnimatedFile>;
 
 /// The clip that a collider plays. \param known  meshes that other colliders have read.
 Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& limits,
-                              AnimatedMeshes& known) {
-    std::shared_ptr<const AnimatedMesh>& mesh = known[from.path];
-    if (mesh == nullptr) {
+                              AnimatedFiles& known) {
+    AnimatedFile& file = known[from.path];
+    if (file.mesh == nullptr) {
         const Collider collider = RELIEF_TRY(openCollider(from, limits));
         const std::string place = from.origin + ": collider.play: " + quotedPath(from.path);
         if (collider.animation.empty()) {
             return invalidInput(place + " has no animated mesh; bake it with --animated, or remove play");
         }
-        mesh = std::make_shared<const AnimatedMesh>(
+        file.mesh = std::make_shared<const AnimatedMesh>(
             RELIEF_TRY(inFront(place, readAnimatedMesh(collider.animation))));
+        file.extent = poseExtent(*file.mesh);
     }
-    return loadPlayedMesh(from, mesh);
+    return loadPlayedMesh(from, file.mesh, file.extent);
 }
 
 /// Reads the scene's world, if it has one, and places its bodies.
@@ -141,7 +147,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         of_world[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
     }
     // A table that names a file means that file, also where the world has a coarse one in its place.
-    AnimatedMeshes meshes;
+    AnimatedFiles meshes;
     Colliders of_tables = scene.stream ? Colliders() : of_world;
     for (const SceneCollider& from : scene.colliders) {
         const bool named = loaded.colliders.size() < own && from.node.empty();

@@ -52,11 +52,11 @@ Result<void> changeClip(PlayedMesh& played, const SceneCollider& from) {
     return {};
 }
 
-Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<const AnimatedMesh> mesh) {
+Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<const AnimatedMesh> mesh,
+                                  const PoseExtent& extent) {
     PlayedMesh played;
     played.mesh = std::move(mesh);
     RELIEF_TRY(changeClip(played, from));
-    const PoseExtent extent = poseExtent(*played.mesh);
     played.room = played.play.room * extent.room;
     played.frames = RELIEF_TRY(
         inFront(from.origin + ": collider.play", animatedFrames(played.room, played.play.resolution)));

@@ -31,9 +31,10 @@ struct PlayedMesh {
 [[nodiscard]] Result<void> changeClip(PlayedMesh& played, const SceneCollider& from);
 
 /// Finds the clip, and chooses maps that hold any clip of the mesh.
-/// \param from  with `play`. \param mesh  of its container.
+/// \param from  with `play`. \param mesh  of its container. \param extent  poseExtent() of the mesh.
 /// Errors: kInvalidInput (no such clip: the message lists those there are); they begin with the place in the scene.
 [[nodiscard]] Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from,
-                                                std::shared_ptr<const AnimatedMesh> mesh);
+                                                std::shared_ptr<const AnimatedMesh> mesh,
+                                                const PoseExtent& extent);
 
 }  // namespace relief

@@ -299,7 +299,7 @@ TEST(Director, BakesTheRestPoseOfAMeshThatMoves) {
     const Result<AnimatedMesh> mesh = readAnimatedMesh(collider.animation);
     ASSERT_TRUE(mesh);
     ASSERT_EQ(mesh->triangles.size(), 13U);
-    // What the maps take for outside is outside where the mesh is drawn too.
+    // Outside by the maps is outside where the mesh is drawn too.
     double volume = 0.0;
     for (const glm::uvec3& t : mesh->triangles) {
         volume += glm::dot(mesh->positions[t.x], glm::cross(mesh->positions[t.y], mesh->positions[t.z]));

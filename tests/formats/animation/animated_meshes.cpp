@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
+#include <random>
 
 namespace relief {
 
@@ -112,6 +113,34 @@ double windingNumber(std::span<const glm::vec3> positions, std::span<const glm::
                           la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
     }
     return sum / (2.0 * std::numbers::pi);
+}
+
+std::vector<glm::vec3> pointsNear(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                                  std::size_t count, float size, std::uint32_t seed) {
+    std::vector<double> areas;
+    for (const glm::uvec3& t : triangles) {
+        areas.push_back(double{
+            glm::length(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]))});
+    }
+    std::mt19937 random(seed);
+    std::discrete_distribution<std::size_t> any(areas.begin(), areas.end());
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    std::normal_distribution<float> off(0.0F, 0.005F * size);
+    std::vector<glm::vec3> points;
+    while (points.size() < count) {
+        const glm::uvec3& t = triangles[any(random)];
+        const float u = unit(random);
+        const float v = unit(random);
+        glm::vec3 away;
+        for (int k = 0; k < 3; ++k) {
+            away[k] = off(random);
+        }
+        if (u + v <= 1.0F) {
+            points.push_back(positions[t.x] + u * (positions[t.y] - positions[t.x]) +
+                             v * (positions[t.z] - positions[t.x]) + away);
+        }
+    }
+    return points;
 }
 
 }  // namespace relief

@@ -22,4 +22,9 @@ namespace relief {
 [[nodiscard]] double windingNumber(std::span<const glm::vec3> positions,
                                    std::span<const glm::uvec3> triangles, const glm::dvec3& p);
 
+/// Points on the surface by its area, moved by a Gaussian of a two hundredth of `size`.
+[[nodiscard]] std::vector<glm::vec3> pointsNear(std::span<const glm::vec3> positions,
+                                                std::span<const glm::uvec3> triangles, std::size_t count,
+                                                float size, std::uint32_t seed);
+
 }  // namespace relief

@@ -7,7 +7,6 @@
 #include <glm/glm.hpp>
 #include <iostream>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -59,34 +58,7 @@ class PosedSolid {
         }
         return votes >= 2;
     }
-    /// On the surface by its area, moved by a Gaussian of a two hundredth of the longest side.
-    [[nodiscard]] std::vector<glm::vec3> near(std::size_t count, std::uint32_t seed) const {
-        const TriangleMesh& mesh = query_->mesh();
-        std::vector<double> areas;
-        for (const glm::uvec3& t : mesh.triangles) {
-            areas.push_back(double{glm::length(glm::cross(mesh.positions[t.y] - mesh.positions[t.x],
-                                                          mesh.positions[t.z] - mesh.positions[t.x]))});
-        }
-        std::mt19937 random(seed);
-        std::discrete_distribution<std::size_t> any(areas.begin(), areas.end());
-        std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-        std::normal_distribution<float> off(0.0F, 0.005F * mesh.bounds.longestSide());
-        std::vector<glm::vec3> points;
-        while (points.size() < count) {
-            const glm::uvec3& t = mesh.triangles[any(random)];
-            const float u = unit(random);
-            const float v = unit(random);
-            glm::vec3 away;
-            for (int k = 0; k < 3; ++k) {
-                away[k] = off(random);
-            }
-            if (u + v <= 1.0F) {
-                points.push_back(mesh.positions[t.x] + u * (mesh.positions[t.y] - mesh.positions[t.x]) +
-                                 v * (mesh.positions[t.z] - mesh.positions[t.x]) + away);
-            }
-        }
-        return points;
-    }
+    [[nodiscard]] const TriangleMesh& mesh() const { return query_->mesh(); }
 
   private:
     std::unique_ptr<MeshQuery> query_;
@@ -118,7 +90,9 @@ class AnimatedAccuracyGlTest : public GlTest {
                 textures->setPoses({&placed, 1});
                 ASSERT_TRUE(animated.update(*textures, 0));
                 const PosedSolid solid(posed(mesh, pose), mesh.triangles);
-                const std::vector<glm::vec3> points = solid.near(kPoints, static_cast<std::uint32_t>(frames));
+                const std::vector<glm::vec3> points =
+                    pointsNear(solid.mesh().positions, solid.mesh().triangles, kPoints,
+                               solid.mesh().bounds.longestSide(), static_cast<std::uint32_t>(frames));
                 const auto samples = query->evaluate(points);
                 ASSERT_TRUE(samples);
                 std::size_t wrong = 0;

@@ -9,7 +9,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <random>
 #include <vector>
 
 #include "runtime/gl/buffer_read.h"
@@ -34,34 +33,6 @@ std::vector<glm::vec3> readVertices(const SkinPass& pass) {
     std::vector<glm::vec3> vertices(pass.bytes() / sizeof(glm::vec3));
     EXPECT_TRUE(readBuffer(pass.buffer(), std::as_writable_bytes(std::span(vertices))));
     return vertices;
-}
-
-/// Points on the surface, moved by a Gaussian of a two hundredth of `size`.
-std::vector<glm::vec3> pointsNear(const std::vector<glm::vec3>& positions,
-                                  const std::vector<glm::uvec3>& triangles, std::size_t count, float size) {
-    std::vector<double> areas;
-    for (const glm::uvec3& t : triangles) {
-        areas.push_back(static_cast<double>(
-            glm::length(glm::cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]))));
-    }
-    std::mt19937 random(7);
-    std::discrete_distribution<std::size_t> any(areas.begin(), areas.end());
-    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-    std::normal_distribution<float> off(0.0F, 0.005F * size);
-    std::vector<glm::vec3> points;
-    while (points.size() < count) {
-        const glm::uvec3& t = triangles[any(random)];
-        const float u = unit(random);
-        const float v = unit(random);
-        const float x = off(random);
-        const float y = off(random);
-        const float z = off(random);
-        if (u + v <= 1.0F) {
-            points.push_back(positions[t.x] + u * (positions[t.y] - positions[t.x]) +
-                             v * (positions[t.z] - positions[t.x]) + glm::vec3(x, y, z));
-        }
-    }
-    return points;
 }
 
 class AnimatedColliderGlTest : public CollisionTest {
@@ -162,7 +133,7 @@ TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
             const MeshPose pose = clipPose(*mesh, clip, time);
             showPose(pose);
             const std::vector<glm::vec3> positions = posed(*mesh, pose);
-            const std::vector<glm::vec3> points = pointsNear(positions, mesh->triangles, kPoints, 2.0F);
+            const std::vector<glm::vec3> points = pointsNear(positions, mesh->triangles, kPoints, 2.0F, 7);
             std::vector<glm::vec3> world;
             for (const glm::vec3& p : points) {
                 world.push_back(toWorld(body, p));

@@ -8,6 +8,7 @@
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/temporary_folder.h"
 
@@ -17,20 +18,10 @@ namespace {
 class SimulationGlTest : public GlTest {};
 RELIEF_INSTANTIATE_GL_TESTS(SimulationGlTest);
 
-/// A container of the mesh, whose maps at rest are empty: what plays draws its own.
-void save(const std::filesystem::path& path, const AnimatedMesh& mesh) {
-    Collider collider = *animatedFrames(poseExtent(mesh).room, 16);
-    for (DepthMap& map : collider.maps) {
-        map.texels.resize(map.texelBytes());
-    }
-    collider.animation = writeAnimatedMesh(mesh);
-    ASSERT_TRUE(saveCollider(path, collider));
-}
-
 TEST_P(SimulationGlTest, DropsStayOutOfCharactersThatMove) {
     const test::TemporaryFolder folder;
     const AnimatedMesh mesh = bendingTube(24, 24);
-    save(folder.path() / "tube.relief", mesh);
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));
     const std::string scene = R"(
 time = { dt = 0.0166667, steps = 90 }
 particles = { capacity = 8192 }

@@ -6,9 +6,9 @@
 #include <glm/glm.hpp>
 
 #include "formats/container.h"
-#include "runtime/collider/animated_collider.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/scene/scene_error.h"
 #include "tests/temporary_folder.h"
 
@@ -16,16 +16,6 @@ namespace relief {
 namespace {
 
 const std::string kHead = "[[collider]]\nfile = \"tube.relief\"\n";
-
-Collider tubeContainer() {
-    const AnimatedMesh mesh = bendingTube(12, 8);
-    Collider collider = *animatedFrames(poseExtent(mesh).room, 16);
-    for (DepthMap& map : collider.maps) {
-        map.texels.resize(map.texelBytes());
-    }
-    collider.animation = writeAnimatedMesh(mesh);
-    return collider;
-}
 
 TEST(ScenePlay, Keys) {
     const auto scene = parseScene(kHead +
@@ -49,7 +39,7 @@ TEST(ScenePlay, Mistakes) {
 
 TEST(ScenePlay, IsLoadedWithItsClip) {
     const test::TemporaryFolder folder;
-    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", tubeContainer()));
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
     const std::string two = kHead + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" + kHead +
                             "play = { clip = \"grow\", start = 0.25, repeat = false }\n" + kHead;
     const auto loaded = loadAll(folder.write("scene.toml", two), {});
@@ -68,7 +58,7 @@ TEST(ScenePlay, IsLoadedWithItsClip) {
 
 TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
     const test::TemporaryFolder folder;
-    Collider collider = tubeContainer();
+    Collider collider = animatedContainer(bendingTube(12, 8));
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
     const auto expectRefused = [&](const std::string& words) {
         const auto loaded = loadAll(folder.write("scene.toml", kHead + "play = { clip = \"run\" }\n"), {});
