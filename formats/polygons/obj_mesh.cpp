@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -20,8 +21,8 @@ constexpr std::array<std::string_view, 6> kFreeForms = {"curv", "surf", "bzp", "
 
 class ObjReader {
   public:
-    explicit ObjReader(std::span<const std::byte> bytes)
-        : text_({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {'#', true}) {}
+    ObjReader(std::span<const std::byte> bytes, PolygonColors colors)
+        : colors_(colors), text_({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {'#', true}) {}
 
     Result<ObjMesh> read() {
         do {
@@ -31,6 +32,9 @@ class ObjReader {
             return noVertex(furthest_line_, std::to_string(furthest_ + 1));
         }
         RELIEF_TRY(checkFinite());
+        if (mesh_.colors.size() != mesh_.positions.size()) {
+            mesh_.colors.clear();
+        }
         for (const std::uint32_t vertex : in_others_) {
             mesh_.in_others.resize(mesh_.positions.size(), 0);
             mesh_.in_others[vertex] = 1;
@@ -104,6 +108,13 @@ class ObjReader {
             nowhere_line_ = line;
         }
         mesh_.positions.push_back(position);
+        if (colors_ == PolygonColors::kRead && count >= 6) {
+            auto& color = mesh_.colors.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k) {
+                color[k] = static_cast<std::uint8_t>(
+                    std::lround(255.0F * std::clamp(numbers[count - 3 + k], 0.0F, 1.0F)));
+            }
+        }
         return checkVertexCount(mesh_.positions.size());
     }
 
@@ -198,6 +209,7 @@ class ObjReader {
 
     static constexpr std::int64_t kIndexMax = std::numeric_limits<std::uint32_t>::max();
 
+    PolygonColors colors_;
     TextScanner text_;
     ObjMesh obj_;
     PolygonMesh& mesh_ = obj_.polygons;
@@ -217,8 +229,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<ObjMesh> readObj(std::span<const std::byte> bytes) {
-    return ObjReader(bytes).read();
+Result<ObjMesh> readObj(std::span<const std::byte> bytes, PolygonColors colors) {
+    return ObjReader(bytes, colors).read();
 }
 
 }  // namespace relief

@@ -17,11 +17,12 @@ struct ObjMesh {
 };
 
 /// Statements may be indented, continued by a backslash, and followed by a comment. A vertex has three coordinates, a weight
-/// by which they are divided, or a colour behind them. Corners are "7", "7/1", "7//3" or "7/1/3"; below 0 they count back
+/// by which they are divided, or a colour, 0…1, behind them. Corners are "7", "7/1", "7//3" or "7/1/3"; below 0 they count back
 /// from the last vertex so far. Faces may come before their vertices. A face has the names of its material, and of what was
 /// begun last, its group or its object: a group's line as a whole and each of its words. The group goes on where a material
 /// begins.
 /// Errors, naming the line but not the file: kInvalidInput.
-[[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes);
+[[nodiscard]] Result<ObjMesh> readObj(std::span<const std::byte> bytes,
+                                      PolygonColors colors = PolygonColors::kSkip);
 
 }  // namespace relief

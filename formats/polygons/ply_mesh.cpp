@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kNameMax = 40;  // bytes of a name in a message
 constexpr std::size_t kUnreadMax = 8;
-constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+constexpr std::array<std::string_view, 6> kVertexColumns = {"x", "y", "z", "red", "green", "blue"};
 
 bool isVertexList(const PlyProperty& property) {
     return property.isList() && (property.name == "vertex_indices" || property.name == "vertex_index");
@@ -46,6 +46,8 @@ std::string unreadText(const PlyElement& element) {
 
 class PlyImport {
   public:
+    explicit PlyImport(PolygonColors colors) : colors_(colors) {}
+
     Result<PolygonMesh> run(std::string_view data) {
         const PlyHeader header = RELIEF_TRY(takePlyHeader(data));
         RELIEF_TRY(checkVertices(header));
@@ -74,7 +76,7 @@ class PlyImport {
             return invalidInput("its header does not have the element 'vertex' once");
         }
         const PlyElement& element = *std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
-        const PlyColumns columns(element, kAxes);
+        const PlyColumns columns(element, kVertexColumns);
         if (columns.count(0) != 1 || columns.count(1) != 1 || columns.count(2) != 1) {
             return invalidInput("its vertices do not have x, y and z");
         }
@@ -121,14 +123,31 @@ class PlyImport {
     }
 
     Result<void> readVertices(const PlyElement& element, PlyNumbers& numbers) {
-        const PlyColumns columns(element, kAxes);
-        std::array<double, 3> place{};
+        const PlyColumns columns(element, kVertexColumns);
+        const bool colored = colors_ == PolygonColors::kRead && columns.count(3) == 1 &&
+                             columns.count(4) == 1 && columns.count(5) == 1;
+        const double scale = colored ? colorScale(element) : 0.0;
+        std::array<double, 6> values{};
         for (std::uint64_t i = 0; i < element.count; ++i) {
-            RELIEF_TRY(columns.read(numbers, place));
-            mesh_.positions.emplace_back(place[0], place[1], place[2]);
+            RELIEF_TRY(columns.read(numbers, values));
+            mesh_.positions.emplace_back(values[0], values[1], values[2]);
+            if (colored) {
+                auto& color = mesh_.colors.emplace_back();
+                for (std::size_t k = 0; k < 3; ++k) {
+                    color[k] =
+                        static_cast<std::uint8_t>(std::lround(std::clamp(scale * values[3 + k], 0.0, 255.0)));
+                }
+            }
             RELIEF_TRY(endLine(element, i, numbers));
         }
         return {};
+    }
+
+    /// From numbers of the file to 0…255.
+    static double colorScale(const PlyElement& element) {
+        const auto red = std::find_if(element.properties.begin(), element.properties.end(),
+                                      [](const PlyProperty& property) { return property.name == "red"; });
+        return red->type == PlyType::kFloat32 || red->type == PlyType::kFloat64 ? 255.0 : 1.0;
     }
 
     Result<void> readFace(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {
@@ -232,6 +251,7 @@ class PlyImport {
                    : "; if it is a scan, make a surface of its points first, for example in MeshLab"));
     }
 
+    PolygonColors colors_;
     PolygonMesh mesh_;
     std::uint64_t vertices_ = 0;  // the header's count: faces may come first
     std::uint64_t triangles_ = 0;
@@ -240,8 +260,8 @@ class PlyImport {
 
 }  // namespace
 
-Result<PolygonMesh> readPly(std::span<const std::byte> bytes) {
-    return PlyImport().run({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+Result<PolygonMesh> readPly(std::span<const std::byte> bytes, PolygonColors colors) {
+    return PlyImport(colors).run({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace relief

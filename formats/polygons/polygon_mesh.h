@@ -1,6 +1,7 @@
 // The surface of a file in polygons: what the readers of OBJ, OFF, PLY and STL make of it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -13,6 +14,9 @@ namespace relief {
 
 /// As kTriangleMax of bake/mesh, which the tools keep to. A file may have thrice as many vertices.
 inline constexpr std::uint64_t kPolygonTrianglesMax = 100'000'000;
+
+/// Colours of vertices are read for pictures alone.
+enum class PolygonColors : std::uint8_t { kSkip, kRead };
 
 /// Counts of a file, before anything is left out or triangulated; what is used twice counts once.
 struct MeshParts {
@@ -39,6 +43,8 @@ struct PolygonMesh {
     std::vector<glm::vec3> positions;  ///< of all its vertices; may be no numbers
     /// Positions, counter-clockwise seen from outside: the corners of all polygons, one polygon after the other.
     std::vector<std::uint32_t> corners;
+    std::vector<std::array<std::uint8_t, 3>>
+        colors{};                       ///< of its positions, sRGB; empty: they have none, or are not read
     std::vector<std::uint32_t> sizes;   ///< of each polygon, in corners; 1 and 2 are possible, 0 is not
     std::vector<PolygonGroup> groups;   ///< by their beginnings; polygons before the first have no names
     std::vector<std::string> warnings;  ///< without the file's name

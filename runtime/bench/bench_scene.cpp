@@ -26,7 +26,8 @@ std::vector<Pose> fourPoses(const BenchScene& scene) {
     return poses;
 }
 
-std::vector<Pose> crowdPoses(const BenchScene& scene, std::uint32_t bodies) {
+std::vector<Pose> crowdPoses(const BenchScene& scene, const BenchVariant& variant) {
+    const std::uint32_t bodies = variant.bodies;
     std::uint32_t across = 1;
     while (across * across * across < bodies) {
         ++across;
@@ -39,7 +40,7 @@ std::vector<Pose> crowdPoses(const BenchScene& scene, std::uint32_t bodies) {
         const glm::uvec3 at(i % across, i / across % across, i / across / across);
         const glm::quat turn = glm::normalize(
             glm::quat(1.0F, random.signedUniform(), random.signedUniform(), random.signedUniform()));
-        const float scale = 0.8F / static_cast<float>(across);
+        const float scale = variant.share / static_cast<float>(across);
         const glm::vec3 middle = bounds.min + cell * (glm::vec3(at) + 0.5F);
         poses.push_back({middle - scale * (turn * bounds.center()), turn, scale});
     }
@@ -51,7 +52,7 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, const BenchVarian
         return ColliderTextures::create(scene.collider);
     }
     const bool crowd = variant.solids == Solids::kCrowd;
-    const std::vector<Pose> poses = crowd ? crowdPoses(scene, variant.bodies) : fourPoses(scene);
+    const std::vector<Pose> poses = crowd ? crowdPoses(scene, variant) : fourPoses(scene);
     const std::vector<Collider> copies(crowd ? std::min(poses.size(), kCrowdColliders) : 1, scene.collider);
     std::vector<ColliderBody> bodies;
     for (const Pose& pose : poses) {
@@ -191,7 +192,7 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, cons
     }
     if (variant.each_step == EachStep::kPoses) {
         std::vector<Pose> poses =
-            variant.solids == Solids::kCrowd ? crowdPoses(scene, variant.bodies) : fourPoses(scene);
+            variant.solids == Solids::kCrowd ? crowdPoses(scene, variant) : fourPoses(scene);
         poses.resize(std::min(poses.size(), kCrowdMoves));
         system.before_step = turning(system.textures.get(), std::move(poses));
     } else if (variant.each_step == EachStep::kEvents) {
@@ -234,6 +235,12 @@ std::vector<BenchVariant> benchVariants() {
     for (const std::uint32_t bodies : {1U, 10U, 100U, 1'000U, 10'000U, 65'536U}) {
         variants.push_back(
             {.name = "bodies_" + std::to_string(bodies), .solids = Solids::kCrowd, .bodies = bodies});
+    }
+    for (const std::uint32_t bodies : {1'000U, 10'000U}) {
+        variants.push_back({.name = "village_" + std::to_string(bodies),
+                            .solids = Solids::kCrowd,
+                            .bodies = bodies,
+                            .share = kVillageShare});
     }
     return variants;
 }

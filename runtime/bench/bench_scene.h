@@ -54,6 +54,9 @@ inline constexpr std::size_t kCrowdColliders = 50;
 /// events that come to the CPU.
 enum class EachStep : std::uint8_t { kNothing, kPoses, kEvents };
 inline constexpr std::size_t kCrowdMoves = 1'000;
+inline constexpr float kCrowdShare = 0.8F;
+/// Boxes of bodies then fill 8 % of the space, as the things of samples/village.py do between ground and roofs.
+inline constexpr float kVillageShare = 0.43F;
 
 struct BenchVariant {
     std::string name;
@@ -61,7 +64,8 @@ struct BenchVariant {
     Integrator integrator = Integrator::kEuler;
     std::function<Result<void>(ParticleSystem&, const BenchScene&)> set = {};  ///< may be empty
     EachStep each_step = EachStep::kNothing;
-    std::uint32_t bodies = 0;  ///< of a crowd
+    std::uint32_t bodies = 0;   ///< of a crowd
+    float share = kCrowdShare;  ///< of their lattice's spacing, that a body's sides are
 };
 
 /// "no_collider", "collider" (what the others are compared with), the features one by one, and crowds of bodies.

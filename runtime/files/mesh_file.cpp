@@ -20,6 +20,7 @@ Result<PictureMesh> triangulated(PolygonMesh polygons) {
     }
     PictureMesh mesh;
     mesh.positions = std::move(polygons.positions);
+    mesh.colors = std::move(polygons.colors);
     const std::uint32_t* corner = polygons.corners.data();
     for (const std::uint32_t size : polygons.sizes) {
         if (mesh.triangles.size() / 3 + size > kMeshTrianglesMax + 2) {
@@ -39,9 +40,9 @@ Result<PictureMesh> triangulated(PolygonMesh polygons) {
 
 Result<PolygonMesh> readPolygons(std::span<const std::byte> bytes, std::string_view extension) {
     if (extension == ".ply") {
-        return readPly(bytes);
+        return readPly(bytes, PolygonColors::kRead);
     }
-    return std::move(RELIEF_TRY(readObj(bytes)).polygons);
+    return std::move(RELIEF_TRY(readObj(bytes, PolygonColors::kRead)).polygons);
 }
 
 }  // namespace

@@ -86,6 +86,11 @@ Result<void> checkMesh(const PictureMesh& mesh) {
                                                   " vertices but " + std::to_string(mesh.normals.size()) +
                                                   " normals");
     }
+    if (!mesh.colors.empty() && mesh.colors.size() != mesh.positions.size()) {
+        return fail(ErrorCode::kInvalidInput, "a mesh has " + std::to_string(mesh.positions.size()) +
+                                                  " vertices but " + std::to_string(mesh.colors.size()) +
+                                                  " colours");
+    }
     for (const std::uint32_t v : mesh.triangles) {
         if (v >= mesh.positions.size()) {
             return fail(ErrorCode::kInvalidInput, "a triangle names vertex " + std::to_string(v) + " of " +
@@ -125,6 +130,9 @@ PictureMesh withNormals(const PictureMesh& mesh, float crease) {
             if (at == out.positions.size()) {
                 out.positions.push_back(mesh.positions[v]);
                 out.normals.push_back(normal);
+                if (!mesh.colors.empty()) {
+                    out.colors.push_back(mesh.colors[v]);
+                }
             }
             out.triangles[c] = static_cast<std::uint32_t>(at);
             if (fan.size() > kFanMax) {

@@ -2,6 +2,7 @@
 // (mesh_file.h).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -14,6 +15,8 @@ struct PictureMesh {
     std::vector<glm::vec3> positions;      ///< object units, finite
     std::vector<glm::vec3> normals;        ///< of the vertices, unit or zero, as many as positions; or empty
     std::vector<std::uint32_t> triangles;  ///< three indices each, anticlockwise seen from outside
+    std::vector<std::array<std::uint8_t, 3>>
+        colors{};  ///< of the vertices, sRGB, as many as positions; or empty
 };
 
 /// Its triangles, one by one.

@@ -15,34 +15,63 @@ ColliderStyle colliderStyle(const Scene& scene) {
 
 }  // namespace
 
+Result<void> ScenePicture::makeCollider(const ColliderView& view) {
+    const Scene& scene = loaded_->scene;
+    if (!scene.render.mesh.empty() && loaded_->live.front()) {
+        const LiveMesh& live = *loaded_->live.front();
+        mesh_ = std::make_unique<ColliderMesh>(RELIEF_TRY(ColliderMesh::create(live.mesh)));
+        wobble_ = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
+                                                VertexOutput::kPositionsAndNormals));
+    } else {
+        mesh_ = RELIEF_TRY(loadColliderMesh(scene, loaded_->bounds));
+    }
+    collider_ = RELIEF_TRY(ColliderRenderer::create(view, mesh_.get()));
+    collider_style_ = colliderStyle(scene);
+    return {};
+}
+
+Result<void> ScenePicture::makeMeshes() {
+    scene_meshes_ = RELIEF_TRY(loadSceneMeshes(*loaded_));
+    meshes_ = RELIEF_TRY(MeshRenderer::create(scene_meshes_.meshes));
+    return {};
+}
+
 Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const ColliderTextures& textures,
                                           StepPath path) {
     const Scene& scene = loaded.scene;
     const ColliderView view = colliderView(loaded, textures);
     auto frame = RELIEF_TRY(Frame::create(scene.render.width, scene.render.height));
     auto atlas = RELIEF_TRY(loadAtlas(scene));
-    std::optional<WobblePass> wobble;
-    std::unique_ptr<ColliderMesh> mesh;
-    if (!scene.render.mesh.empty() && loaded.live.front()) {
-        const LiveMesh& live = *loaded.live.front();
-        mesh = std::make_unique<ColliderMesh>(RELIEF_TRY(ColliderMesh::create(live.mesh)));
-        wobble = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
-                                               VertexOutput::kPositionsAndNormals));
-    } else {
-        mesh = RELIEF_TRY(loadColliderMesh(scene, loaded.bounds));
-    }
-    auto collider = RELIEF_TRY(ColliderRenderer::create(view, mesh.get()));
     auto particles = RELIEF_TRY(ParticleRenderer::create(view, picturePath(path)));
-    ScenePicture picture(loaded, std::move(frame), std::move(collider), std::move(particles));
+    ScenePicture picture(loaded, std::move(frame), std::move(particles));
+    RELIEF_TRY(scene.render.meshes.empty() ? picture.makeCollider(view) : picture.makeMeshes());
     if (scene.render.sort_frames > 0) {
         picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.particles.capacity, path));
     }
-    picture.collider_style_ = colliderStyle(scene);
     picture.particle_style_ = particleStyle(scene, atlas.get());
     picture.atlas_ = std::move(atlas);
-    picture.mesh_ = std::move(mesh);
-    picture.wobble_ = std::move(wobble);
     return picture;
+}
+
+Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, double seconds) {
+    if (!meshes_) {
+        if (wobble_) {
+            wobble_->run(seconds);
+            mesh_->setVertices(wobble_->buffer());
+        }
+        RELIEF_TRY(collider_->draw(camera, collider_style_, frame_.target()));
+        return &collider_->depth();
+    }
+    for (const SceneMesh& mesh : scene_meshes_.places) {
+        if (mesh.posed) {
+            const PlayedMesh& played = *loaded_->played[mesh.collider];
+            RELIEF_TRY(meshes_->setPositions(mesh.mesh, posed(*played.mesh, played.poseAt(seconds))));
+        }
+    }
+    RELIEF_TRY(meshes_->draw(camera, meshStyle(loaded_->scene, seconds),
+                             meshPlaces(*loaded_, scene_meshes_, seconds), shadowBounds(*loaded_),
+                             frame_.target()));
+    return &meshes_->depth();
 }
 
 Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& particles) {
@@ -51,13 +80,8 @@ Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& parti
     if (sorter_) {
         order = sortedFor(loaded_->scene, particles, camera.eye, *sorter_);
     }
-    if (wobble_) {
-        wobble_->run(particles.time());
-        mesh_->setVertices(wobble_->buffer());
-    }
-    RELIEF_TRY(collider_.draw(camera, collider_style_, frame_.target()));
-    RELIEF_TRY(
-        particles_.draw(particles, camera, particle_style_, frame_.target(), order, &collider_.depth()));
+    const GlTexture* const depth = RELIEF_TRY(drawColliders(camera, particles.time()));
+    RELIEF_TRY(particles_.draw(particles, camera, particle_style_, frame_.target(), order, depth));
     std::vector<std::uint8_t> rgb = frame_.read();
     RELIEF_TRY(checkGpu("drawing a picture"));
     return rgb;

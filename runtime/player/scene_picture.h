@@ -11,8 +11,10 @@
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
+#include "runtime/picture/mesh_renderer.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_meshes.h"
 
 namespace relief {
 
@@ -28,19 +30,23 @@ class ScenePicture {
     [[nodiscard]] Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles);
 
   private:
-    ScenePicture(const LoadedScene& loaded, Frame frame, ColliderRenderer collider,
-                 ParticleRenderer particles)
-        : loaded_(&loaded),
-          frame_(std::move(frame)),
-          collider_(std::move(collider)),
-          particles_(std::move(particles)) {}
+    ScenePicture(const LoadedScene& loaded, Frame frame, ParticleRenderer particles)
+        : loaded_(&loaded), frame_(std::move(frame)), particles_(std::move(particles)) {}
+
+    /// By maps, or by the mesh of a single collider.
+    [[nodiscard]] Result<void> makeCollider(const ColliderView& view);
+    [[nodiscard]] Result<void> makeMeshes();
+    /// What is behind the particles. \return its depth.
+    [[nodiscard]] Result<const GlTexture*> drawColliders(const Camera& camera, double seconds);
 
     const LoadedScene* loaded_;
     std::unique_ptr<SpriteAtlas> atlas_;
     std::unique_ptr<ColliderMesh> mesh_;
     std::optional<WobblePass> wobble_;  // of mesh_
     Frame frame_;
-    ColliderRenderer collider_;
+    std::optional<ColliderRenderer> collider_;  // or:
+    std::optional<MeshRenderer> meshes_;
+    SceneMeshes scene_meshes_;  // of that
     ParticleRenderer particles_;
     ColliderStyle collider_style_;
     ParticleStyle particle_style_;

@@ -79,6 +79,17 @@ std::optional<FieldFault> checkMesh(const Scene& scene) {
     return std::nullopt;
 }
 
+/// Of render.meshes each collider has one.
+std::optional<FieldFault> checkMeshes(const Scene& scene) {
+    for (std::size_t i = 0; i < scene.colliders.size() && !scene.render.meshes.empty(); ++i) {
+        if (scene.colliders[i].live) {
+            return FieldFault{nth("collider", i, ".deform"),
+                              "is not drawn by render.meshes; remove one of them"};
+        }
+    }
+    return std::nullopt;
+}
+
 std::optional<FieldFault> checkCells(const Scene& scene) {
     const SceneRender& render = scene.render;
     const std::uint32_t cells = render.atlas.empty() ? 0 : render.atlas_columns * render.atlas_rows;
@@ -178,6 +189,14 @@ std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& /*given*
 }
 
 std::optional<FieldFault> check(SceneRender& render, const GivenFields& /*given*/) {
+    double before = -1.0;
+    for (std::size_t i = 0; i < render.weather.size(); ++i) {
+        if (render.weather[i].time <= before) {
+            return FieldFault{nth("weather", i, ".time"), "= " + numberText(render.weather[i].time) +
+                                                              " does not rise; sort the list by time"};
+        }
+        before = render.weather[i].time;
+    }
     if (render.sort_frames == 1) {
         // It would be a whole sort each frame, which spreading over frames is there to avoid.
         return FieldFault{"sort_frames", "= 1 is out of range; choose 0, for no sort, or 2 to 200"};
@@ -226,6 +245,9 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
         return fault;
     }
     if (auto fault = checkMesh(scene)) {
+        return fault;
+    }
+    if (auto fault = checkMeshes(scene)) {
         return fault;
     }
     return completeTypes(scene, given);

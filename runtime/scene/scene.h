@@ -159,6 +159,22 @@ void fields(Visitor& visit, C& camera) {
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& given);
 
+/// A [[render.weather]].
+struct SceneWeather {
+    double time = 0.0;
+    float sun = 1.0F;
+    float wet = 0.0F;
+    float snow = 0.0F;
+};
+
+template <class Visitor, FieldsOf<SceneWeather> W>
+void fields(Visitor& visit, W& weather) {
+    visit("time", weather.time, {"Time since the beginning, rising", "s", {0.0, kKeySecondsMax}});
+    visit("sun", weather.sun, {"Light of the sun; 0: clouds hide it", {}, {0.0, 1.0}});
+    visit("wet", weather.wet, {"How wet is what rain reaches", {}, {0.0, 1.0}});
+    visit("snow", weather.snow, {"How much snow lies where it reaches level ground", {}, {0.0, 1.0}});
+}
+
 struct SceneRender {
     std::uint32_t width = 960;
     std::uint32_t height = 720;
@@ -179,6 +195,11 @@ struct SceneRender {
     std::uint32_t atlas_rows = 1;
     std::filesystem::path mesh;  ///< resolved; empty: the collider is drawn from its maps
     std::string mesh_origin;
+    std::filesystem::path meshes;  ///< resolved; empty: none
+    std::string meshes_origin;
+    float fog = 0.0F;                   ///< world units; 0: none
+    std::optional<float> shadows;       ///< world units about camera.target
+    std::vector<SceneWeather> weather;  ///< times rising
 };
 
 template <class Visitor, FieldsOf<SceneRender> R>
@@ -216,6 +237,36 @@ void fields(Visitor& visit, R& r) {
                    {},
                    {},
                    "none: the maps are drawn"}));
+    visit(
+        "meshes", FieldFile{r.meshes, r.meshes_origin},
+        leftOut(
+            {"Folder of .ply and .obj files, which may have colours at their vertices: a world's mesh NAME "
+             "is drawn as "
+             "NAME.ply, the container NAME.relief too, with shadows of their own. What plays a clip is drawn "
+             "from its container",
+             {},
+             {},
+             "none: the maps are drawn",
+             {.instead_of = "mesh"}}));
+    visit("fog", r.fog,
+          {"Distance over which 63 % is lost in the background's colour; 0: no fog",
+           {},
+           kLengthRange,
+           {},
+           {.needs = "meshes"}});
+    visit("shadows", r.shadows,
+          leftOut(
+              {"Distance from camera.target, along x and z, up to which the meshes have shadows and shelter",
+               {},
+               kSizeRange,
+               "the whole scene",
+               {.needs = "meshes"}}));
+    visit("weather", r.weather,
+          leftOut({"Weather of the meshes at times; between them it changes evenly",
+                   {},
+                   {},
+                   "sun, and nothing wet",
+                   {.needs = "meshes", .most = 10'000}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneRender& render, const GivenFields& given);
 

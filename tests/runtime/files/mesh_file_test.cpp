@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <glm/glm.hpp>
 #include <string>
+#include <tuple>
 
 namespace relief {
 namespace {
@@ -51,6 +53,19 @@ TEST(ObjMesh, AsPeopleWriteIt) {
     }
 }
 
+TEST(ObjMesh, ColorsBehindEveryVertex) {
+    const auto mesh = obj("v 0 0 0 1 0 0\nv 1 0 0 1 0.5 2\nv 0 1 0 1 0 -1 1\nf 1 2 3\n");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    using Color = std::array<std::uint8_t, 3>;
+    EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0}, {255, 128, 255}, {0, 0, 255}}));
+    EXPECT_TRUE(obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")->colors.empty()) << "not of all";
+    const PictureMesh smooth = withNormals(*mesh);
+    ASSERT_EQ(smooth.colors.size(), smooth.positions.size());
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(smooth.colors[smooth.triangles[i]], mesh->colors[i]);
+    }
+}
+
 TEST(ObjMesh, Hostile) {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     expectError(obj(""), "a.obj: it has no faces");
@@ -70,6 +85,23 @@ TEST(ObjMesh, Hostile) {
 const std::string kHead =
     "element vertex 4\nproperty float x\nproperty uchar red\nproperty double y\nproperty short z\n"
     "element face 2\nproperty int flags\nproperty list uchar int vertex_indices\nend_header\n";
+
+TEST(PlyMesh, ColorsAsBytesOrFloats) {
+    const std::string end = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    using Color = std::array<std::uint8_t, 3>;
+    for (const auto& [type, one, half] : {std::tuple("uchar", "255", "128"), {"float", "1", "0.5"}}) {
+        const std::string t = std::string("property ") + type + " ";
+        const std::string text =
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float z\n" +
+            t + "red\n" + t + "green\n" + t + "blue\n" + end;
+        const std::string rest =
+            std::string(one) + " 0 0\n1 0 0 0 " + half + " 0\n0 1 0 0 0 " + one + "\n3 0 1 2\n";
+        const auto mesh = ply(text + "0 0 0 " + rest);
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0}, {0, 128, 0}, {0, 0, 255}})) << type;
+    }
+}
 
 TEST(PlyMesh, AsciiWithOtherElements) {
     const auto mesh =

@@ -1,0 +1,266 @@
+#include "runtime/picture/mesh_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <string>
+
+#include "runtime/gl/gl_fault.h"
+#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/pass_state.h"
+#include "runtime/picture/collider_view.h"
+
+namespace relief {
+namespace {
+
+constexpr GLsizei kMapSide = 4096;     // texels of the maps towards sun and zenith
+constexpr GLsizei kPrintSide = 4096;   // and of the prints, seen from below
+constexpr float kSoleHeight = 0.035F;  // of what presses the snow, world units above the ground
+
+constexpr const char* kSmallerPicture = "choose a smaller size";
+
+struct Vertex {
+    glm::vec3 position;
+    glm::vec3 normal;
+    std::array<std::uint8_t, 4> color;  // sRGB; its last is 255 where there is a colour
+};
+
+std::vector<Vertex> verticesOf(const PictureMesh& mesh) {
+    std::vector<Vertex> vertices(mesh.positions.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        vertices[i] = {mesh.positions[i], mesh.normals[i], {0, 0, 0, 0}};
+        if (!mesh.colors.empty()) {
+            const auto& color = mesh.colors[i];
+            vertices[i].color = {color[0], color[1], color[2], 255};
+        }
+    }
+    return vertices;
+}
+
+glm::mat4 placeMatrix(const Pose& pose) {
+    const glm::mat4 turned = glm::translate(glm::mat4(1.0F), pose.position) * glm::mat4_cast(pose.rotation);
+    return glm::scale(turned, glm::vec3(pose.scale));
+}
+
+/// Parallel rays against `towards` that see all of a box.
+glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
+    const glm::vec3 aside =
+        std::abs(towards.y) > 0.9F ? glm::vec3(0.0F, 0.0F, -1.0F) : glm::vec3(0.0F, 1.0F, 0.0F);
+    const glm::mat4 view = glm::lookAt(box.center() + towards, box.center(), aside);
+    Bounds seen;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 at((corner & 1) != 0 ? box.max.x : box.min.x,
+                           (corner & 2) != 0 ? box.max.y : box.min.y,
+                           (corner & 4) != 0 ? box.max.z : box.min.z);
+        seen.add(glm::vec3(view * glm::vec4(at, 1.0F)));
+    }
+    const float margin = 0.01F * seen.longestSide();
+    // Whatever is higher shades, too.
+    const float above = 2.0F * seen.longestSide();
+    return glm::ortho(seen.min.x - margin, seen.max.x + margin, seen.min.y - margin, seen.max.y + margin,
+                      -seen.max.z - above, -seen.min.z + margin) *
+           view;
+}
+
+}  // namespace
+
+Result<MeshRenderer::Mesh> MeshRenderer::upload(const PictureMesh& mesh) {
+    RELIEF_TRY(checkMesh(mesh));
+    if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
+        return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");
+    }
+    const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
+    const PictureMesh& full = mesh.normals.empty() ? made : mesh;
+    const std::vector<Vertex> vertices = verticesOf(full);
+    Mesh out;
+    out.shape = mesh;
+    out.corners = static_cast<GLsizei>(full.triangles.size());
+    out.vertices = makeBuffer();
+    out.triangles = makeBuffer();
+    out.array = makeVertexArray();
+    glBindVertexArray(out.array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, out.vertices.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                 GL_STATIC_DRAW);
+    const auto attribute = [](GLuint location, GLint size, GLenum type, GLboolean normalized,
+                              std::size_t offset) {
+        glEnableVertexAttribArray(location);
+        glVertexAttribPointer(location, size, type, normalized, sizeof(Vertex),
+                              reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
+    attribute(1, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, normal));
+    attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, color));
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, out.triangles.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+                 static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
+                 full.triangles.data(), GL_STATIC_DRAW);
+    return out;
+}
+
+Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
+    RELIEF_TRY(checkContext());
+    const PassState state;
+    forgetGlErrors();
+    MeshRenderer renderer;
+    for (const PictureMesh& mesh : meshes) {
+        renderer.meshes_.push_back(RELIEF_TRY(upload(mesh)));
+    }
+    renderer.surface_program_ =
+        RELIEF_TRY(makeProgram("picture/mesh_surface.vert", "picture/mesh_surface.frag"));
+    renderer.depth_program_ = RELIEF_TRY(makeProgram("picture/mesh_surface.vert", "base/nothing.frag"));
+    renderer.print_program_ = RELIEF_TRY(makeProgram("picture/mesh_surface.vert", "picture/mesh_print.frag"));
+    renderer.shade_program_ = RELIEF_TRY(makeScreenProgram("picture/mesh_shade.frag"));
+    for (ParallelMap* map : {&renderer.sun_, &renderer.zenith_}) {
+        map->depth = makeTexture2D(GL_DEPTH_COMPONENT32F, kMapSide, kMapSide, GL_DEPTH_COMPONENT, GL_FLOAT);
+        map->framebuffer = RELIEF_TRY(makeFramebuffer({}, map->depth.name()));
+    }
+    renderer.prints_ = makeTexture2D(GL_R8, kPrintSide, kPrintSide, GL_RED, GL_UNSIGNED_BYTE);
+    renderer.prints_target_ = RELIEF_TRY(makeFramebuffer({renderer.prints_.name()}));
+    RELIEF_TRY(checkAllocated("the meshes of a picture", "choose smaller ones"));
+    return renderer;
+}
+
+Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::vec3> positions) {
+    if (mesh >= meshes_.size() || positions.size() != meshes_[mesh].shape.positions.size()) {
+        return fail(ErrorCode::kUsage,
+                    "vertices of a mesh that a picture does not have, or of another number");
+    }
+    const PassState state;
+    Mesh& to = meshes_[mesh];
+    to.shape.positions.assign(positions.begin(), positions.end());
+    to.shape.normals.clear();
+    PictureMesh shape = std::move(to.shape);
+    to = RELIEF_TRY(upload(shape));
+    return checkAllocated("the meshes of a picture", "choose smaller ones");
+}
+
+Result<void> MeshRenderer::resize(GLsizei width, GLsizei height) {
+    if (width == width_ && height == height_) {
+        return {};
+    }
+    RELIEF_TRY(checkTextureSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height),
+                                "a picture's pixels", kSmallerPicture));
+    forgetGlErrors();
+    width_ = 0;
+    color_ = makeTexture2D(GL_RGBA8, width, height, GL_RGBA, GL_UNSIGNED_BYTE);
+    normal_ = makeTexture2D(GL_RGBA16F, width, height, GL_RGBA, GL_HALF_FLOAT);
+    depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, width, height, GL_DEPTH_COMPONENT, GL_FLOAT);
+    RELIEF_TRY(checkAllocated("a picture", kSmallerPicture));
+    surface_ = RELIEF_TRY(makeFramebuffer({color_.name(), normal_.name()}, depth_.name()));
+    width_ = width;
+    height_ = height;
+    return {};
+}
+
+void MeshRenderer::drawPlaces(const GlProgram& program, std::span<const MeshPlace> places, bool still,
+                              bool moving) const {
+    for (const MeshPlace& place : places) {
+        if (place.moves ? !moving : !still) {
+            continue;
+        }
+        const Mesh& mesh = meshes_[place.mesh];
+        program.set("u_place", placeMatrix(place.pose));
+        glBindVertexArray(mesh.array.name());
+        glDrawElements(GL_TRIANGLES, mesh.corners, GL_UNSIGNED_INT, nullptr);
+    }
+}
+
+void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshPlace> places, bool moving) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, map.framebuffer.name());
+    glViewport(0, 0, kMapSide, kMapSide);
+    const GLfloat far = 1.0F;
+    glClearBufferfv(GL_DEPTH, 0, &far);
+    depth_program_.use();
+    depth_program_.set("u_clip", map.clip);
+    drawPlaces(depth_program_, places, true, moving);
+}
+
+void MeshRenderer::press(std::span<const MeshPlace> places) {
+    glDisable(GL_DEPTH_TEST);
+    glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
+    glViewport(0, 0, kPrintSide, kPrintSide);
+    print_program_.use();
+    print_program_.set("u_clip", zenith_.clip);
+    print_program_.set("u_zenith", 0);
+    // From clip space, whose depth is twice that of the window.
+    print_program_.set("u_sole",
+                       0.5F * kSoleHeight * glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
+    useTexture(0, zenith_.depth);
+    drawPlaces(print_program_, places, false, true);
+    glEnable(GL_DEPTH_TEST);
+}
+
+Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
+                                std::span<const MeshPlace> places, const Bounds& around,
+                                const RenderTarget& target) {
+    for (const MeshPlace& place : places) {
+        if (place.mesh >= meshes_.size()) {
+            return fail(ErrorCode::kUsage, "a picture of mesh " + std::to_string(place.mesh) + " of " +
+                                               std::to_string(meshes_.size()));
+        }
+    }
+    const PassState state;
+    RELIEF_TRY(resize(target.width, target.height));
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
+    sun_.clip = parallelClip(around, sunDirection());
+    zenith_.clip = parallelClip(around, glm::vec3(0.0F, 1.0F, 0.0F));
+    drawMap(sun_, places, true);
+    drawMap(zenith_, places, false);
+    const std::array<GLfloat, 4> nothing{};
+    if (!(around_ == around)) {
+        glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
+        glClearBufferfv(GL_COLOR, 0, nothing.data());
+        around_ = around;
+    }
+    press(places);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, surface_.name());
+    glViewport(0, 0, width_, height_);
+    const GLfloat far = 1.0F;
+    glClearBufferfv(GL_COLOR, 0, nothing.data());
+    glClearBufferfv(GL_COLOR, 1, nothing.data());
+    glClearBufferfv(GL_DEPTH, 0, &far);
+    const float aspect = target.aspect();
+    surface_program_.use();
+    surface_program_.set("u_clip", camera.projection(aspect) * camera.view());
+    surface_program_.set("u_clay", style.clay);
+    drawPlaces(surface_program_, places, true, true);
+
+    const GlProgram& shade = shade_program_;
+    shade.use();
+    const std::array<const GlTexture*, 6> textures{&color_,     &normal_,       &depth_,
+                                                   &sun_.depth, &zenith_.depth, &prints_};
+    const std::array<const char*, 6> samplers{"u_surface_color", "u_surface_normal", "u_surface_depth",
+                                              "u_sun_depth",     "u_zenith_depth",   "u_prints"};
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+        useTexture(static_cast<int>(i), *textures[i]);
+        shade.set(samplers[i], static_cast<GLint>(i));
+    }
+    const float tangent = camera.tanHalfFov();
+    shade.set("u_eye", camera.eye);
+    shade.set("u_forward", camera.forward());
+    shade.set("u_right", tangent * aspect * camera.right());
+    shade.set("u_up", tangent * camera.up());
+    shade.set("u_depth", camera.depthOfDistance());
+    shade.set("u_clip", camera.projection(aspect) * camera.view());
+    shade.set("u_sun_clip", sun_.clip);
+    shade.set("u_zenith_clip", zenith_.clip);
+    shade.set("u_sun", sunDirection());
+    shade.set("u_background", linearColor(style.background));
+    shade.set("u_sunlight", style.sun);
+    shade.set("u_per_fog", style.fog > 0.0F ? 1.0F / style.fog : 0.0F);
+    shade.set("u_wet", style.wet);
+    shade.set("u_snow", style.snow);
+    shade.set("u_srgb", target.srgb);
+    glDepthFunc(GL_ALWAYS);
+    drawInBands(shade, target.framebuffer, target.width, target.height);
+    return {};
+}
+
+}  // namespace relief

@@ -1,0 +1,137 @@
+#include "runtime/scene/scene_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "formats/base/file_io.h"
+#include "formats/base/text.h"
+#include "runtime/files/mesh_file.h"
+#include "runtime/scene/scene_world.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of containers of the world: the name of the mesh that they are of.
+std::map<fs::path, std::string> namesOfWorld(const LoadedScene& loaded) {
+    std::map<fs::path, std::string> names;
+    for (const WorldCollider& collider : loaded.world.colliders) {
+        names[containerOf(loaded.scene, collider)] = collider.mesh;
+    }
+    return names;
+}
+
+Result<fs::path> fileOf(const fs::path& folder, const std::string& name) {
+    if (name.empty() || name.find_first_of("/\\") != std::string::npos ||
+        name.find('\0') != std::string::npos || name == "." || name == "..") {
+        return invalidInput("'" + cleanUtf8(name) + "' is no name of a file; name the mesh in the level");
+    }
+    for (const char* extension : {".ply", ".obj"}) {
+        const fs::path file = folder / (name + extension);
+        std::error_code error;
+        if (fs::is_regular_file(file, error)) {
+            return file;
+        }
+    }
+    return invalidInput(quotedPath(folder) + " has no '" + cleanUtf8(name) +
+                        ".ply' or .obj for a collider; add it");
+}
+
+PictureMesh animatedMesh(const PlayedMesh& played) {
+    PictureMesh mesh;
+    mesh.positions = posed(*played.mesh, played.poseAt(0.0));
+    for (const glm::uvec3& triangle : played.mesh->triangles) {
+        mesh.triangles.insert(mesh.triangles.end(), {triangle.x, triangle.y, triangle.z});
+    }
+    return mesh;
+}
+
+}  // namespace
+
+Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded) {
+    const Scene& scene = loaded.scene;
+    const std::string origin = scene.render.meshes_origin + ": render.meshes";
+    const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
+    SceneMeshes out;
+    std::map<fs::path, std::uint32_t> known;
+    // Of a world's mesh that was cut into tiles the bodies of a node are one.
+    std::map<std::tuple<std::string, std::uint32_t>, std::vector<Pose>> drawn;
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+        const SceneCollider& collider = scene.colliders[i];
+        if (collider.tile_of) {
+            continue;
+        }
+        if (loaded.played[i]) {
+            out.places.push_back({static_cast<std::uint32_t>(out.meshes.size()), i, true});
+            out.meshes.push_back(animatedMesh(*loaded.played[i]));
+            continue;
+        }
+        const auto named = of_world.find(collider.path);
+        const std::string name = named != of_world.end() ? named->second : collider.path.stem().string();
+        const fs::path file = RELIEF_TRY(inFront(origin, fileOf(scene.render.meshes, name)));
+        const auto [entry, is_new] = known.try_emplace(file, static_cast<std::uint32_t>(out.meshes.size()));
+        if (is_new) {
+            out.meshes.push_back(RELIEF_TRY(inFront(origin, loadPictureMesh(file))));
+            out.files.push_back(file);
+        }
+        if (named != of_world.end()) {
+            std::vector<Pose>& there = drawn[{collider.node, entry->second}];
+            if (std::find(there.begin(), there.end(), collider.pose) != there.end()) {
+                continue;
+            }
+            there.push_back(collider.pose);
+        }
+        out.places.push_back({entry->second, i, false});
+    }
+    std::sort(out.files.begin(), out.files.end());
+    return out;
+}
+
+std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const SceneMeshes& meshes, double seconds) {
+    std::vector<MeshPlace> places;
+    for (const SceneMesh& mesh : meshes.places) {
+        places.push_back({mesh.mesh, poseAt(loaded.scene.colliders[mesh.collider], seconds), mesh.posed});
+    }
+    return places;
+}
+
+MeshStyle meshStyle(const Scene& scene, double seconds) {
+    MeshStyle style;
+    style.background = scene.render.background;
+    style.fog = scene.render.fog;
+    const std::vector<SceneWeather>& keys = scene.render.weather;
+    if (keys.empty()) {
+        return style;
+    }
+    const auto after =
+        std::find_if(keys.begin(), keys.end(), [&](const SceneWeather& key) { return key.time > seconds; });
+    const SceneWeather& from = after == keys.begin() ? *after : *(after - 1);
+    const SceneWeather& to = after == keys.end() ? keys.back() : *after;
+    const double share =
+        to.time > from.time ? std::clamp((seconds - from.time) / (to.time - from.time), 0.0, 1.0) : 0.0;
+    const auto between = [&](float a, float b) { return a + static_cast<float>(share) * (b - a); };
+    style.sun = between(from.sun, to.sun);
+    style.wet = between(from.wet, to.wet);
+    style.snow = between(from.snow, to.snow);
+    return style;
+}
+
+Bounds shadowBounds(const LoadedScene& loaded) {
+    Bounds around = loaded.bounds;
+    if (loaded.scene.render.shadows) {
+        const float reach = *loaded.scene.render.shadows;
+        const glm::vec3 target = *loaded.scene.camera.target;
+        for (const int i : {0, 2}) {
+            around.min[i] = std::max(around.min[i], target[i] - reach);
+            around.max[i] = std::min(around.max[i], target[i] + reach);
+        }
+    }
+    return around;
+}
+
+}  // namespace relief

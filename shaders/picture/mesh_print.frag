@@ -1,0 +1,13 @@
+// The soles of figures, seen along the zenith's map: what is no higher above its surface than u_sole.
+uniform highp sampler2D u_zenith;
+uniform float u_sole;  // window depth
+
+layout(location = 0) out vec4 o_print;
+
+void main() {
+    float ground = texelFetch(u_zenith, ivec2(gl_FragCoord.xy), 0).r;
+    if (ground - gl_FragCoord.z > u_sole || gl_FragCoord.z > ground + u_sole) {
+        discard;
+    }
+    o_print = vec4(1.0);
+}

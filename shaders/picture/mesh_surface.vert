@@ -1,0 +1,16 @@
+// A mesh in its place.
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec4 a_color;  // sRGB; a: 0 where there is none
+
+uniform mat4 u_place;  // a turn, one scale and a shift
+uniform mat4 u_clip;   // world to clip space
+
+out vec3 v_normal;
+out vec4 v_color;
+
+void main() {
+    v_normal = mat3(u_place) * a_normal;
+    v_color = a_color;
+    gl_Position = u_clip * (u_place * vec4(a_position, 1.0));
+}

@@ -1,0 +1,143 @@
+// The meshes of a scene's pictures: which file stands for which collider, and the weather over time.
+#include "runtime/scene/scene_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "runtime/scene/scene_parser.h"
+#include "runtime/scene/scene_world.h"
+#include "tests/runtime/collider/three_bodies.h"
+#include "tests/runtime/scene/scene_error.h"
+#include "tests/temporary_folder.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SceneMeshesTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        for (const char* name : {"floor.obj", "door.ply", "own.obj"}) {
+            add(name);
+        }
+    }
+
+    void add(const std::string& name) const {
+        std::ofstream out(folder_.path() / name);
+        if (fs::path(name).extension() == ".ply") {
+            out << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+                   "float z\n"
+                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 "
+                   "0\n3 0 1 2\n";
+        } else {
+            out << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        }
+    }
+
+    /// A scene of a world, as loadAll() would make it, without its containers.
+    [[nodiscard]] LoadedScene loaded(const World& world, const std::string& tables = {}) const {
+        auto scene =
+            parseScene(tables + "[render]\nmeshes = \"" + folder_.path().filename().string() + "\"\n",
+                       folder_.path().parent_path() / "scene.toml");
+        EXPECT_TRUE(scene) << scene.error().message;
+        scene->world = folder_.path().parent_path() / "world.json";
+        EXPECT_TRUE(placeBodies(*scene, world));
+        LoadedScene loaded;
+        loaded.scene = std::move(*scene);
+        loaded.world = world;
+        loaded.live.resize(loaded.scene.colliders.size());
+        loaded.played.resize(loaded.scene.colliders.size());
+        return loaded;
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+World namedWorld() {
+    World world = test::threeBodies();
+    world.colliders[0].mesh = "floor";
+    world.colliders[1].mesh = "door";
+    return world;
+}
+
+TEST_F(SceneMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
+    const LoadedScene scene = loaded(
+        namedWorld(), "world = \"world.json\"\n[[collider]]\nfile = \"own.relief\"\nposition = [0, 5, 0]\n");
+    const auto meshes = loadSceneMeshes(scene);
+    ASSERT_TRUE(meshes) << meshes.error().message;
+    EXPECT_EQ(meshes->meshes.size(), 3U);
+    EXPECT_EQ(meshes->files, (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
+                                                    folder_.path() / "own.obj"}));
+    ASSERT_EQ(meshes->places.size(), 4U);
+    EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate are one mesh";
+    const std::vector<MeshPlace> places = meshPlaces(scene, *meshes, 0.0);
+    EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
+    EXPECT_EQ(places[2].pose, scene.scene.colliders[2].pose);
+    EXPECT_FALSE(places[2].moves);
+}
+
+TEST_F(SceneMeshesTest, TilesOfAMeshAreDrawnOnce) {
+    World world = namedWorld();
+    world.colliders.push_back(world.colliders[0]);  // another tile of the floor
+    world.colliders.back().file = "floor-1.relief";
+    WorldBody tile = world.bodies[0];
+    tile.collider = static_cast<std::uint32_t>(world.colliders.size() - 1);
+    world.bodies.push_back(tile);
+    EXPECT_EQ(loadSceneMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
+    world.bodies.back().position.x += 10.0F;  // elsewhere it is another body
+    EXPECT_EQ(loadSceneMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
+}
+
+TEST_F(SceneMeshesTest, NamesThatAreNoFilesAreErrors) {
+    for (const char* name : {"", ".", "..", "../door", "a/b", "a\\b"}) {
+        World world = namedWorld();
+        world.colliders[1].mesh = name;
+        const auto meshes = loadSceneMeshes(loaded(world, "world = \"world.json\"\n"));
+        ASSERT_FALSE(meshes) << name;
+        EXPECT_EQ(meshes.error().code, ErrorCode::kInvalidInput);
+        EXPECT_NE(meshes.error().message.find("scene.toml:3:"), std::string::npos) << meshes.error().message;
+    }
+    World world = namedWorld();
+    world.colliders[1].mesh = "window";
+    const auto meshes = loadSceneMeshes(loaded(world, "world = \"world.json\"\n"));
+    ASSERT_FALSE(meshes);
+    EXPECT_NE(meshes.error().message.find("'window.ply' or .obj for a collider; add it"), std::string::npos)
+        << meshes.error().message;
+}
+
+TEST(SceneWeather, ChangesEvenlyBetweenItsTimes) {
+    const auto scene = parseScene(
+        "[collider]\nfile = \"a.relief\"\n[render]\nmeshes = \"m\"\nfog = 5\n"
+        "[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n[[render.weather]]\ntime = 3\nsnow = 0.6\nwet "
+        "= 1\n",
+        "dir/scene.toml");
+    ASSERT_TRUE(scene) << scene.error().message;
+    EXPECT_EQ(meshStyle(*scene, 0.0).snow, 0.2F);
+    EXPECT_FLOAT_EQ(meshStyle(*scene, 2.0).snow, 0.4F);
+    EXPECT_FLOAT_EQ(meshStyle(*scene, 2.0).wet, 0.5F);
+    EXPECT_FLOAT_EQ(meshStyle(*scene, 2.0).sun, 0.75F);
+    EXPECT_EQ(meshStyle(*scene, 9.0).snow, 0.6F);
+    EXPECT_EQ(meshStyle(*scene, 9.0).fog, 5.0F);
+    const auto calm =
+        parseScene("[collider]\nfile = \"a.relief\"\n[render]\nmeshes = \"m\"\n", "dir/scene.toml");
+    EXPECT_EQ(meshStyle(*calm, 1.0).sun, 1.0F);
+}
+
+TEST(SceneWeather, WhatHasNoEffectIsAnError) {
+    const std::string start = "[collider]\nfile = \"a.relief\"\n[render]\n";
+    const std::string at = "dir/scene.toml:";
+    expectSceneError(start + "fog = 5\n", at + "4:", "does nothing without render.meshes");
+    expectSceneError(start + "[[render.weather]]\nsnow = 1\n", at + "4:", "does nothing without render.meshes");
+    expectSceneError(start + "meshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
+                     at + "8:", "does not rise");
+    expectSceneError(start + "meshes = \"m\"\n[[render.weather]]\nsnow = 1.5\n", at + "6:", "snow");
+    expectSceneError(start + "meshes = \"m\"\nmesh = \"a.obj\"\n", at, "mesh");
+    expectSceneError(
+        "[collider]\nmesh = \"a.obj\"\ndeform = { amplitude = 1, frequency = 1 }\n[render]\nmeshes = \"m\"\n",
+        at, "is not drawn by render.meshes");
+}
+
+}  // namespace
+}  // namespace relief
