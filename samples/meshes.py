@@ -70,12 +70,17 @@ def height(x, z):
 
 
 def terrain(half=4.0, cells=256):
-    """A height field over [-half, half]², open below."""
+    """A height field over [-half, half]², open below, in the colours of meadows and of rock where it is steep or high."""
     vertices, faces = [], []
     for k in range(cells + 1):
         for i in range(cells + 1):
             x, z = (2.0 * i / cells - 1.0) * half, (2.0 * k / cells - 1.0) * half
-            vertices.append((x, height(x, z), z))
+            y, step = height(x, z), half / cells
+            steep = math.hypot(height(x + step, z) - y, height(x, z + step) - y) / step
+            bare = min(1.0, max(0.0, 0.9 * steep + 0.5 * y - 0.45 + 0.25 * smooth_noise(6.0 * x, 6.0 * z)))
+            meadow = 0.5 + 0.5 * smooth_noise(2.0 * x + 9.0, 2.0 * z)
+            green = [a + meadow * (b - a) for a, b in zip((0.23, 0.34, 0.14), (0.44, 0.46, 0.22))]
+            vertices.append((x, y, z) + tuple(a + bare * (b - a) for a, b in zip(green, (0.50, 0.47, 0.43))))
     for k in range(cells):
         for i in range(cells):
             a = k * (cells + 1) + i
@@ -91,7 +96,7 @@ def main():
     vertices, faces = shapes[sys.argv[1]]()
     with open(sys.argv[2], "w", encoding="ascii") as out:
         for vertex in vertices:
-            out.write("v %.6f %.6f %.6f\n" % vertex)
+            out.write("v" + "".join(" %.6f" % x for x in vertex[:3]) + "".join(" %.3f" % x for x in vertex[3:]) + "\n")
         for face in faces:
             out.write("f %d %d %d\n" % tuple(i + 1 for i in face))
 

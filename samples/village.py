@@ -26,6 +26,7 @@ MATERIALS = {  # sRGB
     "leaves": (0.25, 0.36, 0.14), "autumn": (0.66, 0.38, 0.12), "needles": (0.14, 0.25, 0.17), "bark": (0.27, 0.21, 0.16),
     "water": (0.20, 0.30, 0.34), "embers": (0.95, 0.36, 0.08),
 }
+WARM = ("water", "embers")  # no snow stays there
 
 
 class Shape:
@@ -490,9 +491,8 @@ def places():
     out.append(("terrain", "terrain", 0.0, 0.0, 0.0, 0.0, 1.0))
     put("pond", -17.0, 15.0, y=ground(-17.0, 15.0) + 0.75, clear=6.0)
     put("church", -11.0, -17.0, 60.0, clear=13.0)
-    put("mill", 29.0, -21.0, 215.0, clear=6.0)
-    c, s = math.cos(math.radians(215.0)), math.sin(math.radians(215.0))
-    put("sails", 29.0 + 3.45 * s, -21.0 + 3.45 * c, 215.0, y=ground(29.0, -21.0) + 9.1)
+    put("mill", 29.0, -21.0, clear=6.0)
+    put("sails", 29.0, -17.55, y=ground(29.0, -21.0) + 9.1)
     put("well", 3.6, 4.6, 20.0, clear=2.0)
     row = [("house-plaster", -6.6, 9.2, 95.0), ("house-ochre", -7.4, -2.4, 88.0), ("house-rose", 9.6, 9.8, 262.0),
            ("house-plaster", 11.4, -3.6, 250.0), ("house-ochre", 7.4, 19.2, 240.0), ("house-rose", -4.0, 21.0, 100.0),
@@ -545,11 +545,11 @@ def ply(shape):
             if key not in order:
                 order[key] = len(points)
                 color = shape.colors[i] if shape.colors else MATERIALS[material]
-                points.append(struct.pack("<3f3B", *shape.points[i], *(round(255 * c) for c in color)))
+                points.append(struct.pack("<3f4B", *shape.points[i], *(round(255 * c) for c in color), 0 if material in WARM else 255))
             corners.append(order[key])
         faces.append(struct.pack("<B3I", 3, *corners))
     head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n" +
-            "".join(f"property float {a}\n" for a in "xyz") + "".join(f"property uchar {c}\n" for c in ("red", "green", "blue")) +
+            "".join(f"property float {a}\n" for a in "xyz") + "".join(f"property uchar {c}\n" for c in ("red", "green", "blue", "alpha")) +
             f"element face {len(faces)}\nproperty list uchar uint vertex_indices\nend_header\n")
     return head.encode() + b"".join(points) + b"".join(faces)
 

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain walker wobbling_torus)
+all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain village walker wobbling_torus)
 names=("$@")
 [ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 for name in "${names[@]}"; do
@@ -44,6 +44,12 @@ prepare() {
         cp samples/linked_tori.csv "$out/"
         bake "$out/torus.obj" -o "$out/torus.relief" --budget 200kB
         ;;
+    village)
+        python3 samples/village.py "$out"
+        python3 samples/walker.py "$out/walker.gltf"
+        bake "$out/village.glb" --world "$out/world" --budget 8MB
+        bake "$out/walker.gltf" --animated -o "$out/walker.relief"
+        ;;
     walker)
         python3 samples/walker.py "$out/walker.gltf"
         bake "$out/walker.gltf" --animated -o "$out/walker.relief"
@@ -53,7 +59,6 @@ prepare() {
         ;;
     rain)
         mesh terrain.obj
-        cp samples/streak.png "$out/"
         # Solid down to the end of the map's box: y = -1.5, well below the valleys.
         bake "$out/terrain.obj" -o "$out/terrain.relief" --map fixed8:dir=-y,size=512x512,box=-4/-1.5/-4/4/1.5/4
         ;;
@@ -61,16 +66,30 @@ prepare() {
     cp "samples/$name.toml" "$out/"
 }
 
-# sheet: six frames spread over the run, and below them the slices if there are any.
+# caption: a line on how many particles there were, and how fast.
+caption() {
+    python3 - "$out/report.json" <<'P'
+import json, sys
+report = json.load(open(sys.argv[1]))
+gpu = report["device"].split(", ")[-2 if ", surfaceless" in report["device"] else -1].split("/")[0]
+print(f"{report['particles']['alive']:,} particles, {report['ms_per_step_median']:.2g} ms a step on {gpu}")
+P
+}
+
+# sheet: six frames spread over the run, and below them the slices if there are any, and the caption.
 sheet() {
-    local frames=("$out"/frames/frame_*.png) chosen=() paper='#f4f5f7' i
+    local frames=("$out"/frames/frame_*.png) chosen=() paper='#f4f5f7' i tile=3x2 size=640x480
+    if [ "$name" = village ]; then  # wide ones, and larger
+        tile=2x3 size=960x540
+    fi
     for i in 1 2 3 4 5 6; do
         chosen+=("${frames[$(((${#frames[@]} - 1) * i / 6))]}")
     done
     {
-        montage "${chosen[@]}" -tile 3x2 -geometry 640x480+6+6 -background "$paper" miff:-
+        montage "${chosen[@]}" -tile "$tile" -geometry "$size+6+6" -background "$paper" miff:-
         [ ! -f "$out/slice_x.png" ] ||
             montage "$out"/slice_[xyz].png -tile 3x1 -geometry '640x>+6+6' -background "$paper" miff:-
+        convert -background "$paper" -fill '#3b4148' -pointsize 34 label:"$(caption)" -bordercolor "$paper" -border 0x10 miff:-
     } | convert miff:- -background "$paper" -gravity center -append \
         -bordercolor "$paper" -border 12 -depth 8 -strip "$out/contact_sheet.png"
 }
@@ -83,7 +102,7 @@ play() {
             "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
         done
     fi
-    "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames"
+    "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" --json >"$out/report.json"
     sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
     echo "Look at $out/contact_sheet.png"

@@ -109,7 +109,7 @@ class ObjReader {
         }
         mesh_.positions.push_back(position);
         if (colors_ == PolygonColors::kRead && count >= 6) {
-            auto& color = mesh_.colors.emplace_back();
+            auto& color = mesh_.colors.emplace_back(std::array<std::uint8_t, 4>{0, 0, 0, 255});
             for (std::size_t k = 0; k < 3; ++k) {
                 color[k] = static_cast<std::uint8_t>(
                     std::lround(255.0F * std::clamp(numbers[count - 3 + k], 0.0F, 1.0F)));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kNameMax = 40;  // bytes of a name in a message
 constexpr std::size_t kUnreadMax = 8;
-constexpr std::array<std::string_view, 6> kVertexColumns = {"x", "y", "z", "red", "green", "blue"};
+constexpr std::array<std::string_view, 7> kVertexColumns = {"x", "y", "z", "red", "green", "blue", "alpha"};
 
 bool isVertexList(const PlyProperty& property) {
     return property.isList() && (property.name == "vertex_indices" || property.name == "vertex_index");
@@ -127,13 +127,14 @@ class PlyImport {
         const bool colored = colors_ == PolygonColors::kRead && columns.count(3) == 1 &&
                              columns.count(4) == 1 && columns.count(5) == 1;
         const double scale = colored ? colorScale(element) : 0.0;
-        std::array<double, 6> values{};
+        std::array<double, 7> values{};
+        values[6] = scale == 1.0 ? 255.0 : 1.0;
         for (std::uint64_t i = 0; i < element.count; ++i) {
             RELIEF_TRY(columns.read(numbers, values));
             mesh_.positions.emplace_back(values[0], values[1], values[2]);
             if (colored) {
                 auto& color = mesh_.colors.emplace_back();
-                for (std::size_t k = 0; k < 3; ++k) {
+                for (std::size_t k = 0; k < 4; ++k) {
                     color[k] =
                         static_cast<std::uint8_t>(std::lround(std::clamp(scale * values[3 + k], 0.0, 255.0)));
                 }

@@ -43,8 +43,8 @@ struct PolygonMesh {
     std::vector<glm::vec3> positions;  ///< of all its vertices; may be no numbers
     /// Positions, counter-clockwise seen from outside: the corners of all polygons, one polygon after the other.
     std::vector<std::uint32_t> corners;
-    std::vector<std::array<std::uint8_t, 3>>
-        colors{};                       ///< of its positions, sRGB; empty: they have none, or are not read
+    std::vector<std::array<std::uint8_t, 4>>
+        colors{};  ///< of its positions, sRGB and alpha; empty: they have none, or are not read
     std::vector<std::uint32_t> sizes;   ///< of each polygon, in corners; 1 and 2 are possible, 0 is not
     std::vector<PolygonGroup> groups;   ///< by their beginnings; polygons before the first have no names
     std::vector<std::string> warnings;  ///< without the file's name

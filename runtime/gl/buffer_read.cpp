@@ -10,12 +10,12 @@ bool waitToRead(const GlFence& fence, GLuint64 nanoseconds) {
     return fence.passed(nanoseconds);
 }
 
-bool readBuffer(const GlBuffer& buffer, std::span<std::byte> out) {
+bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte> out) {
     GLint bound = 0;
     glGetIntegerv(GL_PIXEL_PACK_BUFFER_BINDING, &bound);
     glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer.name());
-    const void* mapped =
-        glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0, static_cast<GLsizeiptr>(out.size()), GL_MAP_READ_BIT);
+    const void* mapped = glMapBufferRange(GL_PIXEL_PACK_BUFFER, static_cast<GLintptr>(offset),
+                                          static_cast<GLsizeiptr>(out.size()), GL_MAP_READ_BIT);
     if (mapped != nullptr) {
         std::memcpy(out.data(), mapped, out.size());
     }

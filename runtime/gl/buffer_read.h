@@ -13,8 +13,8 @@ namespace relief {
 /// does so.
 [[nodiscard]] bool waitToRead(const GlFence& fence, GLuint64 nanoseconds);
 
-/// Copies the beginning of a buffer, as GL_PIXEL_PACK_BUFFER. Waits for the GPU.
+/// Copies bytes of a buffer from `offset` on, as GL_PIXEL_PACK_BUFFER; at least one. Waits for the GPU.
 /// \return false if its memory was lost.
-[[nodiscard]] bool readBuffer(const GlBuffer& buffer, std::span<std::byte> out);
+[[nodiscard]] bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte> out);
 
 }  // namespace relief

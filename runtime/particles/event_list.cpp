@@ -215,28 +215,40 @@ std::optional<EventList::Collected> EventList::collect() {
     Request& request = requests_[oldest_];
     oldest_ = (oldest_ + 1) % kInFlightMax;
     --in_flight_;
-    std::vector<float> values(request.floats);
+    std::array<float, kFloats> total{};
     if (request.floats > 0) {
         request.fence.remove();
-        if (!readBuffer(request.buffer, std::as_writable_bytes(std::span(values)))) {
+        if (!readFloats(request, request.floats - kFloats, total)) {
             return std::nullopt;
         }
     }
-    return decoded(request, values);
+    // Of the list, which is as long as it may ever be, the events alone: the rest would take milliseconds.
+    const auto count = static_cast<std::uint32_t>(total[0]);
+    const std::size_t listed = std::min(count, options_.most);
+    const std::size_t plane = request.floats / kFloats / list_.size() * kFloats;
+    std::vector<float> values(kFloats * list_.size() * listed);
+    for (std::size_t i = 0; i < list_.size() && listed > 0; ++i) {
+        if (!readFloats(request, i * plane,
+                        std::span(values).subspan(i * kFloats * listed, kFloats * listed))) {
+            return std::nullopt;
+        }
+    }
+    return decoded(request, count, values);
 }
 
-EventList::Collected EventList::decoded(const Request& request, const std::vector<float>& values) const {
+bool EventList::readFloats(const Request& request, std::size_t first, std::span<float> out) {
+    return readBuffer(request.buffer, first * sizeof(float), std::as_writable_bytes(out));
+}
+
+EventList::Collected EventList::decoded(const Request& request, std::uint32_t count,
+                                        std::span<const float> values) const {
     Collected collected;
     collected.number = request.number;
     collected.events.tag = request.tag;
     collected.events.time = request.end;
-    if (values.empty()) {
-        return collected;
-    }
-    const std::size_t plane = (values.size() - kFloats) / list_.size();
-    const auto total = static_cast<std::uint32_t>(values[4 * plane]);
-    const std::uint32_t listed = std::min(total, options_.most);
-    collected.events.dropped = total - listed;
+    const std::size_t plane = values.size() / list_.size();
+    const std::size_t listed = plane / kFloats;
+    collected.events.dropped = count - static_cast<std::uint32_t>(listed);
     collected.events.events.reserve(listed);
     for (std::size_t i = 0; i < listed; ++i) {
         const float* position = &values[kFloats * i];

@@ -94,7 +94,10 @@ class EventList {
     void read(std::uint32_t rows) const;
     /// The oldest, which the GPU has finished; nullopt if its memory was lost.
     [[nodiscard]] std::optional<Collected> collect();
-    [[nodiscard]] Collected decoded(const Request& request, const std::vector<float>& values) const;
+    [[nodiscard]] static bool readFloats(const Request& request, std::size_t first, std::span<float> out);
+    /// \param count  of the step's events. \param values  of those that are listed, plane by plane.
+    [[nodiscard]] Collected decoded(const Request& request, std::uint32_t count,
+                                    std::span<const float> values) const;
 
     EventOptions options_;
     std::array<Level, kLevels> counts_;

@@ -18,27 +18,14 @@ namespace {
 
 constexpr GLsizei kMapSide = 4096;     // texels of the maps towards sun and zenith
 constexpr GLsizei kPrintSide = 4096;   // and of the prints, seen from below
-constexpr float kSoleHeight = 0.035F;  // of what presses the snow, world units above the ground
+constexpr float kSoleHeight = 0.035F;  // of what presses the snow, metres above the ground
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
 
 struct Vertex {
     glm::vec3 position;
     glm::vec3 normal;
-    std::array<std::uint8_t, 4> color;  // sRGB; its last is 255 where there is a colour
 };
-
-std::vector<Vertex> verticesOf(const PictureMesh& mesh) {
-    std::vector<Vertex> vertices(mesh.positions.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        vertices[i] = {mesh.positions[i], mesh.normals[i], {0, 0, 0, 0}};
-        if (!mesh.colors.empty()) {
-            const auto& color = mesh.colors[i];
-            vertices[i].color = {color[0], color[1], color[2], 255};
-        }
-    }
-    return vertices;
-}
 
 glm::mat4 placeMatrix(const Pose& pose) {
     const glm::mat4 turned = glm::translate(glm::mat4(1.0F), pose.position) * glm::mat4_cast(pose.rotation);
@@ -74,26 +61,34 @@ Result<MeshRenderer::Mesh> MeshRenderer::upload(const PictureMesh& mesh) {
     }
     const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
     const PictureMesh& full = mesh.normals.empty() ? made : mesh;
-    const std::vector<Vertex> vertices = verticesOf(full);
+    std::vector<Vertex> vertices(full.positions.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        vertices[i] = {full.positions[i], full.normals[i]};
+    }
     Mesh out;
     out.shape = mesh;
     out.corners = static_cast<GLsizei>(full.triangles.size());
     out.vertices = makeBuffer();
+    out.colors = makeBuffer();
+    out.vertex_bytes = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
     out.triangles = makeBuffer();
     out.array = makeVertexArray();
     glBindVertexArray(out.array.name());
-    glBindBuffer(GL_ARRAY_BUFFER, out.vertices.name());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
-                 GL_STATIC_DRAW);
-    const auto attribute = [](GLuint location, GLint size, GLenum type, GLboolean normalized,
-                              std::size_t offset) {
+    const auto attribute = [](GLuint location, GLint size, GLenum type, GLsizei stride, std::size_t offset) {
         glEnableVertexAttribArray(location);
-        glVertexAttribPointer(location, size, type, normalized, sizeof(Vertex),
+        glVertexAttribPointer(location, size, type, type == GL_FLOAT ? GL_FALSE : GL_TRUE, stride,
                               reinterpret_cast<const void*>(offset));
     };
-    attribute(0, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
-    attribute(1, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, normal));
-    attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, color));
+    glBindBuffer(GL_ARRAY_BUFFER, out.vertices.name());
+    glBufferData(GL_ARRAY_BUFFER, out.vertex_bytes, vertices.data(), GL_STATIC_DRAW);
+    attribute(0, 3, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, position));
+    attribute(1, 3, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, normal));
+    glBindBuffer(GL_ARRAY_BUFFER, out.colors.name());
+    if (!full.colors.empty()) {
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.colors.size() * sizeof(full.colors[0])),
+                     full.colors.data(), GL_STATIC_DRAW);
+        attribute(2, 4, GL_UNSIGNED_BYTE, sizeof(full.colors[0]), 0);
+    }
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, out.triangles.name());
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
@@ -138,6 +133,10 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
     return checkAllocated("the meshes of a picture", "choose smaller ones");
 }
 
+void MeshRenderer::setVertices(std::size_t mesh, const GlBuffer& buffer) {
+    copyBuffer(buffer, meshes_[mesh].vertices, 0, meshes_[mesh].vertex_bytes);
+}
+
 Result<void> MeshRenderer::resize(GLsizei width, GLsizei height) {
     if (width == width_ && height == height_) {
         return {};
@@ -164,6 +163,7 @@ void MeshRenderer::drawPlaces(const GlProgram& program, std::span<const MeshPlac
         }
         const Mesh& mesh = meshes_[place.mesh];
         program.set("u_place", placeMatrix(place.pose));
+        program.set("u_colored", !mesh.shape.colors.empty());
         glBindVertexArray(mesh.array.name());
         glDrawElements(GL_TRIANGLES, mesh.corners, GL_UNSIGNED_INT, nullptr);
     }
@@ -179,7 +179,7 @@ void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshPlace> pl
     drawPlaces(depth_program_, places, true, moving);
 }
 
-void MeshRenderer::press(std::span<const MeshPlace> places) {
+void MeshRenderer::press(std::span<const MeshPlace> places, float metre) {
     glDisable(GL_DEPTH_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
     glViewport(0, 0, kPrintSide, kPrintSide);
@@ -188,7 +188,7 @@ void MeshRenderer::press(std::span<const MeshPlace> places) {
     print_program_.set("u_zenith", 0);
     // From clip space, whose depth is twice that of the window.
     print_program_.set("u_sole",
-                       0.5F * kSoleHeight * glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
+                       0.5F * kSoleHeight * metre * glm::length(glm::vec3(glm::transpose(zenith_.clip)[2])));
     useTexture(0, zenith_.depth);
     drawPlaces(print_program_, places, false, true);
     glEnable(GL_DEPTH_TEST);
@@ -218,7 +218,7 @@ Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
         glClearBufferfv(GL_COLOR, 0, nothing.data());
         around_ = around;
     }
-    press(places);
+    press(places, style.metre);
 
     glBindFramebuffer(GL_FRAMEBUFFER, surface_.name());
     glViewport(0, 0, width_, height_);
@@ -257,6 +257,7 @@ Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
     shade.set("u_per_fog", style.fog > 0.0F ? 1.0F / style.fog : 0.0F);
     shade.set("u_wet", style.wet);
     shade.set("u_snow", style.snow);
+    shade.set("u_metre", style.metre);
     shade.set("u_srgb", target.srgb);
     glDepthFunc(GL_ALWAYS);
     drawInBands(shade, target.framebuffer, target.width, target.height);

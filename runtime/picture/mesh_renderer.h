@@ -2,7 +2,7 @@
 // long to follow rays through. Shadows come from a depth map towards the sun, what rain and snow reach from one towards the
 // zenith, and the shade of corners from the picture's own depths.
 //
-//     bytes on the GPU = 36 · vertices + 4 · corners + 24 · width · height + 144 MB
+//     bytes on the GPU = 28 · vertices + 4 · corners + 24 · width · height + 144 MB
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,10 @@ struct MeshStyle {
     glm::vec3 background{0.62F, 0.69F, 0.76F};  ///< of the sky at the horizon, and of the fog; sRGB
     glm::vec3 clay{0.74F, 0.60F, 0.52F};        ///< of meshes without colours; sRGB
     float sun = 1.0F;                           ///< light of the sun, 0 (overcast)…1
-    float fog = 0.0F;                           ///< world units over which 63 % of the light is lost; 0: none
-    float wet = 0.0F;                           ///< of what rain reaches, 0…1
-    float snow = 0.0F;                          ///< cover of what snow reaches, 0…1
+    float metre = 1.0F;  ///< world units of a metre, > 0: of grain, drifts, and the shade of corners
+    float fog = 0.0F;    ///< world units over which 63 % of the light is lost; 0: none
+    float wet = 0.0F;    ///< of what rain reaches, 0…1
+    float snow = 0.0F;   ///< cover of what snow reaches, 0…1
     friend bool operator==(const MeshStyle&, const MeshStyle&) = default;
 };
 
@@ -47,6 +48,8 @@ class MeshRenderer {
     /// Other vertices for a mesh, of as many positions; its normals are made anew.
     /// Errors: kUsage (no such mesh, another number).
     [[nodiscard]] Result<void> setPositions(std::size_t mesh, std::span<const glm::vec3> positions);
+    /// As ColliderMesh::setVertices(). \param mesh  created with normals.
+    void setVertices(std::size_t mesh, const GlBuffer& buffer);
 
     /// Fills the target's colour and depth. Prints stay from one call to the next.
     /// \param around  the part of the world that has shadows, shelter and prints; finite, with an extent.
@@ -62,7 +65,9 @@ class MeshRenderer {
     struct Mesh {
         PictureMesh shape;
         GlBuffer vertices;
+        GlBuffer colors;
         GlBuffer triangles;
+        GLsizeiptr vertex_bytes = 0;
         GlVertexArray array;
         GLsizei corners = 0;
     };
@@ -78,7 +83,7 @@ class MeshRenderer {
     void drawPlaces(const GlProgram& program, std::span<const MeshPlace> places, bool still,
                     bool moving) const;
     void drawMap(const ParallelMap& map, std::span<const MeshPlace> places, bool moving) const;
-    void press(std::span<const MeshPlace> places);
+    void press(std::span<const MeshPlace> places, float metre);
 
     std::vector<Mesh> meshes_;
     GlProgram surface_program_;

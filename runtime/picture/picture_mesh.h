@@ -15,8 +15,8 @@ struct PictureMesh {
     std::vector<glm::vec3> positions;      ///< object units, finite
     std::vector<glm::vec3> normals;        ///< of the vertices, unit or zero, as many as positions; or empty
     std::vector<std::uint32_t> triangles;  ///< three indices each, anticlockwise seen from outside
-    std::vector<std::array<std::uint8_t, 3>>
-        colors{};  ///< of the vertices, sRGB, as many as positions; or empty
+    std::vector<std::array<std::uint8_t, 4>>
+        colors{};  ///< of the vertices, as many as positions, or empty: sRGB, and how much snow stays there, 0…255
 };
 
 /// Its triangles, one by one.

@@ -10,7 +10,15 @@ ColliderStyle colliderStyle(const Scene& scene) {
     ColliderStyle style;
     style.ground = scene.ground.enabled ? scene.ground.height : std::nullopt;
     style.background = scene.render.background;
+    if (!scene.colliders.empty()) {
+        style.clay = scene.colliders.front().color.value_or(style.clay);
+    }
     return style;
+}
+
+Result<WobblePass> wobbleOf(const LiveMesh& live) {
+    return WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
+                              VertexOutput::kPositionsAndNormals);
 }
 
 }  // namespace
@@ -20,8 +28,7 @@ Result<void> ScenePicture::makeCollider(const ColliderView& view) {
     if (!scene.render.mesh.empty() && loaded_->live.front()) {
         const LiveMesh& live = *loaded_->live.front();
         mesh_ = std::make_unique<ColliderMesh>(RELIEF_TRY(ColliderMesh::create(live.mesh)));
-        wobble_ = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
-                                                VertexOutput::kPositionsAndNormals));
+        wobble_ = RELIEF_TRY(wobbleOf(live));
     } else {
         mesh_ = RELIEF_TRY(loadColliderMesh(scene, loaded_->bounds));
     }
@@ -33,6 +40,11 @@ Result<void> ScenePicture::makeCollider(const ColliderView& view) {
 Result<void> ScenePicture::makeMeshes() {
     scene_meshes_ = RELIEF_TRY(loadSceneMeshes(*loaded_));
     meshes_ = RELIEF_TRY(MeshRenderer::create(scene_meshes_.meshes));
+    for (const SceneMesh& mesh : scene_meshes_.places) {
+        if (mesh.motion == MeshMotion::kLive) {
+            waves_.push_back({mesh.mesh, RELIEF_TRY(wobbleOf(*loaded_->live[mesh.collider]))});
+        }
+    }
     return {};
 }
 
@@ -63,10 +75,14 @@ Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, doubl
         return &collider_->depth();
     }
     for (const SceneMesh& mesh : scene_meshes_.places) {
-        if (mesh.posed) {
+        if (mesh.motion == MeshMotion::kPlayed) {
             const PlayedMesh& played = *loaded_->played[mesh.collider];
             RELIEF_TRY(meshes_->setPositions(mesh.mesh, posed(*played.mesh, played.poseAt(seconds))));
         }
+    }
+    for (auto& [mesh, pass] : waves_) {
+        pass.run(seconds);
+        meshes_->setVertices(mesh, pass.buffer());
     }
     RELIEF_TRY(meshes_->draw(camera, meshStyle(loaded_->scene, seconds),
                              meshPlaces(*loaded_, scene_meshes_, seconds), shadowBounds(*loaded_),

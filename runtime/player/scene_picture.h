@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -46,7 +47,8 @@ class ScenePicture {
     Frame frame_;
     std::optional<ColliderRenderer> collider_;  // or:
     std::optional<MeshRenderer> meshes_;
-    SceneMeshes scene_meshes_;  // of that
+    SceneMeshes scene_meshes_;                                 // of that
+    std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of those that deform
     ParticleRenderer particles_;
     ColliderStyle collider_style_;
     ParticleStyle particle_style_;

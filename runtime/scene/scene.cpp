@@ -79,17 +79,6 @@ std::optional<FieldFault> checkMesh(const Scene& scene) {
     return std::nullopt;
 }
 
-/// Of render.meshes each collider has one.
-std::optional<FieldFault> checkMeshes(const Scene& scene) {
-    for (std::size_t i = 0; i < scene.colliders.size() && !scene.render.meshes.empty(); ++i) {
-        if (scene.colliders[i].live) {
-            return FieldFault{nth("collider", i, ".deform"),
-                              "is not drawn by render.meshes; remove one of them"};
-        }
-    }
-    return std::nullopt;
-}
-
 std::optional<FieldFault> checkCells(const Scene& scene) {
     const SceneRender& render = scene.render;
     const std::uint32_t cells = render.atlas.empty() ? 0 : render.atlas_columns * render.atlas_rows;
@@ -245,9 +234,6 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
         return fault;
     }
     if (auto fault = checkMesh(scene)) {
-        return fault;
-    }
-    if (auto fault = checkMeshes(scene)) {
         return fault;
     }
     return completeTypes(scene, given);

@@ -198,6 +198,7 @@ struct SceneRender {
     std::filesystem::path meshes;  ///< resolved; empty: none
     std::string meshes_origin;
     float fog = 0.0F;                   ///< world units; 0: none
+    float metre = 1.0F;                 ///< world units
     std::optional<float> shadows;       ///< world units about camera.target
     std::vector<SceneWeather> weather;  ///< times rising
 };
@@ -252,6 +253,12 @@ void fields(Visitor& visit, R& r) {
           {"Distance over which 63 % is lost in the background's colour; 0: no fog",
            {},
            kLengthRange,
+           {},
+           {.needs = "meshes"}});
+    visit("metre", r.metre,
+          {"World units of a metre: of the meshes' grain, snow drifts and shaded corners",
+           {},
+           kSizeRange,
            {},
            {.needs = "meshes"}});
     visit("shadows", r.shadows,

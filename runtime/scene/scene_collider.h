@@ -115,6 +115,7 @@ struct SceneCollider {
     std::optional<SceneLive> live;   ///< wobbles: `path` is a mesh, not a container
     std::optional<ScenePlay> play;   ///< an animated mesh of the container moves
     std::uint32_t resolution = 256;  ///< of its maps
+    std::optional<glm::vec3> color;  ///< of its picture, sRGB
     std::vector<SceneKey> given_keys;
     // Filled by check() (of a body by placeBodies()), which also completes the pose and the keys above:
     /// Any key of the table but its file is given: else the particles live in the collider's own object space.
@@ -156,6 +157,13 @@ void fields(Visitor& visit, C& c) {
           leftOut({"Factor of the particles' own", {}, {0.0, 1.0}}));
     visit("friction", FieldMaybe{c.friction, c.posed},
           leftOut({"1 − friction is a factor of the particles' own 1 − friction", {}, {0.0, 1.0}}));
+    visit("color", c.color,
+          leftOut({"Colour in pictures; of a mesh without colours of its own. Where maps are drawn, that of "
+                   "the first "
+                   "collider is all colliders'",
+                   "[r, g, b]",
+                   {0.0, 1.0},
+                   "clay"}));
     visit("key", c.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given);

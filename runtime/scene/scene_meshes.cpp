@@ -1,6 +1,7 @@
 #include "runtime/scene/scene_meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -16,6 +17,8 @@ namespace relief {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array<std::uint8_t, 4> kFloorColor{148, 150, 146, 255};  // sRGB
 
 /// Of containers of the world: the name of the mesh that they are of.
 std::map<fs::path, std::string> namesOfWorld(const LoadedScene& loaded) {
@@ -42,6 +45,32 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& name) {
                         ".ply' or .obj for a collider; add it");
 }
 
+/// A mesh without colours takes on that of its collider, if it has one.
+PictureMesh colored(PictureMesh mesh, const SceneCollider& collider) {
+    if (mesh.colors.empty() && collider.color) {
+        const glm::vec3 bytes = glm::round(255.0F * *collider.color);
+        mesh.colors.assign(mesh.positions.size(),
+                           {static_cast<std::uint8_t>(bytes.r), static_cast<std::uint8_t>(bytes.g),
+                            static_cast<std::uint8_t>(bytes.b), 255});
+    }
+    return mesh;
+}
+
+/// A square round the scene, 100 times as large as that.
+PictureMesh floorMesh(const LoadedScene& loaded) {
+    const glm::vec3 center = loaded.bounds.center();
+    const float half = 50.0F * std::max(loaded.bounds.longestSide(), 1e-3F);
+    const float y = *loaded.scene.ground.height;
+    PictureMesh mesh;
+    mesh.positions = {{center.x - half, y, center.z - half},
+                      {center.x + half, y, center.z - half},
+                      {center.x + half, y, center.z + half},
+                      {center.x - half, y, center.z + half}};
+    mesh.triangles = {0, 2, 1, 0, 3, 2};
+    mesh.colors.assign(4, kFloorColor);
+    return mesh;
+}
+
 PictureMesh animatedMesh(const PlayedMesh& played) {
     PictureMesh mesh;
     mesh.positions = posed(*played.mesh, played.poseAt(0.0));
@@ -58,7 +87,7 @@ Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded) {
     const std::string origin = scene.render.meshes_origin + ": render.meshes";
     const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
     SceneMeshes out;
-    std::map<fs::path, std::uint32_t> known;
+    std::map<std::pair<fs::path, std::vector<float>>, std::uint32_t> known;  // by colour, too
     // Of a world's mesh that was cut into tiles the bodies of a node are one.
     std::map<std::tuple<std::string, std::uint32_t>, std::vector<Pose>> drawn;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
@@ -66,17 +95,24 @@ Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded) {
         if (collider.tile_of) {
             continue;
         }
-        if (loaded.played[i]) {
-            out.places.push_back({static_cast<std::uint32_t>(out.meshes.size()), i, true});
-            out.meshes.push_back(animatedMesh(*loaded.played[i]));
+        if (loaded.played[i] || loaded.live[i]) {
+            const MeshMotion motion = loaded.played[i] ? MeshMotion::kPlayed : MeshMotion::kLive;
+            out.places.push_back({static_cast<std::uint32_t>(out.meshes.size()), i, motion});
+            out.meshes.push_back(
+                colored(loaded.played[i] ? animatedMesh(*loaded.played[i]) : loaded.live[i]->mesh, collider));
             continue;
         }
         const auto named = of_world.find(collider.path);
         const std::string name = named != of_world.end() ? named->second : collider.path.stem().string();
         const fs::path file = RELIEF_TRY(inFront(origin, fileOf(scene.render.meshes, name)));
-        const auto [entry, is_new] = known.try_emplace(file, static_cast<std::uint32_t>(out.meshes.size()));
+        std::vector<float> color;
+        if (collider.color) {
+            color = {collider.color->r, collider.color->g, collider.color->b};
+        }
+        const auto [entry, is_new] =
+            known.try_emplace({file, color}, static_cast<std::uint32_t>(out.meshes.size()));
         if (is_new) {
-            out.meshes.push_back(RELIEF_TRY(inFront(origin, loadPictureMesh(file))));
+            out.meshes.push_back(colored(RELIEF_TRY(inFront(origin, loadPictureMesh(file))), collider));
             out.files.push_back(file);
         }
         if (named != of_world.end()) {
@@ -86,16 +122,25 @@ Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded) {
             }
             there.push_back(collider.pose);
         }
-        out.places.push_back({entry->second, i, false});
+        out.places.push_back({entry->second, i, MeshMotion::kNone});
+    }
+    if (scene.ground.enabled) {
+        out.floor = static_cast<std::uint32_t>(out.meshes.size());
+        out.meshes.push_back(floorMesh(loaded));
     }
     std::sort(out.files.begin(), out.files.end());
+    out.files.erase(std::unique(out.files.begin(), out.files.end()), out.files.end());
     return out;
 }
 
 std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const SceneMeshes& meshes, double seconds) {
     std::vector<MeshPlace> places;
     for (const SceneMesh& mesh : meshes.places) {
-        places.push_back({mesh.mesh, poseAt(loaded.scene.colliders[mesh.collider], seconds), mesh.posed});
+        places.push_back({mesh.mesh, poseAt(loaded.scene.colliders[mesh.collider], seconds),
+                          mesh.motion == MeshMotion::kPlayed});
+    }
+    if (meshes.floor) {
+        places.push_back({*meshes.floor, {}, false});
     }
     return places;
 }
@@ -104,6 +149,7 @@ MeshStyle meshStyle(const Scene& scene, double seconds) {
     MeshStyle style;
     style.background = scene.render.background;
     style.fog = scene.render.fog;
+    style.metre = scene.render.metre;
     const std::vector<SceneWeather>& keys = scene.render.weather;
     if (keys.empty()) {
         return style;
@@ -123,6 +169,13 @@ MeshStyle meshStyle(const Scene& scene, double seconds) {
 
 Bounds shadowBounds(const LoadedScene& loaded) {
     Bounds around = loaded.bounds;
+    if (loaded.scene.ground.enabled) {
+        around.min.y = std::min(around.min.y, *loaded.scene.ground.height);
+        // Shadows fall on the floor beside the colliders.
+        const float height = around.max.y - around.min.y;
+        around.min -= glm::vec3(height, 0.0F, height);
+        around.max += glm::vec3(height, 0.0F, height);
+    }
     if (loaded.scene.render.shadows) {
         const float reach = *loaded.scene.render.shadows;
         const glm::vec3 target = *loaded.scene.camera.target;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -12,17 +13,21 @@
 
 namespace relief {
 
+/// The origin of a mesh's vertices: a file, the clip that its collider plays, or the waves that deform it.
+enum class MeshMotion : std::uint8_t { kNone, kPlayed, kLive };
+
 /// One of them: of a world's mesh, which may be several colliders, it is drawn once.
 struct SceneMesh {
     std::uint32_t mesh = 0;    ///< of SceneMeshes::meshes
     std::size_t collider = 0;  ///< of the scene, whose pose it has
-    bool posed = false;        ///< its vertices are those of the clip that the collider plays
+    MeshMotion motion = MeshMotion::kNone;
 };
 
 struct SceneMeshes {
     std::vector<PictureMesh> meshes;
     std::vector<std::filesystem::path> files;  ///< that were read, sorted
     std::vector<SceneMesh> places;
+    std::optional<std::uint32_t> floor;  ///< that of the scene's ground
 };
 
 /// Reads render.meshes. That of a world's collider has the name of its mesh there, that of another one the name of its

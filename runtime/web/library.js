@@ -27,10 +27,10 @@ mergeInto(LibraryManager.library, {
         GLctx.restorePassState();
     },
 
-    relief_js_read_buffer: function (buffer, out, bytes) {
+    relief_js_read_buffer: function (buffer, offset, out, bytes) {
         const bound = GLctx.getParameter(GLctx.PIXEL_PACK_BUFFER_BINDING);
         GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, GL.buffers[buffer]);
-        GLctx.getBufferSubData(GLctx.PIXEL_PACK_BUFFER, 0, HEAPU8, out, bytes);
+        GLctx.getBufferSubData(GLctx.PIXEL_PACK_BUFFER, offset, HEAPU8, out, bytes);
         GLctx.bindBuffer(GLctx.PIXEL_PACK_BUFFER, bound);
     },
 

@@ -21,7 +21,7 @@ int relief_js_is_lost();
 int relief_js_is_software();
 void relief_js_save_state(int units);
 void relief_js_restore_state();
-void relief_js_read_buffer(unsigned buffer, void* out, unsigned bytes);
+void relief_js_read_buffer(unsigned buffer, unsigned offset, void* out, unsigned bytes);
 int relief_js_decompress(const void* stored, int stored_size, void* raw, int raw_size);
 }
 
@@ -63,8 +63,9 @@ bool waitToRead(const GlFence&, GLuint64) {
     return true;
 }
 
-bool readBuffer(const GlBuffer& buffer, std::span<std::byte> out) {
-    relief_js_read_buffer(buffer.name(), out.data(), static_cast<unsigned>(out.size()));
+bool readBuffer(const GlBuffer& buffer, std::size_t offset, std::span<std::byte> out) {
+    relief_js_read_buffer(buffer.name(), static_cast<unsigned>(offset), out.data(),
+                          static_cast<unsigned>(out.size()));
     return true;
 }
 

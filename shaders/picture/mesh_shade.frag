@@ -4,7 +4,7 @@
 
 in vec2 v_uv;
 
-uniform highp sampler2D u_surface_color;   // sRGB
+uniform highp sampler2D u_surface_color;   // sRGB; a: how much snow stays there
 uniform highp sampler2D u_surface_normal;  // w: 0 where there is nothing
 uniform highp sampler2D u_surface_depth;
 uniform highp sampler2D u_sun_depth;
@@ -25,6 +25,7 @@ uniform float u_sunlight;   // 0…1
 uniform float u_per_fog;    // 1 / world units
 uniform float u_wet;
 uniform float u_snow;
+uniform float u_metre;      // world units
 uniform bool u_srgb;
 
 layout(location = 0) out vec4 o_color;
@@ -80,7 +81,8 @@ float openShare(highp sampler2D map, mat4 clip, vec3 p, float radius, float bias
         float angle = turn + 2.399963 * float(i);
         vec2 tap = at.xy + reach * sqrt((float(i) + 0.5) / float(SUN_TAPS)) * vec2(cos(angle), sin(angle));
         bool known = all(greaterThanEqual(tap, vec2(0.0))) && all(lessThan(tap, vec2(1.0)));
-        open += known && textureLod(map, tap, 0.0).r < at.z - depth_bias ? 0.0 : 1.0;
+        float nearest = textureLod(map, tap, 0.0).r;
+        open += known && nearest < 1.0 && nearest < at.z - depth_bias ? 0.0 : 1.0;
     }
     return open / float(SUN_TAPS);
 }
@@ -100,14 +102,14 @@ float cornerShare(vec3 p, vec3 n, float t, inout uint seed) {
         float angle = TWO_PI * (turn + 0.618034 * float(i));
         vec3 way = normalize(n + 0.99 * vec3(sqrt(1.0 - z * z) * vec2(cos(angle), sin(angle)), z));
         float share = (float(i) + 0.5) / float(CORNER_TAPS);
-        float reach = mix(0.04, 1.2, share * share);
+        float reach = u_metre * mix(0.04, 1.2, share * share);
         vec3 end = p + reach * way;
         vec4 clip = u_clip * vec4(end, 1.0);
         vec2 at = 0.5 * clip.xy / clip.w + 0.5;
         float window = textureLod(u_surface_depth, at, 0.0).r;
         float seen = u_depth.y / (window - u_depth.x);
         float behind = clip.w - seen;
-        bool hidden = clip.w > 0.0 && behind > 0.01 * reach + 0.0005 * t && behind < 3.0 * reach + 0.3;
+        bool hidden = clip.w > 0.0 && behind > 0.01 * reach + 0.0005 * t && behind < 3.0 * reach + 0.3 * u_metre;
         open += hidden ? 0.0 : 1.0;
     }
     return open / float(CORNER_TAPS);
@@ -127,11 +129,13 @@ void main() {
         vec3 p = u_eye + t * ray;
         vec3 given = texelFetch(u_surface_normal, pixel, 0).xyz;
         vec3 n = dot(given, given) > 1e-12 ? normalize(given) : -d;
-        vec3 albedo = linearOf(texelFetch(u_surface_color, pixel, 0).rgb);
-        float grain = fractalNoise(1.7 * p);
+        vec4 surface = texelFetch(u_surface_color, pixel, 0);
+        vec3 albedo = linearOf(surface.rgb);
+        vec3 q = p / u_metre;
+        float grain = fractalNoise(1.7 * q);
         albedo *= 0.86 + 0.28 * grain;
 
-        float shelter = openShare(u_zenith_depth, u_zenith_clip, p + 0.03 * n, 0.25, 0.05, seed);
+        float shelter = openShare(u_zenith_depth, u_zenith_clip, p + (0.03 * u_metre) * n, 0.25 * u_metre, 0.05 * u_metre, seed);
         vec2 on_map = 0.5 * (u_zenith_clip * vec4(p, 1.0)).xy + 0.5;
         float texel = 1.0 / float(textureSize(u_prints, 0).x);
         vec2 slope = vec2(0.0);
@@ -145,20 +149,20 @@ void main() {
 
         // Snow lies on what is level, on rough places first.
         float level = n.y + 0.25 * (grain - 0.5);
-        float rough = 0.25 + 0.75 * fractalNoise(0.45 * p + 3.1);
+        float rough = 0.25 + 0.75 * fractalNoise(0.45 * q + 3.1);
         float lies = u_snow > 0.0 ? smoothstep(1.0 - u_snow - 0.12, 1.0 - u_snow + 0.12, rough) : 0.0;
         lies = mix(lies, u_snow, u_snow * u_snow);
-        float cover = shelter * smoothstep(0.35, 0.62, level) * lies;
+        float cover = shelter * smoothstep(0.35, 0.62, level) * lies * surface.a;
         float print = pressed * smoothstep(0.15, 0.4, cover);
-        albedo = mix(albedo, SNOW_COLOR * mix(0.95, 1.0, grain), cover * (1.0 - 0.55 * print));
-        vec3 shaded = normalize(n + cover * vec3(1.6 * slope.x, 0.0, -1.6 * slope.y));
+        albedo = mix(albedo, SNOW_COLOR * mix(0.95, 1.0, grain), cover * (1.0 - 0.7 * print));
+        vec3 shaded = normalize(n + cover * vec3(2.4 * slope.x, 0.0, -2.4 * slope.y));
 
         float wet = u_wet * shelter * (1.0 - cover);
-        albedo *= mix(1.0, 0.55, wet);
+        albedo *= mix(1.0, 0.68, wet);
 
         float facing = dot(shaded, u_sun);
-        float sun = facing > 0.0 && u_sunlight > 0.0 ? openShare(u_sun_depth, u_sun_clip, p + 0.02 * n, 0.05, 0.03 + 0.05 * (1.0 - facing), seed) : 0.0;
-        float overhead = openShare(u_zenith_depth, u_zenith_clip, p + 0.1 * n, 2.5, 0.3, seed);
+        float sun = facing > 0.0 && u_sunlight > 0.0 ? openShare(u_sun_depth, u_sun_clip, p + (0.02 * u_metre) * n, 0.05 * u_metre, u_metre * (0.03 + 0.05 * (1.0 - facing)), seed) : 0.0;
+        float overhead = openShare(u_zenith_depth, u_zenith_clip, p + (0.1 * u_metre) * n, 2.5 * u_metre, 0.3 * u_metre, seed);
         float open = cornerShare(p + 0.002 * t * n, n, t, seed);
         open *= open;
         vec3 sky = mix(FLOOR_COLOR, SKY_COLOR, 0.5 + 0.5 * shaded.y) * mix(1.9, 1.05, u_sunlight);
@@ -168,7 +172,7 @@ void main() {
         lit += cover * 0.06 * SKY_COLOR * open;
 
         // A film of water mirrors the sky, in puddles more than elsewhere.
-        float puddle = smoothstep(0.97, 0.995, n.y) * smoothstep(0.52, 0.62, fractalNoise(0.8 * p + 11.0));
+        float puddle = smoothstep(0.97, 0.995, n.y) * smoothstep(0.52, 0.62, fractalNoise(0.8 * q + 11.0));
         float film = wet * mix(0.35, 1.0, puddle);
         vec3 mirrored = reflect(d, mix(n, vec3(0.0, 1.0, 0.0), puddle));
         float fresnel = 0.03 + 0.97 * pow(1.0 - clamp(dot(-d, n), 0.0, 1.0), 5.0);

@@ -2,13 +2,11 @@
 in vec3 v_normal;
 in vec4 v_color;
 
-uniform vec3 u_clay;  // sRGB
-
 layout(location = 0) out vec4 o_color;
 layout(location = 1) out vec4 o_normal;
 
 void main() {
-    o_color = vec4(mix(u_clay, v_color.rgb, v_color.a), 1.0);
+    o_color = v_color;
     // Both sides are visible.
     o_normal = vec4(gl_FrontFacing ? v_normal : -v_normal, 1.0);
 }

@@ -1,8 +1,10 @@
 // A mesh in its place.
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
-layout(location = 2) in vec4 a_color;  // sRGB; a: 0 where there is none
+layout(location = 2) in vec4 a_color;  // sRGB, and how much snow stays there
 
+uniform bool u_colored;  // a_color is given
+uniform vec3 u_clay;     // sRGB, where it is not
 uniform mat4 u_place;  // a turn, one scale and a shift
 uniform mat4 u_clip;   // world to clip space
 
@@ -11,6 +13,6 @@ out vec4 v_color;
 
 void main() {
     v_normal = mat3(u_place) * a_normal;
-    v_color = a_color;
+    v_color = u_colored ? a_color : vec4(u_clay, 1.0);
     gl_Position = u_clip * (u_place * vec4(a_position, 1.0));
 }

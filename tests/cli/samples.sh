@@ -10,7 +10,7 @@ mesh basin.obj
 mesh torus.obj
 mesh terrain.obj
 python3 "$samples/walker.py" walker.gltf
-cp "$samples"/{linked_tori.csv,streak.png} .
+cp "$samples"/linked_tori.csv .
 "$relief" bake "$bunny" -o bunny.relief --prefer inside --budget 300kB --quality fast -q
 "$relief" bake $models_glmark2/horse.3ds -o horse.relief --budget 200kB --quality fast -q
 "$relief" bake basin.obj -o basin.relief --map front-back:dir=-y,size=200x200 -q

@@ -56,8 +56,8 @@ TEST(ObjMesh, AsPeopleWriteIt) {
 TEST(ObjMesh, ColorsBehindEveryVertex) {
     const auto mesh = obj("v 0 0 0 1 0 0\nv 1 0 0 1 0.5 2\nv 0 1 0 1 0 -1 1\nf 1 2 3\n");
     ASSERT_TRUE(mesh) << mesh.error().message;
-    using Color = std::array<std::uint8_t, 3>;
-    EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0}, {255, 128, 255}, {0, 0, 255}}));
+    using Color = std::array<std::uint8_t, 4>;
+    EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0, 255}, {255, 128, 255, 255}, {0, 0, 255, 255}}));
     EXPECT_TRUE(obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")->colors.empty()) << "not of all";
     const PictureMesh smooth = withNormals(*mesh);
     ASSERT_EQ(smooth.colors.size(), smooth.positions.size());
@@ -88,7 +88,7 @@ const std::string kHead =
 
 TEST(PlyMesh, ColorsAsBytesOrFloats) {
     const std::string end = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    using Color = std::array<std::uint8_t, 3>;
+    using Color = std::array<std::uint8_t, 4>;
     for (const auto& [type, one, half] : {std::tuple("uchar", "255", "128"), {"float", "1", "0.5"}}) {
         const std::string t = std::string("property ") + type + " ";
         const std::string text =
@@ -99,8 +99,21 @@ TEST(PlyMesh, ColorsAsBytesOrFloats) {
             std::string(one) + " 0 0\n1 0 0 0 " + half + " 0\n0 1 0 0 0 " + one + "\n3 0 1 2\n";
         const auto mesh = ply(text + "0 0 0 " + rest);
         ASSERT_TRUE(mesh) << mesh.error().message;
-        EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0}, {0, 128, 0}, {0, 0, 255}})) << type;
+        EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0, 255}, {0, 128, 0, 255}, {0, 0, 255, 255}}))
+            << type;
     }
+}
+
+TEST(PlyMesh, AlphaIsReadBesideColors) {
+    const auto mesh =
+        ply("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+            "z\nproperty uchar red\n"
+            "property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\nproperty list "
+            "uchar int "
+            "vertex_indices\nend_header\n0 0 0 1 2 3 4\n1 0 0 5 6 7 8\n0 1 0 9 10 11 0\n3 0 1 2\n");
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    using Color = std::array<std::uint8_t, 4>;
+    EXPECT_EQ(mesh->colors, (std::vector<Color>{{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 10, 11, 0}}));
 }
 
 TEST(PlyMesh, AsciiWithOtherElements) {

@@ -15,11 +15,11 @@ namespace {
 
 constexpr std::uint32_t kWidth = 240;
 constexpr std::uint32_t kHeight = 180;
-constexpr std::array<std::uint8_t, 3> kGreen{90, 140, 60};
-constexpr std::array<std::uint8_t, 3> kRed{170, 60, 50};
+constexpr std::array<std::uint8_t, 4> kGreen{90, 140, 60, 255};
+constexpr std::array<std::uint8_t, 4> kRed{170, 60, 50, 255};
 constexpr float kRoofHeight = 2.0F;
 
-PictureMesh box(const glm::vec3& low, const glm::vec3& high, const std::array<std::uint8_t, 3>& color) {
+PictureMesh box(const glm::vec3& low, const glm::vec3& high, const std::array<std::uint8_t, 4>& color) {
     PictureMesh mesh;
     for (int i = 0; i < 8; ++i) {
         mesh.positions.emplace_back((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
@@ -121,12 +121,24 @@ TEST_P(MeshRendererGlTest, SnowLiesOnWhatTheSkySeesAndIsLevel) {
     EXPECT_TRUE(at(below_).white()) << "what moves shelters nothing";
 }
 
+TEST_P(MeshRendererGlTest, SnowDoesNotStayWhereTheColorSaysSo) {
+    PictureMesh warm = box({-8, -1, -8}, {8, 0, 8}, kGreen);
+    for (auto& color : warm.colors) {
+        color[3] = 0;
+    }
+    const std::vector<PictureMesh> meshes{warm};
+    renderer_ = std::move(*MeshRenderer::create(meshes));
+    draw({.snow = 1.0F}, {{0, {}, false}});
+    EXPECT_FALSE(at(open_).white());
+    EXPECT_GT(at(open_).g, at(open_).b + 10.0F);
+}
+
 TEST_P(MeshRendererGlTest, RainDarkensWhatItReaches) {
     draw({.sun = 0.0F}, meadow());
     const Rgb dry = at(open_);
     const Rgb dry_below = at(below_);
     draw({.sun = 0.0F, .wet = 1.0F}, meadow());
-    EXPECT_LT(at(open_).light(), 0.9F * dry.light());
+    EXPECT_LT(at(open_).light(), 0.95F * dry.light());
     EXPECT_NEAR(at(below_).light(), dry_below.light(), 2.0F);
 }
 

@@ -38,9 +38,9 @@ class SceneMeshesTest : public testing::Test {
 
     /// A scene of a world, as loadAll() would make it, without its containers.
     [[nodiscard]] LoadedScene loaded(const World& world, const std::string& tables = {}) const {
-        auto scene =
-            parseScene(tables + "[render]\nmeshes = \"" + folder_.path().filename().string() + "\"\n",
-                       folder_.path().parent_path() / "scene.toml");
+        auto scene = parseScene(tables + "[ground]\nenabled = false\n[render]\nmeshes = \"" +
+                                    folder_.path().filename().string() + "\"\n",
+                                folder_.path().parent_path() / "scene.toml");
         EXPECT_TRUE(scene) << scene.error().message;
         scene->world = folder_.path().parent_path() / "world.json";
         EXPECT_TRUE(placeBodies(*scene, world));
@@ -71,6 +71,7 @@ TEST_F(SceneMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
     EXPECT_EQ(meshes->files, (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
                                                     folder_.path() / "own.obj"}));
     ASSERT_EQ(meshes->places.size(), 4U);
+    EXPECT_FALSE(meshes->floor) << "the scene has no ground";
     EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate are one mesh";
     const std::vector<MeshPlace> places = meshPlaces(scene, *meshes, 0.0);
     EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
@@ -97,7 +98,7 @@ TEST_F(SceneMeshesTest, NamesThatAreNoFilesAreErrors) {
         const auto meshes = loadSceneMeshes(loaded(world, "world = \"world.json\"\n"));
         ASSERT_FALSE(meshes) << name;
         EXPECT_EQ(meshes.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(meshes.error().message.find("scene.toml:3:"), std::string::npos) << meshes.error().message;
+        EXPECT_NE(meshes.error().message.find("scene.toml:5:"), std::string::npos) << meshes.error().message;
     }
     World world = namedWorld();
     world.colliders[1].mesh = "window";
@@ -129,14 +130,12 @@ TEST(SceneWeather, WhatHasNoEffectIsAnError) {
     const std::string start = "[collider]\nfile = \"a.relief\"\n[render]\n";
     const std::string at = "dir/scene.toml:";
     expectSceneError(start + "fog = 5\n", at + "4:", "does nothing without render.meshes");
-    expectSceneError(start + "[[render.weather]]\nsnow = 1\n", at + "4:", "does nothing without render.meshes");
+    expectSceneError(start + "[[render.weather]]\nsnow = 1\n",
+                     at + "4:", "does nothing without render.meshes");
     expectSceneError(start + "meshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
                      at + "8:", "does not rise");
     expectSceneError(start + "meshes = \"m\"\n[[render.weather]]\nsnow = 1.5\n", at + "6:", "snow");
     expectSceneError(start + "meshes = \"m\"\nmesh = \"a.obj\"\n", at, "mesh");
-    expectSceneError(
-        "[collider]\nmesh = \"a.obj\"\ndeform = { amplitude = 1, frequency = 1 }\n[render]\nmeshes = \"m\"\n",
-        at, "is not drawn by render.meshes");
 }
 
 }  // namespace
