@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
-# picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME. Needs no GPU, but is faster with one.
+# picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME, and of the village a film. Needs no GPU, but is faster with one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -105,6 +105,10 @@ play() {
     "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" --json >"$out/report.json"
     sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
+    if [ "$name" = village ]; then
+        "$bin/relief-sim" "$out/$name.toml" --size 640x360 --frame-every 4 --frames "$out/film"
+        img2webp -loop 0 -lossy -q 40 -m 6 -d 67 "$out"/film/frame_*.png -o "$out/film.webp" >&2
+    fi
     echo "Look at $out/contact_sheet.png"
 }
 

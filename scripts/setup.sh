@@ -24,7 +24,7 @@ tools=(
     # runtime: libepoxy, and Mesa's llvmpipe for machines without a GPU
     libegl-dev libepoxy-dev libgl-dev libgles-dev libpng-dev libtomlplusplus-dev libegl1 libegl-mesa0 libgl1-mesa-dri
     # samples
-    glmark2-data imagemagick python3
+    glmark2-data imagemagick python3 webp
 )
 tests=(
     assimp-testmodels bsdextrautils clang clang-format doxygen groff-base libcgal-demo libclang-rt-dev libgtest-dev libglew-dev libglfw3-dev
