@@ -291,6 +291,7 @@ class AnimatedReader {
                 const Transform at = from.skin ? Transform{} : transformInScene(from_, index) * below;
                 mirrored = at.mirrors() ? 1.0 : -1.0;
             }
+            RELIEF_TRY(addMaterial(primitive.part));
             addSurface(primitive, mesh_.nodes[*nodes_[index]].first_weight, mirrored > 0.0);
         }
         return {};
@@ -363,6 +364,22 @@ class AnimatedReader {
         return found->second;
     }
 
+    /// The material of the triangles that come next: its name, as different ones of a name are one.
+    Result<void> addMaterial(const ScenePart& part) {
+        const std::string name = cleanUtf8(part.material, kAnimatedNameMax);
+        const auto [found, added] =
+            materials_.try_emplace(name, static_cast<std::uint16_t>(mesh_.materials.size()));
+        if (added) {
+            if (mesh_.materials.size() == kMeshMaterialsMax) {
+                return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kMeshMaterialsMax) +
+                                                   " materials; join some, or export less of the scene");
+            }
+            mesh_.materials.push_back(name);
+        }
+        mesh_.triangle_materials.insert(mesh_.triangle_materials.end(), part.triangles.size(), found->second);
+        return {};
+    }
+
     void addSurface(const GltfPrimitive& primitive, std::uint32_t first_target, bool flips) {
         const auto base = static_cast<std::uint32_t>(mesh_.positions.size());
         mesh_.positions.insert(mesh_.positions.end(), primitive.part.positions.begin(),
@@ -389,6 +406,10 @@ class AnimatedReader {
         if (mesh_.triangles.empty()) {
             return invalidInput("no triangles; export the surface as polygons, not as points or lines");
         }
+        if (mesh_.materials == std::vector<std::string>{""}) {  // none is named
+            mesh_.materials.clear();
+            mesh_.triangle_materials.clear();
+        }
         out_.unused_vertices = counts.unused;
         warnOfParts(counts, out_.warnings);
         if (odd_sums_ > 0) {
@@ -411,6 +432,7 @@ class AnimatedReader {
     std::vector<std::optional<std::uint32_t>> nodes_;  // of mesh_, by those of the file
     std::map<std::uint64_t, Skin> skins_;
     std::map<std::pair<std::uint32_t, std::array<float, 12>>, std::uint32_t> joints_;
+    std::map<std::string, std::uint16_t> materials_;
     std::uint64_t instances_left_ = kGltfInstancesMax;
     std::uint64_t odd_sums_ = 0;
 };

@@ -6,6 +6,12 @@ std::string animationText(const AnimatedMesh& mesh) {
     std::string text = countText(mesh.positions.size(), "vertex", "vertices") + " moved by " +
                        countText(mesh.joints.size(), "joint") + " and " +
                        countText(mesh.weights.size(), "morph target") + "\n";
+    for (const auto& [head, names] :
+         {std::pair("groups   ", groupNames(mesh)), {"materials ", mesh.materials}}) {
+        if (const std::string list = listedNames(names); !list.empty()) {
+            text += head + list + "\n";
+        }
+    }
     if (mesh.clips.empty()) {
         return text;
     }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/report/report_text.h"
-#include "formats/animation/animated_mesh.h"
+#include "formats/animation/mesh_parts.h"
 #include "formats/collider.h"
 #include "formats/container.h"
 #include "formats/fields/field.h"
@@ -84,9 +84,12 @@ void fields(Visitor& visit, M& mesh) {
     visit("joints", mesh.joints.size(), {"Joints: nodes that move vertices"});
     visit("morph_targets", mesh.weights.size(), {"Morph targets"});
     visit("clips", mesh.clips, {"Clips, those of the mesh file first"});
+    visit("groups", groupNames(mesh),
+          {"Names of joints and nodes with vertices of their own: emitter.group"});
+    visit("materials", mesh.materials, {"Names of materials, \"\" for none: emitter.material"});
 }
 
-/// A line, and a table of the clips, if there are any.
+/// A line, its groups and materials, and a table of the clips, if there are any.
 [[nodiscard]] std::string animationText(const AnimatedMesh& mesh);
 
 /// \tparam Map  ColliderMapReport, or more than that.

@@ -66,6 +66,25 @@ Result<void> checkTriangles(const AnimatedMesh& mesh) {
     return {};
 }
 
+Result<void> checkMaterials(const AnimatedMesh& mesh) {
+    RELIEF_TRY(atMost("materials", mesh.materials.size(), kMeshMaterialsMax));
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+        if (!isName(mesh.materials[i]) || !names.insert(mesh.materials[i]).second) {
+            return wrong("materials", i, "has a name that is too long, no clean text, or that of another");
+        }
+    }
+    if (mesh.triangle_materials.size() != (mesh.materials.empty() ? 0 : mesh.triangles.size())) {
+        return invalidInput("animation.triangle_materials are not as many as the triangles");
+    }
+    for (std::size_t i = 0; i < mesh.triangle_materials.size(); ++i) {
+        if (mesh.triangle_materials[i] >= mesh.materials.size()) {
+            return wrong("triangle_materials", i, "is no such material");
+        }
+    }
+    return {};
+}
+
 Result<void> checkInfluences(const AnimatedMesh& mesh) {
     if (!areStarts(mesh.influence_begin, mesh.positions.size(), mesh.influences.size())) {
         return invalidInput("animation.influence_begin does not rise from 0 to the number of influences");
@@ -216,6 +235,7 @@ std::size_t keyNumbers(const AnimatedMesh& mesh, const ClipChannel& channel) {
 
 Result<void> validate(const AnimatedMesh& mesh) {
     RELIEF_TRY(checkTriangles(mesh));
+    RELIEF_TRY(checkMaterials(mesh));
     RELIEF_TRY(checkJoints(mesh));
     RELIEF_TRY(checkInfluences(mesh));
     RELIEF_TRY(checkDeltas(mesh));

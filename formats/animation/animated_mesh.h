@@ -26,7 +26,8 @@ inline constexpr std::size_t kMeshNodesMax = 8192;
 inline constexpr std::size_t kMeshJointsMax = 4096;
 inline constexpr std::size_t kMorphTargetsMax = 1024;
 inline constexpr std::size_t kMeshClipsMax = 1024;
-inline constexpr std::size_t kAnimatedNameMax = 255;  ///< bytes, of nodes and clips
+inline constexpr std::size_t kMeshMaterialsMax = 4096;
+inline constexpr std::size_t kAnimatedNameMax = 255;  ///< bytes, of nodes, clips and materials
 inline constexpr std::size_t kAnimatedVerticesMax = 1'000'000;
 inline constexpr std::size_t kVertexInfluencesMax = 16;
 inline constexpr float kClipSecondsMax = 86'400.0F;
@@ -103,6 +104,9 @@ struct AnimatedMesh {
     std::vector<MeshJoint> joints;
     std::vector<float> weights;  ///< of the morph targets, where no channel says otherwise
     std::vector<MeshClip> clips;
+    /// Names: clean UTF-8, no two alike; "" is that of all that have no name. Empty: the file names none.
+    std::vector<std::string> materials;
+    std::vector<std::uint16_t> triangle_materials;  ///< of each triangle, of `materials`; empty without these
     friend bool operator==(const AnimatedMesh&, const AnimatedMesh&) = default;
 };
 

@@ -114,10 +114,14 @@ MeshClip readClip(const fb::Clip& from) {
 
 /// Tables of a file may lie in the same bytes: whether all that would be copied of them takes no more than the file.
 bool fits(const fb::AnimatedMesh& from, std::size_t file_bytes) {
-    if (from.nodes()->size() > kMeshNodesMax || from.clips()->size() > kMeshClipsMax) {
+    if (from.nodes()->size() > kMeshNodesMax || from.clips()->size() > kMeshClipsMax ||
+        (from.materials() != nullptr && from.materials()->size() > kMeshMaterialsMax)) {
         return false;
     }
     std::uint64_t bytes = 0;
+    for (std::size_t i = 0; from.materials() != nullptr && i < from.materials()->size(); ++i) {
+        bytes += from.materials()->Get(static_cast<flatbuffers::uoffset_t>(i))->size();
+    }
     for (const fb::Node* node : *from.nodes()) {
         bytes += node->name()->size();
     }
@@ -162,6 +166,14 @@ Result<AnimatedMesh> unpack(std::span<const std::byte> bytes) {
     for (const fb::Clip* clip : *from.clips()) {
         mesh.clips.push_back(readClip(*clip));
     }
+    if (from.materials() != nullptr) {
+        for (const flatbuffers::String* name : *from.materials()) {
+            mesh.materials.push_back(name->str());
+        }
+    }
+    if (from.triangle_materials() != nullptr) {
+        mesh.triangle_materials = takeAll(*from.triangle_materials());
+    }
     return mesh;
 }
 
@@ -192,9 +204,16 @@ std::vector<std::byte> writeAnimatedMesh(const AnimatedMesh& mesh) {
     const auto joint_list = builder.CreateVectorOfStructs(joints);
     const auto weights = builder.CreateVector(mesh.weights);
     const auto clip_list = builder.CreateVector(clips);
+    flatbuffers::Offset<flatbuffers::Vector<Offset<flatbuffers::String>>> material_list;
+    flatbuffers::Offset<flatbuffers::Vector<std::uint16_t>> triangle_materials;
+    if (!mesh.materials.empty()) {  // without, the bytes are those from before there were any
+        material_list = builder.CreateVectorOfStrings(mesh.materials);
+        triangle_materials = builder.CreateVector(mesh.triangle_materials);
+    }
     fb::FinishAnimatedMeshBuffer(
         builder, fb::CreateAnimatedMesh(builder, positions, triangles, influence_begin, influences,
-                                        delta_begin, deltas, node_list, joint_list, weights, clip_list));
+                                        delta_begin, deltas, node_list, joint_list, weights, clip_list,
+                                        material_list, triangle_materials));
     const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
     return {bytes.begin(), bytes.end()};
 }

@@ -125,6 +125,30 @@ TEST(AnimatedImport, ACubeMorphs) {
     EXPECT_EQ(reach(at(mesh, "stretch", 2.0)), 3.0F);
 }
 
+// One name is one material, whichever of the file has it; what has none is "", and where none has a name, nothing is kept.
+TEST(AnimatedImport, KeepsTheNamesOfMaterials) {
+    GltfScribe scribe = robot();
+    EXPECT_TRUE(loaded(scribe).mesh.materials.empty());
+    Json& primitives = scribe.json["meshes"][0]["primitives"];
+    for (int i = 1; i < 4; ++i) {
+        primitives.push_back(primitives[0]);
+    }
+    scribe.json["materials"] = Json::array({{{"name", "steel"}}, Json::object(), {{"name", "steel"}}});
+    primitives[1]["material"] = 0;
+    primitives[2]["material"] = 1;
+    primitives[3]["material"] = 2;
+    const AnimatedMesh mesh = loaded(scribe).mesh;
+    EXPECT_EQ(mesh.materials, (std::vector<std::string>{"", "steel"}));
+    ASSERT_EQ(mesh.triangle_materials.size(), 3U * 4U * 12U);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        EXPECT_EQ(mesh.triangle_materials[i], i / 12 % 2) << i;
+    }
+    scribe.json["materials"] = Json::array({Json::object(), Json::object(), Json::object()});
+    EXPECT_TRUE(loaded(scribe).mesh.materials.empty());
+    primitives[3]["material"] = 3;
+    EXPECT_FALSE(load(scribe)) << "there is none";
+}
+
 TEST(AnimatedImport, CubicKeysAreHermite) {
     GltfScribe scribe = robot();
     const std::size_t times = scribe.floats("SCALAR", {1, 3});

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/glm.hpp>
 #include <limits>
 #include <string>
 
+#include "formats/animation/mesh_parts.h"
 #include "tests/formats/animation/animated_meshes.h"
 
 namespace relief {
@@ -131,6 +133,14 @@ TEST(MeshPose, ADayOfNothingIsNoWork) {
     EXPECT_GT(poseExtent(mesh).room.x, 1.0F);
 }
 
+/// Gives every third triangle the second of two materials.
+void dress(AnimatedMesh& mesh) {
+    mesh.materials = {"cloth", ""};
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        mesh.triangle_materials.push_back(i % 3 == 0 ? 1 : 0);
+    }
+}
+
 TEST(AnimatedMesh, ComesBackFromItsBytes) {
     AnimatedMesh mesh = bendingTube(8, 6);
     mesh.nodes[0].matrix = Affine{{{1, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 5}}};
@@ -139,10 +149,18 @@ TEST(AnimatedMesh, ComesBackFromItsBytes) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(*read, mesh);
     EXPECT_EQ(writeAnimatedMesh(*read), bytes);
+    dress(mesh);
+    const std::vector<std::byte> dressed = writeAnimatedMesh(mesh);
+    const Result<AnimatedMesh> again = readAnimatedMesh(dressed);
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(*again, mesh);
+    EXPECT_EQ(writeAnimatedMesh(*again), dressed);
 }
 
 TEST(AnimatedMesh, RefusesTruncationsAndLivesThroughFlippedBytes) {
-    const std::vector<std::byte> bytes = writeAnimatedMesh(bendingTube(6, 4));
+    AnimatedMesh tube = bendingTube(6, 4);
+    dress(tube);
+    const std::vector<std::byte> bytes = writeAnimatedMesh(tube);
     for (std::size_t size = 0; size < bytes.size(); size += 7) {
         EXPECT_FALSE(readAnimatedMesh(std::span(bytes).first(size))) << size;
     }
@@ -187,15 +205,60 @@ TEST(AnimatedMesh, SaysWhatIsWrong) {
         {[](AnimatedMesh& m) { m.clips[1].channels[0].node = 1; }, "moves a node that has no such member"},
         {[](AnimatedMesh& m) { m.clips[0].channels.push_back(m.clips[0].channels[0]); },
          "what another one moves"},
+        {[](AnimatedMesh& m) { m.materials[1] = "cloth"; }, "animation.materials[1] has a name"},
+        {[](AnimatedMesh& m) { m.materials.resize(kMeshMaterialsMax + 1); },
+         "more nodes, clips or keys than such a file holds"},
+        {[](AnimatedMesh& m) { m.materials.pop_back(); },
+         "animation.triangle_materials[0] is no such material"},
+        {[](AnimatedMesh& m) { m.triangle_materials.pop_back(); },
+         "animation.triangle_materials are not as many as the triangles"},
         {[](AnimatedMesh& m) { m.joints.resize(kMeshJointsMax + 1); }, "animation.joints has 4097 entries"},
     };
     for (const auto& [change, words] : cases) {
         AnimatedMesh mesh = bendingTube(8, 6);
+        dress(mesh);
         change(mesh);
         const Result<AnimatedMesh> read = readAnimatedMesh(writeAnimatedMesh(mesh));
         ASSERT_FALSE(read) << words;
         EXPECT_NE(read.error().message.find(words), std::string::npos) << read.error().message;
     }
+}
+
+TEST(MeshParts, GroupsAndMaterialsByName) {
+    AnimatedMesh mesh = bendingTube(8, 6);
+    dress(mesh);
+    EXPECT_EQ(groupNames(mesh), (std::vector<std::string>{"foot", "middle"}));
+    const auto foot = groupWeights(mesh, "foot");
+    const auto middle = groupWeights(mesh, "middle");
+    ASSERT_TRUE(foot && middle);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        EXPECT_NEAR((*foot)[i] + (*middle)[i], 1.0F, 1e-6F);
+        const float y = mesh.positions[i].y;
+        EXPECT_NEAR((*middle)[i], std::clamp(1.5F * y - 1.0F, 0.0F, 1.0F), 1e-6F);
+    }
+    // Two joints of one name are one group, and one that moves nothing is none.
+    mesh.nodes[1].name = "foot";
+    EXPECT_EQ(groupWeights(mesh, "foot").value_or(std::vector<float>()),
+              std::vector<float>(mesh.positions.size(), 1.0F));
+    mesh.joints.push_back(mesh.joints[1]);
+    mesh.joints.back().node = 0;
+    mesh.nodes[0].name = "unused";
+    EXPECT_EQ(groupNames(mesh), (std::vector<std::string>{"unused", "foot"}));
+
+    EXPECT_EQ(materialTriangles(mesh, "cloth")->size(), mesh.triangles.size() * 2 / 3);
+    EXPECT_FALSE(materialTriangles(mesh, "")) << "no name";
+    const auto none = materialTriangles(mesh, "Cl\noth");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().message.find('\n'), std::string::npos);
+    EXPECT_NE(none.error().message.find("it has 'cloth'"), std::string::npos) << none.error().message;
+    // Long lists are cut.
+    std::vector<std::string> many;
+    for (int i = 0; i < 30; ++i) {
+        many.push_back("name " + std::to_string(i));
+    }
+    const std::string listed = noSuchPart("group", "x", many);
+    EXPECT_NE(listed.find("'name 19', …"), std::string::npos) << listed;
+    EXPECT_EQ(listed.find("name 20"), std::string::npos) << listed;
 }
 
 }  // namespace
