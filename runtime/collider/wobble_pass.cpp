@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/base/portable_math.h"
 #include "formats/collider.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
@@ -22,12 +23,42 @@ namespace {
 // enough to see a curvature.
 constexpr float kInch = 1e-3F;
 
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// Of the three waves at a time, within a turn.
+glm::vec3 phasesAt(const Wobble& wobble, double time) {
+    constexpr std::array<double, 3> kRates{1.0, 1.25, 0.8};
+    const double turns = static_cast<double>(wobble.frequency) * time;
+    glm::vec3 phases(0.0F);
+    for (int k = 0; k < 3; ++k) {
+        phases[k] = static_cast<float>(std::fmod(
+            static_cast<double>(wobble.phase) + k - kTurn * kRates[static_cast<std::size_t>(k)] * turns,
+            kTurn));
+    }
+    return phases;
+}
+
 struct RestVertex {
     glm::vec3 position;
     glm::vec3 normal;
 };
 
 }  // namespace
+
+std::vector<glm::vec3> wobbled(const Wobble& wobble, std::span<const glm::vec3> positions,
+                               std::span<const glm::vec3> normals, double time) {
+    const glm::vec3 phases = phasesAt(wobble, time);
+    const double number = kTurn / double{wobble.wavelength};
+    std::vector<glm::vec3> moved(positions.begin(), positions.end());
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        double waves = 0.0;
+        for (int k = 0; k < 3; ++k) {
+            waves += portable::sin(std::fmod(number * double{positions[i][k]} + double{phases[k]}, kTurn));
+        }
+        moved[i] += static_cast<float>(double{wobble.amplitude} / 3.0 * waves) * normals[i];
+    }
+    return moved;
+}
 
 Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm::vec3> positions,
                                       std::span<const glm::vec3> normals, VertexOutput output) {
@@ -72,19 +103,10 @@ Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm:
 
 void WobblePass::run(double time) {
     const PassState state;
-    constexpr double kTurn = 2.0 * std::numbers::pi;
-    constexpr std::array<double, 3> kRates{1.0, 1.25, 0.8};
-    const double turns = static_cast<double>(wobble_.frequency) * time;
-    glm::vec3 phases(0.0F);
-    for (int k = 0; k < 3; ++k) {
-        phases[k] = static_cast<float>(std::fmod(
-            static_cast<double>(wobble_.phase) + k - kTurn * kRates[static_cast<std::size_t>(k)] * turns,
-            kTurn));
-    }
     GlProgram& program = feedback_.program();
     program.use();
     program.set("u_inch", inch_);
-    program.set("u_phases", phases);
+    program.set("u_phases", phasesAt(wobble_, time));
     program.set("u_amplitude", wobble_.amplitude);
     program.set("u_number", static_cast<float>(kTurn) / wobble_.wavelength);
     feedback_.run();

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 #include <span>
+#include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/collider/vertex_feedback.h"
@@ -24,6 +25,10 @@ struct Wobble {
     float wavelength = 1.0F;  ///< object units, > 0
     friend bool operator==(const Wobble&, const Wobble&) = default;
 };
+
+/// The vertices at a time, by the formula above: CPU truth of WobblePass::run().
+[[nodiscard]] std::vector<glm::vec3> wobbled(const Wobble& wobble, std::span<const glm::vec3> positions,
+                                             std::span<const glm::vec3> normals, double time);
 
 class WobblePass {
   public:

@@ -14,15 +14,21 @@ tl::unexpected<Error> tooMany(std::size_t limit, const char* things) {
                 "it has more than " + std::to_string(limit) + " " + things + "; simplify the mesh");
 }
 
-Result<PictureMesh> triangulated(PolygonMesh polygons) {
+Result<NamedMesh> triangulated(PolygonMesh polygons) {
     if (polygons.positions.size() > kMeshVerticesMax) {
         return tooMany(kMeshVerticesMax, "vertices");
     }
-    PictureMesh mesh;
+    NamedMesh named;
+    PictureMesh& mesh = named.mesh;
     mesh.positions = std::move(polygons.positions);
     mesh.colors = std::move(polygons.colors);
     const std::uint32_t* corner = polygons.corners.data();
-    for (const std::uint32_t size : polygons.sizes) {
+    auto group = polygons.groups.begin();
+    for (std::size_t polygon = 0; polygon < polygons.sizes.size(); ++polygon) {
+        for (; group != polygons.groups.end() && group->begin <= polygon; ++group) {
+            named.parts.push_back({mesh.triangles.size() / 3, group->node, group->material});
+        }
+        const std::uint32_t size = polygons.sizes[polygon];
         if (mesh.triangles.size() / 3 + size > kMeshTrianglesMax + 2) {
             return tooMany(kMeshTrianglesMax, "triangles");
         }
@@ -35,7 +41,7 @@ Result<PictureMesh> triangulated(PolygonMesh polygons) {
         return invalidInput("it has no faces");
     }
     RELIEF_TRY(checkMesh(mesh));
-    return mesh;
+    return named;
 }
 
 Result<PolygonMesh> readPolygons(std::span<const std::byte> bytes, std::string_view extension) {
@@ -45,21 +51,29 @@ Result<PolygonMesh> readPolygons(std::span<const std::byte> bytes, std::string_v
     return std::move(RELIEF_TRY(readObj(bytes, PolygonColors::kRead)).polygons);
 }
 
+Result<NamedMesh> parseNamedMesh(std::span<const std::byte> bytes, std::string_view extension,
+                                 const std::string& name) {
+    return inFront(name, readPolygons(bytes, extension).and_then(triangulated));
+}
+
 }  // namespace
 
 Result<PictureMesh> parsePictureMesh(std::span<const std::byte> bytes, std::string_view extension,
                                      const std::string& name) {
-    return inFront(name, readPolygons(bytes, extension).and_then(triangulated));
+    return std::move(RELIEF_TRY(parseNamedMesh(bytes, extension, name)).mesh);
 }
 
 Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path) {
+    return std::move(RELIEF_TRY(loadNamedMesh(path)).mesh);
+}
+
+Result<NamedMesh> loadNamedMesh(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().native());
     if (extension != ".obj" && extension != ".ply") {
-        return fail(
-            ErrorCode::kUnsupported,
-            quotedPath(path) + " is no mesh that a picture can be drawn from; convert it to .obj or .ply");
+        return fail(ErrorCode::kUnsupported,
+                    quotedPath(path) + " is no mesh that can be read here; convert it to .obj or .ply");
     }
-    return parsePictureMesh(RELIEF_TRY(readFile(path, kMeshBytesMax)), extension, quotedPath(path));
+    return parseNamedMesh(RELIEF_TRY(readFile(path, kMeshBytesMax)), extension, quotedPath(path));
 }
 
 }  // namespace relief

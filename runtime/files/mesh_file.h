@@ -1,4 +1,4 @@
-// Mesh files for the picture of a collider, OBJ and PLY, and for bodies that move. Positions and faces alone are read;
+// Mesh files for the picture of a collider, OBJ and PLY, for bodies that move and for surfaces that give birth. Positions and faces are read;
 // polygons become fans of triangles. Files are untrusted.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/base/result.h"
 #include "runtime/picture/picture_mesh.h"
@@ -21,6 +22,19 @@ inline constexpr std::size_t kMeshTrianglesMax = 40'000'000;
 /// Errors: kUnsupported (another extension), kIo, kInvalidInput with the file and, where there are lines, the
 /// line, kLimit (the numbers above).
 [[nodiscard]] Result<PictureMesh> loadPictureMesh(const std::filesystem::path& path);
+
+/// Triangles in a row of one group and one material.
+struct PictureMeshPart {
+    std::size_t begin = 0;  ///< its first triangle; it ends where the next part begins
+    std::string group;      ///< by `g`, or `o`, of an .obj; "": none
+    std::string material;
+};
+struct NamedMesh {
+    PictureMesh mesh;
+    std::vector<PictureMeshPart> parts;  ///< by their beginnings; triangles before the first have no names
+};
+/// The same with the names that a file has: an .obj may, a .ply has none.
+[[nodiscard]] Result<NamedMesh> loadNamedMesh(const std::filesystem::path& path);
 
 /// \param extension  ".obj" or ".ply". \param name  stands for the file in messages.
 /// Errors: kInvalidInput, kLimit, as above.

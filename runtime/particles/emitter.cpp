@@ -35,6 +35,7 @@ const char* firstOf(std::initializer_list<std::pair<bool, const char*>> problems
 const char* problemOf(const EmitterSettings& s) {
     const bool box = s.shape == EmitterShape::kBox || s.shape == EmitterShape::kPoint;
     const bool points = s.shape == EmitterShape::kPoints;
+    const bool surface = s.shape == EmitterShape::kSurface;
     const std::size_t count = s.points.positions.size();
     const auto ordered = [](const glm::vec3& low, const glm::vec3& high) {
         return isFinite(low) && isFinite(high) && low.x <= high.x && low.y <= high.y && low.z <= high.z;
@@ -50,7 +51,8 @@ const char* problemOf(const EmitterSettings& s) {
         {points && !s.points.normals.empty() && s.points.normals.size() != count,
          "points must have as many normals as positions, or none"},
         {s.shape == EmitterShape::kDisc && unitVector(s.normal) == glm::vec3(0.0F), "normal must not be 0"},
-        {!box && !points && !(isFinite(s.center) && rising(s.radius, s.radius)),
+        {surface && !(s.surface.area() > 0.0), "surface must have an area"},
+        {!box && !points && !surface && !(isFinite(s.center) && rising(s.radius, s.radius)),
          "center and radius must be finite, the radius at least 0"},
         {!(s.start >= 0.0 && s.rate >= 0.0 && s.duration > 0.0 && s.burst_every >= 0.0),
          "start, rate and burst_every must be at least 0, duration above 0"},
@@ -126,24 +128,40 @@ std::uint64_t Emitter::burstsDue(double active) const {
     return wholeCount(last) + 1;
 }
 
-std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& births) {
+Emitter::Due Emitter::dueAfter(double dt) const {
     // Summed with its rounding errors (Kahan): a day of steps ends where one long step does.
     const double more = dt + remainder_;
     const double sum = elapsed_ + more;
-    remainder_ = std::isfinite(sum) ? more - (sum - elapsed_) : 0.0;
-    elapsed_ = sum;
-    const double active = elapsed_ - settings_.start + kEarly * elapsed_;
-    if (active < 0.0) {
+    Due due{.elapsed = sum, .remainder = std::isfinite(sum) ? more - (sum - elapsed_) : 0.0};
+    const double active = sum - settings_.start + kEarly * sum;
+    due.started = active >= 0.0;
+    if (due.started) {
+        due.steady = wholeCount(steadyBirths(active));
+        due.bursts = burstsDue(active);
+    }
+    return due;
+}
+
+bool Emitter::isDue(double dt) const {
+    const Due due = dueAfter(dt);
+    return due.steady > steady_ || due.bursts > bursts_;
+}
+
+std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& births) {
+    const Due due = dueAfter(dt);
+    elapsed_ = due.elapsed;
+    remainder_ = due.remainder;
+    place_velocities_.clear();
+    if (!due.started) {
         return 0;
     }
-    const std::uint64_t steady_now = wholeCount(steadyBirths(active));
-    const std::uint64_t bursts_now = burstsDue(active);
-    const std::uint64_t steady_due = steady_now - std::min(steady_now, steady_);
+    const std::uint64_t steady_due = due.steady - std::min(due.steady, steady_);
     const std::uint64_t burst_due =
-        wholeCount(static_cast<double>(bursts_now - std::min(bursts_now, bursts_)) *
+        wholeCount(static_cast<double>(due.bursts - std::min(due.bursts, bursts_)) *
                    static_cast<double>(settings_.burst));
     const std::uint64_t wanted = steady_due + burst_due;
-    const std::uint64_t made = std::min(wanted, room);
+    const bool nowhere = settings_.shape == EmitterShape::kSurface && !(settings_.surface.area() > 0.0);
+    const std::uint64_t made = nowhere ? 0 : std::min(wanted, room);
 
     // Births in the order of time. Before burst j come the births by rate up to its moment: a number that
     // does not depend on where a step ends, and is never above that of this step.
@@ -154,16 +172,15 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
     std::uint64_t left = made;
     std::uint64_t steady = steady_;
     for (std::uint64_t burst = bursts_; left > 0; ++burst) {
-        const bool last = burst >= bursts_now;
+        const bool last = burst >= due.bursts;
         const std::uint64_t until =
-            last ? steady_now : wholeCount(steadyBirths(static_cast<double>(burst) * settings_.burst_every));
+            last ? due.steady : wholeCount(steadyBirths(static_cast<double>(burst) * settings_.burst_every));
         const std::uint64_t by_rate = std::min(left, until - std::min(until, steady));
-        const std::size_t from = births.size();
-        make(by_rate, births);
-        for (std::uint64_t i = 0; settings_.spread && i < by_rate; ++i) {
+        for (std::uint64_t i = 0; i < by_rate; ++i) {
             const double moment = settings_.start + static_cast<double>(steady + i + 1) / settings_.rate;
-            births[from + static_cast<std::size_t>(i)].age =
-                static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt));
+            Birth& birth = births.emplace_back();
+            birth.age = settings_.spread ? static_cast<float>(std::clamp(elapsed_ - moment, 0.0, dt)) : 0.0F;
+            sample(birth);
         }
         steady += by_rate;
         left -= by_rate;
@@ -171,24 +188,19 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
             break;
         }
         const std::uint64_t at_once = std::min(left, settings_.burst);
-        make(at_once, births);
+        for (std::uint64_t i = 0; i < at_once; ++i) {
+            sample(births.emplace_back());
+        }
         left -= at_once;
     }
-    steady_ = std::max(steady_, steady_now);
-    bursts_ = std::max(bursts_, bursts_now);
+    steady_ = std::max(steady_, due.steady);
+    bursts_ = std::max(bursts_, due.bursts);
     return wanted - made;
 }
 
-void Emitter::make(std::uint64_t count, std::vector<Birth>& births) {
-    for (std::uint64_t i = 0; i < count; ++i) {
-        sample(births.emplace_back());
-    }
-}
-
-// The order of the draws is part of every seeded run: place, velocity, aim, lifetime.
-void Emitter::sample(Birth& birth) {
+/// \return the normal there; 0: it has none.
+glm::vec3 Emitter::place(Birth& birth) {
     const EmitterSettings& s = settings_;
-    glm::vec3 normal{0.0F};
     switch (s.shape) {
         case EmitterShape::kBox:
         case EmitterShape::kPoint:
@@ -199,26 +211,37 @@ void Emitter::sample(Birth& birth) {
         case EmitterShape::kSphere: {
             const glm::vec3 p = inUnitBall(random_);
             birth.position = s.center + s.radius * p;
-            normal = p;
-            break;
+            return p;
         }
-        case EmitterShape::kShell:
-            normal = onUnitSphere(random_);
-            birth.position = s.center + s.radius * normal;
-            break;
+        case EmitterShape::kShell: {
+            const glm::vec3 p = onUnitSphere(random_);
+            birth.position = s.center + s.radius * p;
+            return p;
+        }
         case EmitterShape::kDisc: {
             const glm::vec2 p = inUnitDisc(random_);
             birth.position = s.center + s.radius * (p.x * basis_.x + p.y * basis_.y);
-            normal = basis_.z;
-            break;
+            return basis_.z;
         }
         case EmitterShape::kPoints: {
             const std::uint32_t at = random_.below(static_cast<std::uint32_t>(s.points.positions.size()));
             birth.position = s.points.positions[at];
-            normal = s.points.normals.empty() ? normal : s.points.normals[at];
-            break;
+            return s.points.normals.empty() ? glm::vec3(0.0F) : s.points.normals[at];
+        }
+        case EmitterShape::kSurface: {
+            const EmitterSurface::Place at = s.surface.draw(random_, birth.age);
+            birth.position = at.position;
+            place_velocities_.push_back(at.velocity);
+            return at.normal;
         }
     }
+    return glm::vec3(0.0F);
+}
+
+// The order of the draws is part of every seeded run: place, velocity, aim, lifetime.
+void Emitter::sample(Birth& birth) {
+    const EmitterSettings& s = settings_;
+    const glm::vec3 normal = place(birth);
     for (int axis = 0; axis < 3; ++axis) {
         const float spread = s.velocity_spread[axis];
         birth.velocity[axis] = s.velocity[axis] + random_.between(-spread, spread);
@@ -247,13 +270,15 @@ glm::vec3 Emitter::aimed(const glm::vec3& normal) {
     return speed * direction;
 }
 
-void carry(const EmitterMotion& motion, double time, std::span<Birth> births) {
-    if (motion.none()) {
+void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
+           std::span<const glm::vec3> own) {
+    if (motion.none() && own.empty()) {
         return;
     }
-    for (Birth& birth : births) {
+    for (std::size_t i = 0; i < births.size(); ++i) {
+        Birth& birth = births[i];
         const double moment = time - static_cast<double>(birth.age);
-        glm::vec3 moved(0.0F);
+        glm::vec3 moved = own.empty() ? glm::vec3(0.0F) : own[i];
         carryAlong(motion.keys, moment, birth, moved);
         carryAlong(motion.body, moment, birth, moved);
         birth.velocity += motion.inherit * moved;
@@ -268,7 +293,7 @@ std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room
         refused += emitters[i].emit(dt, room, births);
         room -= births.size() - before;
         if (i < motions.size()) {
-            carry(motions[i], time, std::span(births).subspan(before));
+            carry(motions[i], time, std::span(births).subspan(before), emitters[i].placeVelocities());
         }
     }
     return refused;

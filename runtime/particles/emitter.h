@@ -14,6 +14,7 @@
 #include "formats/base/result.h"
 #include "runtime/collider/pose_keys.h"
 #include "runtime/particles/birth.h"
+#include "runtime/particles/emitter_surface.h"
 #include "runtime/particles/point_list.h"
 #include "runtime/particles/random.h"
 
@@ -27,15 +28,16 @@ enum class EmitterShape : std::uint8_t {
     kDisc,    ///< round center, at right angles to normal
     kPoints,  ///< the points of a list: of a mesh's surface, say
     kPoint,   ///< box_min, to which box_max is equal
+    kSurface  ///< a surface of triangles, which may move and bend
 };
 template <>
-inline constexpr std::array<std::string_view, 6> kWordsOf<EmitterShape>{"box",  "sphere", "shell",
-                                                                        "disc", "points", "point"};
+inline constexpr std::array<std::string_view, 7> kWordsOf<EmitterShape>{"box",    "sphere", "shell",  "disc",
+                                                                        "points", "point",  "surface"};
 
 /// A speed along a direction. It adds a uniform and a normal share, and where the sum is below 0 draws anew.
 struct EmitterAim {
     /// The middle of the cone, not 0. nullopt: the normal of the place of birth: outwards for sphere and
-    /// shell, `normal` for a disc, the point's own for points; a box has none.
+    /// shell, `normal` for a disc, the point's own for points, its triangle's for a surface; a box has none.
     std::optional<glm::vec3> direction;
     float cone_degrees = 0.0F;  ///< half angle, 0…180; uniform over its solid angle
     float speed_min = 0.0F;     ///< object units a second, ≥ 0; uniform between the two
@@ -51,6 +53,7 @@ struct EmitterSettings {
     float radius = 0.0F;                 ///< of sphere, shell and disc, ≥ 0
     glm::vec3 normal{0.0F, 1.0F, 0.0F};  ///< of the disc, not 0
     PointList points;                    ///< at least one for kPoints
+    EmitterSurface surface;              ///< of some area for kSurface; where it is at first
 
     double start = 0.0;  ///< seconds before anything is born, ≥ 0
     double rate = 0.0;   ///< births a second, ≥ 0
@@ -89,14 +92,33 @@ class Emitter {
     /// \param births  they are added at its end.
     /// \return how many were due but found no room; they are not made up for later.
     std::uint64_t emit(double dt, std::uint64_t room, std::vector<Birth>& births);
+    /// Anything is due in the next `dt` seconds.
+    [[nodiscard]] bool isDue(double dt) const;
+
+    /// Moves the surface of kSurface for the next emit(): EmitterSurface::move(). While it has no area, births that are due find no
+    /// room.
+    void moveSurface(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) {
+        settings_.surface.move(before, now, seconds);
+    }
+    /// The velocities of the places of the births that the last emit() made, for carry(): of kSurface as many, else none.
+    [[nodiscard]] std::span<const glm::vec3> placeVelocities() const { return place_velocities_; }
 
     [[nodiscard]] const EmitterSettings& settings() const { return settings_; }
 
   private:
     [[nodiscard]] double steadyBirths(double active) const;
     [[nodiscard]] std::uint64_t burstsDue(double active) const;
-    void make(std::uint64_t count, std::vector<Birth>& births);
+    /// All that is due by a time, since the beginning.
+    struct Due {
+        double elapsed = 0.0;
+        double remainder = 0.0;
+        bool started = false;
+        std::uint64_t steady = 0;
+        std::uint64_t bursts = 0;
+    };
+    [[nodiscard]] Due dueAfter(double dt) const;
     void sample(Birth& birth);
+    [[nodiscard]] glm::vec3 place(Birth& birth);
     [[nodiscard]] glm::vec3 aimed(const glm::vec3& normal);
 
     EmitterSettings settings_;
@@ -109,6 +131,7 @@ class Emitter {
     // Asked for so far, those without room included.
     std::uint64_t steady_ = 0;
     std::uint64_t bursts_ = 0;
+    std::vector<glm::vec3> place_velocities_;
 };
 
 /// The trajectory that carries an emitter's births. Its places are then in a space of its own, which `keys` bring into the
@@ -122,7 +145,9 @@ struct EmitterMotion {
 
 /// Brings births into the world: each from where the emitter is at its own moment, `age` before `time`.
 /// \param time  when they enter a step: its beginning, seconds on the clock of the keys.
-void carry(const EmitterMotion& motion, double time, std::span<Birth> births);
+/// \param own   velocities of their places in the emitter's space, of which they take on a share as well; empty: none moves.
+void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
+           std::span<const glm::vec3> own = {});
 
 /// emit() of each in turn: where there is too little room, the earlier ones take it.
 /// \param motions  of as many, or none: they carry the births along, at once.

@@ -206,7 +206,25 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
     return setEvents();
 }
 
+void Simulation::bendSurfaces(double dt) {
+    for (std::size_t i = 0; i < emitters_.size(); ++i) {
+        const SceneEmitter& from = scene_->emitters[i];
+        if (!from.followsShape() || !emitters_[i].isDue(dt)) {
+            continue;
+        }
+        MeshTrail* const trail = trailOf(*from.attach);
+        if (trail == nullptr) {
+            continue;  // at rest in its collider's space
+        }
+        trail->bend(emitters_[i]);
+        if (stream_) {
+            emitter_balls_[i] = emitterBalls(std::span(emitters_).subspan(i, 1)).front();
+        }
+    }
+}
+
 Result<void> Simulation::giveBirth(float dt) {
+    bendSurfaces(static_cast<double>(dt));
     births_.clear();
     births_.swap(spawned_);
     const std::uint64_t room =
@@ -286,6 +304,17 @@ Result<void> Simulation::playClips(double time) {
                                         own || played.cyclic ? 0.0 : played.run(time), own};
         RELIEF_TRY(body.collider.setPose(poses[i]));
         body.jumps = body.source != source;
+        const auto show = [&](double at, MeshPose pose, bool jumps) {
+            body.trail.show(
+                at, [mesh = played.mesh, pose = std::move(pose)] { return posed(*mesh, pose); }, jumps);
+        };
+        const double before = time - static_cast<double>(scene_->time.dt);
+        if (!body.source && !own && (played.cyclic || played.run(before) == played.run(time))) {
+            show(before, played.poseAt(before), true);  // it has moved already when the scene begins
+            show(time, std::move(poses[i]), false);
+        } else {
+            show(time, std::move(poses[i]), body.jumps);
+        }
         body.source = source;
         if (body.jumps) {
             body.collider.settle();
@@ -326,6 +355,17 @@ std::vector<Pose> Simulation::posesNow(double time) const {
 
 Result<void> Simulation::showLive(double time) {
     for (LiveBody& body : live_) {
+        const LiveMesh* const live = &*loaded_->live[body.index];
+        const auto show = [&](double at, bool jumps) {
+            body.trail.show(
+                at,
+                [live, at] { return wobbled(live->wobble, live->mesh.positions, live->mesh.normals, at); },
+                jumps);
+        };
+        if (body.trail.empty()) {
+            show(time - static_cast<double>(scene_->time.dt), true);
+        }
+        show(time, false);
         body.pass.run(time);
         RELIEF_TRY(body.collider.setPositions(body.pass.buffer().name()));
         RELIEF_TRY(body.collider.update(mutableTextures(), body.index));
@@ -350,6 +390,20 @@ const Simulation::PlayedBody* Simulation::playedBody(std::size_t collider) const
     const auto found = std::find_if(played_.begin(), played_.end(),
                                     [&](const PlayedBody& body) { return body.index == collider; });
     return found == played_.end() ? nullptr : &*found;
+}
+
+MeshTrail* Simulation::trailOf(std::size_t collider) {
+    for (LiveBody& body : live_) {
+        if (body.index == collider) {
+            return &body.trail;
+        }
+    }
+    for (PlayedBody& body : played_) {
+        if (body.index == collider) {
+            return &body.trail;
+        }
+    }
+    return nullptr;
 }
 
 const AnimatedMesh* Simulation::animatedMesh(std::size_t collider) const {

@@ -15,6 +15,7 @@
 #include "runtime/collider/wobble_pass.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_system.h"
+#include "runtime/player/mesh_trail.h"
 #include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/stream/world_stream.h"
@@ -104,6 +105,7 @@ class Simulation {
         std::size_t index;  // in the scene
         LiveCollider collider;
         WobblePass pass;
+        MeshTrail trail = {};
     };
     /// A collider that plays a clip.
     struct PlayedBody {
@@ -119,9 +121,12 @@ class Simulation {
         };
         std::optional<Source> source = {};
         bool jumps = false;  // by the last pose
+        MeshTrail trail = {};
     };
     Simulation() = default;
     [[nodiscard]] const PlayedBody* playedBody(std::size_t collider) const;
+    /// Of a collider whose mesh bends; null: that of another one does not.
+    [[nodiscard]] MeshTrail* trailOf(std::size_t collider);
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
     [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
@@ -137,6 +142,8 @@ class Simulation {
     [[nodiscard]] Result<void> makeLive(const LoadedScene& loaded);
     /// Deforms all that are live to a time, in seconds, and draws their maps. Before each step, for its end.
     [[nodiscard]] Result<void> showLive(double time);
+    /// The surfaces on which something will be born, where their colliders are now.
+    void bendSurfaces(double dt);
     [[nodiscard]] Result<void> giveBirth(float dt);
     [[nodiscard]] Result<void> prewarm(Watchdog* watchdog, const std::function<void()>& checkpoint);
     /// \param tag  of its events; 0: not passed on.

@@ -105,6 +105,7 @@ std::vector<fs::path> filesOf(const Scene& scene) {
     }
     for (const SceneEmitter& emitter : scene.emitters) {
         files.push_back(emitter.points_file);
+        files.push_back(emitter.mesh_file);
     }
     if (scene.flow) {
         files.push_back(scene.flow->path);
@@ -184,7 +185,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         loaded.colliders.push_back(std::move(read));
     }
     loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
-    loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters));
+    loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters, loaded.meshes()));
     if (loaded.scene.flow) {
         auto flow = RELIEF_TRY(loadFlow(*loaded.scene.flow));
         loaded.scene.air.flow = std::make_shared<const FlowField>(std::move(flow));

@@ -12,6 +12,7 @@
 #include "formats/container_limits.h"
 #include "formats/world/world.h"
 #include "runtime/scene/scene.h"
+#include "runtime/scene/scene_births.h"
 #include "runtime/scene/scene_live.h"
 #include "runtime/scene/scene_play.h"
 
@@ -46,6 +47,8 @@ struct LoadedScene {
     std::vector<std::optional<PlayedMesh>> played;
     Bounds bounds;                  ///< of what they occupy in the course of time, in the particles' space
     std::vector<Emitter> emitters;  ///< those of the scene, which have given no birth yet
+
+    [[nodiscard]] SceneMeshes meshes() const { return {scene.colliders, colliders, live, played}; }
 };
 
 /// Every file that a scene names, sorted; without the scene itself.

@@ -61,6 +61,20 @@ std::optional<FieldFault> checkPlace(SceneEmitter& emitter, const GivenFields& g
     if (given("attach") && emitter.shape == EmitterShape::kBox && !emitter.has_box) {
         return FieldFault{"attach", "needs a place in the collider's space: emitter.point, for example"};
     }
+    if (emitter.followsShape() && !given("attach")) {
+        return FieldFault{
+            "shape", "= \"surface\" needs emitter.attach, the collider whose surface it is, or emitter.mesh"};
+    }
+    if (emitter.followsShape() && given("key")) {
+        return FieldFault{"key",
+                          "moves no surface of a collider, which goes where that goes; remove it, or give "
+                          "emitter.mesh"};
+    }
+    for (const auto& [key, name] : {std::pair("group", &emitter.group), {"material", &emitter.material}}) {
+        if (given(key) && name->empty()) {
+            return FieldFault{key, "is empty; give a name, or remove it"};
+        }
+    }
     return std::nullopt;
 }
 
@@ -120,25 +134,6 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
         }
     }
     return shareRates(emitters, seconds, capacity);
-}
-
-Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters) {
-    std::vector<Emitter> made;
-    for (const SceneEmitter& emitter : emitters) {
-        EmitterSettings settings = emitter;
-        if (emitter.shape == EmitterShape::kPoints) {
-            const std::string key = emitter.points_origin + ": emitter.points";
-            settings.points = RELIEF_TRY(inFront(key, loadPointList(emitter.points_file)));
-            if (emitter.aim && !emitter.aim->direction && settings.points.normals.empty()) {
-                return fail(ErrorCode::kInvalidInput,
-                            key + ": " + quotedPath(emitter.points_file) +
-                                " has no normals to aim along; give emitter.direction, or nx, ny and nz");
-            }
-        }
-        RELIEF_TRY(Emitter::check(settings));
-        made.emplace_back(std::move(settings), emitter.seed, made.size());
-    }
-    return made;
 }
 
 std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns) {

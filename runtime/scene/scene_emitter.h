@@ -30,13 +30,21 @@ struct SceneEmitter : EmitterSettings {
     bool has_speed = false;             ///< of aim
     std::filesystem::path points_file;  ///< resolved against the scene's folder; for kPoints alone
     std::string points_origin;          ///< "scene.toml:3:8" of that key, for messages
+    std::filesystem::path
+        mesh_file;  ///< resolved as well; for kSurface alone; empty: of the collider it is attached to
+    std::string mesh_origin;
+    std::string group;     ///< of that mesh; empty: all of it
+    std::string material;  ///< likewise
     std::uint64_t seed = 1;
+    std::string place;  ///< "file:line:column" of the table
 
     std::optional<std::uint32_t> attach;  ///< the number of the collider in whose space it is, from 0
     std::vector<SceneKey> given_keys;
     std::vector<PoseKey> keys;  ///< of those; by rising time; empty: it rests there
     float inherit = 0.0F;       ///< share of its own velocity that births take on
     [[nodiscard]] bool moves() const { return attach.has_value() || !keys.empty(); }
+    /// Its surface is that of the collider that it is attached to, and bends with it.
+    [[nodiscard]] bool followsShape() const { return shape == EmitterShape::kSurface && mesh_file.empty(); }
 };
 
 /// emitter.speed: a number, [least, most], or { mean, deviation }.
@@ -69,12 +77,13 @@ template <class Visitor, FieldsOf<SceneEmitter> E>
 void fields(Visitor& visit, E& e) {
     auto& aim = aimOf(e);
     const EmitterSpeed speed{aim};
-    visit("shape", e.shape,
-          {"Place of birth; a sphere is its volume, a shell its surface",
-           {},
-           {},
-           "\"point\" with point, \"points\" with points, else \"box\"",
-           {.selects = true}});
+    visit(
+        "shape", e.shape,
+        {"Place of birth; a sphere is its volume, a shell its surface, a surface that of a collider or mesh",
+         {},
+         {},
+         "\"point\" with point, \"points\" with points, else \"box\"",
+         {.selects = true}});
     visit("box_min", FieldMaybe{e.box_min, e.has_box},
           {"Lower corner",
            "[x, y, z]",
@@ -105,6 +114,20 @@ void fields(Visitor& visit, E& e) {
            {},
            {},
            {.only = "points", .required = true, .chooses = true}});
+    visit("mesh", FieldFile{e.mesh_file, e.mesh_origin},
+          leftOut({"The .obj or .ply whose surface it is, in the emitter's space",
+                   {},
+                   {},
+                   "that of the collider it is attached to, as it moves and bends",
+                   {.only = "surface"}}));
+    visit(
+        "group", e.group,
+        leftOut({"Joint or node whose weights are the density of the births; of an .obj its group or object",
+                 {},
+                 {},
+                 "all",
+                 {.only = "surface"}}));
+    visit("material", e.material, leftOut({"Material that gives birth", {}, {}, "all", {.only = "surface"}}));
     visit("start", e.start, {"Time before anything is born", "s", kTimeRange});
     visit("rate", FieldMaybe{e.rate, e.has_rate},
           {"Births a second; several emitters without a rate share what the others leave of the capacity",
@@ -131,7 +154,7 @@ void fields(Visitor& visit, E& e) {
           leftOut({"Direction of births; required for a box or point",
                    "[x, y, z]",
                    kPointRange,
-                   "the normal: outwards, the disc's, the point's own",
+                   "the normal: outwards, the disc's, the point's own, the surface's",
                    {.not_zero = true}}));
     visit("cone", FieldMaybe{aim.cone_degrees, e.has_aim},
           leftOut({"Half angle about the direction, uniform over its solid angle", "degrees", {0.0, 180.0}}));
@@ -144,7 +167,8 @@ void fields(Visitor& visit, E& e) {
           {"Number or name of the type", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
     visit("seed", e.seed, {"Seed; emitter i draws from the i-th stream of its seed", {}, {0.0, kSeedMax}});
     visit("attach", e.attach,
-          leftOut({"Number, from 0, of the collider in whose space the emitter is; needs a place",
+          leftOut({"Number, from 0, of the collider in whose space the emitter is; needs a place, or the "
+                   "shape surface",
                    {},
                    {0.0, ColliderTextures::kBodiesMax - 1},
                    "the world",
@@ -180,12 +204,6 @@ void fields(Visitor& visit, S& spawn) {
 /// Errors: kInvalidInput if they leave nothing.
 [[nodiscard]] Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bounds,
                                             float scale, double seconds, std::uint32_t capacity);
-
-/// Ready to give birth; reads the files of points. Emitter i draws from stream i.
-/// \param emitters  complete.
-/// Fails as loadPointList does, with the place of the key, and with kInvalidInput (points without normals and
-/// without a direction).
-[[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters);
 
 /// Spawner i draws from stream i of its seed, behind those of the emitters.
 [[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns);

@@ -21,6 +21,9 @@ PointOfInterest ballOf(const EmitterSettings& emitter) {
                 box.add(point);
             }
             break;
+        case EmitterShape::kSurface:
+            box = emitter.surface.bounds();
+            break;
         case EmitterShape::kBox:
         case EmitterShape::kPoint:
             box = {emitter.box_min, emitter.shape == EmitterShape::kBox ? emitter.box_max : emitter.box_min};

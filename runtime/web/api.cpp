@@ -292,7 +292,7 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     }
     std::optional<std::vector<Emitter>> made;
     if (emitters) {
-        made = RELIEF_TRY(makeEmitters(wanted.emitters));
+        made = RELIEF_TRY(makeEmitters(wanted.emitters, player.loaded.meshes()));
     }
     std::vector<SceneCollider> colliders = now.colliders;
     RELIEF_TRY(takePoses(colliders, wanted.colliders));

@@ -76,9 +76,12 @@ TEST_P(WobblePassGlTest, FollowsItsFormula) {
     for (const double time : {0.0, 0.3, 777.7}) {
         pass->run(time);
         const std::vector<glm::vec3> gpu = read(*pass);
+        const std::vector<glm::vec3> all = relief::wobbled(kSome, points.positions, points.normals, time);
         ASSERT_EQ(gpu.size(), points.positions.size());
+        ASSERT_EQ(all.size(), points.positions.size());
         for (std::size_t i = 0; i < gpu.size(); ++i) {
             const glm::vec3 cpu = wobbled(kSome, time, points.positions[i], points.normals[i]);
+            ASSERT_LE(glm::length(all[i] - cpu), 1e-6F) << time << " " << i;
             ASSERT_LE(glm::length(gpu[i] - cpu), 2e-5F) << time << " " << i;
             moved = std::max(moved, glm::length(gpu[i] - points.positions[i]));
         }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "runtime/scene/scene.h"
+#include "runtime/scene/scene_births.h"
 #include "runtime/scene/scene_parser.h"
 #include "tests/runtime/scene/scene_error.h"
 
@@ -260,7 +261,7 @@ TEST(SceneEmitter, MadeEmittersGiveBirth) {
         EXPECT_TRUE(scene) << scene.error().message;
         auto complete = withDefaults(std::move(*scene), unitBounds());
         EXPECT_TRUE(complete);
-        return makeEmitters(complete->emitters);
+        return makeEmitters(complete->emitters, SceneMeshes{});
     };
     auto made = make(
         "points = \"relief_emitter_points.csv\"\nburst = 3\nrate = 0\nvelocity_spread = [0, 0, 0]\n"

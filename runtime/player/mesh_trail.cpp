@@ -1,0 +1,27 @@
+#include "runtime/player/mesh_trail.h"
+
+#include <utility>
+
+namespace relief {
+
+const std::vector<glm::vec3>& MeshTrail::Moment::vertices() {
+    if (made.empty()) {
+        made = make();
+    }
+    return made;
+}
+
+void MeshTrail::show(double time, Vertices vertices, bool jumps) {
+    before_.reset();
+    if (now_ && !jumps && now_->time < time) {
+        before_ = std::move(now_);
+    }
+    now_ = Moment{time, std::move(vertices)};
+}
+
+void MeshTrail::bend(Emitter& emitter) {
+    Moment& before = before_ ? *before_ : *now_;
+    emitter.moveSurface(before.vertices(), now_->vertices(), now_->time - before.time);
+}
+
+}  // namespace relief

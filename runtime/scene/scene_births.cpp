@@ -1,0 +1,112 @@
+#include "runtime/scene/scene_births.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/animation/mesh_parts.h"
+#include "formats/base/file_io.h"
+#include "runtime/files/mesh_file.h"
+
+namespace relief {
+namespace {
+
+Result<EmitterSurface> surfaceOf(const AnimatedMesh& mesh, const MeshPose& pose,
+                                 const SceneEmitter& emitter) {
+    std::vector<float> weights;
+    if (!emitter.group.empty()) {
+        weights = RELIEF_TRY(inFront("emitter.group", groupWeights(mesh, emitter.group)));
+    }
+    std::vector<glm::uvec3> triangles = mesh.triangles;
+    if (!emitter.material.empty()) {
+        triangles = RELIEF_TRY(inFront("emitter.material", materialTriangles(mesh, emitter.material)));
+    }
+    return EmitterSurface::create(triangles, std::move(weights), posed(mesh, pose));
+}
+
+/// The triangles of a group and of a material, of what a file names.
+Result<std::vector<glm::uvec3>> partOf(const NamedMesh& named, const SceneEmitter& emitter) {
+    const std::vector<glm::uvec3> all = trianglesOf(named.mesh);
+    std::vector<glm::uvec3> kept;
+    std::vector<std::string> groups;
+    std::vector<std::string> materials;
+    bool has_group = emitter.group.empty();
+    bool has_material = emitter.material.empty();
+    for (std::size_t part = 0; part <= named.parts.size(); ++part) {
+        // In front of the first part lie those without names.
+        const PictureMeshPart own = part > 0 ? named.parts[part - 1] : PictureMeshPart{};
+        const std::size_t end = part < named.parts.size() ? named.parts[part].begin : all.size();
+        groups.push_back(own.group);
+        materials.push_back(own.material);
+        const bool in_group = emitter.group.empty() || own.group == emitter.group;
+        const bool in_material = emitter.material.empty() || own.material == emitter.material;
+        has_group = has_group || in_group;
+        has_material = has_material || in_material;
+        if (in_group && in_material) {
+            kept.insert(kept.end(), all.begin() + static_cast<std::ptrdiff_t>(own.begin),
+                        all.begin() + static_cast<std::ptrdiff_t>(end));
+        }
+    }
+    if (!has_group) {
+        return invalidInput("emitter.group: " + noSuchPart("group or object", emitter.group, groups));
+    }
+    if (!has_material) {
+        return invalidInput("emitter.material: " + noSuchPart("material", emitter.material, materials));
+    }
+    return kept;
+}
+
+Result<EmitterSurface> surfaceOf(NamedMesh named, const SceneEmitter& emitter) {
+    const std::vector<glm::uvec3> triangles = RELIEF_TRY(partOf(named, emitter));
+    return EmitterSurface::create(triangles, {}, std::move(named.mesh.positions));
+}
+
+Result<EmitterSurface> surfaceOf(const SceneEmitter& emitter, const SceneMeshes& meshes) {
+    if (!emitter.mesh_file.empty()) {
+        return surfaceOf(RELIEF_TRY(loadNamedMesh(emitter.mesh_file)), emitter);
+    }
+    const std::size_t i = *emitter.attach;
+    const SceneCollider& collider = meshes.colliders[i];
+    if (const std::optional<PlayedMesh>& played = meshes.played[i]) {
+        return inFront(quotedPath(collider.path), surfaceOf(*played->mesh, played->poseAt(0.0), emitter));
+    }
+    if (meshes.live[i]) {
+        return inFront(quotedPath(collider.path), surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter));
+    }
+    const Collider& container = *meshes.containers[i];
+    if (container.animation.empty()) {
+        return invalidInput(
+            "emitter.attach: " + quotedPath(collider.path) +
+            " keeps no mesh to give birth on; name the one that it was baked from by emitter.mesh, or "
+            "bake it with --animated");
+    }
+    const AnimatedMesh mesh =
+        RELIEF_TRY(inFront(quotedPath(collider.path), readAnimatedMesh(container.animation)));
+    return inFront(quotedPath(collider.path), surfaceOf(mesh, restPose(mesh), emitter));
+}
+
+}  // namespace
+
+Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters, const SceneMeshes& meshes) {
+    std::vector<Emitter> made;
+    for (const SceneEmitter& emitter : emitters) {
+        EmitterSettings settings = emitter;
+        if (emitter.shape == EmitterShape::kPoints) {
+            const std::string key = emitter.points_origin + ": emitter.points";
+            settings.points = RELIEF_TRY(inFront(key, loadPointList(emitter.points_file)));
+            if (emitter.aim && !emitter.aim->direction && settings.points.normals.empty()) {
+                return fail(ErrorCode::kInvalidInput,
+                            key + ": " + quotedPath(emitter.points_file) +
+                                " has no normals to aim along; give emitter.direction, or nx, ny and nz");
+            }
+        }
+        if (emitter.shape == EmitterShape::kSurface) {
+            settings.surface = RELIEF_TRY(inFront(emitter.place, surfaceOf(emitter, meshes)));
+        }
+        RELIEF_TRY(Emitter::check(settings));
+        made.emplace_back(std::move(settings), emitter.seed, made.size());
+    }
+    return made;
+}
+
+}  // namespace relief

@@ -1,0 +1,222 @@
+// Births on the surfaces of colliders that move and bend, as a scene plays them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "formats/container.h"
+#include "runtime/player/simulation.h"
+#include "runtime/scene/loaded_scene.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/animated_container.h"
+#include "tests/runtime/gl/gl_test.h"
+#include "tests/temporary_folder.h"
+
+namespace relief {
+namespace {
+
+constexpr double kDt = 1.0 / 50;
+
+class SurfaceBirthsGlTest : public GlTest {
+  protected:
+    SurfaceBirthsGlTest() {
+        EXPECT_TRUE(saveCollider(folder_.path() / "tube.relief", animatedContainer(mesh_)));
+    }
+
+    /// The particles after some steps of a scene, in which a tube that bends has sparks.
+    std::vector<ParticleState> played(const std::string& emitter, int steps, double dt = kDt,
+                                      bool collides = false) {
+        const std::string scene = "time = { dt = " + std::to_string(dt) + ", steps = 60 }\n" + R"(
+particles = { capacity = 20000 }
+forces = { gravity = [0, 0, 0], drag = 0 }
+ground = { enabled = false }
+[[type]]
+name = "spark"
+)" + (collides ? "" : "collides = []\n") +
+                                  R"(
+[[collider]]
+file = "tube.relief"
+play = { clip = "bend", start = 0.3, resolution = 192 }
+scale = 2
+[[collider.key]]
+time = 0
+[[collider.key]]
+time = 2
+position = [1, 0, 3]
+angle = 120
+[[emitter]]
+shape = "surface"
+attach = 0
+lifetime = 9
+)" + emitter;
+        loaded_ = std::make_unique<LoadedScene>();
+        auto loaded = loadAll(folder_.write("scene.toml", scene), {});
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        *loaded_ = std::move(*loaded);
+        auto made = Simulation::create(*loaded_);
+        EXPECT_TRUE(made) << made.error().message;
+        for (int step = 0; step < steps; ++step) {
+            EXPECT_TRUE(made->step());
+        }
+        time_ = made->particles().time();
+        auto particles = made->particles().readState();
+        EXPECT_TRUE(particles);
+        return *particles;
+    }
+
+    /// The places of the tube's vertices in the world.
+    std::vector<glm::dvec3> tubeAt(double time) const { return tubeAt(time, time); }
+    std::vector<glm::dvec3> tubeAt(double of_body, double of_clip) const {
+        const Pose pose = poseAt(loaded_->scene.colliders[0], of_body);
+        std::vector<glm::dvec3> out;
+        for (const glm::vec3& p : posed(mesh_, loaded_->played[0]->poseAt(of_clip))) {
+            out.emplace_back(toWorld(pose, p));
+        }
+        return out;
+    }
+
+    const AnimatedMesh mesh_ = bendingTube(16, 20);
+    const test::TemporaryFolder folder_;
+    std::unique_ptr<LoadedScene> loaded_;
+    double time_ = 0.0;
+};
+RELIEF_INSTANTIATE_GL_TESTS(SurfaceBirthsGlTest);
+
+double distanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) {
+    const auto toSide = [&](const glm::dvec3& u, const glm::dvec3& v) {
+        const double t = std::clamp(glm::dot(p - u, v - u) / glm::dot(v - u, v - u), 0.0, 1.0);
+        return glm::length(u + t * (v - u) - p);
+    };
+    const glm::dvec3 n = glm::cross(b - a, c - a);
+    const bool over = glm::dot(glm::cross(b - a, p - a), n) >= 0 &&
+                      glm::dot(glm::cross(c - b, p - b), n) >= 0 &&
+                      glm::dot(glm::cross(a - c, p - c), n) >= 0;
+    return over ? std::abs(glm::dot(p - a, n)) / glm::length(n)
+                : std::min({toSide(a, b), toSide(b, c), toSide(c, a)});
+}
+
+/// How far a point is from the tube, and the place there as shares of the corners of a triangle.
+struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();
+    glm::uvec3 triangle{0};
+};
+Nearest nearest(const std::vector<glm::dvec3>& at, const std::vector<glm::uvec3>& triangles,
+                const glm::dvec3& p) {
+    Nearest best;
+    for (const glm::uvec3& t : triangles) {
+        const double distance = distanceTo(at[t.x], at[t.y], at[t.z], p);
+        if (distance < best.distance) {
+            best = {distance, t};
+        }
+    }
+    return best;
+}
+
+// Without forces a particle flies straight on: age times its velocity ago it was where it was born.
+TEST_P(SurfaceBirthsGlTest, LieOnThePosedMesh) {
+    const std::vector<ParticleState> sparks =
+        played("rate = 0\nburst = 400\nburst_every = 0.1\nspeed = 0.5\n", 21);
+    ASSERT_EQ(sparks.size(), 2000U);
+    for (const ParticleState& spark : sparks) {
+        const double born = time_ - double{spark.age};
+        const std::vector<glm::dvec3> tube = tubeAt(born);
+        const glm::dvec3 place = glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
+        const Nearest at = nearest(tube, mesh_.triangles, place);
+        ASSERT_LT(at.distance, 2e-5) << "of a length of 4, at " << born;
+        const glm::uvec3& t = at.triangle;
+        const glm::dvec3 normal = glm::normalize(glm::cross(tube[t.y] - tube[t.x], tube[t.z] - tube[t.x]));
+        ASSERT_GT(glm::dot(normal, glm::dvec3(spark.velocity)) / 0.5, 0.95) << "outwards";
+    }
+}
+
+// Births by rate have moments of their own, between two poses.
+TEST_P(SurfaceBirthsGlTest, LieWhereItWasAtTheirOwnMoment) {
+    const std::vector<ParticleState> sparks = played("rate = 2000\nspeed = 0.5\n", 12);
+    ASSERT_NEAR(static_cast<double>(sparks.size()), 480.0, 1.0);
+    double worst = 0.0;
+    double still = 0.0;
+    for (const ParticleState& spark : sparks) {
+        const double born = time_ - double{spark.age};
+        const glm::dvec3 place = glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
+        worst = std::max(worst, nearest(tubeAt(born), mesh_.triangles, place).distance);
+        still = std::max(still, nearest(tubeAt(born + 0.5 * kDt), mesh_.triangles, place).distance);
+    }
+    // r (ω dt)² / 8, of the clip's quarter turn a second at an arm of 2.2.
+    constexpr double kTurn = 1.5708;
+    EXPECT_LT(worst, 2.2 * kTurn * kTurn * kDt * kDt / 8 + 2e-5);
+    EXPECT_GT(still, 10 * worst) << "half a step later it has gone on";
+}
+
+// Of a speed of 0 and all of the surface's own, a particle goes with the place that it was born on.
+TEST_P(SurfaceBirthsGlTest, TakeOnTheVelocityOfTheirPlace) {
+    const std::vector<ParticleState> sparks =
+        played("rate = 0\nburst = 300\nburst_every = 0.2\nspeed = 0\ninherit = 1\n", 21);
+    ASSERT_EQ(sparks.size(), 900U);
+    for (const ParticleState& spark : sparks) {
+        const double born = time_ - double{spark.age};
+        const glm::dvec3 place = glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
+        const std::vector<glm::dvec3> tube = tubeAt(born);
+        const glm::uvec3 t = nearest(tube, mesh_.triangles, place).triangle;
+        // Its share of the corners, by areas.
+        const glm::dvec3 n = glm::cross(tube[t.y] - tube[t.x], tube[t.z] - tube[t.x]);
+        glm::dvec3 share(glm::dot(glm::cross(tube[t.z] - tube[t.y], place - tube[t.y]), n),
+                         glm::dot(glm::cross(tube[t.x] - tube[t.z], place - tube[t.z]), n),
+                         glm::dot(glm::cross(tube[t.y] - tube[t.x], place - tube[t.x]), n));
+        share /= share.x + share.y + share.z;
+        const auto at = [&](double of_body, double of_clip) {
+            const std::vector<glm::dvec3> then = tubeAt(of_body, of_clip);
+            return share.x * then[t.x] + share.y * then[t.y] + share.z * then[t.z];
+        };
+        // The body's own motion is that of the moment, the bending's the mean of the step before.
+        constexpr double kInch = 1e-3;
+        const glm::dvec3 velocity =
+            (at(born + kInch, born) - at(born, born)) / kInch + (at(born, born) - at(born, born - kDt)) / kDt;
+        ASSERT_LT(glm::length(velocity - glm::dvec3(spark.velocity)), 0.01) << born;
+        ASSERT_GT(glm::length(velocity), 0.5);
+    }
+}
+
+// Steps of half the length are the same sparks, as near as a straight line is to an arc.
+TEST_P(SurfaceBirthsGlTest, DoNotDependOnTheSteps) {
+    const char* const keys = "rate = 500\nspeed = 0.5\ninherit = 0\n";
+    const auto placesOf = [](const std::vector<ParticleState>& sparks) {
+        std::vector<std::pair<std::uint32_t, glm::dvec3>> places;
+        for (const ParticleState& spark : sparks) {
+            places.emplace_back(spark.id,
+                                glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity));
+        }
+        std::sort(places.begin(), places.end(),
+                  [](const auto& a, const auto& b) { return a.first < b.first; });
+        return places;
+    };
+    const auto coarse = placesOf(played(keys, 10));
+    const auto fine = placesOf(played(keys, 20, 0.5 * kDt));
+    ASSERT_NEAR(static_cast<double>(coarse.size()), 100.0, 1.0);
+    ASSERT_NEAR(static_cast<double>(fine.size()), 100.0, 1.0);
+    // Births are placed by the step before them, so that half a step of the finer run lies between the two. A few draw another
+    // triangle where areas grow and shrink.
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < std::min(fine.size(), coarse.size()); ++i) {
+        other += glm::length(fine[i].second - coarse[i].second) > 4.5 * 0.5 * kDt + 0.005 ? 1 : 0;
+    }
+    EXPECT_LE(other, 5U);
+}
+
+TEST_P(SurfaceBirthsGlTest, StayOutsideOfWhatThrowsThem) {
+    const std::vector<ParticleState> sparks =
+        played("rate = 5000\nspeed = 1\ninherit = 1\ncone = 30\n", 50, kDt, true);
+    ASSERT_GT(sparks.size(), 4900U);
+    std::vector<glm::vec3> positions;
+    for (const glm::dvec3& p : tubeAt(time_)) {
+        positions.emplace_back(p);
+    }
+    std::size_t inside = 0;
+    for (const ParticleState& spark : sparks) {
+        inside += windingNumber(positions, mesh_.triangles, glm::dvec3(spark.position)) > 0.5 ? 1 : 0;
+    }
+    EXPECT_LE(inside, sparks.size() / 1000) << "of " << sparks.size();
+}
+
+}  // namespace
+}  // namespace relief
