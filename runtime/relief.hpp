@@ -11,6 +11,7 @@
 #include "runtime/collider/world_bodies.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/particles/emitter.h"
+#include "runtime/particles/mesh_trail.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/spawner.h"
 #include "runtime/picture/collider_renderer.h"

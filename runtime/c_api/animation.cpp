@@ -24,19 +24,6 @@ Result<void> index(const Call& call, std::size_t i, std::size_t count, const cha
                        std::to_string(count));
 }
 
-/// The animated body of that number of a world's textures.
-Result<AnimatedBody*> animatedOf(const Call& call, relief_textures* textures, std::uint32_t body) {
-    TexturesObject& of = *RELIEF_TRY(call.object(textures, "animated_textures"));
-    const auto found = std::find_if(of.animated.begin(), of.animated.end(),
-                                    [&](const AnimatedBody& one) { return one.body == body; });
-    if (found == of.animated.end()) {
-        return call.refuse("body is " + std::to_string(body) +
-                           ", which does not move by clips; take one that relief_world_add() returned");
-    }
-    RELIEF_TRY(call.context());
-    return &*found;
-}
-
 Result<int> setNext(AnimatedBody& body, MeshPose pose) {
     RELIEF_TRY(body.collider.check(pose));
     body.next = std::move(pose);
@@ -44,6 +31,18 @@ Result<int> setNext(AnimatedBody& body, MeshPose pose) {
 }
 
 }  // namespace
+
+Result<AnimatedBody*> relief::animatedOf(const Call& call, relief_textures* animated_textures,
+                                         std::uint32_t body) {
+    TexturesObject& of = *RELIEF_TRY(call.object(animated_textures, "animated_textures"));
+    const auto found = std::find_if(of.animated.begin(), of.animated.end(),
+                                    [&](const AnimatedBody& one) { return one.body == body; });
+    if (found == of.animated.end()) {
+        return call.refuse("body is " + std::to_string(body) +
+                           ", which does not move by clips; take one that relief_world_add() returned");
+    }
+    return &*found;
+}
 
 relief_animation* relief_animation_create(const relief_collider* collider) {
     return create<relief_animation>(
@@ -145,6 +144,7 @@ int relief_textures_play(relief_textures* animated_textures, uint32_t body, cons
                          double seconds) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         AnimatedBody& of = *RELIEF_TRY(animatedOf(call, animated_textures, body));
+        RELIEF_TRY(call.context());
         const AnimatedMesh& mesh = of.collider.mesh();
         RELIEF_TRY(call.notNull(clip, "clip"));
         RELIEF_TRY(call.number(seconds, kSeconds, {"seconds"}));
@@ -160,6 +160,7 @@ int relief_textures_set_joints(relief_textures* animated_textures, uint32_t body
                                size_t joint_count, const float* weights, size_t weight_count) {
     return answer(__func__, -1, [&](const Call& call) -> Result<int> {
         AnimatedBody& of = *RELIEF_TRY(animatedOf(call, animated_textures, body));
+        RELIEF_TRY(call.context());
         RELIEF_TRY(call.array(matrices, "matrices", joint_count, "joint_count"));
         RELIEF_TRY(call.array(weights, "weights", weight_count, "weight_count"));
         const AnimatedMesh& mesh = of.collider.mesh();

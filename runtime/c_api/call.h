@@ -21,8 +21,16 @@ struct relief_collider;  // of relief.h
 
 namespace relief {
 
-enum class HandleKind : std::uint8_t { kCollider = 1, kTextures, kParticles, kPicture, kWorld, kAnimation };
-inline constexpr std::size_t kHandleKinds = 6;
+enum class HandleKind : std::uint8_t {
+    kCollider = 1,
+    kTextures,
+    kParticles,
+    kPicture,
+    kWorld,
+    kAnimation,
+    kEmitter
+};
+inline constexpr std::size_t kHandleKinds = 7;
 
 /// Handles of C. A handle is a number in the shape of a pointer: the highest bit, which no address of a program has, a
 /// running number, and the kind, by which it is no address of an aligned object. It is looked up, never followed, so that

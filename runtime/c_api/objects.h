@@ -14,6 +14,7 @@
 #include "runtime/c_api/relief.h"
 #include "runtime/collider/animated_collider.h"
 #include "runtime/collider/collider_textures.h"
+#include "runtime/particles/mesh_trail.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/stream/world_stream.h"
@@ -24,8 +25,15 @@ namespace relief {
 struct AnimatedBody {
     std::uint32_t body;  // of the world's textures
     AnimatedCollider collider;
+    MeshTrail trail;                    // of its mesh, by calls
     std::optional<MeshPose> next = {};  // that it gets with the poses
     bool fresh = true;                  // it has had no pose of the caller's: the first one is no motion
+    double shown = 0.0;                 // poses of its trail
+
+    void show(const MeshPose& pose, bool jumps) {
+        trail.show(
+            ++shown, [mesh = collider.shared(), pose] { return posed(*mesh, pose); }, jumps);
+    }
 };
 
 struct TexturesObject {
@@ -37,6 +45,7 @@ struct TexturesObject {
     std::optional<Bounds> world = {};  // of bodies, where they were placed; nullopt: of a single collider
     float texel = 0.0F;                // the finest of a world
     std::vector<Pose> poses = {};      // of its bodies, at the end of the next step
+    std::vector<Pose> before = {};     // the same at its beginning; of animated bodies alone
     std::vector<Pose> placed =
         {};  // the same of what lies on the GPU: those of animated bodies have their middle
     std::vector<AnimatedBody> animated = {};
@@ -61,6 +70,12 @@ struct PictureObject {
 struct AnimationObject {
     std::shared_ptr<const AnimatedMesh> mesh;
     PoseExtent extent;
+};
+
+struct EmitterObject {
+    std::shared_ptr<const AnimatedMesh> mesh;
+    Emitter emitter;
+    float inherit = 0.0F;
 };
 
 /// A body of a world that moves by clips, behind those of its file.
@@ -107,6 +122,13 @@ struct HandleType<relief_animation> {
     static constexpr const char* kName = "relief_animation";
 };
 
+template <>
+struct HandleType<relief_emitter> {
+    using Object = EmitterObject;
+    static constexpr HandleKind kKind = HandleKind::kEmitter;
+    static constexpr const char* kName = "relief_emitter";
+};
+
 // As relief.h has them. Speeds beyond 10^15 are those of particles that are lost (isLost()).
 inline constexpr FieldRange kAny{-1e15, 1e15};
 inline constexpr FieldRange kNotNegative{0.0, 1e15};
@@ -127,6 +149,10 @@ inline void put(const glm::vec3& v, float (&out)[3]) {
 inline glm::vec3 pointAt(const float* points, std::size_t i) {
     return {points[3 * i], points[3 * i + 1], points[3 * i + 2]};
 }
+
+/// The animated body of that number of a world's textures.
+[[nodiscard]] Result<AnimatedBody*> animatedOf(const Call& call, relief_textures* animated_textures,
+                                               std::uint32_t body);
 
 /// A pose of C's. \param rest  whose scale stays.
 [[nodiscard]] Result<Pose> poseOf(const Call& call, const relief_pose& given, NumberName name,

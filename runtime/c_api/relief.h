@@ -232,6 +232,36 @@ relief_counts relief_particles_counts(const relief_particles* particles);
 /* Waits for the GPU. Writes at most `room` particles, in the order of their indices; returns how many live, or -1. */
 int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t room);
 
+/* --- births on the surface of characters and machines. Since 1.2 --- */
+
+typedef struct relief_emitter relief_emitter;
+
+typedef struct relief_emitter_options {
+    size_t size;
+    float rate;         /* births a second; 0…1e9 */
+    uint32_t burst;     /* births of the first call on top of them; up to 16777216 */
+    float direction[3]; /* of any length; all 0: the surface's normal, outwards */
+    float cone;         /* half angle about it, 0…180 degrees, uniform over its solid angle */
+    float speed_min;    /* along the direction, units a second; 0 or more, uniform between the two */
+    float speed_max;
+    float inherit; /* 0…1000: share of the surface's own velocity at the very place, bending included */
+    float lifetime_min; /* > 0; uniform between the two */
+    float lifetime_max;
+    uint32_t type; /* as relief_birth has it */
+    uint64_t seed; /* up to 2^53: the same one gives the same births */
+} relief_emitter_options;
+
+/* Births are uniform by the area of the posed mesh. `group`: the name of a joint, whose weights are their density; NULL: all of the mesh.
+ * `material`: the name of the material that has them; NULL: any. The animation may be freed at once. */
+relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
+                                      const char* material, const relief_emitter_options* options);
+void relief_emitter_free(relief_emitter* emitter);
+/* The births of the last `seconds`, above 0 up to 1e9: of the step that has been taken, in which a body of that animation came to where it is now. They go with
+ * the next step, each from where the surface was at its own moment, in a straight line between the two poses. Call it before the
+ * relief_textures_set_poses() of the next step. Returns how many there was room for; -1: an error. Needs no context. */
+int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter,
+                              relief_textures* animated_textures, uint32_t body, float seconds);
+
 /* --- pictures (GL) --- */
 
 typedef struct relief_picture relief_picture;

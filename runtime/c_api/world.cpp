@@ -46,8 +46,12 @@ Result<TexturesObject> upload(const WorldObject& world) {
     std::vector<ColliderBody> bodies = worldBodies(loaded);
     std::vector<AnimatedBody> animated;
     for (const AddedBody& added : world.added) {
+        const auto& mesh = added.animation.mesh;
         animated.push_back({static_cast<std::uint32_t>(bodies.size() + animated.size()),
-                            RELIEF_TRY(AnimatedCollider::create(added.animation.mesh, added.options))});
+                            RELIEF_TRY(AnimatedCollider::create(mesh, added.options)),
+                            {}});
+        animated.back().trail.show(
+            0.0, [mesh] { return posed(*mesh, firstPose(*mesh)); }, true);
     }
     for (std::size_t i = 0; i < animated.size(); ++i) {
         const AnimatedCollider& of = animated[i].collider;
@@ -71,6 +75,7 @@ Result<TexturesObject> upload(const WorldObject& world) {
         made.placed.push_back(of.placed(world.added[i].pose));
         RELIEF_TRY(of.update(*made.own, animated[i].body));
     }
+    made.before = made.poses;
     made.world = bounds;
     made.animated = std::move(animated);
     return made;
@@ -201,7 +206,7 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
             RELIEF_TRY(call.number(bodies[i], {0.0, static_cast<double>(wanted.size() - 1)}, {"bodies", i}));
             wanted[bodies[i]] = RELIEF_TRY(poseOf(call, poses[i], {"poses", i}, wanted[bodies[i]]));
         }
-        to.poses = std::move(wanted);
+        to.before = std::exchange(to.poses, std::move(wanted));
         if (to.stream) {
             to.stream->setPoses(to.poses);
             return 0;
@@ -210,13 +215,17 @@ int relief_textures_set_poses(relief_textures* world_textures, const uint32_t* b
         bool jumps = false;
         for (AnimatedBody& one : to.animated) {
             const bool first = one.fresh && one.next;
+            one.trail.hold();
             if (one.next) {
-                RELIEF_TRY(one.collider.setPose(*std::exchange(one.next, std::nullopt)));
+                const MeshPose pose = *std::exchange(one.next, std::nullopt);
+                RELIEF_TRY(one.collider.setPose(pose));
+                one.show(pose, first);
                 one.fresh = false;
             }
             placed[one.body] = one.collider.placed(placed[one.body]);
             if (first) {
                 one.collider.settle();
+                to.before[one.body] = to.poses[one.body];
                 to.placed[one.body] = placed[one.body];
                 jumps = true;
             }

@@ -63,6 +63,7 @@ class AnimatedCollider {
     }
 
     [[nodiscard]] const AnimatedMesh& mesh() const { return *mesh_; }
+    [[nodiscard]] const std::shared_ptr<const AnimatedMesh>& shared() const { return mesh_; }
     [[nodiscard]] const LiveCollider& live() const { return live_; }
     [[nodiscard]] const Collider& frames() const { return live_.frames(); }
     [[nodiscard]] const glm::vec3& middle() const { return middle_; }  ///< of its box, object space

@@ -281,7 +281,9 @@ void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
         glm::vec3 moved = own.empty() ? glm::vec3(0.0F) : own[i];
         carryAlong(motion.keys, moment, birth, moved);
         carryAlong(motion.body, moment, birth, moved);
-        birth.velocity += motion.inherit * moved;
+        // A step of no length at all may make what is no number of a motion.
+        const glm::vec3 velocity = birth.velocity + motion.inherit * moved;
+        birth.velocity = isFinite(velocity) ? velocity : birth.velocity;
     }
 }
 

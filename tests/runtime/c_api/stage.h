@@ -40,7 +40,10 @@ class Stage {
         EXPECT_TRUE(context) << context.error().message;
         context_ = std::move(*context);
         Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
-        box.animation = writeAnimatedMesh(bendingTube(8, 6));
+        AnimatedMesh tube = bendingTube(8, 6);
+        tube.materials = {"cloth"};
+        tube.triangle_materials.resize(tube.triangles.size(), 0);
+        box.animation = writeAnimatedMesh(tube);
         path_ =
             std::filesystem::path(testing::TempDir()) / ("c_api-" + std::to_string(::getpid()) + ".relief");
         EXPECT_TRUE(saveCollider(path_, box));
@@ -64,6 +67,7 @@ class Stage {
         relief_textures_free(textures);
         relief_textures_free(world_textures);
         relief_textures_free(animated_textures);
+        relief_emitter_free(emitter);
         relief_animation_free(animation);
         relief_collider_free(collider);
         relief_world_free(world);
@@ -88,7 +92,10 @@ class Stage {
             animated_textures = relief_textures_create_world(alone);
             relief_world_free(alone);
         }
-        ASSERT_TRUE(animation != nullptr && animated_textures != nullptr) << relief_error();
+        emitter = emitter != nullptr ? emitter
+                                     : relief_emitter_create(animation, nullptr, nullptr, &emitter_options);
+        ASSERT_TRUE(animation != nullptr && animated_textures != nullptr && emitter != nullptr)
+            << relief_error();
         ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr &&
                     picture != nullptr && world != nullptr && world_textures != nullptr)
             << relief_error();
@@ -113,6 +120,10 @@ class Stage {
             poses[i] = {{0.0F, 0.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}};
             balls[i] = {{0.0F, 0.0F, 0.0F}, 1.0F};
         }
+        emitter_options = {};
+        emitter_options.size = sizeof(emitter_options);
+        emitter_options.rate = 500.0F;
+        emitter_options.lifetime_min = emitter_options.lifetime_max = 1.0F;
         picture_options = {};
         picture_options.size = sizeof(picture_options);
         view = {};
@@ -134,6 +145,8 @@ class Stage {
         if constexpr (std::is_same_v<T, const char*>) {
             return name == "node"         ? "box 1"
                    : name == "clip"       ? "bend"
+                   : name == "group"      ? "middle"
+                   : name == "material"   ? "cloth"
                    : name == "world_path" ? world_path_.c_str()
                                           : path_.c_str();
         } else if constexpr (std::is_same_v<T, const void*>) {
@@ -179,6 +192,7 @@ class Stage {
                       : name == "relief_pose"            ? &poses[kWrong]
                       : name == "relief_ball"            ? &balls[kWrong]
                       : name == "relief_picture_options" ? &picture_options
+                      : name == "relief_emitter_options" ? &emitter_options
                       : name == "relief_view"            ? static_cast<void*>(&view)
                                                          : nullptr;
         return static_cast<std::byte*>(found);
@@ -187,6 +201,7 @@ class Stage {
     [[nodiscard]] std::uintptr_t handle(const std::string& type) const {
         const auto names = [&](const char* kind) { return type.find(kind) != std::string::npos; };
         return names("animation")   ? reinterpret_cast<std::uintptr_t>(animation)
+               : names("emitter")   ? reinterpret_cast<std::uintptr_t>(emitter)
                : names("collider")  ? reinterpret_cast<std::uintptr_t>(collider)
                : names("textures")  ? reinterpret_cast<std::uintptr_t>(textures)
                : names("particles") ? reinterpret_cast<std::uintptr_t>(particles)
@@ -204,6 +219,7 @@ class Stage {
         drop(picture);
         drop(world);
         drop(animation);
+        drop(emitter);
     }
 
     relief_collider* collider = nullptr;
@@ -213,6 +229,8 @@ class Stage {
     relief_world* world = nullptr;
     relief_textures* world_textures = nullptr;
     relief_animation* animation = nullptr;
+    relief_emitter* emitter = nullptr;
+    relief_emitter_options emitter_options;
     relief_textures* animated_textures = nullptr;  // of a world of it alone
     relief_particles_options options;
     relief_birth births[kItems];
@@ -275,6 +293,8 @@ class Stage {
     relief_sample* pointer(relief_sample* /*type*/) { return samples; }
     relief_animation* pointer(relief_animation* /*type*/) { return animation; }
     const relief_animation* pointer(const relief_animation* /*type*/) { return animation; }
+    relief_emitter* pointer(relief_emitter* /*type*/) { return emitter; }
+    const relief_emitter_options* pointer(const relief_emitter_options* /*type*/) { return &emitter_options; }
 
     std::unique_ptr<GlContext> context_;
     std::filesystem::path path_;
@@ -304,6 +324,9 @@ inline void release(relief_world* made) {
 inline void release(relief_animation* made) {
     relief_animation_free(made);
 }
+inline void release(relief_emitter* made) {
+    relief_emitter_free(made);
+}
 inline void release(relief_picture* made) {
     relief_picture_free(made);
 }
@@ -332,7 +355,8 @@ struct Argument {
         const std::string bare =
             type.substr(type.find("relief_") == std::string::npos ? 0 : type.find("relief_"));
         return bare == "relief_collider*" || bare == "relief_textures*" || bare == "relief_particles*" ||
-               bare == "relief_picture*" || bare == "relief_world*" || bare == "relief_animation*";
+               bare == "relief_picture*" || bare == "relief_world*" || bare == "relief_animation*" ||
+               bare == "relief_emitter*";
     }
 };
 

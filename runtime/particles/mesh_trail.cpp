@@ -1,4 +1,4 @@
-#include "runtime/player/mesh_trail.h"
+#include "runtime/particles/mesh_trail.h"
 
 #include <utility>
 
@@ -19,9 +19,10 @@ void MeshTrail::show(double time, Vertices vertices, bool jumps) {
     now_ = Moment{time, std::move(vertices)};
 }
 
-void MeshTrail::bend(Emitter& emitter) {
+void MeshTrail::bend(Emitter& emitter, std::optional<double> seconds) {
     Moment& before = before_ ? *before_ : *now_;
-    emitter.moveSurface(before.vertices(), now_->vertices(), now_->time - before.time);
+    const double passed = before_ ? seconds.value_or(now_->time - before.time) : 0.0;
+    emitter.moveSurface(before.vertices(), now_->vertices(), passed);
 }
 
 }  // namespace relief

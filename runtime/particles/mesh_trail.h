@@ -21,8 +21,12 @@ class MeshTrail {
 
     [[nodiscard]] bool empty() const { return !now_; }
 
+    /// It has not moved since the last moment.
+    void hold() { before_.reset(); }
+
     /// Moves the surface of an emitter, of the same vertices, to where it is; once show() has been called.
-    void bend(Emitter& emitter);
+    /// \param seconds  between the two moments, instead of the difference of their times.
+    void bend(Emitter& emitter, std::optional<double> seconds = std::nullopt);
 
   private:
     struct Moment {
