@@ -1,11 +1,13 @@
 #include "runtime/scene/scene_births.h"
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
+#include "runtime/collider/collider_surface.h"
 #include "runtime/files/mesh_file.h"
 
 namespace relief {
@@ -61,34 +63,44 @@ Result<EmitterSurface> surfaceOf(NamedMesh named, const SceneEmitter& emitter) {
     return EmitterSurface::create(triangles, {}, std::move(named.mesh.positions));
 }
 
-Result<EmitterSurface> surfaceOf(const SceneEmitter& emitter, const SceneMeshes& meshes) {
+/// Surfaces of containers, each found once.
+using Surfaces = std::map<const Collider*, ColliderSurface>;
+
+Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& emitter, Surfaces& known) {
+    if (!container.animation.empty()) {
+        const AnimatedMesh mesh = RELIEF_TRY(readAnimatedMesh(container.animation));
+        return surfaceOf(mesh, restPose(mesh), emitter);
+    }
+    if (!emitter.group.empty() || !emitter.material.empty()) {
+        return invalidInput(std::string(emitter.group.empty() ? "emitter.material" : "emitter.group") +
+                            " needs a mesh, and it keeps none; name the one that it was baked from by "
+                            "emitter.mesh, or bake it with --animated");
+    }
+    if (!known.contains(&container)) {
+        known[&container] = RELIEF_TRY(colliderSurface(container));
+    }
+    const ColliderSurface& surface = known[&container];
+    return EmitterSurface::create(surface.triangles, {}, surface.positions);
+}
+
+Result<EmitterSurface> surfaceOf(const SceneEmitter& emitter, const SceneMeshes& meshes, Surfaces& known) {
     if (!emitter.mesh_file.empty()) {
-        return surfaceOf(RELIEF_TRY(loadNamedMesh(emitter.mesh_file)), emitter);
+        return inFront(quotedPath(emitter.mesh_file),
+                       surfaceOf(RELIEF_TRY(loadNamedMesh(emitter.mesh_file)), emitter));
     }
     const std::size_t i = *emitter.attach;
-    const SceneCollider& collider = meshes.colliders[i];
-    if (const std::optional<PlayedMesh>& played = meshes.played[i]) {
-        return inFront(quotedPath(collider.path), surfaceOf(*played->mesh, played->poseAt(0.0), emitter));
-    }
-    if (meshes.live[i]) {
-        return inFront(quotedPath(collider.path), surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter));
-    }
-    const Collider& container = *meshes.containers[i];
-    if (container.animation.empty()) {
-        return invalidInput(
-            "emitter.attach: " + quotedPath(collider.path) +
-            " keeps no mesh to give birth on; name the one that it was baked from by emitter.mesh, or "
-            "bake it with --animated");
-    }
-    const AnimatedMesh mesh =
-        RELIEF_TRY(inFront(quotedPath(collider.path), readAnimatedMesh(container.animation)));
-    return inFront(quotedPath(collider.path), surfaceOf(mesh, restPose(mesh), emitter));
+    const std::optional<PlayedMesh>& played = meshes.played[i];
+    return inFront(quotedPath(meshes.colliders[i].path),
+                   played           ? surfaceOf(*played->mesh, played->poseAt(0.0), emitter)
+                   : meshes.live[i] ? surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter)
+                                    : surfaceOf(*meshes.containers[i], emitter, known));
 }
 
 }  // namespace
 
 Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters, const SceneMeshes& meshes) {
     std::vector<Emitter> made;
+    Surfaces known;
     for (const SceneEmitter& emitter : emitters) {
         EmitterSettings settings = emitter;
         if (emitter.shape == EmitterShape::kPoints) {
@@ -101,7 +113,7 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
             }
         }
         if (emitter.shape == EmitterShape::kSurface) {
-            settings.surface = RELIEF_TRY(inFront(emitter.place, surfaceOf(emitter, meshes)));
+            settings.surface = RELIEF_TRY(inFront(emitter.place, surfaceOf(emitter, meshes, known)));
         }
         RELIEF_TRY(Emitter::check(settings));
         made.emplace_back(std::move(settings), emitter.seed, made.size());

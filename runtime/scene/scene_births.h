@@ -25,11 +25,11 @@ struct SceneMeshes {
 };
 
 /// Reads the files of points and of surfaces. Emitter i draws from stream i. A surface that followsShape() has the vertices of the collider's
-/// mesh, in their order, as they are at time 0.
+/// mesh, in their order, as they are at time 0; that of a container without a mesh is found by colliderSurface().
 /// \param emitters  complete. \param meshes  of the colliders that `attach` counts.
 /// Fails as loadPointList, loadNamedMesh and EmitterSurface::create do, and with kInvalidInput (points without normals and without a
-/// direction; a collider without a mesh; no such group or material: the message lists those there are). Messages begin with the
-/// place in the scene.
+/// direction; a group or material of a collider without a mesh, or none such: the message lists those there are). Messages begin with
+/// the place in the scene.
 [[nodiscard]] Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters,
                                                         const SceneMeshes& meshes);
 

@@ -10,6 +10,7 @@
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/scene/scene_error.h"
 #include "tests/temporary_folder.h"
@@ -119,6 +120,18 @@ TEST_F(SceneSurface, MayBeThatOfAMeshFile) {
     EXPECT_NE(std::find(files.begin(), files.end(), folder_.path() / "cube.obj"), files.end());
 }
 
+TEST_F(SceneSurface, OfAColliderWithoutAMesh) {
+    const glm::dvec3 half(0.5, 0.3, 0.2);
+    ASSERT_TRUE(saveCollider(folder_.path() / "box.relief",
+                             analytic::frontBackCollider(analytic::box(-half, half), 128)));
+    const std::string box = "[[collider]]\nfile = \"box.relief\"\n";
+    EXPECT_NEAR(area(box + kSurface + "attach = 0\n"), 2.48, 0.03);
+    const auto two =
+        load(box + box + "position = [3, 0, 0]\n" + kSurface + "attach = 0\n" + kSurface + "attach = 1\n");
+    ASSERT_TRUE(two) << two.error().message;
+    EXPECT_EQ(two->emitters[0].settings().surface.area(), two->emitters[1].settings().surface.area());
+}
+
 TEST_F(SceneSurface, OfAColliderThatWobbles) {
     folder_.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     const std::string wobbles =
@@ -151,7 +164,10 @@ TEST_F(SceneSurface, MistakesHaveTheirPlaceAndCure) {
     Collider bare = animatedContainer(mesh_);
     bare.animation.clear();
     ASSERT_TRUE(saveCollider(folder_.path() / "tube.relief", bare));
-    expectRefused(kCollider + kSurface + "attach = 0\n", "3:1", "name the one that it was baked from");
+    expectRefused(kCollider + kSurface + "attach = 0\ngroup = \"Head\"\n", "3:1",
+                  "emitter.group needs a mesh, and it keeps none; name the one that it was baked from");
+    expectRefused(kCollider + kSurface + "attach = 0\n", "3:1",
+                  "'" + (folder_.path() / "tube.relief").string() + "': no surface is found");
     folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     expectRefused(kCollider + kSurface + "mesh = \"flat.obj\"\n", "3:1", "no area");
 }

@@ -1,0 +1,160 @@
+// The surface of a collider from its field: near closed forms, closed, outwards, and births on it uniform by area.
+#include "runtime/collider/collider_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "runtime/particles/emitter_surface.h"
+#include "tests/runtime/collider/analytic_collider.h"
+
+namespace relief {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+ColliderSurface surfaceOf(const Collider& collider, std::uint32_t cells = kSurfaceCells) {
+    auto made = colliderSurface(collider, cells);
+    EXPECT_TRUE(made) << made.error().message;
+    return made ? std::move(*made) : ColliderSurface{};
+}
+
+double areaOf(const ColliderSurface& surface) {
+    double area = 0.0;
+    for (const glm::uvec3& t : surface.triangles) {
+        const glm::dvec3 p(surface.positions[t.x]);
+        area += 0.5 * glm::length(glm::cross(glm::dvec3(surface.positions[t.y]) - p,
+                                             glm::dvec3(surface.positions[t.z]) - p));
+    }
+    return area;
+}
+
+double volumeOf(const ColliderSurface& surface) {
+    double volume = 0.0;
+    for (const glm::uvec3& t : surface.triangles) {
+        volume +=
+            glm::dot(glm::dvec3(surface.positions[t.x]),
+                     glm::cross(glm::dvec3(surface.positions[t.y]), glm::dvec3(surface.positions[t.z]))) /
+            6.0;
+    }
+    return volume;
+}
+
+/// Every side of a triangle is that of another one, the other way round.
+bool isClosed(const ColliderSurface& surface) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+    for (const glm::uvec3& t : surface.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k];
+            const std::uint32_t b = t[(k + 1) % 3];
+            sides[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+        }
+    }
+    return std::all_of(sides.begin(), sides.end(), [](const auto& side) { return side.second == 0; });
+}
+
+TEST(ColliderSurface, IsThatOfABall) {
+    const ColliderSurface surface =
+        surfaceOf(analytic::frontBackCollider(analytic::sphere({1, 2, 3}, 0.5), 256));
+    EXPECT_TRUE(isClosed(surface));
+    // Texels are planes: 1/256 of the side wide, they stand off from the ball by a thousandth where it is steep.
+    for (const glm::vec3& p : surface.positions) {
+        ASSERT_NEAR(glm::length(glm::dvec3(p) - glm::dvec3(1, 2, 3)), 0.5, 3e-3);
+    }
+    EXPECT_NEAR(areaOf(surface) / kPi, 1.0, 5e-3);
+    ColliderSurface centred = surface;
+    for (glm::vec3& p : centred.positions) {
+        p -= glm::vec3(1, 2, 3);
+    }
+    EXPECT_NEAR(volumeOf(centred), kPi / 6, 2e-3) << "outwards";
+}
+
+TEST(ColliderSurface, KeepsTheEdgesOfABox) {
+    const glm::dvec3 half(0.5, 0.31, 0.17);
+    const ColliderSurface surface = surfaceOf(analytic::frontBackCollider(analytic::box(-half, half), 256));
+    EXPECT_TRUE(isClosed(surface));
+    const double area = 8 * (half.x * half.y + half.y * half.z + half.z * half.x);
+    // A texel at the rim, 1/254 of a side, may be free or not.
+    EXPECT_NEAR(areaOf(surface) / area, 1.0, 8e-3);
+    EXPECT_NEAR(volumeOf(surface) / (8 * half.x * half.y * half.z), 1.0, 3e-2);
+    for (const glm::vec3& p : surface.positions) {
+        const glm::dvec3 from = glm::abs(glm::dvec3(p)) - half;
+        ASSERT_NEAR(std::max({from.x, from.y, from.z}), 0.0, 4e-3);
+    }
+}
+
+// Heights on a ball, the faces of a box: as many births as they have area.
+TEST(ColliderSurface, BirthsOnItAreUniformByArea) {
+    constexpr int kCount = 50'000;
+    const auto draws = [&](const Collider& collider) {
+        const ColliderSurface surface = surfaceOf(collider);
+        const auto made = EmitterSurface::create(surface.triangles, {}, surface.positions);
+        EXPECT_TRUE(made);
+        Pcg32 random(5);
+        std::vector<EmitterSurface::Place> places;
+        for (int i = 0; i < kCount; ++i) {
+            places.push_back(made->draw(random, 0.0F));
+        }
+        return places;
+    };
+    std::array<std::array<double, 10>, 3> bands{};
+    double outwards = 0.0;
+    for (const auto& at : draws(analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.5), 256))) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double share = std::clamp(double{at.position[static_cast<int>(axis)]} + 0.5, 0.0, 0.999);
+            bands.at(axis).at(static_cast<std::size_t>(10 * share)) += 1.0;
+        }
+        outwards += double{glm::dot(at.normal, glm::normalize(at.position))} / kCount;
+    }
+    EXPECT_GT(outwards, 0.99);
+    for (const auto& counts : bands) {
+        double chi = 0.0;
+        for (const double count : counts) {
+            chi += (count - kCount / 10.0) * (count - kCount / 10.0) / (kCount / 10.0);
+        }
+        EXPECT_LT(chi, 45.0) << "of 9 degrees of freedom";  // a millionth, were the ball exact
+    }
+
+    const glm::dvec3 half(0.5, 0.31, 0.17);
+    std::array<double, 6> faces{};
+    for (const auto& at : draws(analytic::frontBackCollider(analytic::box(-half, half), 256))) {
+        const glm::vec3 n = glm::abs(at.normal);
+        const std::size_t axis = n.x > 0.7F ? 0 : n.y > 0.7F ? 1 : 2;
+        faces.at(2 * axis + (at.normal[static_cast<int>(axis)] > 0.0F ? 1 : 0)) += 1.0;
+    }
+    const double all = half.x * half.y + half.y * half.z + half.z * half.x;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const int axis = static_cast<int>(i / 2);
+        const double expected = kCount * half[(axis + 1) % 3] * half[(axis + 2) % 3] / all / 2;
+        EXPECT_NEAR(faces.at(i) / expected, 1.0, 0.03) << i;
+    }
+}
+
+TEST(ColliderSurface, RefusesWhatHasNone) {
+    const Collider ball = analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.5), 32);
+    EXPECT_FALSE(colliderSurface(ball, 1));
+    EXPECT_FALSE(colliderSurface(ball, kSurfaceCellsMax + 1));
+    EXPECT_TRUE(colliderSurface(ball, 2));
+    Collider empty = ball;
+    empty.bounds = {};
+    EXPECT_FALSE(colliderSurface(empty));
+    empty.bounds = {glm::vec3(0.0F), glm::vec3(std::numeric_limits<float>::infinity())};
+    EXPECT_FALSE(colliderSurface(empty));
+    // Bounds that the ball is nowhere in.
+    empty.bounds = {glm::vec3(5.0F), glm::vec3(6.0F)};
+    const auto none = colliderSurface(empty);
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("no surface is found"), std::string::npos) << none.error().message;
+    // It lies between the corners of the grid.
+    empty.bounds = {glm::vec3(-10.1F), glm::vec3(1e6F)};
+    EXPECT_FALSE(colliderSurface(empty));
+}
+
+}  // namespace
+}  // namespace relief
