@@ -7,7 +7,7 @@ std::string animationText(const AnimatedMesh& mesh) {
                        countText(mesh.joints.size(), "joint") + " and " +
                        countText(mesh.weights.size(), "morph target") + "\n";
     for (const auto& [head, names] :
-         {std::pair("groups   ", groupNames(mesh)), {"materials ", mesh.materials}}) {
+         {std::pair("groups   ", groupNames(mesh)), {"material ", mesh.materials}}) {
         if (const std::string list = listedNames(names); !list.empty()) {
             text += head + list + "\n";
         }

@@ -18,6 +18,7 @@ matches -E '^  Square +4.2' <stdout || die "no clip: $(cat stdout)"
 matches -- '--animated$' <stdout || die "not recorded: $(cat stdout)"
 expect 0 "$relief" info cube.relief --json
 json stdout "abs(d['animation']['clips'][0]['seconds'] - 4.2) < 0.01 and d['animation']['joints'] == 1"
+json stdout "d['animation']['groups'] == ['AnimatedMorphCube'] and d['animation']['materials'] == ['Material']"
 expect 0 "$relief" check cube.relief
 expect 0 "$relief" check cube.relief --mesh $cube --max-error 2
 matches 'in its rest pose' <stdout || die "check: $(cat stdout)"

@@ -95,3 +95,68 @@ expect_error 1 'comes after --last-frame' "$relief_sim" long.toml --frames f --f
 sed 's/^first = 0/last = 20/' long.toml >last.toml
 expect_error 1 'of step 30, comes after the last, of step 20' "$relief_sim" last.toml --frames f --first-frame 30
 [ ! -e f ] || die "a refused run made its folder"
+
+# --- births on surfaces: of what plays a clip, of a mesh file, and of a collider that has maps alone ---
+cp "$models/glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/"AnimatedMorphCube.{gltf,bin} .
+"$relief" bake AnimatedMorphCube.gltf --animated --resolution 64 -o cube.relief -q
+expect 0 "$relief" info cube.relief
+group=AnimatedMorphCube
+matches "^groups   '$group'" <stdout || die "info: $(cat stdout)"
+matches "^material 'Material'" <stdout || die "info: $(cat stdout)"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >t.obj
+"$relief" bake t.obj -q -o t.relief
+sparks() { # sparks KEYS…: a scene of births with no speed of their own, which nothing moves
+    cat <<'T2'
+time = { dt = 0.015625, steps = 64 }
+particles = { capacity = 8192 }
+forces = { gravity = [0, 0, 0], drag = 0 }
+ground = { enabled = false }
+[[type]]
+collides = []
+[[collider]]
+file = "cube.relief"
+[[collider]]
+file = "t.relief"
+position = [5, 0, 0]
+[[emitter]]
+shape = "surface"
+speed = 0
+rate = 6000
+T2
+    printf '%s\n' "$@"
+}
+sparks 'attach = 0' "group = \"$group\"" >sparks.toml
+expect 0 "$relief_sim" sparks.toml -q --dump rest.ply
+expect 0 "$relief_sim" sparks.toml -q --dump again.ply
+cmp rest.ply again.ply || die "other births by the same seed"
+sed '0,/cube.relief"/s//cube.relief"\nplay = { clip = "Square" }/; s/speed = 0/speed = 0\ninherit = 1/' sparks.toml >plays.toml
+expect 0 "$relief_sim" plays.toml -q --dump plays.ply
+sparks 'attach = 1' >maps.toml
+expect 0 "$relief_sim" maps.toml -q --dump maps.ply
+sparks 'attach = 1' 'mesh = "t.obj"' >mesh.toml
+expect 0 "$relief_sim" mesh.toml -q --dump mesh.ply
+python3 - <<'P'
+import ply
+def places(name):
+    return [(p['x'], p['y'], p['z']) for p in ply.read(name)]
+assert abs(len(places('rest.ply')) - 6000) <= 1
+# The mean place of what stays is that of the surface; of what is thrown with it, that goes on.
+mean = lambda name: [sum(c) / 6000 for c in zip(*places(name))]
+assert max(abs(a - b) for a, b in zip(mean('rest.ply'), mean('plays.ply'))) > 0.05, (mean('rest.ply'), mean('plays.ply'))
+# On a tetrahedron of three right triangles and one of area sqrt(3)/2: x + y + z = 1 has its share, in maps and in the mesh.
+share = 3 ** 0.5 / (3 + 3 ** 0.5)
+for name in ['maps.ply', 'mesh.ply']:
+    far = 2e-2 if name == 'maps.ply' else 1e-5
+    slant = 0
+    for x, y, z in places(name):
+        x -= 5
+        assert min(abs(x), abs(y), abs(z), abs(x + y + z - 1) / 3 ** 0.5) < far, (name, x, y, z)
+        slant += abs(x + y + z - 1) / 3 ** 0.5 < min(abs(x), abs(y), abs(z))
+    assert abs(slant / 6000 - share) < 0.03, (name, slant)
+P
+sparks 'attach = 0' 'group = "Head"' >wrong.toml
+expect_error 3 "wrong.toml:.*emitter.group: there is no joint or node .*'Head'; it has '$group'" "$relief_sim" wrong.toml -q
+sparks 'attach = 1' 'material = "skin"' >wrong.toml
+expect_error 3 "t.relief': emitter.material needs a mesh, and it keeps none" "$relief_sim" wrong.toml -q
+sparks 'mesh = "absent.obj"' >wrong.toml
+expect_error 2 "absent.obj" "$relief_sim" wrong.toml -q

@@ -25,8 +25,9 @@ class SurfaceBirthsGlTest : public GlTest {
     }
 
     /// The particles after some steps of a scene, in which a tube that bends has sparks.
+    /// \param own  poses of the program's, equal to the clip's.
     std::vector<ParticleState> played(const std::string& emitter, int steps, double dt = kDt,
-                                      bool collides = false) {
+                                      bool collides = false, bool own = false) {
         const std::string scene = "time = { dt = " + std::to_string(dt) + ", steps = 60 }\n" + R"(
 particles = { capacity = 20000 }
 forces = { gravity = [0, 0, 0], drag = 0 }
@@ -57,6 +58,10 @@ lifetime = 9
         auto made = Simulation::create(*loaded_);
         EXPECT_TRUE(made) << made.error().message;
         for (int step = 0; step < steps; ++step) {
+            if (own) {
+                const double end = made->particles().time() + double{loaded_->scene.time.dt};
+                EXPECT_TRUE(made->setPose(0, loaded_->played[0]->poseAt(end)));
+            }
             EXPECT_TRUE(made->step());
         }
         time_ = made->particles().time();
@@ -201,6 +206,19 @@ TEST_P(SurfaceBirthsGlTest, DoNotDependOnTheSteps) {
         other += glm::length(fine[i].second - coarse[i].second) > 4.5 * 0.5 * kDt + 0.005 ? 1 : 0;
     }
     EXPECT_LE(other, 5U);
+}
+
+// A skeleton of the program's own is a jump at first, and from then on moves as the same clip does.
+TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
+    const std::string keys = "rate = 1000\nspeed = 0\ninherit = 1\nstart = 0.1\n";
+    const std::vector<ParticleState> by_clip = played(keys, 12);
+    const std::vector<ParticleState> by_program = played(keys, 12, kDt, false, true);
+    ASSERT_GT(by_clip.size(), 100U);
+    ASSERT_EQ(by_program.size(), by_clip.size());
+    for (std::size_t i = 0; i < by_clip.size(); ++i) {
+        ASSERT_EQ(by_program[i].position, by_clip[i].position) << i;
+        ASSERT_EQ(by_program[i].velocity, by_clip[i].velocity) << i;
+    }
 }
 
 TEST_P(SurfaceBirthsGlTest, StayOutsideOfWhatThrowsThem) {
