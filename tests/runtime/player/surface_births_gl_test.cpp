@@ -221,6 +221,48 @@ TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
     }
 }
 
+// Where a clip that ends elsewhere than it began starts again, the surface has not moved there: no spark is born on the way.
+TEST_P(SurfaceBirthsGlTest, AJumpThrowsNothing) {
+    const std::string scene = R"(
+time = { dt = 0.02, steps = 60 }
+particles = { capacity = 20000 }
+forces = { gravity = [0, 0, 0], drag = 0 }
+ground = { enabled = false }
+[[type]]
+collides = []
+[[collider]]
+file = "tube.relief"
+play = { clip = "grow", start = 0.5, resolution = 64 }
+[[emitter]]
+shape = "surface"
+attach = 0
+lifetime = 9
+rate = 5000
+speed = 0
+inherit = 1
+)";
+    const auto loaded = loadAll(folder_.write("scene.toml", scene), {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    auto made = Simulation::create(*loaded);
+    ASSERT_TRUE(made) << made.error().message;
+    for (int step = 0; step < 50; ++step) {
+        ASSERT_TRUE(made->step());
+    }
+    const auto sparks = made->particles().readState();
+    ASSERT_TRUE(sparks);
+    ASSERT_GT(sparks->size(), 4900U);
+    std::size_t still = 0;
+    for (const ParticleState& spark : *sparks) {
+        // It grows by 0.1 in 1 s, so that what is thrown goes outwards at that speed, or less on the lids.
+        const glm::vec2 away(spark.position.x, spark.position.z);
+        const glm::vec2 velocity(spark.velocity.x, spark.velocity.z);
+        ASSERT_LE(glm::length(velocity), 0.1001F);
+        ASSERT_GE(glm::dot(away, velocity), 0.0F);
+        still += velocity == glm::vec2(0.0F) ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(still), 100.0, 2.0) << "those of the step of the jump";
+}
+
 TEST_P(SurfaceBirthsGlTest, StayOutsideOfWhatThrowsThem) {
     const std::vector<ParticleState> sparks =
         played("rate = 5000\nspeed = 1\ninherit = 1\ncone = 30\n", 50, kDt, true);
