@@ -54,6 +54,14 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     if (loaded.scene.flow) {
         report.files.push_back(checkedFile(loaded.scene.flow->path, "flow"));
     }
+    for (const SceneEmitter& emitter : loaded.scene.emitters) {
+        for (const auto& [path, kind] :
+             {std::pair(emitter.points_file, "points"), {emitter.mesh_file, "mesh"}}) {
+            if (!path.empty()) {
+                report.files.push_back(checkedFile(path, kind));
+            }
+        }
+    }
     for (const auto& [path, kind] :
          {std::pair(loaded.scene.render.atlas, "atlas"), {loaded.scene.render.mesh, "mesh"}}) {
         if (!path.empty()) {

@@ -16,7 +16,7 @@ namespace relief {
 
 struct CheckedFile {
     std::filesystem::path path;
-    std::string kind;         ///< "scene", "world", "collider", "flow", "atlas" or "mesh"
+    std::string kind;         ///< "scene", "world", "collider", "flow", "points", "atlas" or "mesh"
     std::uint64_t bytes = 0;  ///< on disk
 };
 
@@ -42,7 +42,8 @@ template <class Visitor, FieldsOf<CheckedFile> F>
 void fields(Visitor& visit, F& file) {
     visit("file", file.path, {"Path"});
     visit("kind", file.kind,
-          {.help = "Purpose", .words = kWords<"scene", "world", "collider", "flow", "atlas", "mesh">});
+          {.help = "Purpose",
+           .words = kWords<"scene", "world", "collider", "flow", "points", "atlas", "mesh">});
     visit("bytes", file.bytes, {"Size", "bytes"});
 }
 

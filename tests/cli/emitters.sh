@@ -135,6 +135,12 @@ sparks 'attach = 1' >maps.toml
 expect 0 "$relief_sim" maps.toml -q --dump maps.ply
 sparks 'attach = 1' 'mesh = "t.obj"' >mesh.toml
 expect 0 "$relief_sim" mesh.toml -q --dump mesh.ply
+expect 0 "$relief_sim" mesh.toml --check
+matches "mesh '.*t.obj'" <stdout || die "--check does not tell of the surface: $(cat stdout)"
+printf '0,0,0,0,1,0\n' >p.csv
+sed 's/^shape.*/points = "p.csv"/; /^mesh/d' mesh.toml >points.toml
+expect 0 "$relief_sim" points.toml --check
+matches "points '.*p.csv'" <stdout || die "--check does not tell of the points: $(cat stdout)"
 python3 - <<'P'
 import ply
 def places(name):
