@@ -256,9 +256,9 @@ typedef struct relief_emitter_options {
 relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
                                       const char* material, const relief_emitter_options* options);
 void relief_emitter_free(relief_emitter* emitter);
-/* The births of the last `seconds`, above 0 up to 1e9: of the step that has been taken, in which a body of that animation came to where it is now. They go with
- * the next step, each from where the surface was at its own moment, in a straight line between the two poses. Call it before the
- * relief_textures_set_poses() of the next step. Returns how many there was room for; -1: an error. Needs no context. */
+/* The births of the last `seconds`, above 0 up to 1e9: of the step that has been taken, in which a body of that animation came to where it
+ * is now. They go with the next step, each from where the surface was at its own moment, in a straight line between the two poses. Call
+ * it before the relief_textures_set_poses() of the next step. Returns how many there was room for; -1: an error. Needs no context. */
 int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter,
                               relief_textures* animated_textures, uint32_t body, float seconds);
 
