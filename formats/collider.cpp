@@ -147,4 +147,23 @@ Bounds solidBox(const Collider& collider) {
     return box;
 }
 
+float finestTexel(const Collider& collider) {
+    const float longest = collider.bounds.longestSide();
+    float finest = longest;
+    for (const DepthMap& map : collider.maps) {
+        const glm::vec3& unit = map.object_per_map;
+        if (map.projection() == Projection::kLocal) {
+            finest = std::min(finest, static_cast<float>(patchSpacing(map.texels)) * unit.x);
+        } else if (map.projection() == Projection::kCube) {
+            // A face spans the volume, of half sides `unit`, at its far end.
+            finest =
+                std::min(finest, 2.0F * std::min({unit.x, unit.y, unit.z}) / static_cast<float>(map.width));
+        } else {
+            finest = std::min(
+                {finest, unit.x / static_cast<float>(map.width), unit.y / static_cast<float>(map.height)});
+        }
+    }
+    return std::max({finest, longest / 2048.0F, 1e-9F});
+}
+
 }  // namespace relief

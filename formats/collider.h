@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/depth_map.h"
+#include "formats/materials.h"
 
 namespace relief {
 
@@ -58,6 +59,7 @@ struct Collider {
     std::vector<DepthMap> maps;
     /// An animated mesh (animation/animated_mesh.h), unchecked, whose pose at rest the maps are of; empty: it does not move.
     std::vector<std::byte> animation{};
+    Materials materials{};  ///< of its surface; empty: it is all the same
 
     /// Bytes of all maps' texels, in memory.
     [[nodiscard]] std::uint64_t texelBytes() const;
@@ -97,5 +99,9 @@ struct InsideSample {
 /// The box of the mesh and of all that is inside, as far as the maps know it. Ground goes deeper than the mesh that it stands
 /// for, and so than the bounds.
 [[nodiscard]] Bounds solidBox(const Collider& collider);
+
+/// The side, in object units, of the finest texel among the maps, but no less than 1/2048 of the longest
+/// side.
+[[nodiscard]] float finestTexel(const Collider& collider);
 
 }  // namespace relief

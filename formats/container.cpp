@@ -36,20 +36,27 @@ struct PackedPayload {
     }
 };
 
+/// Bytes in a zstd frame where that is shorter.
+Result<PackedPayload> packBytes(std::span<const std::byte> raw, int level) {
+    PackedPayload packed;
+    packed.stored = raw;
+    if (level > 0 && !raw.empty()) {
+        std::vector<std::byte> bytes = RELIEF_TRY(compress(raw, level));
+        if (bytes.size() < raw.size()) {
+            packed.take(Packing::kZstd, std::move(bytes));
+        }
+    }
+    return packed;
+}
+
 Result<PackedPayload> pack(const DepthMap& map, int level) {
+    if (level > 0 || !isFrontBack(map.format)) {
+        return packBytes(map.texels, level);
+    }
     PackedPayload packed;
     packed.stored = map.texels;
-    if (level == 0) {
-        if (isFrontBack(map.format)) {
-            if (std::vector<std::byte> rows = packRows(map); rows.size() < map.texels.size()) {
-                packed.take(Packing::kRows, std::move(rows));
-            }
-        }
-        return packed;
-    }
-    std::vector<std::byte> bytes = RELIEF_TRY(compress(map.texels, level));
-    if (bytes.size() < map.texels.size()) {
-        packed.take(Packing::kZstd, std::move(bytes));
+    if (std::vector<std::byte> rows = packRows(map); rows.size() < map.texels.size()) {
+        packed.take(Packing::kRows, std::move(rows));
     }
     return packed;
 }
@@ -73,9 +80,40 @@ flatbuffers::Offset<fb::Map> addMap(flatbuffers::FlatBufferBuilder& builder, con
                          static_cast<fb::Decode>(map.decode));
 }
 
+/// \param nodes  of them, as they lie in the file.
+flatbuffers::Offset<fb::Materials> addMaterials(flatbuffers::FlatBufferBuilder& builder,
+                                                const Materials& materials, const PackedPayload& nodes) {
+    if (materials.empty()) {
+        return 0;
+    }
+    std::vector<flatbuffers::Offset<fb::Material>> list;
+    for (const Material& one : materials.list) {
+        const auto name = builder.CreateString(one.name);
+        list.push_back(fb::CreateMaterial(builder, name, one.restitution, one.friction, one.lifetime_loss,
+                                          one.area_share));
+    }
+    std::vector<fb::MaterialSides> sides;
+    for (const MaterialSides& pair : materials.sides) {
+        sides.emplace_back(pair.axis, pair.towards, pair.against);
+    }
+    const auto list_vector = builder.CreateVector(list);
+    const flatbuffers::Offset<flatbuffers::Vector<const fb::MaterialSides*>> side_vector =
+        sides.empty() ? 0 : builder.CreateVectorOfStructs(sides);
+    const flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> node_vector =
+        nodes.stored.empty()
+            ? 0
+            : builder.CreateVector(reinterpret_cast<const std::uint8_t*>(nodes.stored.data()),
+                                   nodes.stored.size());
+    const fb::Vec3 origin = toFb(materials.origin);
+    return fb::CreateMaterials(builder, list_vector, side_vector, &origin, materials.size, node_vector,
+                               static_cast<fb::Compression>(nodes.packing),
+                               static_cast<std::uint32_t>(materials.nodes.size() * sizeof(MaterialNode)));
+}
+
 /// \param payloads  one a map. Their offsets do not change the size of the answer.
 std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const fb::Payload> payloads,
-                                     std::span<const PackedPayload> packed) {
+                                     std::span<const PackedPayload> packed,
+                                     const PackedPayload& material_nodes) {
     flatbuffers::FlatBufferBuilder builder;
     std::vector<flatbuffers::Offset<fb::Map>> maps;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
@@ -108,8 +146,9 @@ std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const f
         animation = builder.CreateVector(reinterpret_cast<const std::uint8_t*>(collider.animation.data()),
                                          collider.animation.size());
     }
+    const auto materials = addMaterials(builder, collider.materials, material_nodes);
     fb::FinishColliderBuffer(builder, fb::CreateCollider(builder, &bounds_min, &bounds_max, unit, provenance,
-                                                         map_vector, animation));
+                                                         map_vector, animation, materials));
     const auto bytes = std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
     return {bytes.begin(), bytes.end()};
 }
@@ -144,6 +183,9 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
         packed.push_back(std::move(*one));
     }
 
+    const PackedPayload material_nodes =
+        RELIEF_TRY(packBytes(std::as_bytes(std::span(collider.materials.nodes)), options.compression_level));
+
     // Payloads lie behind the metadata, which says where they lie: its size first, then its values.
     std::vector<fb::Payload> payloads;
     for (std::size_t i = 0; i < packed.size(); ++i) {
@@ -158,24 +200,28 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                                   [](const DepthMap& map) { return map.compare == Compare::kGap; });
     const bool patches = std::any_of(collider.maps.begin(), collider.maps.end(),
                                      [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
-    header.minor = !collider.animation.empty()            ? 5
+    header.minor = !collider.materials.empty()            ? 6
+                   : !collider.animation.empty()          ? 5
                    : patches                              ? 4
                    : !collider.provenance.options.empty() ? 3
                    : gaps                                 ? 2
                    : rows                                 ? 1
                                                           : 0;
-    header.metadata_size = writeMetadata(collider, payloads, packed).size();
+    header.metadata_size = writeMetadata(collider, payloads, packed, material_nodes).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {
         payload = fb::Payload(alignPayload(end), payload.stored_size(), payload.raw_size(), payload.xxh3());
         end = payload.offset() + payload.stored_size();
     }
-    const std::vector<std::byte> metadata = writeMetadata(collider, payloads, packed);
+    const std::vector<std::byte> metadata = writeMetadata(collider, payloads, packed, material_nodes);
     if (metadata.size() != header.metadata_size || metadata.size() > kContainerMetadataMax) {
-        return fail(ErrorCode::kLimit, collider.animation.empty()
-                                           ? "the metadata does not fit into the container; use fewer maps"
-                                           : "the animated mesh takes more than the 16 MiB of a container's "
-                                             "metadata; simplify it, or bake fewer clips");
+        return fail(ErrorCode::kLimit,
+                    !collider.animation.empty()
+                        ? "the animated mesh takes more than the 16 MiB of a container's "
+                          "metadata; simplify it, or bake fewer clips"
+                    : !collider.materials.empty()
+                        ? "the materials do not fit into the container; bake with --materials none"
+                        : "the metadata does not fit into the container; use fewer maps");
     }
     header.file_size = end;
     header.metadata_hash = xxh3_64(metadata);

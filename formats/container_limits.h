@@ -8,7 +8,7 @@
 namespace relief {
 
 inline constexpr std::uint16_t kContainerMajor = 1;
-inline constexpr std::uint16_t kContainerMinor = 5;
+inline constexpr std::uint16_t kContainerMinor = 6;
 
 /// Of texels to their file: accepted by default. Ordinary maps shrink to a third or a fifth.
 inline constexpr std::uint64_t kUnpackedPerStored = 16;

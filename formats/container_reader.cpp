@@ -106,6 +106,42 @@ Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, 
     return std::vector<std::byte>(stored.begin(), stored.end());
 }
 
+/// The materials, unchecked but for the size of their nodes.
+Result<Materials> readMaterials(const fb::Materials& stored) {
+    Materials materials;
+    for (const fb::Material* one : *stored.list()) {
+        materials.list.push_back({one->name()->str(), one->restitution(), one->friction(),
+                                  one->lifetime_loss(), one->area_share()});
+    }
+    if (stored.sides() != nullptr) {
+        for (const fb::MaterialSides* pair : *stored.sides()) {
+            materials.sides.push_back({pair->axis(), pair->towards(), pair->against()});
+        }
+    }
+    materials.origin = fromFb(*stored.origin());
+    materials.size = stored.size();
+    if (stored.nodes() == nullptr && stored.nodes_size() == 0) {
+        return materials;
+    }
+    const std::span<const std::byte> bytes =
+        stored.nodes() == nullptr ? std::span<const std::byte>()
+                                  : std::as_bytes(std::span(stored.nodes()->data(), stored.nodes()->size()));
+    const std::uint32_t size = stored.nodes_size();
+    const auto packing = static_cast<Packing>(stored.compression());
+    if (size > kMaterialNodesMax * sizeof(MaterialNode) || size % sizeof(MaterialNode) != 0 ||
+        (packing == Packing::kNone ? size != bytes.size()
+                                   : packing != Packing::kZstd || size <= bytes.size())) {
+        return invalidInput("the nodes of the materials have a size that does not go with their bytes");
+    }
+    std::vector<std::byte> nodes(bytes.begin(), bytes.end());
+    if (packing == Packing::kZstd) {
+        nodes = RELIEF_TRY(inFront("the nodes of the materials", decompress(bytes, size)));
+    }
+    materials.nodes.resize(size / sizeof(MaterialNode));
+    std::memcpy(materials.nodes.data(), nodes.data(), nodes.size());
+    return materials;
+}
+
 bool isLimit(IssueCode code) {
     return code == IssueCode::kMetadataLimit || code == IssueCode::kMapLimit ||
            code == IssueCode::kMapSizeLimit || code == IssueCode::kTexelLimit;
@@ -228,6 +264,7 @@ bool ContainerReader::readMetadata() {
     if (!metadata_intact) {
         add(IssueCode::kMetadataChecksum, "the checksum of the metadata is wrong", 48);
     }
+    const std::size_t before = issues.size();
     // Accessors need the alignment that the file has, and that `bytes_` need not have.
     const auto aligned = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
     std::memcpy(aligned.get(), bytes.data(), bytes.size());
@@ -265,6 +302,13 @@ bool ContainerReader::readMetadata() {
             std::as_bytes(std::span(metadata.animation()->data(), metadata.animation()->size()));
         collider.animation.assign(animation.begin(), animation.end());
     }
+    if (metadata.materials() != nullptr) {
+        if (Result<Materials> materials = readMaterials(*metadata.materials())) {
+            collider.materials = std::move(*materials);
+        } else {
+            add(IssueCode::kMaterials, materials.error().message);
+        }
+    }
     for (const fb::Map* map : stored) {
         const fb::Payload& payload = *map->payload();
         maps.push_back({readFrame(*map),
@@ -272,7 +316,7 @@ bool ContainerReader::readMetadata() {
                          static_cast<Packing>(map->compression())},
                         payload.xxh3()});
     }
-    metadata_state = metadata_intact ? PartState::kSound : PartState::kDamaged;
+    metadata_state = metadata_intact && issues.size() == before ? PartState::kSound : PartState::kDamaged;
     return true;
 }
 

@@ -40,6 +40,7 @@ enum class IssueCode : std::uint16_t {
     kBounds = 1201,
     kUnit = 1202,
     kProvenance = 1203,
+    kMaterials = 1204,
     kFrame = 1301,
     kMapSizeLimit = 1302,
     kPayloadSize = 1401,

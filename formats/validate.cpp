@@ -176,6 +176,7 @@ std::vector<Issue> descriptionIssues(const Collider& collider) {
         {kProvenance, -1, {}, faultOfHash(from.mesh_hash)},
         {kProvenance, -1, {}, faultOfText("provenance.tool_version", from.tool_version, kToolVersionMax)},
         {kProvenance, -1, {}, faultOfOptions(from.options)},
+        {kMaterials, -1, {}, faultOfMaterials(collider.materials)},
     };
     std::erase_if(issues, [](const Issue& issue) { return issue.message.empty(); });
     return issues;

@@ -23,7 +23,7 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative, against t
 // All Results fail with kInvalidInput, or with kLimit for a map of too many texels. A message names the field
 // and its value; the functions for one map leave the map's index to the caller.
 
-/// Faults of bounds (first), unit and provenance.
+/// Faults of bounds (first), unit, provenance and materials.
 [[nodiscard]] std::vector<Issue> descriptionIssues(const Collider& collider);
 
 /// All of a map but its texels, which may be missing.

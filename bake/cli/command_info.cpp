@@ -57,6 +57,9 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info, con
     if (animated != nullptr) {
         text += "moves    " + animationText(*animated);
     }
+    if (!collider.materials.empty()) {
+        text += "surface  " + materialsText(collider.materials);
+    }
     std::vector<std::vector<std::string>> rows = {
         {"map", "format", "projection", "keeps", "size>", "bytes>", "stored>", "encloses", "empty is"}};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {

@@ -92,6 +92,12 @@ class MapMaker {
     const BakeWatcher& watcher_;
 };
 
+/// MaterialSource::sides
+bool knowsSides(const BakeRequest& request, const ShapeReport& shape) {
+    return request.holes == Holes::kClose && request.repair.method.empty() && shape.sheets == 0 &&
+           shape.terrains == 0;
+}
+
 /// Turns those triangles of an animated mesh that were turned in its rest pose.
 /// \param rest   the pose's vertices. \param before, wound  its triangles with an area, as they came and as they are.
 void turnAlike(const std::vector<glm::vec3>& rest, const std::vector<glm::uvec3>& before,
@@ -140,7 +146,7 @@ class Director {
         result_.settings = RELIEF_TRY(settingsOf(request()));
         RELIEF_TRY(readMesh(std::move(mesh)));
         return SolidMesh{result_.unused_vertices, std::move(result_.mesh), std::move(result_.shape),
-                         std::move(result_.parts)};
+                         std::move(result_.parts), std::move(result_.materials)};
     }
 
   private:
@@ -219,12 +225,30 @@ class Director {
         }
         tell(watcher_.begin, repairs ? "repairing the mesh" : "examining the mesh");
         const std::vector<glm::uvec3> before = result_.animated ? mesh.triangles : std::vector<glm::uvec3>();
+        if (repairs) {
+            RELIEF_TRY(takeMaterials(mesh));
+        }
         result_.mesh = RELIEF_TRY(repairMesh(std::move(mesh), request().repair));
+        if (!repairs) {
+            RELIEF_TRY(takeMaterials(*result_.mesh.mesh));  // with its winding mended
+        }
         if (result_.animated && result_.mesh.report.turned > 0) {
             AnimatedMesh& animated = *result_.animated;
             turnAlike(posed(animated, restPose(animated)), before, result_.mesh.mesh->triangles, animated);
         }
         return makeSolidOf(result_.mesh.mesh);
+    }
+
+    /// \param mesh  whose triangles are the source's.
+    Result<void> takeMaterials(const TriangleMesh& mesh) {
+        if (request().materials == MaterialsAs::kNone || request().animated) {
+            return {};
+        }
+        MaterialSource source = RELIEF_TRY(materialSource(mesh, request().materials.has_value()));
+        if (!source.empty()) {
+            result_.materials = std::make_shared<MaterialSource>(std::move(source));
+        }
+        return {};
     }
 
     /// \return its rest pose.
@@ -240,6 +264,7 @@ class Director {
         result_.mesh = solid.mesh;
         result_.shape = solid.shape;
         result_.parts = solid.parts;
+        result_.materials = solid.materials;
     }
 
     /// Turns a non-solid mesh into a solid.
@@ -260,6 +285,9 @@ class Director {
         mesh = std::move(shaped.mesh);
         result_.shape = std::move(shaped.report);
         result_.parts = std::move(shaped.parts);
+        if (result_.materials) {
+            result_.materials->sides = knowsSides(request(), result_.shape);
+        }
         if (request().holes == Holes::kKeep) {
             mesh.freeEdges();
         }
@@ -327,6 +355,7 @@ class Director {
                 map.encloses = false;  // the mesh may leave the box of its rest pose
             }
         }
+        result_.baked.collider.materials = materialsFor(result_.baked.collider, result_.materials.get());
         // The maps have recorded themselves; beside them, the mesh as it was made.
         BakeRequest made;
         if (request().animated) {
@@ -343,6 +372,7 @@ class Director {
         made.as = asWords(result_.shape);
         made.thickness = thicknessOf(result_.shape);
         made.texel = request().texel;
+        made.materials = request().materials;
         made.voids = result_.shape.voids > 0 ? VoidsAs::kFull : request().voids;
         for (const FieldWords& field : changedFields(made)) {
             for (const std::string& word : field.words) {

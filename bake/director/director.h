@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/director/bake_request.h"
+#include "bake/materials/material_tree.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/recipe/depfile.h"
 #include "bake/report/bake_report.h"
@@ -35,6 +37,7 @@ struct BakeResult {
     RepairedMesh mesh;                  ///< the solid that was baked
     ShapeReport shape;
     SurfaceParts parts;
+    std::shared_ptr<MaterialSource> materials;  ///< null: none are kept
     Baked baked;
     std::optional<PlanReport> plan;
     std::optional<WrongShare> wrong;             ///< near the surface; of a planned bake
@@ -63,6 +66,7 @@ struct SolidMesh {
     RepairedMesh mesh;
     ShapeReport shape;
     SurfaceParts parts;
+    std::shared_ptr<MaterialSource> materials;  ///< null: none are kept
 
     /// It is the same with any budget: it has no shells.
     [[nodiscard]] bool suitsAnyBudget() const { return shape.sheets == 0; }

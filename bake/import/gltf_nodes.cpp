@@ -15,10 +15,10 @@ namespace {
 // --- the document ---
 
 // Required extensions that are read or do not change positions.
-constexpr std::array<std::string_view, 10> kKnown = {
-    "KHR_mesh_quantization",   "KHR_texture_transform",  "KHR_technique_webgl", "KHR_techniques_webgl",
-    "KHR_texture_basisu",      "KHR_lights_punctual",    "EXT_texture_webp",    "MSFT_texture_dds",
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression"};
+constexpr std::array<std::string_view, 12> kKnown = {
+    "KHR_mesh_quantization",   "KHR_texture_transform",   "KHR_technique_webgl",      "KHR_techniques_webgl",
+    "KHR_texture_basisu",      "KHR_lights_punctual",     "EXT_texture_webp",         "MSFT_texture_dds",
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_physics_rigid_bodies", "KHR_implicit_shapes"};
 
 Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
@@ -225,6 +225,41 @@ std::optional<Transform> affineOf(const float* m) {
     }
     return Transform{glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]),
                      {m[12], m[13], m[14]}};
+}
+
+Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, const GltfNode& node) {
+    constexpr const char* kPhysics = "KHR_physics_rigid_bodies";
+    const auto inside = [&](const std::optional<GltfValue>& of,
+                            const char* name) -> Result<std::optional<GltfValue>> {
+        return of ? of->object(name) : std::optional<GltfValue>();
+    };
+    const auto own = RELIEF_TRY(node.place.object("extensions"));
+    const auto physics = RELIEF_TRY(inside(own, kPhysics));
+    const auto collider = RELIEF_TRY(inside(physics, "collider"));
+    const auto index = collider ? RELIEF_TRY(collider->get<std::uint64_t>("physicsMaterial")) : std::nullopt;
+    if (!index) {
+        return std::nullopt;
+    }
+    const auto shared = RELIEF_TRY(document.object("extensions"));
+    const auto lists = RELIEF_TRY(inside(shared, kPhysics));
+    const std::vector<GltfValue> all =
+        lists ? RELIEF_TRY(lists->objects("physicsMaterials")) : std::vector<GltfValue>();
+    if (*index >= all.size()) {
+        return collider->wrong("has the physicsMaterial " + std::to_string(*index) + ", and there are " +
+                               std::to_string(all.size()));
+    }
+    const GltfValue& material = all[*index];
+    NodeResponse response;
+    response.name = RELIEF_TRY(material.get<std::string>("name", ""));
+    response.restitution = RELIEF_TRY(material.get<float>("restitution", response.restitution));
+    response.friction = RELIEF_TRY(material.get<float>("dynamicFriction", response.friction));
+    for (float* share : {&response.restitution, &response.friction}) {
+        if (!(*share >= 0.0F)) {
+            return material.wrong("has a restitution or a dynamicFriction below 0");
+        }
+        *share = std::min(*share, 1.0F);
+    }
+    return response;
 }
 
 Result<std::optional<std::vector<Transform>>> gltfInstances(const GltfNode& node, GltfBuffers& buffers,

@@ -57,6 +57,7 @@ class GltfReader {
             node.names = {node.shown};
             node.transform = nodes_[index].at.transform;
             node.children = nodes_[index].children;
+            node.response = RELIEF_TRY(gltfResponse(document_, nodes_[index]));
         }
         scene_.roots = RELIEF_TRY(gltfRoots(document_, nodes_));
         RELIEF_TRY(readShown());
@@ -148,6 +149,7 @@ class GltfReader {
             SceneNode node;
             node.transform = transform;
             node.shown = scene_.nodes[index].shown;
+            node.response = scene_.nodes[index].response;
             node.index = static_cast<std::uint32_t>(scene_.nodes.size());
             node.parts = scene_.nodes[index].parts;
             children.push_back(*node.index);

@@ -28,6 +28,7 @@ struct ImportOptions {
     /// OBJ's groups and objects. Clean UTF-8 (cleanUtf8), at most kAskedNamesMax of at most kAskedNameBytesMax bytes; names
     /// of the file are cleaned and cut alike. A name that no triangle has is an error (kUsage) that lists existing ones.
     std::vector<std::string> names{};
+    bool materials = true;  ///< in a level, meshes of the same shape and other materials are different ones
 };
 
 struct ImportLimits {

@@ -105,6 +105,8 @@ void exchange(Channel& channel, Mesh& mesh, std::uint64_t triangle_max) {
         channel.number(name.node_index);
         text(name.node);
         text(name.material);
+        channel.number(name.restitution);
+        channel.number(name.friction);
     });
     channel.array(mesh.positions, 3 * triangle_max);
     channel.array(mesh.triangles, triangle_max);
@@ -132,6 +134,10 @@ void write(Writer& writer, const Result<TriangleMesh>& raw) {
     } else {
         writer.array(raw.error().message, kErrorBytesMax);
     }
+}
+
+bool isShare(float value) {
+    return value >= 0.0F && value <= 1.0F;  // false for NaN
 }
 
 tl::unexpected<Error> noMessage() {
@@ -179,6 +185,9 @@ Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::ui
     for (SurfaceName& name : raw.surface_names) {
         name.node = cleanUtf8(name.node, kAskedNameBytesMax);
         name.material = cleanUtf8(name.material, kAskedNameBytesMax);
+        if (!isShare(name.restitution) || !isShare(name.friction)) {
+            return noMessage();
+        }
     }
     for (LevelMesh& mesh : raw.level_meshes) {
         mesh.name = cleanUtf8(mesh.name, kAskedNameBytesMax);

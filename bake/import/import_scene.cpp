@@ -228,8 +228,9 @@ class Flattener {
         Transform transform;
         std::uint8_t mark;
     };
-    /// Identifies a mesh: parts, mark, and what is applied to them, by columns.
-    using MeshKey = std::tuple<std::vector<std::uint32_t>, std::uint8_t, std::array<double, 9>>;
+    /// Identifies a mesh: parts, mark, what is applied to them, by columns, and the response of its node.
+    using MeshKey = std::tuple<std::vector<std::uint32_t>, std::uint8_t, std::array<double, 9>,
+                               std::optional<NodeResponse>>;
 
     Result<void> prepare() {
         states_.resize(scene_.nodes.size());
@@ -247,10 +248,7 @@ class Flattener {
             return invalidInput("no triangles; export the surface as polygons, not as points or lines");
         }
         RELIEF_TRY(marks_.allMet());
-        if (mesh_.surface_names.size() < 2) {
-            mesh_.surface_names.clear();
-            mesh_.labels.clear();
-        }
+        dropSingleLabel(mesh_);
         if (flat_ > 0) {
             mesh_.warnings.push_back(
                 std::to_string(flat_) +
@@ -310,7 +308,8 @@ class Flattener {
         std::array<double, 9> columns{};
         std::copy_n(&applied[0][0], 9, columns.begin());
         const auto next = static_cast<std::uint32_t>(mesh_.level_meshes.size());
-        const auto [found, added] = meshes_.try_emplace({use.parts, use.mark, columns}, next);
+        const auto [found, added] =
+            meshes_.try_emplace({use.parts, use.mark, columns, use.node->response}, next);
         if (!added) {
             return found->second;
         }
@@ -445,9 +444,12 @@ class Flattener {
         }
         mesh_.marks.resize(marks_.any() ? mesh_.triangles.size() : 0,
                            std::max(mark, marks_.meet(part.names)));
-        mesh_.labels.resize(mesh_.triangles.size(),
-                            labelOf({node.index.value_or(uses_), cleanUtf8(node.shown, kAskedNameBytesMax),
-                                     cleanUtf8(part.material, kAskedNameBytesMax)}));
+        const NodeResponse response = node.response.value_or(NodeResponse());
+        mesh_.labels.resize(
+            mesh_.triangles.size(),
+            labelOf({node.index.value_or(uses_), cleanUtf8(node.shown, kAskedNameBytesMax),
+                     cleanUtf8(part.material.empty() ? response.name : part.material, kAskedNameBytesMax),
+                     response.restitution, response.friction}));
     }
 
     std::uint32_t labelOf(const SurfaceName& name) {

@@ -51,12 +51,21 @@ struct ScenePart {
 /// Gives the part those of the positions that its triangles use, in their order. \return them, by their index.
 std::vector<std::uint32_t> compact(const std::vector<glm::vec3>& positions, ScenePart& part);
 
+/// The response of a node's surface (formats/materials.h).
+struct NodeResponse {
+    std::string name;  ///< of the material of parts that have none
+    float restitution = 1.0F;
+    float friction = 0.0F;
+    friend auto operator<=>(const NodeResponse&, const NodeResponse&) = default;
+};
+
 /// A place of parts and of other nodes, which may have several places themselves.
 struct SceneNode {
     std::optional<Transform> transform{};  ///< to its parent
     bool posed = false;                    ///< its parts are in scene space, whatever the transforms
     std::vector<std::string> names{};      ///< that --as can select all below it by
-    std::string shown{};                   ///< of SurfaceName, as is the next
+    std::string shown{};                   ///< of SurfaceName, as are the next two
+    std::optional<NodeResponse> response{};
     std::optional<std::uint32_t> index{};  ///< nullopt: each place of the node counts for itself
     std::vector<std::uint32_t> parts{};
     std::vector<std::uint32_t> children{};

@@ -68,7 +68,7 @@ Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) c
     return finishMesh(RELIEF_TRY(named(std::move(raw), names)));
 }
 
-Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names) const {
+Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names, bool materials) const {
     if (!raw.animation.empty()) {
         return lies("an animation that was not requested");
     }
@@ -76,7 +76,7 @@ Result<Level> ImportSource::finishLevel(TriangleMesh raw, std::size_t names) con
     if (!all) {
         return forward(all);
     }
-    Result<Level> level = cutLevel(std::move(*all));
+    Result<Level> level = cutLevel(std::move(*all), materials);
     return level ? std::move(level)
                  : fail(level.error().code, quotedPath(path_) + ": " + level.error().message);
 }

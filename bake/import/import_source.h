@@ -37,7 +37,8 @@ class ImportSource {
     /// Errors: as finishMesh; kInvalidInput.
     [[nodiscard]] Result<TriangleMesh> finish(TriangleMesh raw, std::size_t names = 0) const;
     /// The same of a level, whose meshes are cut apart.
-    [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0) const;
+    [[nodiscard]] Result<Level> finishLevel(TriangleMesh raw, std::size_t names = 0,
+                                            bool materials = true) const;
     /// The same of an animated mesh. \param kind  kAnimated, or kClips: then there are no vertices.
     [[nodiscard]] Result<AnimatedImport> finishAnimated(TriangleMesh raw, ImportKind kind) const;
 

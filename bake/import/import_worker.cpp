@@ -116,7 +116,7 @@ class Import {
     Result<Level> level() {
         ImportSource source = RELIEF_TRY(open());
         TriangleMesh raw = RELIEF_TRY(workOn(source, ImportKind::kLevel));
-        return source.finishLevel(std::move(raw), options_.names.size());
+        return source.finishLevel(std::move(raw), options_.names.size(), options_.materials);
     }
 
     /// \param kind  kAnimated or kClips.

@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -61,10 +63,10 @@ void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) 
         }
         mesh.labels.push_back(found->second);
     }
-    if (mesh.surface_names.size() < 2) {
-        mesh.surface_names.clear();
-        mesh.labels.clear();
+    if (all.labels.empty()) {
+        mesh.surface_names = all.surface_names;
     }
+    dropSingleLabel(mesh);
 }
 
 /// Whether finishMesh would find an area, or a fault.
@@ -89,17 +91,55 @@ std::string hashOf(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::uint32_t LevelMeshes::add(TriangleMesh mesh) {
+std::string materialHash(const TriangleMesh& mesh) {
+    std::map<std::string_view, std::uint32_t> known;
+    std::string text;
+    std::uint32_t before = kNoLabel;
+    const std::size_t count = mesh.labels.empty() ? mesh.surface_names.size() : mesh.labels.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const SurfaceName& name = mesh.surface_names[mesh.labels.empty() ? i : mesh.labels[i]];
+        const auto [found, added] =
+            known.try_emplace(name.material, static_cast<std::uint32_t>(known.size()));
+        if (found->second != before) {
+            before = found->second;
+            text += std::to_string(i) + ":" + std::to_string(before) +
+                    (added ? name.material + '|' + shortest(name.restitution) + '|' + shortest(name.friction)
+                           : "") +
+                    std::string(1, '\0');
+        }
+    }
+    return xxh3_128Hex(std::as_bytes(std::span(text)));
+}
+
+bool hasSeveralMaterials(std::span<const TriangleMesh> meshes) {
+    std::optional<std::string_view> first;
+    for (const TriangleMesh& mesh : meshes) {
+        if (mesh.surface_names.empty() && first.value_or("") != "") {
+            return true;
+        }
+        for (const SurfaceName& name : mesh.surface_names) {
+            if (first.value_or(name.material) != name.material) {
+                return true;
+            }
+            first = name.material;
+        }
+        first = first.value_or("");
+    }
+    return false;
+}
+
+std::uint32_t LevelMeshes::add(TriangleMesh mesh, bool materials) {
     mesh.content_hash = hashOf(mesh);
     const auto [found, added] =
-        known_.try_emplace({mesh.content_hash, mesh.marks}, static_cast<std::uint32_t>(meshes_.size()));
+        known_.try_emplace({mesh.content_hash, mesh.marks, materials ? materialHash(mesh) : ""},
+                           static_cast<std::uint32_t>(meshes_.size()));
     if (added) {
         meshes_.push_back(std::move(mesh));
     }
     return found->second;
 }
 
-Result<Level> cutLevel(TriangleMesh all) {
+Result<Level> cutLevel(TriangleMesh all, bool materials) {
     if (!fits(all)) {
         return invalidInput("the importer answers with a level that does not fit together; export it again");
     }
@@ -131,7 +171,7 @@ Result<Level> cutLevel(TriangleMesh all) {
             continue;
         }
         mesh = RELIEF_TRY(finishMesh(std::move(mesh)));
-        places.emplace_back(meshes.add(std::move(mesh)));
+        places.emplace_back(meshes.add(std::move(mesh), materials));
     }
     level.meshes = meshes.take();
     std::vector<bool> placed(level.meshes.size(), false);

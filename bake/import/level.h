@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,16 +31,24 @@ struct Level {
     std::vector<std::string> warnings;
 };
 
+/// XXH3-128 of its materials, and of which triangle has which.
+[[nodiscard]] std::string materialHash(const TriangleMesh& mesh);
+
+/// Whether not all of their surface is of one name.
+[[nodiscard]] bool hasSeveralMaterials(std::span<const TriangleMesh> meshes);
+
 /// The meshes of a level, equal ones joined.
 class LevelMeshes {
   public:
     /// \param mesh  as finishMesh leaves it; its content_hash is made. \return its index.
-    std::uint32_t add(TriangleMesh mesh);
+    /// \param materials  meshes of other materials are not equal.
+    std::uint32_t add(TriangleMesh mesh, bool materials);
     [[nodiscard]] std::vector<TriangleMesh> take() { return std::move(meshes_); }
 
   private:
     std::vector<TriangleMesh> meshes_;
-    std::map<std::pair<std::string, std::vector<std::uint8_t>>, std::uint32_t> known_;  // by hash and marks
+    /// By hash, marks and materials.
+    std::map<std::tuple<std::string, std::vector<std::uint8_t>, std::string>, std::uint32_t> known_;
 };
 
 /// importMeshInWorker() of a level: in glTF the meshes of nodes, in OBJ each object or group, a placement each.
@@ -50,7 +60,8 @@ class LevelMeshes {
 /// Cuts the meshes of a level apart, finishes them, and joins equal ones. Those without any area are left out with their
 /// bodies and a warning.
 /// \param all  with name and hash. Its lists of meshes and bodies may hold anything.
+/// \param materials  as of LevelMeshes::add().
 /// Errors: kInvalidInput (lists that do not fit, no mesh that is left), without the file's path.
-[[nodiscard]] Result<Level> cutLevel(TriangleMesh all);
+[[nodiscard]] Result<Level> cutLevel(TriangleMesh all, bool materials = true);
 
 }  // namespace relief

@@ -72,7 +72,7 @@ Result<Level> importFolder(const fs::path& folder, const ImportOptions& options,
         LevelBody body;
         body.node = mesh.name;
         mesh.name = cleanUtf8(file.stem().string(), kMeshNameMax);
-        body.mesh = meshes.add(std::move(mesh));
+        body.mesh = meshes.add(std::move(mesh), options.materials);
         level.bodies.push_back(std::move(body));
     }
     level.meshes = meshes.take();

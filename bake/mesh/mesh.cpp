@@ -48,6 +48,15 @@ void keepTriangles(TriangleMesh& mesh, std::size_t count) {
     mesh.labels.resize(std::min(count, mesh.labels.size()));
 }
 
+void dropSingleLabel(TriangleMesh& mesh) {
+    if (mesh.surface_names.size() < 2) {
+        mesh.labels.clear();
+        if (!mesh.surface_names.empty() && mesh.surface_names[0].material.empty()) {
+            mesh.surface_names.clear();
+        }
+    }
+}
+
 Bounds boundsOf(std::span<const glm::vec3> positions) {
     Bounds bounds;
     for (const glm::vec3& p : positions) {

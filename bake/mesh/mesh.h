@@ -32,6 +32,8 @@ struct SurfaceName {
     std::uint32_t node_index = 0;  ///< counts the nodes that show something: two of one name are two
     std::string node;              ///< of OBJ the group or object; "" without a name
     std::string material;          ///< "" without a name
+    float restitution = 1.0F;      ///< of the material, as formats/materials.h has it, where the file has one
+    float friction = 0.0F;
 
     friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
@@ -64,9 +66,10 @@ struct TriangleMesh {
     std::vector<std::uint8_t> marks;
     /// Per triangle an index into `surface_names`. Empty: one surface, or the triangles are no longer the source's.
     std::vector<std::uint32_t> labels;
-    std::vector<SurfaceName> surface_names;  ///< one per material of each node, in file order
-    std::uint64_t dropped_triangles = 0;     ///< without area
-    std::uint64_t unused_vertices = 0;       ///< of the source, that no triangle of it uses
+    /// One per material of each node, in file order; of a single surface only if its material has a name.
+    std::vector<SurfaceName> surface_names;
+    std::uint64_t dropped_triangles = 0;  ///< without area
+    std::uint64_t unused_vertices = 0;    ///< of the source, that no triangle of it uses
     /// Triangles at the end that are no surface of the source's: caps over holes (hole_caps.h), rims of shells and the
     /// ground below terrains (bake/shape). Nothing is measured on them.
     std::uint64_t cap_triangles = 0;
@@ -100,6 +103,8 @@ struct TriangleMesh {
 
 /// Keeps the first `count` triangles, their marks and labels. \pre moveTriangle() has filled them.
 void keepTriangles(TriangleMesh& mesh, std::size_t count);
+/// Leaves out the labels of a single surface, and its name where that has no material.
+void dropSingleLabel(TriangleMesh& mesh);
 /// Copies a triangle, its mark and its label.
 void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to);
 

@@ -19,6 +19,10 @@ struct ClosestPoint {
     glm::dvec3 point{0.0};  ///< object space, on the triangle
 };
 
+/// The point of a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
+[[nodiscard]] glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                                           const glm::dvec3& c);
+
 struct FirstHit {
     double along = 0.0;  ///< in units of the ray's direction
     std::uint32_t triangle = 0;

@@ -157,6 +157,9 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     }
     text += "\nbox " + boxText(summary.mesh.bounds, summary.mesh.unit);
     text += "\n" + careText(summary.care, summary.verbose) + shapeText(summary.shape, summary.mesh.unit);
+    if (const Materials& materials = summary.baked.collider.materials; !materials.empty()) {
+        text += countText(materials.list.size(), "material") + " in " + bytesText(materials.bytes()) + "\n";
+    }
     if (summary.animated != nullptr) {
         text += animationText(*summary.animated);
     }

@@ -2,6 +2,18 @@
 
 namespace relief {
 
+std::string materialsText(const Materials& materials) {
+    std::vector<std::vector<std::string>> rows = {
+        {"material", "restitution>", "friction>", "lifetime loss>", "area>"}};
+    for (const Material& one : materials.list) {
+        rows.push_back({one.name.empty() ? "-" : one.name, shortNumber(double{one.restitution}),
+                        shortNumber(double{one.friction}), shortNumber(double{one.lifetime_loss}),
+                        shortNumber(100.0 * double{one.area_share}) + " %"});
+    }
+    return countText(materials.list.size(), "material") + " in " + bytesText(materials.bytes()) + "\n" +
+           table(rows);
+}
+
 std::string animationText(const AnimatedMesh& mesh) {
     std::string text = countText(mesh.positions.size(), "vertex", "vertices") + " moved by " +
                        countText(mesh.joints.size(), "joint") + " and " +

@@ -89,6 +89,22 @@ void fields(Visitor& visit, M& mesh) {
     visit("materials", mesh.materials, {"Names of materials, \"\" for none: emitter.material"});
 }
 
+template <class Visitor, FieldsOf<Material> M>
+void fields(Visitor& visit, M& material) {
+    visit("name", material.name,
+          {"Name, which no other material of the collider has; empty of surfaces without one"});
+    visit("restitution", material.restitution, {"Factor of the particles' own restitution", {}, kShareRange});
+    visit("friction", material.friction,
+          {"1 − friction is a factor of the particles' own 1 − friction", {}, kShareRange});
+    visit("lifetime_loss", material.lifetime_loss,
+          {"Lifetime that each step in contact costs", "s", {0.0, double{kMaterialLossMax}}});
+    visit("area_percent", 100.0 * double{material.area_share},
+          {"Share of the mesh's surface", "%", kPercentRange});
+}
+
+/// Materials as a line with their bytes and a table.
+[[nodiscard]] std::string materialsText(const Materials& materials);
+
 /// A line, its groups and materials, and a table of the clips, if there are any.
 [[nodiscard]] std::string animationText(const AnimatedMesh& mesh);
 
@@ -111,6 +127,9 @@ void fields(Visitor& visit, const ColliderReport<Map>& report) {
     visit("unit", collider.unit, {"Unit of lengths: m, or empty if the source names none"});
     visit("texel_bytes", collider.gpuBytes(), {"Size of all maps on the GPU", "bytes"});
     visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
+    visit("materials", collider.materials.list,
+          {"Materials of its surface, by their ids; none: its surface is all the same"});
+    visit("material_bytes", collider.materials.bytes(), {"Size of the materials", "bytes"});
     visit("animation", animated == nullptr ? std::nullopt : std::optional(*animated),
           {"How it moves; null if it does not"});
     visit("provenance", collider.provenance, {"Origin of the collider"});

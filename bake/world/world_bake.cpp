@@ -130,6 +130,7 @@ class WorldBaker {
         names_ = RELIEF_TRY(parseShapeOptions(request_.bake.as)).names();
         ImportOptions options = request_.bake.import;
         options.names = names_;
+        options.materials = request_.bake.materials != MaterialsAs::kNone;
         level_ = RELIEF_TRY(importLevel(request_.bake.mesh, options, request_.bake.import_limits));
         for (std::size_t i = 0; i < level_.dependencies.size(); ++i) {
             if (watcher_.files != nullptr) {
@@ -154,13 +155,21 @@ class WorldBaker {
             ++collider.bodies;
             collider.largest_scale = std::max(collider.largest_scale, body.scale);
         }
+        // Of a level each collider keeps its own, even a single one: all of them are one surface.
+        const bool several = !request_.bake.materials && hasSeveralMaterials(level_.meshes);
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
             TriangleMesh& mesh = level_.meshes[i];
             meshes_[i].mesh = mesh.name;
             meshes_[i].area = areaOf(mesh);
             requests_.push_back(requestOf(request_.bake, names_, mesh));
+            if (several) {
+                requests_.back().materials = MaterialsAs::kKeep;
+            }
             inputs_.push_back({{mesh.name, mesh.content_hash},
                                {"marks", xxh3_128Hex(std::as_bytes(std::span(mesh.marks)))}});
+            if (several || request_.bake.materials == MaterialsAs::kKeep) {
+                inputs_.back().push_back({"materials", materialHash(mesh)});
+            }
         }
         return {};
     }
@@ -447,7 +456,12 @@ class WorldBaker {
         PatchTileOptions options = tiles_;
         options.total = collider.budget.value_or(options.total);
         const FineCollider whole = FineCollider::of(result.baked.collider);
-        const std::vector<ColliderTile> tiles = cutCollider(std::move(result.baked.collider), options);
+        std::vector<ColliderTile> tiles = cutCollider(std::move(result.baked.collider), options);
+        for (ColliderTile& tile : tiles) {
+            if (tiles.size() > 1) {
+                tile.collider.materials = materialsFor(tile.collider, solid.materials.get());
+            }
+        }
         std::vector<WorldColliderResult> parts;
         for (const ColliderTile& tile : tiles) {
             const auto bytes =
@@ -471,9 +485,11 @@ class WorldBaker {
             const Collider coarse = RELIEF_TRY(bakeCoarse(requests_[i], whole, by));
             for (std::size_t k = 0; k < parts.size(); ++k) {
                 if (parts[k].has_coarse) {
-                    RELIEF_TRY(writeCoarse(
-                        tiles.size() == 1 ? coarse : coarseTile(coarse, FineCollider::of(tiles[k].collider)),
-                        parts[k]));
+                    Collider part =
+                        tiles.size() == 1 ? coarse : coarseTile(coarse, FineCollider::of(tiles[k].collider));
+                    part.materials =
+                        tiles[k].collider.materials;  // a program keeps them when it exchanges maps
+                    RELIEF_TRY(writeCoarse(part, parts[k]));
                 }
             }
         }

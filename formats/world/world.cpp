@@ -155,6 +155,10 @@ std::string worldText(const World& world) {
     appendLines(text, "colliders", world.colliders);
     text += ",\n";
     appendLines(text, "bodies", world.bodies);
+    if (!world.materials.empty()) {
+        text += ",\n";
+        appendLines(text, "materials", world.materials);
+    }
     return text + "\n}\n";
 }
 
@@ -171,6 +175,10 @@ Result<World> parseWorld(std::string_view text) {
     }
     RELIEF_TRY(checkColliders(world.colliders));
     RELIEF_TRY(checkBodies(world));
+    if (const auto again = repeatedName(world.materials)) {
+        return invalidInput(placeOf("materials", *again) + ".name = '" + world.materials[*again].name +
+                            "' is that of another one; join them");
+    }
     return world;
 }
 
@@ -199,6 +207,7 @@ Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldD
         return invalidInput(named + " takes " + std::to_string(collider.gpuBytes()) +
                             " bytes on the GPU, and not " + std::to_string(from.gpu_bytes) + kBakeAgain);
     }
+    MaterialResponses(world.materials).apply(collider.materials);
     return collider;
 }
 
@@ -214,12 +223,21 @@ Result<Collider> loadWorldCollider(const World& world, std::size_t index, WorldD
 Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limits, WorldDetail detail) {
     LoadedWorld loaded;
     loaded.world = RELIEF_TRY(loadWorldFile(path));
+    MaterialResponses known(loaded.world.materials);
     ContainerLimits left = limits;
     for (std::size_t i = 0; i < loaded.world.colliders.size(); ++i) {
         Collider collider = RELIEF_TRY(
             inFront(quotedPath(path), loadWorldCollider(loaded.world, i, detail, path.parent_path(), left)));
         left.texel_bytes -= std::min(left.texel_bytes, collider.texelBytes());
+        known.apply(collider.materials);
         loaded.colliders.push_back(std::move(collider));
+    }
+    for (std::size_t i = 0; i < loaded.world.materials.size(); ++i) {
+        const std::string& name = loaded.world.materials[i].name;
+        if (const std::optional<std::string> fault = known.faultOf(name)) {
+            return invalidInput(quotedPath(path) + ": " + placeOf("materials", i) + ".name = '" + name +
+                                "' " + *fault);
+        }
     }
     return loaded;
 }

@@ -25,11 +25,13 @@
 #include "formats/base/result.h"
 #include "formats/collider.h"
 #include "formats/container_limits.h"
+#include "formats/material_response.h"
 
 namespace relief {
 
 inline constexpr std::size_t kWorldCollidersMax = 4096;
 inline constexpr std::size_t kWorldBodiesMax = 65'536;
+inline constexpr std::size_t kWorldMaterialsMax = 4096;
 inline constexpr std::uint64_t kWorldBytesMax = std::uint64_t{64} << 20;
 inline constexpr std::uint32_t kWorldVersion = 1;
 inline constexpr std::string_view kWorldFormat = "relief-world";
@@ -127,6 +129,7 @@ struct World {
     std::string unit;
     std::vector<WorldCollider> colliders;
     std::vector<WorldBody> bodies;
+    std::vector<MaterialResponse> materials;  ///< responses by name, of all colliders
 };
 
 inline constexpr std::array<std::string_view, 2> kWorldUnits{"m", ""};
@@ -149,6 +152,9 @@ void fields(Visitor& visit, W& world) {
           {.help = "Placed colliders; of two that are equally deep at a point the first counts",
            .rules = kRequired,
            .items = {1.0, double{kWorldBodiesMax}}});
+    visit("materials", world.materials,
+          leftOut({.help = "Responses of the colliders' materials, by their names",
+                   .items = {0.0, double{kWorldMaterialsMax}}}));
 }
 
 /// The numbers of the bodies of a node, in the world's order: several in one place where its mesh was cut into tiles, which move

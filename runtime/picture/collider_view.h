@@ -17,10 +17,6 @@ struct ColliderView {
     float texel = 0.0F;  ///< object units across the finest texel of the maps, > 0
 };
 
-/// The side, in object units, of the finest texel among the maps, but no less than 1/2048 of the longest
-/// side.
-[[nodiscard]] float finestTexel(const Collider& collider);
-
 /// A world as the renderers see it while its bodies are in the box of where they stand at the beginning; those that move out of
 /// it need larger bounds. \param textures  of worldBodies(world); must outlive the renderers.
 [[nodiscard]] ColliderView worldView(const LoadedWorld& world, const ColliderTextures& textures);

@@ -245,7 +245,7 @@ TEST(Crafted, Versions) {
                       r.header = [](ContainerHeader& h) { h.major = 256; };
                       r.bytes = [](std::vector<std::byte>& b) { b[60] ^= std::byte{1}; };
                   }),
-                  "container version 256.5", ErrorCode::kUnsupported);
+                  "container version 256.6", ErrorCode::kUnsupported);
 }
 
 TEST(Crafted, HeaderFields) {

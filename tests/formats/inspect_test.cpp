@@ -135,6 +135,19 @@ std::vector<Case> casesOfEveryCode() {
         {IssueCode::kBounds, patched(0x5c, 0x7fc00000)},
         {IssueCode::kUnit, patched(0x8c, 0x00000007)},
         {IssueCode::kProvenance, patched(0xd4, 0x58585858)},
+        {IssueCode::kMaterials,
+         [] {
+             Collider collider = soundCollider();
+             collider.materials.list = {{"oak, dark"}, {"oak, pale"}};
+             Bytes bytes = written(collider);
+             const std::string name = "oak, pale";
+             const auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
+                                         [](std::byte b, char c) { return b == std::byte(c); });
+             const Bytes other = test::toBytes("oak, dark");
+             std::copy(other.begin(), other.end(), at);
+             test::mendChecksums(bytes);
+             return bytes;
+         }()},
         {IssueCode::kFrame, patched(0x164, 2)},
         {IssueCode::kMapSizeLimit, patched(0x164, 16385)},
         {IssueCode::kPayloadSize, patched(0x1b8, 40)},
@@ -209,7 +222,7 @@ TEST(Inspect, AWarningComesAlone) {
 
 TEST(Inspect, CodesOfTheReadmeAscendAndHaveTheirSeverity) {
     const auto rows = codesOfTheReadme();
-    EXPECT_EQ(rows.size(), 32U);
+    EXPECT_EQ(rows.size(), 33U);
     EXPECT_TRUE(std::ranges::is_sorted(rows));
     for (const auto& [code, severity] : rows) {
         const Issue issue{code, -1, {}, {}};

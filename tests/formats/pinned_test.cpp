@@ -94,7 +94,8 @@ TEST(PinnedContainers, AreOfEveryKind) {
     EXPECT_EQ(kinds["1.1 none"].size(), 6U);
     EXPECT_EQ(kinds["1.3 rows"].size(), 4U);
     EXPECT_EQ(kinds["1.3 none"].size(), 6U);
-    EXPECT_EQ(kinds.size(), 6U);
+    EXPECT_EQ(kinds["1.6 rows"].size(), 1U);
+    EXPECT_EQ(kinds.size(), 7U);
 }
 
 // What this version writes, it writes as ever: zstd's bytes depend on its own version.

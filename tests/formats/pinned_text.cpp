@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <initializer_list>
 
+#include "formats/base/text.h"
+
 namespace relief::test {
 namespace {
 
@@ -82,6 +84,26 @@ float next(std::uint32_t& state) {
     return static_cast<float>(state >> 16U) / 65536.0F;
 }
 
+void addMaterials(std::string& text, const Materials& materials) {
+    for (const Material& one : materials.list) {
+        text += "material '" + one.name + "' " + shortest(one.restitution) + " " + shortest(one.friction) +
+                " " + shortest(one.lifetime_loss) + " " + shortest(one.area_share) + "\n";
+    }
+    add(text, "materials_origin", materials.origin);
+    text += "materials_size " + shortest(materials.size) + "\n";
+    for (const MaterialSides& pair : materials.sides) {
+        text += "sides " + std::to_string(pair.axis) + " " + std::to_string(pair.towards) + " " +
+                std::to_string(pair.against) + "\n";
+    }
+    for (const MaterialNode& node : materials.nodes) {
+        text += "node " + std::to_string(node.head);
+        for (const std::uint8_t leaf : node.leaves) {
+            text += " " + std::to_string(leaf);
+        }
+        text += "\n";
+    }
+}
+
 }  // namespace
 
 std::string pinnedText(const Collider& collider) {
@@ -91,6 +113,9 @@ std::string pinnedText(const Collider& collider) {
                        "' '" + from.optionsText() + "'\n";
     add(text, "bounds_min", collider.bounds.min);
     add(text, "bounds_max", collider.bounds.max);
+    if (!collider.materials.empty()) {
+        addMaterials(text, collider.materials);
+    }
     for (const DepthMap& map : collider.maps) {
         addMap(text, map);
     }
@@ -103,6 +128,9 @@ std::string pinnedText(const Collider& collider) {
             p[axis] = collider.bounds.min[axis] + share * size[axis];
         }
         addAnswer(text, collider, p);
+        if (!collider.materials.empty()) {
+            text += "material " + std::to_string(materialAt(collider.materials, p, p)) + "\n";
+        }
     }
     return text;
 }

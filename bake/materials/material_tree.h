@@ -1,0 +1,52 @@
+// The materials of a mesh as a collider keeps them (formats/materials.h): made from the triangles as they were imported, so that
+// caps, rims and unions, which are no surface of the source, have the material of the nearest that is.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+#include "formats/base/result.h"
+#include "formats/collider.h"
+#include "formats/materials.h"
+
+namespace relief {
+
+/// Of the bytes of the maps: what materials may take.
+inline constexpr double kMaterialsShare = 0.06;
+/// Of a small collider: patches of flat surfaces take few bytes, whatever the materials on them.
+inline constexpr std::size_t kMaterialsBytesMin = 4096;
+
+/// The surface that materials are of. Copies of it are large.
+struct MaterialSource {
+    std::vector<glm::vec3> positions;   ///< object space
+    std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
+    std::vector<std::uint8_t> ids;      ///< of the triangles, in `list`
+    std::vector<Material> list;         ///< in the order of the file
+    /// It has no sheets, which have one material on both of their sides: a normal tells the sides of a board apart.
+    bool sides = true;
+
+    [[nodiscard]] bool empty() const { return list.empty(); }
+};
+
+/// The materials of an imported mesh, those with the same name as one; none where they all have one name.
+/// \param mesh    whose labels are still the source's.
+/// \param single  keeps a single one, too, if it has a name.
+/// Errors, naming the mesh: kLimit (more than kMaterialsMax), kInvalidInput (one name with two responses).
+[[nodiscard]] Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single);
+
+struct MaterialTreeOptions {
+    Bounds box;            ///< of the collider
+    double texel = 0.0;    ///< the smallest of its maps, object units: no cell is smaller than half of it
+    std::size_t most = 0;  ///< bytes; once they are spent, cells stay unsplit
+};
+
+/// The same for any number of threads. \param source  not empty.
+[[nodiscard]] Materials makeMaterials(const MaterialSource& source, const MaterialTreeOptions& options);
+
+/// The materials of a collider, within kMaterialsShare of its maps or kMaterialsBytesMin; none of a null source.
+[[nodiscard]] Materials materialsFor(const Collider& collider, const MaterialSource* source);
+
+}  // namespace relief

@@ -1,0 +1,65 @@
+// Responses of materials by name, as scenes and worlds give them in place of the containers' own.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/base/field.h"
+#include "formats/base/result.h"
+#include "formats/materials.h"
+
+namespace relief {
+
+/// A [[material]] of a scene, an element of a world's "materials".
+struct MaterialResponse {
+    std::string name;
+    std::optional<float> restitution;  ///< nullopt: as it was, as of the next two
+    std::optional<float> friction;
+    std::optional<float> lifetime_loss;
+
+    friend bool operator==(const MaterialResponse&, const MaterialResponse&) = default;
+};
+
+template <class Visitor, FieldsOf<MaterialResponse> R>
+void fields(Visitor& visit, R& response) {
+    visit("name", response.name,
+          {.help = "Name of a material of the colliders, as in relief info", .rules = kRequired});
+    visit("restitution", response.restitution,
+          leftOut({.help = "Factor of the particles' own restitution, on top of the collider's",
+                   .range = kShareRange,
+                   .fallback = "that of the container: the mesh's, or 1"}));
+    visit(
+        "friction", response.friction,
+        leftOut(
+            {.help = "1 − friction is a factor of the particles' own 1 − friction, on top of the collider's",
+             .range = kShareRange,
+             .fallback = "that of the container: the mesh's, or 0"}));
+    visit("lifetime_loss", response.lifetime_loss,
+          leftOut({.help = "Lifetime that each step in contact with it costs, on top of the type's",
+                   .unit = "s",
+                   .range = {0.0, double{kMaterialLossMax}},
+                   .fallback = "0"}));
+}
+
+/// Two of a name, by the index of the second; nullopt: there are none.
+[[nodiscard]] std::optional<std::size_t> repeatedName(std::span<const MaterialResponse> responses);
+
+/// Gives materials of several colliders their responses, and knows in the end which of these are of none.
+class MaterialResponses {
+  public:
+    /// \param responses  no two of one name; borrowed.
+    explicit MaterialResponses(std::span<const MaterialResponse> responses) : responses_(responses) {}
+
+    void apply(Materials& materials);
+    /// "is the name of no material; there are 'oak' and 'stone'", if any collider that was seen has some. nullopt: one has it.
+    [[nodiscard]] std::optional<std::string> faultOf(const std::string& name) const;
+
+  private:
+    std::span<const MaterialResponse> responses_;
+    std::set<std::string> names_;  // of all materials
+};
+
+}  // namespace relief

@@ -1,0 +1,176 @@
+// Trees of materials: lookups in closed form, what readers refuse, and the container's bytes.
+#include "formats/materials.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "formats/container.h"
+#include "formats/inspect.h"
+#include "formats/material_response.h"
+#include "tests/formats/sample_colliders.h"
+
+namespace relief::test {
+namespace {
+
+/// A cube of side 4 about the origin. Octant 7 is split: its octant 0 is of material 2, the others of 1; octant 0 is a pair of
+/// sides along x − y, the rest is of material 0.
+Materials sample() {
+    Materials made;
+    made.list = {
+        {"oak", 0.5F, 0.25F, 0.0F, 0.5F}, {"stone", 1.0F, 0.0F, 2.0F, 0.25F}, {"", 1.0F, 0.0F, 0.0F, 0.25F}};
+    made.sides = {{4, 1, 2}};
+    made.origin = glm::vec3(-2.0F);
+    made.size = 4.0F;
+    made.nodes.resize(2);
+    made.nodes[0].head = 1U << 8U | 0x80U;
+    made.nodes[0].leaves = {3, 0, 0, 0, 0, 0, 0, 0};
+    made.nodes[1].leaves = {2, 1, 1, 1, 1, 1, 1, 1};
+    return made;
+}
+
+TEST(Materials, APointFindsItsCell) {
+    const Materials materials = sample();
+    ASSERT_EQ(faultOfMaterials(materials), "");
+    const glm::vec3 up(0.0F, 1.0F, 0.0F);
+    const auto at = [&](float x, float y, float z) { return materialAt(materials, {x, y, z}, up); };
+    EXPECT_EQ(at(0.5F, 0.5F, 0.5F), 2U);
+    EXPECT_EQ(at(1.5F, 0.5F, 0.5F), 1U);
+    EXPECT_EQ(at(0.5F, 0.5F, 1.0F), 1U);
+    EXPECT_EQ(at(0.0F, 0.0F, 0.0F), 2U);  // the upper cell has what lies between two
+    EXPECT_EQ(at(-1e-6F, 0.5F, 0.5F), 0U);
+    // Beyond the cube the nearest cell counts, also where coordinates are no numbers.
+    EXPECT_EQ(at(99.0F, 99.0F, 99.0F), 1U);
+    EXPECT_EQ(at(1e30F, 0.5F, 0.5F), 1U);
+    EXPECT_EQ(at(std::nanf(""), -99.0F, 0.5F), 0U);
+    // A pair of sides: along x − y.
+    const glm::vec3 low(-1.0F);
+    EXPECT_EQ(materialAt(materials, low, {1.0F, 0.0F, 0.0F}), 1U);
+    EXPECT_EQ(materialAt(materials, low, {0.0F, 1.0F, 0.0F}), 2U);
+    EXPECT_EQ(materialAt(materials, low, {0.0F, -9.0F, 0.0F}), 1U);
+}
+
+TEST(Materials, NineAxesTellSidesApart) {
+    const glm::vec3 v(1.0F, 2.0F, 4.0F);
+    const std::array<float, kMaterialAxes> along{1.0F, 2.0F, 4.0F, 3.0F, -1.0F, 5.0F, -3.0F, 6.0F, -2.0F};
+    for (int axis = 0; axis < kMaterialAxes; ++axis) {
+        EXPECT_EQ(alongMaterialAxis(v, axis), along[static_cast<std::size_t>(axis)]) << axis;
+    }
+}
+
+TEST(Materials, EveryFaultIsFound) {
+    struct Case {
+        const char* message;
+        std::function<void(Materials&)> spoil;
+    };
+    for (const Case& wrong : std::vector<Case>{
+             {"a tree of materials, but no material", [](Materials& m) { m.list.clear(); }},
+             {"materials[1] has the name 'oak' of one before it",
+              [](Materials& m) { m.list[1].name = "oak"; }},
+             {"materials[0] has a name that is no UTF-8", [](Materials& m) { m.list[0].name = "\x80"; }},
+             {"longer than 256 bytes", [](Materials& m) { m.list[0].name.assign(257, 'a'); }},
+             {"materials[2] has a restitution", [](Materials& m) { m.list[2].restitution = 1.5F; }},
+             {"materials[2] has a restitution", [](Materials& m) { m.list[2].friction = std::nanf(""); }},
+             {"materials[1] has a lifetime_loss", [](Materials& m) { m.list[1].lifetime_loss = -1.0F; }},
+             {"there are 256 materials", [](Materials& m) { m.list.resize(256); }},
+             {"with the materials more than 256", [](Materials& m) { m.sides.resize(254); }},
+             {"a pair of sides", [](Materials& m) { m.sides[0].axis = 9; }},
+             {"a pair of sides", [](Materials& m) { m.sides[0].against = 3; }},
+             {"the cube of the materials", [](Materials& m) { m.size = 0.0F; }},
+             {"the cube of the materials", [](Materials& m) { m.origin.x = std::nanf(""); }},
+             {"material node 0 has its octants at another node",
+              [](Materials& m) { m.nodes[0].head = 0x80U; }},
+             {"material node 0 has its octants at another node",
+              [](Materials& m) { m.nodes[0].head = 2U << 8U | 0x80U; }},
+             {"material node 1 has its octants at another node",
+              [](Materials& m) { m.nodes[1].head = 1U << 8U; }},
+             {"material node 1 belongs to no other", [](Materials& m) { m.nodes[0].head = 0; }},
+             {"nodes of materials are missing",
+              [](Materials& m) {
+                  m.nodes[1].head = 2U << 8U | 1U;
+                  m.nodes[1].leaves[0] = 0;
+              }},
+             {"octant of a material that does not exist", [](Materials& m) { m.nodes[1].leaves[3] = 4; }},
+             {"octant of a material that does not exist", [](Materials& m) { m.nodes[0].leaves[7] = 1; }}}) {
+        Materials materials = sample();
+        wrong.spoil(materials);
+        const std::string fault = faultOfMaterials(materials);
+        EXPECT_NE(fault.find(wrong.message), std::string::npos) << wrong.message << ": " << fault;
+    }
+    // A chain of nodes is refused where it gets too deep for a lookup.
+    Materials deep = sample();
+    deep.nodes.assign(kMaterialLevelsMax + 1, {});
+    for (std::size_t i = 0; i + 1 < deep.nodes.size(); ++i) {
+        deep.nodes[i].head = static_cast<std::uint32_t>(i + 1) << 8U | 1U;
+    }
+    EXPECT_NE(faultOfMaterials(deep).find("lies too deep"), std::string::npos) << faultOfMaterials(deep);
+    deep.nodes.pop_back();
+    deep.nodes.back().head = 0;
+    EXPECT_EQ(faultOfMaterials(deep), "");
+}
+
+TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
+    Collider collider = readmeExample();
+    const std::vector<std::byte> without = written(collider);
+    collider.materials = sample();
+    for (const int level : {0, 9}) {
+        const std::vector<std::byte> bytes = written(collider, level);
+        const Result<Collider> read = readContainer(bytes);
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(*read, collider);
+        const Result<Inspection> inspection = inspectContainer(bytes);
+        ASSERT_TRUE(inspection);
+        EXPECT_FALSE(inspection->damaged());
+        EXPECT_EQ(inspection->minor, 6);
+    }
+    collider.materials = {};
+    EXPECT_EQ(written(collider), without);
+    collider.materials = sample();
+    collider.materials.nodes[0].head = 0x80U;
+    EXPECT_FALSE(writeContainer(collider));
+}
+
+// Every byte of the metadata changed, with checksums that vouch for it: an error, or a collider that keeps the invariants.
+TEST(Materials, HostileBytesAreRefusedOrValid) {
+    Collider collider = readmeExample();
+    collider.materials = sample();
+    for (const int level : {0, 9}) {
+        const std::vector<std::byte> bytes = written(collider, level);
+        std::size_t refused = 0;
+        for (std::size_t i = 64; i < bytes.size() - 36; ++i) {
+            for (const unsigned flip : {0x01U, 0x80U, 0xFFU}) {
+                std::vector<std::byte> wrong = bytes;
+                wrong[i] ^= static_cast<std::byte>(flip);
+                mendChecksums(wrong);
+                const Result<Collider> read = readContainer(wrong);
+                refused += read ? 0 : 1;
+                if (read) {
+                    EXPECT_EQ(faultOfMaterials(read->materials), "") << i;
+                }
+                static_cast<void>(inspectContainer(wrong));
+            }
+        }
+        EXPECT_GT(refused, 300U);
+    }
+}
+
+TEST(Materials, ResponsesAreByName) {
+    Materials materials = sample();
+    const std::vector<MaterialResponse> responses{{"stone", 0.1F, {}, 5.0F}, {"stove", {}, {}, {}}};
+    EXPECT_EQ(repeatedName(responses), std::nullopt);
+    MaterialResponses given(responses);
+    given.apply(materials);
+    EXPECT_EQ(materials.list[0], sample().list[0]);
+    EXPECT_EQ(materials.list[1], (Material{"stone", 0.1F, 0.0F, 5.0F, 0.25F}));
+    EXPECT_EQ(given.faultOf("stone"), std::nullopt);
+    EXPECT_EQ(given.faultOf("stoen").value_or(""),
+              "is the name of no material; did you mean 'stone'? There are '', 'oak', 'stone'");
+    EXPECT_EQ(MaterialResponses({}).faultOf("x").value_or(""),
+              "is the name of no material: the colliders have none; bake a mesh with several, or with "
+              "--materials keep");
+    const std::vector<MaterialResponse> twice{{"a", {}, {}, {}}, {"b", {}, {}, {}}, {"a", {}, {}, {}}};
+    EXPECT_EQ(repeatedName(twice), 2U);
+}
+
+}  // namespace
+}  // namespace relief::test
