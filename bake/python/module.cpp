@@ -436,11 +436,16 @@ class HeadlessSimulation {
         return py::dict(
             py::arg("step") = column(hits, &Hit::step), py::arg("time") = column(hits, &Hit::time),
             py::arg("id") = column(hits, &Hit::id), py::arg("type") = column(hits, &Hit::type),
-            py::arg("body") = column(hits, &Hit::body), py::arg("position") = column(hits, &Hit::position),
+            py::arg("body") = column(hits, &Hit::body), py::arg("material") = column(hits, &Hit::material),
+            py::arg("position") = column(hits, &Hit::position),
             py::arg("normal") = column(hits, &Hit::normal),
             py::arg("velocity") = column(hits, &Hit::velocity), py::arg("speed") = column(hits, &Hit::speed));
     }
 
+    [[nodiscard]] std::vector<std::string> materials() const {
+        const auto names = simulation_->textures().materialNames();
+        return {names.begin(), names.end()};
+    }
     [[nodiscard]] double time() const { return simulation_->particles().time(); }
     [[nodiscard]] std::uint32_t alive() const { return simulation_->particles().counts().alive; }
 
@@ -559,6 +564,7 @@ PYBIND11_MODULE(_relief, m) {
         .def("step", &HeadlessSimulation::step)
         .def("take_hits", &HeadlessSimulation::takeHits)
         .def("read", &HeadlessSimulation::read)
+        .def_property_readonly("materials", &HeadlessSimulation::materials)
         .def_property_readonly("time", &HeadlessSimulation::time)
         .def_property_readonly("alive", &HeadlessSimulation::alive);
 }

@@ -87,6 +87,42 @@ const char* relief_collider_unit(const relief_collider* collider) {
     });
 }
 
+size_t relief_collider_material_count(const relief_collider* collider) {
+    return answer(__func__, std::size_t{0}, [&](const Call& call) -> Result<std::size_t> {
+        return RELIEF_TRY(call.object(collider, "collider"))->materials.list.size();
+    });
+}
+
+const char* relief_collider_material_name(const relief_collider* collider, size_t material) {
+    return answer(__func__, "", [&](const Call& call) -> Result<const char*> {
+        const std::vector<Material>& list = RELIEF_TRY(call.object(collider, "collider"))->materials.list;
+        if (material >= list.size()) {
+            return call.refuse("material is " + std::to_string(material) + ", and the collider has " +
+                               std::to_string(list.size()));
+        }
+        return list[material].name.c_str();
+    });
+}
+
+int64_t relief_collider_material_at(const relief_collider* collider, const float point[3],
+                                    const float normal[3]) {
+    return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
+        const Materials& materials = RELIEF_TRY(call.object(collider, "collider"))->materials;
+        RELIEF_TRY(call.notNull(point, "point"));
+        RELIEF_TRY(call.notNull(normal, "normal"));
+        for (std::size_t i = 0; i < 3; ++i) {
+            RELIEF_TRY(call.number(point[i], kAny, {"point", i}));
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            RELIEF_TRY(call.number(normal[i], kAny, {"normal", i}));
+        }
+        const glm::vec3 n(normal[0], normal[1], normal[2]);
+        return materials.empty()
+                   ? int64_t{-1}
+                   : static_cast<int64_t>(materialAt(materials, glm::vec3(point[0], point[1], point[2]), n));
+    });
+}
+
 void relief_collider_query(const relief_collider* collider, const float* points, size_t count,
                            relief_sample* samples) {
     query(__func__, collider, "collider", points, count, samples,

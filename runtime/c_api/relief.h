@@ -62,6 +62,14 @@ void relief_collider_bounds(const relief_collider* collider, float min[3], float
 size_t relief_collider_map_count(const relief_collider* collider);
 const char* relief_collider_unit(const relief_collider* collider); /* "m", or ""; as long as the collider */
 
+/* Materials of its surface, whose numbers are from 0; 0: it is all the same. Since 1.2. */
+size_t relief_collider_material_count(const relief_collider* collider);
+/* "" of surfaces without a name; as long as the collider. Since 1.2. */
+const char* relief_collider_material_name(const relief_collider* collider, size_t material);
+/* The material at a point on the surface with this normal, of any length; -1: it has none, or an error. Since 1.2. */
+int64_t relief_collider_material_at(const relief_collider* collider, const float point[3],
+                                    const float normal[3]);
+
 typedef struct relief_sample {
     float
         distance; /* to the plane that decides the side: negative inside; 1e30: outside, and no more is known; NaN: an error */

@@ -10,6 +10,7 @@
 
 #include "formats/base/finite.h"
 #include "runtime/collider/gpu_image.h"
+#include "runtime/collider/material_table.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
@@ -51,7 +52,8 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     for (const DepthMap& map : collider.maps) {
         maps.push_back({&map, false});
     }
-    return upload(maps, {});
+    const Materials* const materials = &collider.materials;
+    return upload(maps, {}, std::span(&materials, 1));
 }
 
 Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> bodies,
@@ -63,6 +65,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
     const auto share = [](float value) { return value >= 0.0F && value <= 1.0F; };
     std::vector<PlacedMap> maps;
     std::vector<TableBody> placed;
+    std::vector<const Materials*> materials;
     std::map<const Collider*, std::size_t> known;  // their first bodies
     for (const ColliderBody& body : bodies) {
         if (!(body.pose.scale > 0.0F)) {
@@ -86,6 +89,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
         added.friction = body.friction;
         added.live = body.live;
         added.group = group;
+        materials.push_back(body.live ? nullptr : &body.collider->materials);
         // A live one has texels of its own.
         const auto same = body.live ? known.end() : known.find(body.collider);
         if (same == known.end()) {
@@ -104,7 +108,7 @@ Result<ColliderTextures> ColliderTextures::create(std::span<const ColliderBody> 
             known.try_emplace(body.collider, number);
         }
     }
-    return upload(maps, std::move(placed), room_texels);
+    return upload(maps, std::move(placed), materials, room_texels);
 }
 
 void ColliderTextures::setPoses(std::span<const Pose> poses) {
@@ -200,7 +204,9 @@ void ColliderTextures::updateWorld() const {
 }
 
 Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> maps,
-                                                  std::vector<TableBody> bodies, std::size_t room_texels) {
+                                                  std::vector<TableBody> bodies,
+                                                  std::span<const Materials* const> materials,
+                                                  std::size_t room_texels) {
     RELIEF_TRY(checkContext());
     const bool world = !bodies.empty();
     RELIEF_TRY(checkMapCount(maps.size(), world));
@@ -225,6 +231,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
         // One texel stands for a texture that no map uses.
         result.bytes_ += layout.textures[kind].height() == 0 ? 0 : texture.texels.size();
     }
+    RELIEF_TRY(result.uploadMaterials(materials));
     result.block_ = makeBuffer();
     if (world) {
         result.world_ =
@@ -244,6 +251,24 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     RELIEF_TRY(checkAllocated("the collider's " + std::to_string(result.bytes_) + " bytes of maps",
                               "bake it with fewer"));
     return result;
+}
+
+Result<void> ColliderTextures::uploadMaterials(std::span<const Materials* const> bodies) {
+    MaterialTable table = makeMaterialTable(bodies);
+    if (table.names.empty()) {
+        return {};
+    }
+    const std::size_t width = std::size_t{1} << table.log2_width;
+    const std::size_t height = table.words.size() / width;
+    RELIEF_TRY(checkTextureSize(width, height, "the materials of these colliders",
+                                "bake some with --materials none"));
+    materials_ = makeTexture2D(GL_R32UI, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
+                               GL_RED_INTEGER, GL_UNSIGNED_INT, table.words.data());
+    bytes_ += table.words.size() * sizeof(std::uint32_t);
+    defines_ += "#define RELIEF_MATERIALS " + std::to_string(table.names.size()) +
+                "\n#define RELIEF_MATERIALS_LOG2_WIDTH " + std::to_string(table.log2_width) + "\n";
+    material_names_ = std::move(table.names);
+    return {};
 }
 
 std::vector<LiveSlot> ColliderTextures::liveSlots(std::size_t body) const {
@@ -269,6 +294,9 @@ void ColliderTextures::attach(GLuint program, const Binding& binding) const {
     if (world_) {
         glUniform1i(glGetUniformLocation(program, "u_relief_world"), binding.world_unit);
     }
+    if (materials_) {
+        glUniform1i(glGetUniformLocation(program, "u_relief_materials"), binding.material_unit);
+    }
     const GLuint index = glGetUniformBlockIndex(program, "ReliefCollider");
     if (index != GL_INVALID_INDEX) {
         glUniformBlockBinding(program, index, static_cast<GLuint>(binding.uniform_block));
@@ -283,6 +311,12 @@ void ColliderTextures::bind(const Binding& binding) const {
         useTexture(binding.world_unit, world_->texture);
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, static_cast<GLuint>(binding.uniform_block), block_.name());
+}
+
+void ColliderTextures::bindMaterials(const Binding& binding) const {
+    if (materials_) {
+        useTexture(binding.material_unit, materials_);
+    }
 }
 
 void ColliderTextures::bindStorage(int binding) const {

@@ -9,6 +9,8 @@
 //
 // The width is the least power of two that makes the texture no higher than wide.
 //
+// Materials of colliders that have some lie in one more texture, of R32UI (material_table.h); only steps read it.
+//
 // The maps of a live body (live_collider.h) have no texels yet: each gets a rectangle of its texture to be
 // drawn to, below what is packed, and one of the float texture, of RGBA32F, for how the surface in each of
 // its texels moves: a rectangle for the front and one above it for the back.
@@ -64,6 +66,7 @@ class ColliderTextures {
         int first_unit = 0;
         int uniform_block = 0;
         int world_unit = 9;
+        int material_unit = 10;  ///< of bindMaterials() alone
     };
 
     /// Uploads a collider. Needs a current context.
@@ -113,6 +116,8 @@ class ColliderTextures {
     void attach(GLuint program, const Binding& binding) const;  ///< of a program of the caller's own
     /// Binds textures and block for the next draw.
     void bind(const Binding& binding) const;
+    /// Binds the texture of the materials, where there are some: for shaders that include materials.glsl.
+    void bindMaterials(const Binding& binding) const;
     /// Binds the block's buffer as shader storage as well, for a compute shader (collider_tour.glsl). Needs hasCompute().
     void bindStorage(int binding) const;
 
@@ -120,15 +125,21 @@ class ColliderTextures {
     [[nodiscard]] std::size_t bodyCount() const { return world_ ? world_->bodies.size() : 0; }
     /// Changes with every pose that does, and with every update of a live body.
     [[nodiscard]] std::uint64_t revision() const { return revision_; }
+    /// The names of all materials, of which a shader has the numbers; equal names of several colliders are one. Empty: no collider
+    /// has materials, or those that do are live.
+    [[nodiscard]] std::span<const std::string> materialNames() const { return material_names_; }
     [[nodiscard]] int mapCount() const { return map_count_; }
-    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< of maps and materials
     /// Lines for makeProgram (collider_block.h).
     [[nodiscard]] const std::string& defines() const { return defines_; }
 
   private:
     [[nodiscard]] static Result<ColliderTextures> upload(std::span<const PlacedMap> maps,
                                                          std::vector<TableBody> bodies,
+                                                         std::span<const Materials* const> materials,
                                                          std::size_t room_texels = 0);
+    /// \param bodies  the materials of each.
+    [[nodiscard]] Result<void> uploadMaterials(std::span<const Materials* const> bodies);
     struct World {
         BodyTable bodies;
         glm::ivec4 head{0};  // of the block
@@ -142,6 +153,8 @@ class ColliderTextures {
     std::unique_ptr<World> world_;  // none of a single collider
     std::uint64_t revision_ = 0;
     std::array<GlTexture, kTexelKinds> textures_;
+    GlTexture materials_;
+    std::vector<std::string> material_names_;
     GlBuffer block_;
     int map_count_ = 0;
     std::size_t room_ = 0;

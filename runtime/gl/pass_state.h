@@ -16,7 +16,7 @@ namespace relief {
 /// point size, point sprite origin and sRGB conversion.
 class PassState {
   public:
-    static constexpr int kUnits = 10;
+    static constexpr int kUnits = 11;
     PassState();
     ~PassState();
     PassState(const PassState&) = delete;

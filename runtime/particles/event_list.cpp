@@ -12,6 +12,8 @@
 namespace relief {
 namespace {
 
+static_assert(kEventFlags * kEventDirections == 48);
+
 // Texture units.
 constexpr int kVelocityUnit = 0;
 constexpr int kSurfaceUnit = 1;
@@ -158,6 +160,7 @@ void EventList::count(const Step& step) const {
 void EventList::makeList(const Step& step, std::uint32_t rows) const {
     list_program_.use();
     list_program_.set("u_width", static_cast<GLint>(step.width));
+    list_program_.set("u_materials", static_cast<GLint>(step.materials + 1));
     std::array<float, kParticleTypesMax> radius{};
     for (std::size_t i = 0; i < radius.size(); ++i) {
         radius[i] = step.types[std::min(i, step.types.size() - 1)].radius;
@@ -269,6 +272,7 @@ EventList::Collected EventList::decoded(const Request& request, std::uint32_t co
         event.normal = {surface[0], surface[1], surface[2]};
         event.speed = surface[3];
         event.body = static_cast<int>(velocity[3]);
+        event.material = flags / kEventFlags - 1;
     }
     return collected;
 }

@@ -36,7 +36,10 @@ class EventList {
         std::uint64_t number = 0;  ///< of the step
         double begin = 0.0;        ///< of the step, seconds
         double end = 0.0;
+        std::uint32_t materials = 0;  ///< names of materials, ColliderTextures::materialNames()
     };
+    /// The most (bodies + 1) · (names of materials + 1) whose events a step can tell apart.
+    static constexpr std::size_t kPlacesMax = (std::size_t{1} << 24) / 48;
     /// A list read back: ids are modulo 2^24.
     struct Collected {
         StepEvents events;

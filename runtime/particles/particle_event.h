@@ -34,6 +34,7 @@ struct ParticleEvent {
     glm::vec3 normal{0.0F};  ///< out of the body, of length 1
     float speed = 0.0F;      ///< of approach along the normal, relative to the surface, ≥ 0
     int body = -1;           ///< −1: the floor
+    int material = -1;       ///< of it there: a number of ColliderTextures::materialNames(); −1: none
 };
 
 /// The events of one step, in ascending order of index.

@@ -128,7 +128,23 @@ StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const
             events_ != nullptr};
 }
 
+std::uint32_t ParticleSystem::materialCount() const {
+    const ColliderTextures* collider = step_.features().collider;
+    return collider == nullptr ? 0 : static_cast<std::uint32_t>(collider->materialNames().size());
+}
+
 Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
+    if (events_ && collider != nullptr) {
+        const std::size_t bodies = std::max<std::size_t>(collider->bodyCount(), 1);
+        const std::size_t materials = collider->materialNames().size();
+        if ((bodies + 1) * (materials + 1) > EventList::kPlacesMax) {
+            return fail(ErrorCode::kLimit,
+                        "events cannot tell " + std::to_string(materials) + " materials of " +
+                            std::to_string(bodies) + " bodies apart: at most " +
+                            std::to_string(EventList::kPlacesMax) +
+                            " pairs; give materials the same names, or bake with --materials none");
+        }
+    }
     step_ = RELIEF_TRY(StepPass::create(featuresFor(collider)));
     return {};
 }
@@ -261,7 +277,7 @@ bool ParticleSystem::requestEvents(std::uint64_t tag) {
     }
     const PassState state;
     return events_->request({event_velocity_, event_surface_, position_[1 - current_], birth_, width_,
-                             stepped_extent_, types_, tag, steps_, step_begin_, time_});
+                             stepped_extent_, types_, tag, steps_, step_begin_, time_, materialCount()});
 }
 
 std::optional<StepEvents> ParticleSystem::pollEvents() {

@@ -190,6 +190,8 @@ class ParticleSystem {
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] StepFeatures featuresFor(const ColliderTextures* collider) const;
+    /// Names of materials among the colliders.
+    [[nodiscard]] std::uint32_t materialCount() const;
     [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
     /// After a change of anything but the collider and the air, which may be other ones at the same place.
     [[nodiscard]] Result<void> remakeStepIfNeeded();

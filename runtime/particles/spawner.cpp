@@ -13,8 +13,10 @@ bool Spawner::heeds(const ParticleEvent& event) const {
     if (settings_.of && event.type != *settings_.of) {
         return false;
     }
-    return settings_.on == SpawnOn::kDeath ? event.death
-                                           : event.hit && !event.lasts && event.speed >= settings_.min_speed;
+    return settings_.on == SpawnOn::kDeath
+               ? event.death
+               : event.hit && !event.lasts && event.speed >= settings_.min_speed &&
+                     settings_.material.value_or(event.material) == event.material;
 }
 
 std::uint64_t Spawner::spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,

@@ -26,6 +26,7 @@ struct SpawnSettings {
     SpawnOn on = SpawnOn::kCollision;
     std::optional<std::uint32_t> of;  ///< the type of those that hit or die; nullopt: all
     float min_speed = 0.0F;           ///< slower hits make nothing; ≥ 0; for kCollision
+    std::optional<int> material;  ///< as ParticleEvent::material: hits on others make nothing; for kCollision
 
     std::uint32_t type = 0;  ///< of what is born
     /// Births for each event, uniform between the two.

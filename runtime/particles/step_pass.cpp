@@ -74,6 +74,7 @@ void StepPass::use(const Values& values) const {
         }
         features_.collider->reach(radius);
         features_.collider->bind(kColliderBinding);
+        features_.collider->bindMaterials(kColliderBinding);
         if (tours_) {
             features_.collider->bindStorage(kTourStorage);
         }

@@ -31,11 +31,11 @@ Result<EventsLog> EventsLog::create(const std::filesystem::path& path, float min
     return log;
 }
 
-Result<void> EventsLog::write(const StepEvents& step) {
+Result<void> EventsLog::write(const StepEvents& step, std::span<const std::string> materials) {
     dropped_ += step.dropped;
     for (const ParticleEvent& event : step.events) {
         if (event.hit && !event.lasts && event.speed >= min_speed_ &&
-            std::fputs(jsonLine(jsonOf(HitLine{event, step.tag})).c_str(), file_.get()) < 0) {
+            std::fputs(jsonLine(jsonOf(HitLine{event, step.tag, materials})).c_str(), file_.get()) < 0) {
             return writeError();
         }
     }

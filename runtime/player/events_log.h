@@ -5,6 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
 
 #include "formats/base/result.h"
 #include "formats/fields/field.h"
@@ -20,8 +23,9 @@ class EventsLog {
     [[nodiscard]] static Result<EventsLog> create(const std::filesystem::path& path, float min_speed);
 
     /// A line for each hit where the step before touched nothing. The tag is the number of the step.
+    /// \param materials  ColliderTextures::materialNames()
     /// Errors: kIo.
-    [[nodiscard]] Result<void> write(const StepEvents& step);
+    [[nodiscard]] Result<void> write(const StepEvents& step, std::span<const std::string> materials);
     /// Errors: kIo.
     [[nodiscard]] Result<void> finish();
 
@@ -45,17 +49,21 @@ class EventsLog {
 struct HitLine {
     const ParticleEvent& hit = kNone<ParticleEvent>;
     std::uint64_t step = 1;
+    std::span<const std::string> materials = {};  ///< ColliderTextures::materialNames()
 };
 
 template <class Visitor, FieldsOf<HitLine> L>
 void fields(Visitor& visit, L& line) {
-    const auto& [hit, step] = line;
+    const auto& [hit, step, materials] = line;
+    const auto known = static_cast<std::size_t>(hit.material);
     visit("step", step, {"Number of the step, from 1", {}, kFromOne});
     visit("time", hit.time, {"Time of the scene", "s", kFromZero});
     visit("id", hit.id, {"Particle, as in dumps"});
     visit("type", hit.type, {"Type of the particle, as in dumps"});
     visit("body", onlyIf(hit.body >= 0, hit.body),
           {"Collider of the scene, from 0; null: the ground", {}, kFromZero});
+    visit("material", known < materials.size() ? std::optional(materials[known]) : std::nullopt,
+          {"Name of the material there; null: the collider has none, or the ground"});
     visit("position", hit.position, {"Point where the particle touched the surface", "world units"});
     visit("normal", hit.normal, {"Normal of the surface, out of the body, of length 1"});
     visit("velocity", hit.velocity, {"Velocity of the particle before the hit", "world units per second"});

@@ -146,8 +146,10 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     Outputs outputs(options, loaded, simulation.textures());
     RELIEF_TRY(outputs.open());
     if (EventsLog* events = outputs.events(); events != nullptr) {
-        RELIEF_TRY(simulation.listHits(options.events_min_speed.value_or(0.0F),
-                                       [events](const StepEvents& step) { return events->write(step); }));
+        const std::span<const std::string> materials = simulation.textures().materialNames();
+        RELIEF_TRY(simulation.listHits(
+            options.events_min_speed.value_or(0.0F),
+            [events, materials](const StepEvents& step) { return events->write(step, materials); }));
     }
 
     PlayerReport report;

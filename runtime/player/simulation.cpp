@@ -154,7 +154,7 @@ Result<void> Simulation::listHits(float min_speed, EventSink sink) {
 Result<void> Simulation::setEvents() {
     if (spawns_ != scene_->spawns) {
         spawns_ = scene_->spawns;
-        spawners_ = makeSpawners(spawns_);
+        spawners_ = makeSpawners(spawns_, textures().materialNames());
     }
     constexpr float kNone = std::numeric_limits<float>::infinity();
     EventOptions options{

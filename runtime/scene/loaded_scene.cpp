@@ -75,8 +75,28 @@ Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& 
     return loadPlayedMesh(from, file.mesh, file.extent);
 }
 
+/// Whether every material that a scene names is one of its colliders'.
+Result<void> checkMaterials(const Scene& scene, const std::string& input, const MaterialResponses& known) {
+    const auto check = [&](const std::string& key, const std::string& name) -> Result<void> {
+        if (const std::optional<std::string> fault = known.faultOf(name)) {
+            return invalidInput(input + ": " + key + " = '" + cleanUtf8(name, kMaterialNameMax) + "' " +
+                                *fault);
+        }
+        return {};
+    };
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        RELIEF_TRY(check("material[" + std::to_string(i) + "].name", scene.materials[i].name));
+    }
+    for (std::size_t i = 0; i < scene.spawns.size(); ++i) {
+        const std::string& name = scene.spawns[i].on_material;
+        RELIEF_TRY(name.empty() ? Result<void>() : check("spawn[" + std::to_string(i) + "].material", name));
+    }
+    return {};
+}
+
 /// Reads the scene's world, if it has one, and places its bodies.
-Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& limits) {
+Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& limits,
+                       MaterialResponses& responses) {
     if (scene.world.empty()) {
         return {};
     }
@@ -85,6 +105,7 @@ Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& lim
         RELIEF_TRY(scene.world_origin.empty() ? std::move(read)
                                               : inFront(scene.world_origin + ": world", std::move(read)));
     for (Collider& collider : loaded.colliders) {
+        responses.apply(collider.materials);
         to.world_colliders.push_back(std::make_shared<const Collider>(std::move(collider)));
     }
     to.world = std::move(loaded.world);
@@ -142,7 +163,9 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
     LoadedScene loaded;
     loaded.limits = overrides.limits;
     const std::size_t own = scene.colliders.size();
-    RELIEF_TRY(openWorld(scene, loaded, overrides.limits));
+    const std::vector<MaterialResponse> given = scene.materials;
+    MaterialResponses responses(given);
+    RELIEF_TRY(openWorld(scene, loaded, overrides.limits, responses));
     Colliders of_world;
     for (std::size_t i = 0; i < loaded.world_colliders.size(); ++i) {
         of_world[containerOf(scene, loaded.world.colliders[i])] = loaded.world_colliders[i];
@@ -165,7 +188,9 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         } else {
             std::shared_ptr<const Collider>& file = known[from.path];
             if (file == nullptr) {
-                file = std::make_shared<const Collider>(RELIEF_TRY(openCollider(from, overrides.limits)));
+                Collider opened = RELIEF_TRY(openCollider(from, overrides.limits));
+                responses.apply(opened.materials);
+                file = std::make_shared<const Collider>(std::move(opened));
             }
             read = file;
         }
@@ -184,6 +209,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
         loaded.colliders.push_back(std::move(read));
     }
+    RELIEF_TRY(checkMaterials(scene, quotedPath(input), responses));
     loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
     loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters, loaded.meshes()));
     if (loaded.scene.flow) {

@@ -218,6 +218,9 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
             return FieldFault{nth("collider", i, ".node"), "needs world, the world.json with that node"};
         }
     }
+    if (const auto again = repeatedName(scene.materials)) {
+        return FieldFault{nth("material", *again, ".name"), "is taken; choose another, or join the two"};
+    }
     for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
         const std::uint32_t capacity = scene.particles.capacity;
         if (scene.emitters[i].burst > capacity) {

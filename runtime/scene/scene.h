@@ -12,6 +12,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "formats/material_response.h"
 #include "runtime/air/air.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/particles/particle_system.h"
@@ -306,6 +307,8 @@ void fields(Visitor& visit, T& type) {
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneType& type, const GivenFields& given);
 
+inline constexpr std::size_t kSceneMaterialsMax = 4096;
+
 /// A value whose default depends on the collider's size is optional; withDefaults() fills it.
 struct Scene {
     std::filesystem::path world;  ///< resolved; empty: none
@@ -314,6 +317,7 @@ struct Scene {
     /// Those of the file's tables and, once loaded, behind them the bodies of the world that no table names; then at least
     /// one.
     std::vector<SceneCollider> colliders;
+    std::vector<MaterialResponse> materials;  ///< of all colliders, by name
     SceneTime time;
     SceneParticles particles;
     std::vector<SceneEmitter> emitters{SceneEmitter{}};  ///< at least one
@@ -339,6 +343,8 @@ void fields(Visitor& visit, S& scene) {
     visit(
         "collider", scene.colliders,
         {"What particles collide with", {}, {}, {}, {.most = ColliderTextures::kBodiesMax, .single = true}});
+    visit("material", scene.materials,
+          leftOut({"Responses of the colliders' materials", {}, {}, {}, {.most = kSceneMaterialsMax}}));
     visit("stream", scene.stream, leftOut({"Colliders of the world that are there when they are needed"}));
     visit("time", scene.time, {"Steps"});
     visit("particles", scene.particles, {"Room for particles"});

@@ -136,10 +136,16 @@ Result<void> completeEmitters(std::span<SceneEmitter> emitters, const Bounds& bo
     return shareRates(emitters, seconds, capacity);
 }
 
-std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns) {
+std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,
+                                  std::span<const std::string> materials) {
     std::vector<Spawner> made;
     for (const SceneSpawn& spawn : spawns) {
-        made.emplace_back(spawn, spawn.seed, kEmittersMax + made.size());
+        SpawnSettings settings = spawn;
+        if (!spawn.on_material.empty()) {
+            settings.material = static_cast<int>(
+                std::find(materials.begin(), materials.end(), spawn.on_material) - materials.begin());
+        }
+        made.emplace_back(settings, spawn.seed, kEmittersMax + made.size());
     }
     return made;
 }

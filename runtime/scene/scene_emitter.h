@@ -188,12 +188,15 @@ inline constexpr std::size_t kSpawnsMax = 16;
 
 struct SceneSpawn : SpawnSettings {
     std::uint64_t seed = 1;
+    std::string on_material;  ///< SpawnSettings::material by its name; empty: any
     friend bool operator==(const SceneSpawn&, const SceneSpawn&) = default;
 };
 
 template <class Visitor, FieldsOf<SceneSpawn> S>
 void fields(Visitor& visit, S& spawn) {
     fields(visit, baseOf<SpawnSettings>(spawn));
+    visit("material", spawn.on_material,
+          leftOut({"Name of the material that was hit", {}, {}, "any", {.only = "collision"}}));
     visit("seed", spawn.seed, {"Seed; spawn i draws from a stream of its own", {}, {0.0, kSeedMax}});
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
@@ -206,7 +209,9 @@ void fields(Visitor& visit, S& spawn) {
                                             float scale, double seconds, std::uint32_t capacity);
 
 /// Spawner i draws from stream i of its seed, behind those of the emitters.
-[[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns);
+/// \param materials  ColliderTextures::materialNames(); a name that is not among them is never hit.
+[[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,
+                                                std::span<const std::string> materials);
 
 /// Trajectories that carry the births of each emitter along.
 /// \param colliders  that `attach` counts; those that deform are followed by their pose alone.

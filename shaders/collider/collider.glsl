@@ -596,9 +596,9 @@ ReliefBest reliefProbe(int first, int end, int start, vec3 p) {
     return best;
 }
 
-// The surface that a ball is in or touches. Where its centre is inside, as reliefSolid() of that. Else each map that sees a
-// surface near gives the direction to it, and the point of the ball there is evaluated; the deepest such point decides, with
-// a distance below 0. Where it touches nothing: RELIEF_FAR_OUTSIDE, or where all maps abstain, no map.
+// The surface that a ball is in or touches. Where its centre is inside, as reliefSolid() of that, and deeper by the radius. Else
+// each map that sees a surface near gives the direction to it, and the point of the ball there is evaluated; the deepest such
+// point decides, with a distance below 0. Where it touches nothing: RELIEF_FAR_OUTSIDE, or where all maps abstain, no map.
 ReliefField reliefBall(int first, int end, vec3 center, float radius) {
     ReliefBest inside = RELIEF_NO_VOTE;
     ReliefField touched = ReliefField(RELIEF_FAR_OUTSIDE, vec3(0.0), -1);
@@ -620,7 +620,8 @@ ReliefField reliefBall(int first, int end, vec3 center, float radius) {
         }
     }
     if (inside.map >= 0 && inside.distance < 0.0) {  // WebGL has no ?: of structures
-        return reliefFieldOf(inside);
+        touched = reliefFieldOf(inside);
+        touched.distance -= radius;
     }
     return touched;
 }

@@ -24,13 +24,18 @@ enum class Contact : std::uint8_t {
     kStopped = 3,  ///< at rest for good (OnCollision::kStop)
 };
 
+/// The state texture has the share of its lifetime that a particle has lost behind the point of its contact, in at least 7 bits,
+/// for 65,536 bodies: this and more stand for all of it.
+inline constexpr float kLostMost = 0.9921875F;
+
 /// The events of a particle in a step: the sum of these.
 enum EventFlag : std::int32_t {
     kEventCollision = 1,
     kEventLasts = 2,  ///< beside kEventCollision: the step before touched something, too
     kEventDeath = 4,  ///< of age, or beside kEventCollision of the collision
 };
-/// The step writes flags + kEventFlags · (direction + kEventDirections · (body + 1)), as events.glsl has it.
+/// The step writes flags + kEventFlags · (direction + kEventDirections · (m + (materials + 1) · (body + 1))), below 2^24, with m the
+/// number of the material's name + 1, or 0 without one. In a list it is flags + kEventFlags · m.
 inline constexpr int kEventFlags = 8;
 inline constexpr int kEventDirections = 6;
 /// A count of events is that of so many counts before it; kEventLevels of them count the largest system.

@@ -7,7 +7,8 @@
 //               w       speed of approach along it, relative to the surface
 //     velocity  x y z   of the particle before the event
 //               w       body; -1 the floor
-//     identity  x       index     y  id modulo 2^24     z  type     w  flags (EventFlag)
+//     identity  x       index     y  id modulo 2^24     z  type     w  flags (EventFlag) + RELIEF_EVENT_FLAGS * m, with m
+//               the number of the material's name + 1, or 0 without a material
 //!include particles/events.glsl
 uniform highp sampler2D u_event_velocity;
 uniform highp sampler2D u_position_before;
@@ -16,7 +17,8 @@ uniform highp sampler2D u_count_1;  // of particles
 uniform highp sampler2D u_count_2;  // of count_1's
 uniform highp sampler2D u_count_3;
 uniform highp sampler2D u_count_4;  // of all
-uniform int u_width;  // of the particles' textures
+uniform int u_width;      // of the particles' textures
+uniform int u_materials;  // names of materials, + 1
 uniform float u_radius[RELIEF_TYPES];
 
 layout(location = 0) out vec4 o_position;
@@ -74,7 +76,9 @@ void main() {
     vec4 birth = texelFetch(u_birth, texel, 0);
     int code = int(surface.w);
     int flags = code % RELIEF_EVENT_FLAGS;
-    int body = code / (RELIEF_EVENT_FLAGS * RELIEF_EVENT_DIRECTIONS) - 1;
+    int place = code / (RELIEF_EVENT_FLAGS * RELIEF_EVENT_DIRECTIONS);
+    int body = place / u_materials - 1;
+    int material = place % u_materials;
     vec3 normal = vec3(0.0);
     float radius = 0.0;
     if ((flags & RELIEF_EVENT_COLLISION) != 0) {
@@ -85,5 +89,5 @@ void main() {
     o_position = vec4(center - radius * normal, velocity.w);
     o_surface = vec4(normal, surface.z);
     o_velocity = vec4(velocity.xyz, float(body));
-    o_identity = vec4(float(index), birth.w, birth.z, float(flags));
+    o_identity = vec4(float(index), birth.w, birth.z, float(flags + RELIEF_EVENT_FLAGS * material));
 }

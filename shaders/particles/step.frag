@@ -16,6 +16,9 @@ bool collidesWith(int bits) {
 #if defined(RELIEF_TOUR)
 //!include collider/collider_tour.glsl
 #endif
+#if defined(RELIEF_COLLIDER) && defined(RELIEF_MATERIALS)
+//!include collider/materials.glsl
+#endif
 //!include air/air.glsl
 //!include particles/step.glsl
 //!include particles/step_solid.glsl

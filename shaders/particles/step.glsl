@@ -44,6 +44,15 @@ vec3 pointNow(int body, vec3 p);
 // Restitution and 1 - friction of a body, factors of the particle's own.
 vec2 bodyResponse(int body);
 
+// The material of a body at a point of its surface at the end of the step, as reliefMaterial() gives it.
+#if defined(RELIEF_MATERIALS)
+vec4 materialOf(int body, vec3 p, vec3 n);
+#else
+vec4 materialOf(int body, vec3 p, vec3 n) {
+    return vec4(1.0, 1.0, 0.0, 0.0);
+}
+#endif
+
 // Height above the floor y < u_ground.
 float aboveGround(vec3 p, float radius) {
     float above = p.y - radius - u_ground;
@@ -143,6 +152,15 @@ vec3 bounced(vec3 v_begin, vec3 relative, float vn, vec3 along, vec3 n, Particle
     return dot(left, left) > still * still ? left : vec3(0.0);
 }
 
+// Seconds from the contact with the surface to the end of the sweep, which is sweep.hit.distance deep, with vn, the velocity
+// along the normal relative to the surface.
+float sinceContact(Sweep sweep, float vn) {
+    return min(vn < 0.0 ? sweep.hit.distance / vn : 0.0, sweep.share * u_dt);
+}
+
+// Seconds of life that the material of this step's contact costs.
+float g_cost = 0.0;
+
 // The reaction (paper, section 3.3.2) to sweep.hit, with v split along the normal n at the end of the step:
 //
 //      p o                    o p_next           p o      ^ p_next      caught: p is inside already.
@@ -165,6 +183,11 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
         }
     } else {
         dies = type.behaviour == float(RELIEF_ON_COLLISION_DIE);
+        float after = sinceContact(sweep, vn);
+        vec4 material = vec4(1.0, 1.0, 0.0, 0.0);
+        if (sweep.hit.body >= 0) {
+            material = materialOf(sweep.hit.body, sweep.to - after * relative - type.radius * n, n);
+        }
         vec3 along = relative - vn * n;
         if (type.behaviour == float(RELIEF_ON_COLLISION_STOP)) {
             v = carried;
@@ -172,11 +195,12 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
         } else if (type.behaviour == float(RELIEF_ON_COLLISION_SLIDE)) {
             v = carried + along;
         } else {
-            vec2 response = vec2(type.restitution, type.slip);
+            vec2 response = vec2(type.restitution, type.slip) * material.xy;
             response *= sweep.hit.body < 0 ? vec2(1.0) : bodyResponse(sweep.hit.body);
             v = carried + bounced(state.velocity - carried, relative, vn, along, n, type, response);
         }
-        writeHit(sweep, vn, state.contact != float(RELIEF_CONTACT_NONE), dies);
+        g_cost = material.z;
+        writeHit(sweep, after, vn, material.w, state.contact != float(RELIEF_CONTACT_NONE), dies);
     }
     vec3 to = dies ? p : sweepEnd(sweep, carried, v, contact, type.radius);
     return State(to, v, state.collisions + 1.0, contact);
@@ -208,18 +232,27 @@ void stepAt(ivec2 texel) {
     ParticleType type = typeOf(birth);
     // A mere comparison of numbers that the CPU made: both agree on the step. (Only the GPU knows a loss of life; the CPU
     // then frees the index at its original time of death.)
-    bool spent = u_now >= birth.y || (type.loss > 0.0 && u_now >= birth.y - type.loss * state.collisions);
+    float death = birth.y - type.loss * state.collisions;
+#if defined(RELIEF_MATERIALS)
+    death -= g_lost * (birth.y - birth.x);
+    bool spent = u_now >= birth.y || ((type.loss > 0.0 || g_lost > 0.0) && u_now >= death);
+#else
+    bool spent = u_now >= birth.y || (type.loss > 0.0 && u_now >= death);
+#endif
     writeNoEvent();
     State after = state;
     bool dies = state.collisions < 0.0 || spent;
     if (dies) {
         if (state.collisions >= 0.0) {
-            writeDeath(state, birth.y - type.loss * state.collisions);
+            writeDeath(state, death);
         }
     } else if (state.contact >= float(RELIEF_CONTACT_STOPPED)) {
         after = rested(state);
     } else {
         after = moved(state, type, dies);
+#if defined(RELIEF_MATERIALS)
+        g_lost += g_cost > 0.0 ? min(g_cost / (birth.y - birth.x), 1.0) : 0.0;
+#endif
     }
     if (dies) {
         writeDead();

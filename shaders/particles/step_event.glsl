@@ -4,7 +4,7 @@
 //                       w       seconds from the step's beginning to the event
 //     surface texture   x y     the smaller two of the normal's components (events.glsl)
 //                       z       speed of approach along the normal, relative to the surface, >= 0
-//                       w       flags, direction and body (kEventFlags in constants.h); 0: no event
+//                       w       flags, direction, material and body (kEventFlags in constants.h); 0: no event
 //
 // A path within a step is straight: the event was at position before + w * velocity.
 #if defined(RELIEF_EVENTS)
@@ -26,15 +26,20 @@ vec3 packedNormal(vec3 n) {
     return a.y >= a.z ? vec3(n.z, n.x, n.y < 0.0 ? 3.0 : 2.0) : vec3(n.x, n.y, n.z < 0.0 ? 5.0 : 4.0);
 }
 
-// A hit from outside, sweep.hit.distance deep at the end of the sweep: with vn, the velocity along the normal relative to the
-// surface, depth 0 was so much earlier.
-void writeHit(Sweep sweep, float vn, bool lasts, bool dies) {
-    float after = min(vn < 0.0 ? sweep.hit.distance / vn : 0.0, sweep.share * u_dt);
+#if defined(RELIEF_MATERIALS)
+const float kMaterials = float(RELIEF_MATERIALS);
+#else
+const float kMaterials = 0.0;
+#endif
+
+// A hit from outside, `after` seconds before the end of the sweep: with vn, the velocity along the normal relative to the surface.
+// material: the number of its name + 1, or 0.
+void writeHit(Sweep sweep, float after, float vn, float material, bool lasts, bool dies) {
     vec3 normal = packedNormal(sweep.hit.normal);
     float code = float(RELIEF_EVENT_COLLISION) + (lasts ? float(RELIEF_EVENT_LASTS) : 0.0) +
                  (dies ? float(RELIEF_EVENT_DEATH) : 0.0);
-    code += float(RELIEF_EVENT_FLAGS) *
-            (normal.z + float(RELIEF_EVENT_DIRECTIONS) * (float(sweep.hit.body) + 1.0));
+    float place = material + (kMaterials + 1.0) * (float(sweep.hit.body) + 1.0);
+    code += float(RELIEF_EVENT_FLAGS) * (normal.z + float(RELIEF_EVENT_DIRECTIONS) * place);
     o_event_velocity = vec4(sweep.v, sweep.end * u_dt - after);
     o_event_surface = vec4(normal.xy, max(-vn, 0.0), code);
 }
@@ -47,7 +52,7 @@ void writeDeath(State state, float time) {
 #else
 
 void writeNoEvent() {}
-void writeHit(Sweep sweep, float vn, bool lasts, bool dies) {}
+void writeHit(Sweep sweep, float after, float vn, float material, bool lasts, bool dies) {}
 void writeDeath(State state, float time) {}
 
 #endif

@@ -102,6 +102,26 @@ vec2 bodyResponse(int body) {
 
 #endif
 
+#if !defined(RELIEF_MATERIALS)
+// step.glsl has it.
+#elif RELIEF_BODIES == 0
+
+vec4 materialOf(int body, vec3 p, vec3 n) {
+    return reliefMaterial(0, p, n);
+}
+
+#else
+
+vec4 materialOf(int body, vec3 p, vec3 n) {
+    vec4 x = reliefBodyRow(body, 0);
+    vec4 y = reliefBodyRow(body, 1);
+    vec4 z = reliefBodyRow(body, 2);
+    return reliefMaterial(body, vec3(reliefRow(x, p), reliefRow(y, p), reliefRow(z, p)),
+                          vec3(dot(x.xyz, n), dot(y.xyz, n), dot(z.xyz, n)));
+}
+
+#endif
+
 #if RELIEF_BODIES == 0
 
 vec3 pointBefore(Solid s, vec3 p) {

@@ -4,7 +4,8 @@
 //                        w       collisions so far, each step in contact counting; RELIEF_DEAD_COLLISIONS once dead
 //     velocity texture   x y z   world units a second
 //                        w       contact of the last step (constants.h): RELIEF_CONTACT_NONE, _COLLIDED, _CAUGHT (and
-//                                pushed out); at rest for good _STOPPED on the floor, or more by 1 + b on body b
+//                                pushed out); at rest for good _STOPPED on the floor, or more by 1 + b on body b. Its
+//                                fraction is the share of its lifetime that materials have cost: RELIEF_LOST_MOST for all
 //     birth texture      x       time of birth   } seconds on the clock of u_now
 //                        y       time of death   }
 //                        z       type
@@ -27,6 +28,11 @@ uniform float u_rate;  // 1 / seconds of this step
 RELIEF_STATE_OUT(0) vec4 o_position;
 RELIEF_STATE_OUT(1) vec4 o_velocity;
 
+// Share of the lifetime that materials have cost the particle of this invocation.
+#if defined(RELIEF_MATERIALS)
+float g_lost = 0.0;
+#endif
+
 struct State {
     vec3 position;
     vec3 velocity;
@@ -37,7 +43,12 @@ struct State {
 State stateAt(ivec2 texel) {
     vec4 position = texelFetch(u_position, texel, 0);
     vec4 velocity = texelFetch(u_velocity, texel, 0);
-    return State(position.xyz, velocity.xyz, position.w, velocity.w);
+    float contact = floor(velocity.w);
+#if defined(RELIEF_MATERIALS)
+    g_lost = velocity.w - contact;
+    g_lost = g_lost >= RELIEF_LOST_MOST ? 1.0 : g_lost;
+#endif
+    return State(position.xyz, velocity.xyz, position.w, contact);
 }
 
 // The state after a step from `before`.
@@ -52,6 +63,9 @@ void writeState(State before, State after) {
 #endif
     o_position = vec4(after.position, after.collisions);
     o_velocity = vec4(after.velocity, after.contact);
+#if defined(RELIEF_MATERIALS)
+    o_velocity.w += min(g_lost, RELIEF_LOST_MOST);
+#endif
 }
 
 void writeDead() {

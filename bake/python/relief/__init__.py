@@ -408,6 +408,7 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
          as_: Union[str, Sequence[str], None] = None,
          thickness: Optional[Number] = None,
          voids: Optional[str] = None,
+         materials: Optional[str] = None,
          animated: bool = False,
          clips: Union[str, Sequence[str], None] = None,
          heights: Optional[str] = None,
@@ -474,6 +475,8 @@ class Hits(NamedTuple):
     """(n,) uint32"""
     body: np.ndarray
     """(n,) int32: which collider of the scene, from 0; -1: the ground."""
+    material: np.ndarray
+    """(n,) int32: of the surface there, in Simulation.materials; -1: the collider has none, or the ground."""
     position: np.ndarray
     """(n, 3) float32: where the surface was touched."""
     normal: np.ndarray
@@ -523,6 +526,11 @@ class Simulation:
         count = _whole(count, "count", 0, 2**32 - 1)
         self._read = None
         self._handle.step(count)
+
+    @property
+    def materials(self) -> list[str]:
+        """The names of the materials of all colliders."""
+        return list(self._handle.materials)
 
     def take_hits(self) -> Hits:
         """Those of the steps since the last call, in the order of steps; waits for the GPU. Up to 262,144 a step."""

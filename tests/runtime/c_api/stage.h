@@ -40,6 +40,7 @@ class Stage {
         EXPECT_TRUE(context) << context.error().message;
         context_ = std::move(*context);
         Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
+        box.materials.list = {{"oak"}, {"felt"}};
         AnimatedMesh tube = bendingTube(8, 6);
         tube.materials = {"cloth"};
         tube.triangle_materials.resize(tube.triangles.size(), 0);
@@ -155,6 +156,7 @@ class Stage {
             return name == "size"           ? bytes_.size()
                    : name == "body"         ? 1
                    : name == "clip"         ? 1
+                   : name == "material"     ? 1
                    : name == "joint"        ? 1
                    : name == "joint_count"  ? 2
                    : name == "weight_count" ? 1
@@ -172,6 +174,7 @@ class Stage {
             return name == "matrices"  ? matrices
                    : name == "weights" ? weights
                    : name == "room"    ? room
+                   : name == "normal"  ? normal
                                        : points;
         } else if constexpr (std::is_same_v<T, int>) {
             return 0;
@@ -248,6 +251,7 @@ class Stage {
                           1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     float weights[1] = {0.0F};
     float room[3] = {3.0F, 3.0F, 3.0F};
+    float normal[3] = {0.0F, 1.0F, 0.0F};
     float low[3];
     float high[3];
 

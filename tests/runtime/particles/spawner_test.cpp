@@ -93,6 +93,15 @@ TEST(Spawner, OnlyWhatIsAskedForCounts) {
     births.clear();
     Spawner(settings, 1).spawn(step, {}, 1000, births);
     EXPECT_EQ(births.size(), 12U);
+    settings.material = 4;
+    auto elsewhere = hitOf(8, 0, 5.0F);
+    elsewhere.material = 3;
+    auto there = hitOf(9, 0, 5.0F);
+    there.material = 4;
+    births.clear();
+    Spawner(settings, 1).spawn(stepOf({hitOf(7, 0, 5.0F), elsewhere, there}), {}, 1000, births);
+    ASSERT_EQ(births.size(), 3U);
+    EXPECT_EQ(births[0].position.x, 9.0F);
 }
 
 // Births and refusals are all that were due, whatever the limits; the same seed gives the same.

@@ -42,7 +42,7 @@ TEST(SceneSpawn, EveryKeyIsRead) {
     EXPECT_TRUE(SpawnSettings(scene->spawns[1]) == death);
     EXPECT_EQ(scene->spawns[2].of, 1U);
     EXPECT_EQ(scene->spawns[2].cone_degrees, 60.0F);
-    EXPECT_EQ(makeSpawners(scene->spawns).size(), 3U);
+    EXPECT_EQ(makeSpawners(scene->spawns, {}).size(), 3U);
 }
 
 TEST(SceneSpawn, MistakesAreNamedWithTheirPlace) {

@@ -1,0 +1,256 @@
+// Materials of contacts on the GPU: ten thousand drops on a checkerboard whose squares are known in closed form, what they make of
+// the speed and the life of particles, and numbers of names over several colliders.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+#include "runtime/particles/random.h"
+#include "tests/runtime/particles/collision_test.h"
+
+namespace relief {
+namespace {
+
+constexpr int kLevels = 4;
+constexpr float kSquare = 0.05F;  ///< side of a cell of the last level
+
+/// A tree whose cells are split throughout, each with the material of its middle.
+Materials materialsBy(std::vector<Material> list, const std::function<std::size_t(const glm::vec3&)>& at) {
+    Materials made;
+    made.list = std::move(list);
+    made.size = std::ldexp(kSquare, kLevels);
+    made.origin = glm::vec3(-0.4F);
+    struct Cell {
+        glm::vec3 corner;
+        float size;
+    };
+    std::vector<Cell> level{{made.origin, made.size}};
+    std::size_t next = 1;
+    for (int depth = 1; depth <= kLevels; ++depth) {
+        std::vector<Cell> below;
+        for (const Cell& cell : level) {
+            MaterialNode node;
+            const float half = 0.5F * cell.size;
+            if (depth < kLevels) {
+                node.head = static_cast<std::uint32_t>(next) << 8U | 0xFFU;
+                next += 8;
+            }
+            for (std::size_t octant = 0; octant < 8; ++octant) {
+                const glm::vec3 corner =
+                    cell.corner + half * glm::vec3(octant & 1U, octant >> 1U & 1U, octant >> 2U & 1U);
+                if (depth < kLevels) {
+                    below.push_back({corner, half});
+                } else {
+                    node.leaves[octant] = static_cast<std::uint8_t>(at(corner + 0.5F * half));
+                }
+            }
+            made.nodes.push_back(node);
+        }
+        level = std::move(below);
+    }
+    EXPECT_EQ(faultOfMaterials(made), "");
+    return made;
+}
+
+std::size_t squareOf(const glm::vec3& p) {
+    return static_cast<std::size_t>(
+        (static_cast<int>(std::floor(p.x / kSquare)) + static_cast<int>(std::floor(p.z / kSquare))) & 1);
+}
+
+float toLine(float x) {
+    const float q = x / kSquare;
+    return kSquare * std::abs(q - std::round(q));
+}
+
+class MaterialsGlTest : public CollisionTest {
+  protected:
+    std::vector<ParticleEvent> hits() {
+        EXPECT_TRUE(particles_->requestEvents(1));
+        auto events = particles_->waitEvents();
+        EXPECT_TRUE(events && *events);
+        return events && *events ? (*events)->events : std::vector<ParticleEvent>();
+    }
+
+    Collider board_ = [] {
+        Collider box = boxCollider();
+        box.materials = materialsBy({{"black"}, {"white"}}, squareOf);
+        return box;
+    }();
+};
+
+/// Drops onto a box whose top is at y = 0.2 of its object space, away from the lines. \return how many of the hits named the wrong square.
+int countWrong(const std::vector<ParticleEvent>& hits, const Pose& pose, std::span<const std::string> names,
+               int body, int& counted) {
+    int wrong = 0;
+    for (const ParticleEvent& hit : hits) {
+        const glm::vec3 object =
+            glm::conjugate(pose.rotation) * ((hit.position - pose.position) / pose.scale);
+        if (hit.body != body || object.y < 0.19F || toLine(object.x) < 0.004F || toLine(object.z) < 0.004F) {
+            continue;
+        }
+        ++counted;
+        const char* name = squareOf(object) == 0 ? "black" : "white";
+        wrong += hit.material < 0 || names[static_cast<std::size_t>(hit.material)] != name ? 1 : 0;
+    }
+    return wrong;
+}
+
+TEST_P(MaterialsGlTest, DropsNameTheSquareThatTheyHit) {
+    for (const bool placed : {false, true}) {
+        for (const float sweep : {0.0F, 0.05F}) {
+            SCOPED_TRACE(std::string(placed ? "placed" : "in its own space") +
+                         (sweep > 0.0F ? ", swept" : ""));
+            Pose pose;
+            if (placed) {
+                pose = {{1.0F, -2.0F, 0.5F},
+                        glm::angleAxis(0.7F, glm::normalize(glm::vec3(0.2F, 1.0F, 0.1F))),
+                        2.0F};
+            }
+            const ColliderBody body{&board_, pose, 1.0F, 0.0F};
+            make({.capacity = 12'000});
+            ASSERT_TRUE(particles_->setSweep(sweep));
+            collideWith(placed ? ColliderTextures::create(std::span(&body, 1))
+                               : ColliderTextures::create(board_));
+            ASSERT_EQ(textures_->materialNames().size(), 2U);
+            ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+            Pcg32 random(11);
+            std::vector<Birth> births;
+            for (int i = 0; i < 10'000; ++i) {
+                const float x = random.between(-0.39F, 0.39F);
+                const glm::vec3 from(x, 0.21F, random.between(-0.29F, 0.29F));
+                births.push_back({pose.position + pose.rotation * (pose.scale * from),
+                                  pose.rotation * glm::vec3(0.0F, -3.0F, 0.0F), 100.0F, 0});
+            }
+            ASSERT_EQ(particles_->spawn(births), births.size());
+            ASSERT_TRUE(particles_->step(kDt));
+            int counted = 0;
+            EXPECT_EQ(countWrong(hits(), pose, textures_->materialNames(), 0, counted), 0);
+            EXPECT_GT(counted, 5000);
+        }
+    }
+}
+
+TEST_P(MaterialsGlTest, NamesAreOneOverColliders) {
+    const Collider plain = boxCollider();
+    Collider other = boxCollider();
+    other.materials.list = {{"white"}};
+    const std::array<ColliderBody, 4> bodies{{{&plain, {{0.0F, 0.0F, 0.0F}}},
+                                              {&board_, {{10.0F, 0.0F, 0.0F}}},
+                                              {&other, {{20.0F, 0.0F, 0.0F}}},
+                                              {&board_, {{30.0F, 0.0F, 0.0F}}}}};
+    make({.capacity = 16});
+    collideWith(ColliderTextures::create(bodies));
+    ASSERT_EQ(textures_->materialNames().size(), 2U);
+    EXPECT_EQ(textures_->materialNames()[0], "black");
+    EXPECT_EQ(textures_->materialNames()[1], "white");
+    ASSERT_TRUE(particles_->setGround(-5.0F));
+    ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+    const glm::vec3 black(0.525F * kSquare, 0.201F, 0.525F * kSquare);
+    const glm::vec3 down(0.0F, -1.0F, 0.0F);
+    ASSERT_EQ(particles_->spawn(std::vector<Birth>{{black, down, 9.0F, 0},
+                                                   {black + glm::vec3(10.0F, 0.0F, 0.0F), down, 9.0F, 0},
+                                                   {black + glm::vec3(20.0F, 0.0F, 0.0F), down, 9.0F, 0},
+                                                   {black + glm::vec3(30.0F, 0.0F, kSquare), down, 9.0F, 0},
+                                                   {{40.0F, -4.999F, 0.0F}, down, 9.0F, 0}}),
+              5U);
+    ASSERT_TRUE(particles_->step(kDt));
+    const std::vector<ParticleEvent> got = hits();
+    ASSERT_EQ(got.size(), 5U);
+    const std::array<std::pair<int, int>, 5> expected{{{0, -1}, {1, 0}, {2, 1}, {3, 1}, {-1, -1}}};
+    for (std::size_t i = 0; i < got.size(); ++i) {
+        EXPECT_EQ(got[i].body, expected[i].first) << i;
+        EXPECT_EQ(got[i].material, expected[i].second) << i;
+        EXPECT_TRUE(got[i].hit && !got[i].lasts && !got[i].death);
+        EXPECT_LT(glm::length(got[i].normal - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-3F);
+    }
+}
+
+// Factors of the particle's and of the body's own.
+TEST_P(MaterialsGlTest, ResponsesMultiply) {
+    board_.materials.list = {{"black", 0.5F, 0.0F}, {"white", 1.0F, 0.75F}};
+    const ColliderBody body{&board_, {}, 0.8F, 0.0F};
+    make({.capacity = 4});
+    collideWith(ColliderTextures::create(std::span(&body, 1)));
+    ParticleType type;
+    type.restitution = 0.5F;
+    type.friction = 0.5F;
+    setType(type);
+    ASSERT_TRUE(particles_->setForces({.gravity = glm::vec3(0.0F)}));
+    const glm::vec3 black(0.5F * kSquare, 0.201F, 0.5F * kSquare);
+    const glm::vec3 v(0.1F, -1.0F, 0.0F);
+    ASSERT_EQ(particles_->spawn(std::vector<Birth>{{black, v, 9.0F, 0},
+                                                   {black + glm::vec3(0.0F, 0.0F, kSquare), v, 9.0F, 0}}),
+              2U);
+    ASSERT_TRUE(particles_->step(kDt));
+    const auto after = state();
+    ASSERT_EQ(after.size(), 2U);
+    EXPECT_NEAR(after[0].velocity.y, 0.5F * 0.8F * 0.5F, 1e-3F);
+    EXPECT_NEAR(after[0].velocity.x, 0.1F * 0.5F, 1e-3F);
+    EXPECT_NEAR(after[1].velocity.y, 0.5F * 0.8F, 1e-3F);
+    EXPECT_NEAR(after[1].velocity.x, 0.1F * 0.5F * 0.25F, 1e-3F);
+}
+
+// A contact takes its loss, and that of the type, from the lifetime: a particle that stopped dies that much earlier, one that slides
+// loses as much in each step.
+TEST_P(MaterialsGlTest, ContactsCostLife) {
+    board_.materials.list = {{"black", 1.0F, 0.0F, 3.0F}, {"white", 1.0F, 0.0F, 500.0F}};
+    const ColliderBody body{&board_, {}, 1.0F, 0.0F};
+    struct Case {
+        OnCollision reaction;
+        float type_loss;
+        int square;
+        int first_dead;  // step after which it is no longer there
+    };
+    const int whole = 600;  // steps of a life of ten seconds
+    for (const auto& [reaction, type_loss, square, dead] :
+         std::vector<Case>{{OnCollision::kStop, 0.0F, 0, whole - 180},
+                           {OnCollision::kStop, 1.0F, 0, whole - 240},
+                           {OnCollision::kStop, 0.0F, 1, 2},
+                           {OnCollision::kSlide, 0.0F, 0, 4}}) {
+        SCOPED_TRACE(dead);
+        make({.capacity = 4});
+        collideWith(ColliderTextures::create(std::span(&body, 1)));
+        ParticleType type;
+        type.on_collision = reaction;
+        type.lifetime_loss = type_loss;
+        setType(type);
+        ASSERT_TRUE(particles_->setForces({.gravity = {0.0F, -9.81F, 0.0F}}));
+        spawnOne({{0.5F * kSquare, 0.201F, (0.5F + static_cast<float>(square)) * kSquare},
+                  {0.0F, -1.0F, 0.0F},
+                  9.999F,
+                  0});
+        int step = 0;
+        while (step < whole + 10 && (step == 0 || !state().empty())) {
+            ASSERT_TRUE(particles_->step(kDt));
+            ++step;
+        }
+        EXPECT_NEAR(step, dead, 2);
+    }
+}
+
+TEST_P(MaterialsGlTest, MoreNamesThanEventsCanTellApartAreRefused) {
+    std::vector<Collider> colliders(2, boxCollider());
+    for (int i = 0; i < 255; ++i) {
+        colliders[0].materials.list.push_back({"a" + std::to_string(i)});
+        colliders[1].materials.list.push_back({"b" + std::to_string(i)});
+    }
+    std::vector<ColliderBody> bodies;
+    for (int i = 0; i < 700; ++i) {
+        bodies.push_back(
+            {&colliders[static_cast<std::size_t>(i % 2)], {{static_cast<float>(i), 0.0F, 0.0F}}});
+    }
+    make({.capacity = 4});
+    collideWith(ColliderTextures::create(bodies));
+    const Result<void> listed = particles_->setEvents(EventOptions{});
+    ASSERT_FALSE(listed);
+    EXPECT_EQ(listed.error().code, ErrorCode::kLimit);
+    EXPECT_TRUE(particles_->step(kDt));  // as it was
+    EXPECT_FALSE(particles_->requestEvents(1));
+}
+
+RELIEF_INSTANTIATE_STEP_TESTS(MaterialsGlTest);
+
+}  // namespace
+}  // namespace relief
