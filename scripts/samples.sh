@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-all=(bunny_in_the_snow catherine_wheel fountain linked_tori rain village walker wobbling_torus)
+all=(bunny_in_the_snow catherine_wheel fountain kitchen linked_tori rain village walker wobbling_torus)
 names=("$@")
 [ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 for name in "${names[@]}"; do
@@ -43,6 +43,10 @@ prepare() {
         mesh torus.obj
         cp samples/linked_tori.csv "$out/"
         bake "$out/torus.obj" -o "$out/torus.relief" --budget 200kB
+        ;;
+    kitchen)
+        python3 samples/kitchen.py "$out/kitchen.gltf"
+        bake "$out/kitchen.gltf" -o "$out/kitchen.relief"
         ;;
     village)
         python3 samples/village.py "$out"
