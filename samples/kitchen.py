@@ -1,13 +1,19 @@
 #!/usr/bin/env python3
 """Makes the corner of a kitchen, as glTF whose parts have materials: kitchen.py OUT.gltf
 
+Beside it OUT.ply has their colours, for pictures.
+
 The same argument gives the same bytes. Needs nothing but Python itself.
 """
 import base64
 import json
 import math
+import os
 import struct
 import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from village import Shape, ply  # noqa: E402
 
 PLATES = [(0.66, -0.42, 0.105), (0.96, -0.42, 0.085), (0.66, -0.14, 0.085), (0.96, -0.14, 0.105)]  # x, z, radius
 STOVE_TOP = 0.90
@@ -92,3 +98,9 @@ if __name__ == "__main__":
         sys.exit("usage: kitchen.py OUT.gltf")
     with open(sys.argv[1], "w", encoding="utf-8") as out:
         json.dump(gltf(), out)
+    colored = Shape()
+    for name, solids in parts().items():
+        for corners, triangles in solids:
+            colored.add(corners, triangles, name)
+    with open(os.path.splitext(sys.argv[1])[0] + ".ply", "wb") as out:
+        out.write(ply(colored))

@@ -20,11 +20,13 @@ CELLS = 240
 
 MATERIALS = {  # sRGB
     "grass": (0.36, 0.43, 0.20), "path": (0.50, 0.42, 0.32), "plaster": (0.86, 0.80, 0.68), "ochre": (0.80, 0.62, 0.38),
-    "rose": (0.76, 0.53, 0.45), "timber": (0.30, 0.20, 0.13), "tiles": (0.60, 0.27, 0.17), "slate": (0.30, 0.33, 0.38),
+    "rose": (0.76, 0.53, 0.45), "timber": (0.30, 0.20, 0.13), "roof": (0.60, 0.27, 0.17), "slate": (0.30, 0.33, 0.38),
     "thatch": (0.60, 0.50, 0.30), "stone": (0.55, 0.53, 0.49), "door": (0.20, 0.33, 0.30), "glass": (0.16, 0.20, 0.25),
     "wood": (0.47, 0.34, 0.21), "iron": (0.17, 0.17, 0.19), "canvas": (0.84, 0.80, 0.70), "straw": (0.76, 0.62, 0.30),
     "leaves": (0.25, 0.36, 0.14), "autumn": (0.66, 0.38, 0.12), "needles": (0.14, 0.25, 0.17), "bark": (0.27, 0.21, 0.16),
     "water": (0.20, 0.30, 0.34), "embers": (0.95, 0.36, 0.08),
+    # of kitchen.py
+    "enamel": (0.86, 0.87, 0.84), "hot plate": (0.20, 0.12, 0.11), "china": (0.33, 0.47, 0.62), "tiles": (0.52, 0.60, 0.60),
 }
 WARM = ("water", "embers")  # no snow stays there
 
@@ -219,7 +221,7 @@ def church():
 def mill():
     s = Shape()
     s.turned([(3.4, -1.0), (3.1, 0.6), (2.9, 0.7), (2.1, 8.2)], 24, "plaster")
-    s.turned([(2.45, 8.1), (2.45, 8.35), (1.9, 9.5), (0.9, 10.4), (0.05, 10.7)], 24, "tiles")
+    s.turned([(2.45, 8.1), (2.45, 8.35), (1.9, 9.5), (0.9, 10.4), (0.05, 10.7)], 24, "roof")
     s.beam((0.0, 8.9, 1.2), (0.0, 9.05, 3.3), 0.4, "timber")
     s.box((-0.6, 0.0, 2.7), (0.6, 2.2, 3.15), "door")
     for y, w in ((3.6, 2.55), (6.0, 2.25)):
@@ -347,7 +349,7 @@ def well():
     for x in (-0.95, 0.95):
         s.box((x - 0.08, 0.6, -0.08), (x + 0.08, 2.4, 0.08), "timber")
     s.beam((-1.0, 1.7, 0.0), (1.0, 1.7, 0.0), 0.14, "wood")
-    return s.roof(1.1, 0.75, 2.35, 3.0, 0.2, 0.1, "tiles")
+    return s.roof(1.1, 0.75, 2.35, 3.0, 0.2, 0.1, "roof")
 
 
 def lantern():
@@ -460,7 +462,7 @@ def shapes():
     made = {
         "terrain": terrain(), "pond": pond(), "church": church(), "mill": mill(), "sails": sails(), "well": well(),
         "house-ochre": house(3.6, 2.7, 2.9, 5.6, "ochre", "thatch", True, 0),
-        "house-plaster": house(4.3, 3.0, 4.9, 8.0, "plaster", "tiles", True, 2.7),
+        "house-plaster": house(4.3, 3.0, 4.9, 8.0, "plaster", "roof", True, 2.7),
         "house-rose": house(3.4, 2.8, 4.7, 7.6, "rose", "slate", True, 2.6),
         "barn": house(5.2, 3.4, 3.6, 7.2, "wood", "thatch", False, 0),
         "barrel": barrel(), "crate": crate(), "fence": fence(), "bench": bench(), "table": table(), "lantern": lantern(),
@@ -556,7 +558,7 @@ def ply(shape):
 
 def glb(made, placed):
     data, views, accessors, meshes, nodes = bytearray(), [], [], [], []
-    names = list(MATERIALS)
+    names = [m for m in MATERIALS if any(m in shape.materials for shape in made.values())]
 
     def add(kind, component, numbers, count, **more):
         views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 4 * len(numbers)})
