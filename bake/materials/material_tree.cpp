@@ -9,6 +9,8 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <queue>
+#include <tuple>
 #include <utility>
 
 #include "bake/mesh/mesh_query.h"
@@ -22,8 +24,16 @@ constexpr double kMargin = 0.5;
 /// The least component of unit normals along the axis that tells two sides apart.
 constexpr double kSideMin = 0.5;
 constexpr double kDiagonal = 0.70710678118654752;
+/// Of the surface, to find where leaves are wrong.
+constexpr std::size_t kSamples = 200'000;
 /// Bytes of a material in the container, beside its name.
 constexpr std::size_t kMaterialBytes = 40;
+
+struct MaterialTreeOptions {
+    Bounds box;            ///< of the collider
+    double texel = 0.0;    ///< the smallest of its maps, object units: no cell is smaller than half of it
+    std::size_t most = 0;  ///< bytes; once they are spent, cells stay unsplit
+};
 
 /// A triangle in double precision.
 struct Face {
@@ -70,65 +80,86 @@ bool meets(const Face& face, const glm::dvec3& center, double half) {
     return true;
 }
 
-/// A cell that is split, and the triangles near it.
+/// A point of the surface that the collider shows, with the normal that a contact finds there.
+struct Sample {
+    glm::dvec3 point;
+    glm::dvec3 normal;
+    std::uint8_t id;
+};
+
+/// How a cell without nodes below it is: the leaf that fits its samples best.
+struct Fit {
+    std::optional<MaterialSides> sides;
+    std::uint8_t single = 0;  ///< without them
+    std::size_t wrong = 0;    ///< samples
+};
+
+/// A cell, and the triangles and samples near it.
 struct Cell {
-    std::size_t node = 0;
     glm::dvec3 center{0.0};
+    int depth = 0;
     std::vector<std::uint32_t> faces;
+    std::vector<std::uint32_t> samples;
+    Fit fit;
+    bool final = false;                      ///< nothing tells its surfaces apart any better
+    std::array<std::uint32_t, 8> octants{};  ///< cells; 0: it is a leaf
 };
 
-/// The finding of an octant.
-struct Octant {
-    std::vector<std::uint32_t> faces;
-    std::optional<std::uint8_t> single;  ///< material of all of them
-    std::optional<MaterialSides> sides;  ///< else, where their normals tell them apart
-    std::uint8_t nearest = 0;            ///< material of the one nearest to its middle
-};
-
+/// Splits the cell whose leaf is wrong at most samples, again and again.
 class TreeBuilder {
   public:
-    TreeBuilder(const MaterialSource& source, const MaterialTreeOptions& options)
-        : source_(source), options_(options) {
+    TreeBuilder(const MaterialSource& source, const MaterialTreeOptions& options, std::vector<Sample> samples)
+        : source_(source), options_(options), samples_(std::move(samples)) {
         result_.list = source.list;
     }
 
     Materials build() {
         margin_ = kMargin * options_.texel;
-        const double size = double{options_.box.longestSide()} + 4.0 * options_.texel;
-        result_.size = static_cast<float>(size);
-        const glm::dvec3 middle(options_.box.center());
-        result_.origin = glm::vec3(middle - 0.5 * size);
+        result_.size = static_cast<float>(double{options_.box.longestSide()} + 4.0 * options_.texel);
+        const double size = double{result_.size};
+        result_.origin = glm::vec3(glm::dvec3(options_.box.center()) - 0.5 * size);
         while (levels_ < kMaterialLevelsMax && std::ldexp(size, -levels_) > options_.texel) {
             ++levels_;
         }
-        Cell root{0, glm::dvec3(result_.origin) + 0.5 * double{result_.size}, {}};
-        prepareFaces(root);
+        Cell root;
+        root.center = glm::dvec3(result_.origin) + 0.5 * size;
+        prepare(root);
         if (const std::optional<std::uint8_t> only = singleOf(root.faces); only || root.faces.empty()) {
             keepOnly(only.value_or(0));
             return std::move(result_);
         }
-        most_ = std::min(kMaterialNodesMax, mostNodes());
-        result_.nodes.resize(1);
-        std::vector<Cell> level;
-        level.push_back(std::move(root));
-        for (int depth = 1; !level.empty(); ++depth) {
-            level = split(level, depth);
+        cells_.push_back(std::move(root));
+        split({0});
+        std::size_t left = std::min(kMaterialNodesMax, mostNodes()) - 1;
+        while (!open_.empty() && left > 0) {
+            // So many at once, for the threads; always as many.
+            constexpr std::size_t kAtOnce = 32;
+            std::vector<std::uint32_t> next;
+            while (!open_.empty() && next.size() < std::min(kAtOnce, left)) {
+                next.push_back(~open_.top().second);
+                open_.pop();
+            }
+            left -= next.size();
+            split(next);
         }
+        writeNodes();
         return std::move(result_);
     }
 
   private:
-    void prepareFaces(Cell& root) {
+    void prepare(Cell& root) {
         const double half = 0.5 * double{result_.size} + margin_;
         for (std::size_t i = 0; i < source_.triangles.size(); ++i) {
             const glm::uvec3& t = source_.triangles[i];
-            const TrianglePlane plane = planeOf(source_.positions, t);
             faces_.push_back({{glm::dvec3(source_.positions[t.x]), glm::dvec3(source_.positions[t.y]),
                                glm::dvec3(source_.positions[t.z])},
-                              unit(plane.normal)});
+                              unit(planeOf(source_.positions, t).normal)});
             if (meets(faces_.back(), root.center, half)) {
                 root.faces.push_back(static_cast<std::uint32_t>(i));
             }
+        }
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            root.samples.push_back(static_cast<std::uint32_t>(i));
         }
     }
 
@@ -159,15 +190,19 @@ class TreeBuilder {
                    : std::nullopt;
     }
 
+    static double along(const glm::dvec3& normal, int axis) {
+        return (axis < 3 ? 1.0 : kDiagonal) * alongMaterialAxis(normal, axis);
+    }
+
+    /// Sides that all of these faces are apart on.
     [[nodiscard]] std::optional<MaterialSides> sidesOf(const std::vector<std::uint32_t>& faces) const {
         for (int axis = 0; axis < kMaterialAxes && source_.sides; ++axis) {
             std::array<int, 2> ids{-1, -1};  // of those that face along the axis, and against it
             const bool apart = std::all_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
-                const double along =
-                    (axis < 3 ? 1.0 : kDiagonal) * alongMaterialAxis(faces_[face].normal, axis);
-                int& id = ids[along < 0.0 ? 1 : 0];
+                const double share = along(faces_[face].normal, axis);
+                int& id = ids[share < 0.0 ? 1 : 0];
                 id = id < 0 ? source_.ids[face] : id;
-                return std::abs(along) >= kSideMin && id == source_.ids[face];
+                return std::abs(share) >= kSideMin && id == source_.ids[face];
             });
             if (apart && ids[0] >= 0 && ids[1] >= 0) {
                 return MaterialSides{static_cast<std::uint8_t>(axis), static_cast<std::uint8_t>(ids[0]),
@@ -189,80 +224,186 @@ class TreeBuilder {
         return id;
     }
 
-    [[nodiscard]] static glm::dvec3 middleOf(const Cell& cell, std::size_t octant, double quarter) {
-        return cell.center + quarter * glm::dvec3((octant & 1) != 0 ? 1.0 : -1.0,
-                                                  (octant & 2) != 0 ? 1.0 : -1.0,
-                                                  (octant & 4) != 0 ? 1.0 : -1.0);
+    /// The most frequent of counts, and how many there are of others. Of equals the first.
+    static std::pair<std::uint8_t, std::size_t> most(const std::vector<std::size_t>& counts) {
+        const auto found = std::max_element(counts.begin(), counts.end());
+        std::size_t all = 0;
+        for (const std::size_t count : counts) {
+            all += count;
+        }
+        return {static_cast<std::uint8_t>(found - counts.begin()), all - *found};
     }
 
-    [[nodiscard]] Octant examined(const Cell& cell, const glm::dvec3& middle, double half) const {
-        Octant octant;
+    /// \param otherwise  material without samples.
+    [[nodiscard]] Fit fitOf(const std::vector<std::uint32_t>& samples, std::uint8_t otherwise) const {
+        Fit best{std::nullopt, otherwise, 0};
+        if (samples.empty()) {
+            return best;
+        }
+        std::vector<std::size_t> counts(source_.list.size());
+        for (const std::uint32_t i : samples) {
+            ++counts[samples_[i].id];
+        }
+        std::tie(best.single, best.wrong) = most(counts);
+        for (int axis = 0; axis < kMaterialAxes && best.wrong > 0; ++axis) {
+            std::array<std::vector<std::size_t>, 2> sides{std::vector<std::size_t>(counts.size()),
+                                                          std::vector<std::size_t>(counts.size())};
+            for (const std::uint32_t i : samples) {
+                ++sides[along(samples_[i].normal, axis) < 0.0 ? 1 : 0][samples_[i].id];
+            }
+            const auto [towards, wrong_towards] = most(sides[0]);
+            const auto [against, wrong_against] = most(sides[1]);
+            if (wrong_towards + wrong_against < best.wrong) {
+                best.sides = MaterialSides{static_cast<std::uint8_t>(axis), towards, against};
+                best.wrong = wrong_towards + wrong_against;
+            }
+        }
+        return best;
+    }
+
+    [[nodiscard]] Cell octantOf(const Cell& cell, std::size_t number) const {
+        Cell octant;
+        octant.depth = cell.depth + 1;
+        const double half = std::ldexp(double{result_.size}, -octant.depth - 1);
+        for (int i = 0; i < 3; ++i) {
+            octant.center[i] = cell.center[i] + ((number >> i & 1U) != 0 ? half : -half);
+        }
         for (const std::uint32_t face : cell.faces) {
-            if (meets(faces_[face], middle, half + margin_)) {
+            if (meets(faces_[face], octant.center, half + margin_)) {
                 octant.faces.push_back(face);
             }
         }
-        octant.single = singleOf(octant.faces);
-        if (!octant.single) {
-            octant.sides = octant.faces.empty() ? std::nullopt : sidesOf(octant.faces);
-            octant.nearest = nearest(octant.faces.empty() ? cell.faces : octant.faces, middle);
+        for (const std::uint32_t i : cell.samples) {
+            const glm::dvec3 off = glm::abs(samples_[i].point - octant.center);
+            if (std::max({off.x, off.y, off.z}) <= half) {
+                octant.samples.push_back(i);
+            }
+        }
+        const std::optional<std::uint8_t> single = singleOf(octant.faces);
+        const std::optional<MaterialSides> sides =
+            single || octant.faces.empty() ? std::nullopt : sidesOf(octant.faces);
+        octant.final = single || sides || octant.faces.empty() || octant.depth >= levels_;
+        if (single || sides) {
+            octant.fit = {sides, single.value_or(0), 0};
+        } else {
+            octant.fit = fitOf(octant.samples,
+                               nearest(octant.faces.empty() ? cell.faces : octant.faces, octant.center));
         }
         return octant;
     }
 
-    /// The leaf that stands for a pair of sides; nullopt: there are too many pairs.
-    [[nodiscard]] std::optional<std::uint8_t> leafOf(const MaterialSides& sides) {
-        const auto found = std::find(result_.sides.begin(), result_.sides.end(), sides);
+    void split(const std::vector<std::uint32_t>& cells) {
+        std::vector<Cell> octants(8 * cells.size());
+        tbb::parallel_for(std::size_t{0}, octants.size(),
+                          [&](std::size_t i) { octants[i] = octantOf(cells_[cells[i / 8]], i % 8); });
+        for (std::size_t i = 0; i < octants.size(); ++i) {
+            const auto number = static_cast<std::uint32_t>(cells_.size());
+            cells_[cells[i / 8]].octants[i % 8] = number;
+            if (!octants[i].final) {
+                open_.push({octants[i].fit.wrong, ~number});  // of equals the first
+            } else {
+                octants[i].faces = {};
+                octants[i].samples = {};
+            }
+            cells_.push_back(std::move(octants[i]));
+        }
+        for (const std::uint32_t cell : cells) {
+            cells_[cell].faces = {};
+            cells_[cell].samples = {};
+        }
+    }
+
+    /// The byte of a leaf. Beyond so many pairs of sides, the material of the one that most surface faces.
+    [[nodiscard]] std::uint8_t leafOf(const Fit& fit) {
+        if (!fit.sides) {
+            return fit.single;
+        }
+        const auto found = std::find(result_.sides.begin(), result_.sides.end(), *fit.sides);
         const auto index = static_cast<std::size_t>(found - result_.sides.begin());
         if (found == result_.sides.end()) {
             if (result_.list.size() + result_.sides.size() > kMaterialSidesMax) {
-                return std::nullopt;
+                return fit.sides->towards;
             }
-            result_.sides.push_back(sides);
+            result_.sides.push_back(*fit.sides);
         }
         return static_cast<std::uint8_t>(result_.list.size() + index);
     }
 
-    /// \param depth  of their octants. \return the octants that are to be split.
-    std::vector<Cell> split(const std::vector<Cell>& cells, int depth) {
-        const double half = std::ldexp(double{result_.size}, -depth - 1);
-        std::vector<Octant> octants(8 * cells.size());
-        tbb::parallel_for(std::size_t{0}, octants.size(), [&](std::size_t i) {
-            octants[i] = examined(cells[i / 8], middleOf(cells[i / 8], i % 8, half), half);
-        });
-        std::vector<Cell> next;
-        for (std::size_t i = 0; i < octants.size(); ++i) {
-            Octant& octant = octants[i];
-            const Cell& cell = cells[i / 8];
-            std::optional<std::uint8_t> leaf = octant.single;
-            if (!leaf && octant.sides) {
-                leaf = leafOf(*octant.sides);
+    /// Level by level.
+    void writeNodes() {
+        std::vector<std::uint32_t> order{0};
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            MaterialNode node;
+            for (std::size_t k = 0; k < 8; ++k) {
+                const std::uint32_t number = cells_[order[i]].octants[k];
+                if (cells_[number].octants[0] == 0) {
+                    node.leaves[k] = leafOf(cells_[number].fit);
+                    continue;
+                }
+                node.head |= 1U << k |
+                             ((node.head & 0xFFU) == 0 ? static_cast<std::uint32_t>(order.size()) << 8U : 0U);
+                order.push_back(number);
             }
-            if (!leaf && (octant.faces.empty() || depth >= levels_ || result_.nodes.size() >= most_)) {
-                leaf = octant.nearest;
-            }
-            if (leaf) {
-                result_.nodes[cell.node].leaves[i % 8] = *leaf;
-                continue;
-            }
-            MaterialNode& node = result_.nodes[cell.node];
-            const std::size_t made = result_.nodes.size();
-            node.head |=
-                1U << (i % 8) | ((node.head & 0xFFU) == 0 ? static_cast<std::uint32_t>(made) << 8U : 0U);
-            next.push_back({made, middleOf(cell, i % 8, half), std::move(octant.faces)});
-            result_.nodes.emplace_back();
+            result_.nodes.push_back(node);
         }
-        return next;
     }
 
     const MaterialSource& source_;
     const MaterialTreeOptions& options_;
+    std::vector<Sample> samples_;
     Materials result_;
     std::vector<Face> faces_;
+    std::vector<Cell> cells_;
+    std::priority_queue<std::pair<std::size_t, std::uint32_t>> open_;  // wrong samples, and ~ the cell
     double margin_ = 0.0;
     int levels_ = 1;
-    std::size_t most_ = 1;
 };
+
+/// The points of the source, spread evenly over its area, where the collider has its surface: what lies within solids is in no
+/// contact's way.
+std::vector<Sample> samplesOf(const Collider& collider, const MaterialSource& source, double texel) {
+    std::vector<double> sums;
+    double area = 0.0;
+    for (const glm::uvec3& t : source.triangles) {
+        area += length(planeOf(source.positions, t).normal);
+        sums.push_back(area);
+    }
+    std::vector<std::optional<Sample>> all(kSamples);
+    tbb::parallel_for(std::size_t{0}, kSamples, [&](std::size_t k) {
+        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(kSamples) * area;
+        const auto i =
+            static_cast<std::size_t>(std::lower_bound(sums.begin(), sums.end(), at) - sums.begin());
+        const glm::uvec3& t = source.triangles[std::min(i, sums.size() - 1)];
+        // Roberts' sequence R2, folded into the triangle.
+        double u = std::fmod(static_cast<double>(k) * 0.7548776662466927, 1.0);
+        double v = std::fmod(static_cast<double>(k) * 0.5698402909980532, 1.0);
+        if (u + v > 1.0) {
+            u = 1.0 - u;
+            v = 1.0 - v;
+        }
+        const glm::dvec3 a(source.positions[t.x]);
+        const glm::dvec3 point =
+            a + u * (glm::dvec3(source.positions[t.y]) - a) + v * (glm::dvec3(source.positions[t.z]) - a);
+        const glm::dvec3 normal = unit(planeOf(source.positions, t).normal);
+        int inside = 0;
+        for (int step = -2; step <= 2; ++step) {
+            inside += evaluate(collider, glm::vec3(point + step * texel * normal)).inside() ? 1 : 0;
+        }
+        if (inside > 0 && inside < 5) {
+            all[k] = Sample{point, normal, source.ids[std::min(i, sums.size() - 1)]};
+        }
+    });
+    std::vector<Sample> samples;
+    for (const std::optional<Sample>& one : all) {
+        if (one) {
+            samples.push_back(*one);
+            if (!source.sides) {  // a sheet shows both of its sides
+                samples.push_back({one->point, -one->normal, one->id});
+            }
+        }
+    }
+    return samples;
+}
 
 double areaOf(const TriangleMesh& mesh, std::uint32_t triangle) {
     return 0.5 * length(planeOf(mesh, triangle).normal);
@@ -337,10 +478,6 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
     return source;
 }
 
-Materials makeMaterials(const MaterialSource& source, const MaterialTreeOptions& options) {
-    return TreeBuilder(source, options).build();
-}
-
 Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     if (source == nullptr) {
         return {};
@@ -351,7 +488,7 @@ Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     options.most =
         std::max(static_cast<std::size_t>(kMaterialsShare * static_cast<double>(collider.gpuBytes())),
                  kMaterialsBytesMin);
-    return makeMaterials(*source, options);
+    return TreeBuilder(*source, options, samplesOf(collider, *source, options.texel)).build();
 }
 
 }  // namespace relief

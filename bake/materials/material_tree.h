@@ -37,16 +37,8 @@ struct MaterialSource {
 /// Errors, naming the mesh: kLimit (more than kMaterialsMax), kInvalidInput (one name with two responses).
 [[nodiscard]] Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single);
 
-struct MaterialTreeOptions {
-    Bounds box;            ///< of the collider
-    double texel = 0.0;    ///< the smallest of its maps, object units: no cell is smaller than half of it
-    std::size_t most = 0;  ///< bytes; once they are spent, cells stay unsplit
-};
-
-/// The same for any number of threads. \param source  not empty.
-[[nodiscard]] Materials makeMaterials(const MaterialSource& source, const MaterialTreeOptions& options);
-
-/// The materials of a collider, within kMaterialsShare of its maps or kMaterialsBytesMin; none of a null source.
+/// The materials of a collider, within kMaterialsShare of its maps or kMaterialsBytesMin; none of a null source. Where these bytes do
+/// not do, as little of its surface as they allow is wrong. The same for any number of threads.
 [[nodiscard]] Materials materialsFor(const Collider& collider, const MaterialSource* source);
 
 }  // namespace relief

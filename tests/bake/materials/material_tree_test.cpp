@@ -5,13 +5,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
+#include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake/director/director.h"
+#include "bake/import/mesh_import.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/patch_tree.h"
 #include "tests/bake/meshes.h"
@@ -151,25 +157,45 @@ struct Count {
     int wrong = 0;
 };
 
-Count countContacts(const Collider& collider, const Scene& scene) {
-    std::mt19937 random(seedFrom(7));
-    const auto unit = [&] { return static_cast<float>(static_cast<double>(random()) / 4294967296.0); };
-    std::vector<double> sums;
-    double area = 0.0;
-    for (std::uint32_t i = 0; i < scene.mesh.triangles.size(); ++i) {
-        area += length(planeOf(scene.mesh, i).normal);
-        sums.push_back(area);
+/// Points of a mesh, spread evenly over its area.
+class SurfacePoints {
+  public:
+    SurfacePoints(const TriangleMesh& mesh, std::uint32_t seed) : mesh_(mesh), random_(seedFrom(seed)) {
+        double area = 0.0;
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            area += length(planeOf(mesh, i).normal);
+            sums_.push_back(area);
+        }
     }
-    Count count;
-    for (int k = 0; k < 20'000; ++k) {
-        const auto found = std::lower_bound(sums.begin(), sums.end(), area * static_cast<double>(unit()));
+    struct Point {
+        glm::vec3 at;
+        glm::vec3 normal;
+    };
+    Point next() {
+        const auto found =
+            std::lower_bound(sums_.begin(), sums_.end(), sums_.back() * static_cast<double>(unit()));
         const auto i = static_cast<std::uint32_t>(
-            std::min<std::ptrdiff_t>(found - sums.begin(), static_cast<std::ptrdiff_t>(sums.size()) - 1));
-        const auto [a, b, c] = cornersOf(scene.mesh, i);
+            std::min<std::ptrdiff_t>(found - sums_.begin(), static_cast<std::ptrdiff_t>(sums_.size()) - 1));
+        const auto [a, b, c] = cornersOf(mesh_, i);
         const float root = std::sqrt(unit());
         const float share = unit();
-        const glm::vec3 at = (1.0F - root) * a + root * (1.0F - share) * b + root * share * c;
-        const glm::vec3 n(unitNormal(scene.mesh, i));
+        return {(1.0F - root) * a + root * (1.0F - share) * b + root * share * c,
+                glm::vec3(unitNormal(mesh_, i))};
+    }
+
+  private:
+    float unit() { return static_cast<float>(static_cast<double>(random_()) / 4294967296.0); }
+
+    const TriangleMesh& mesh_;
+    std::mt19937 random_;
+    std::vector<double> sums_;
+};
+
+Count countContacts(const Collider& collider, const Scene& scene) {
+    SurfacePoints points(scene.mesh, 7);
+    Count count;
+    for (int k = 0; k < 20'000; ++k) {
+        const auto [at, n] = points.next();
         const float texel = texelAt(collider, at);
         if (scene.to_border(at, n) <= texel) {
             continue;
@@ -252,6 +278,91 @@ TEST(MaterialTree, SquaresOfACheckerboardAreRightInEveryFormat) {
 
 TEST(MaterialTree, BothSidesOfAThinBoardAreRightInEveryFormat) {
     expectRight(board(), "board");
+}
+
+/// The material of the nearest triangle, and how far the nearest of another one is.
+struct Nearest {
+    std::string material;
+    double to_other = 0.0;
+};
+
+Nearest nearestOf(const TriangleMesh& mesh, const glm::vec3& p) {
+    std::map<std::string, double> squares;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto [a, b, c] = cornersOf(mesh, i);
+        const glm::dvec3 off = closestOnTriangle(p, a, b, c) - glm::dvec3(p);
+        const std::string& name = mesh.surface_names[mesh.labels[i]].material;
+        const auto [found, added] = squares.try_emplace(name, dot(off, off));
+        found->second = std::min(found->second, dot(off, off));
+    }
+    Nearest nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& [name, square] : squares) {
+        if (square < least) {
+            least = square;
+            nearest.material = name;
+        }
+    }
+    nearest.to_other = std::numeric_limits<double>::infinity();
+    for (const auto& [name, square] : squares) {
+        nearest.to_other =
+            name == nearest.material ? nearest.to_other : std::min(nearest.to_other, std::sqrt(square));
+    }
+    return nearest;
+}
+
+// Contacts are where rays towards points of the surface first enter the collider. With RELIEF_MESHES=A.obj:B.obj in the
+// environment of these files, too.
+TEST(MaterialTree, MeshesAsPeopleMakeThemAreRight) {
+    std::vector<std::string> files{"/usr/share/assimp/models/OBJ/spider.obj"};
+    if (const char* const more = std::getenv("RELIEF_MESHES"); more != nullptr) {
+        for (const std::string_view file : split(more, ':')) {
+            files.emplace_back(file);
+        }
+    }
+    for (const std::string& file : files) {
+        const Result<TriangleMesh> mesh = importMeshInWorker(file);
+        ASSERT_TRUE(mesh) << mesh.error().message;
+        for (const Format& format : {Format{"patches of 1 MB", {}}, formats()[2]}) {
+            BakeRequest request;
+            request.map = format.maps;
+            request.no_check = true;
+            const Result<BakeResult> result = bake(request, {}, *mesh);
+            ASSERT_TRUE(result) << result.error().message;
+            const Collider& collider = result->baked.collider;
+            SurfacePoints points(*mesh, 3);
+            Count count;
+            for (int k = 0; k < 4000; ++k) {
+                const auto [at, n] = points.next();
+                const float texel = texelAt(collider, at);
+                const std::optional<glm::vec3> contact = contactAlong(collider, at, n, 1.5F * texel);
+                if (!contact) {
+                    continue;
+                }
+                const Nearest nearest = nearestOf(*mesh, *contact);
+                if (nearest.to_other <= double{texel}) {
+                    continue;
+                }
+                ++count.contacts;
+                const FieldSample field = evaluate(collider, *contact - 1e-3F * texel * n);
+                const std::size_t material =
+                    materialAt(collider.materials, *contact, field.map >= 0 ? field.normal : n);
+                count.wrong += collider.materials.list[material].name != nearest.material ? 1 : 0;
+            }
+            std::printf("%s, %s: %d of %d contacts wrong; %zu materials, %.2f %% of %llu bytes\n",
+                        mesh->name.c_str(), format.name, count.wrong, count.contacts,
+                        collider.materials.list.size(),
+                        100.0 * static_cast<double>(collider.materials.bytes()) /
+                            static_cast<double>(collider.gpuBytes()),
+                        static_cast<unsigned long long>(collider.gpuBytes()));
+            EXPECT_GT(count.contacts, 400) << file << ", " << format.name;
+            EXPECT_LE(count.wrong * 100, count.contacts) << file << ", " << format.name;
+            EXPECT_LE(static_cast<double>(collider.materials.bytes()),
+                      std::max(kMaterialsShare * static_cast<double>(collider.gpuBytes()),
+                               double{kMaterialsBytesMin}))
+                << file << ", " << format.name;
+        }
+    }
 }
 
 TEST(MaterialTree, IsTheSameForAnyNumberOfThreadsAndSurvivesTheContainer) {
