@@ -26,6 +26,8 @@ constexpr double kSideMin = 0.5;
 constexpr double kDiagonal = 0.70710678118654752;
 /// Of the surface, to find where leaves are wrong.
 constexpr std::size_t kSamples = 200'000;
+/// Faces that lie in one plane stay in one another's cells down to the smallest: beyond so many in all, cells stay unsplit.
+constexpr std::size_t kFacesHeldMax = std::size_t{1} << 26;
 /// Bytes of a material in the container, beside its name.
 constexpr std::size_t kMaterialBytes = 40;
 
@@ -128,6 +130,7 @@ class TreeBuilder {
             keepOnly(only.value_or(0));
             return std::move(result_);
         }
+        held_ = root.faces.size();
         cells_.push_back(std::move(root));
         split({0});
         std::size_t left = std::min(kMaterialNodesMax, mostNodes()) - 1;
@@ -151,11 +154,20 @@ class TreeBuilder {
         const double half = 0.5 * double{result_.size} + margin_;
         for (std::size_t i = 0; i < source_.triangles.size(); ++i) {
             const glm::uvec3& t = source_.triangles[i];
-            faces_.push_back({{glm::dvec3(source_.positions[t.x]), glm::dvec3(source_.positions[t.y]),
-                               glm::dvec3(source_.positions[t.z])},
-                              unit(planeOf(source_.positions, t).normal)});
-            if (meets(faces_.back(), root.center, half)) {
-                root.faces.push_back(static_cast<std::uint32_t>(i));
+            // A tile's tree needs the faces in the tile alone.
+            const glm::vec3 low = glm::min(glm::min(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
+            const glm::vec3 high = glm::max(glm::max(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
+            if (glm::any(glm::greaterThan(glm::dvec3(low), root.center + half)) ||
+                glm::any(glm::lessThan(glm::dvec3(high), root.center - half))) {
+                continue;
+            }
+            const Face face{{glm::dvec3(source_.positions[t.x]), glm::dvec3(source_.positions[t.y]),
+                             glm::dvec3(source_.positions[t.z])},
+                            unit(planeOf(source_.positions, t).normal)};
+            if (meets(face, root.center, half)) {
+                root.faces.push_back(static_cast<std::uint32_t>(faces_.size()));
+                faces_.push_back(face);
+                ids_.push_back(source_.ids[i]);
             }
         }
         for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -183,9 +195,9 @@ class TreeBuilder {
         if (faces.empty()) {
             return std::nullopt;
         }
-        const std::uint8_t first = source_.ids[faces.front()];
+        const std::uint8_t first = ids_[faces.front()];
         return std::all_of(faces.begin(), faces.end(),
-                           [&](std::uint32_t face) { return source_.ids[face] == first; })
+                           [&](std::uint32_t face) { return ids_[face] == first; })
                    ? std::optional(first)
                    : std::nullopt;
     }
@@ -201,8 +213,8 @@ class TreeBuilder {
             const bool apart = std::all_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
                 const double share = along(faces_[face].normal, axis);
                 int& id = ids[share < 0.0 ? 1 : 0];
-                id = id < 0 ? source_.ids[face] : id;
-                return std::abs(share) >= kSideMin && id == source_.ids[face];
+                id = id < 0 ? ids_[face] : id;
+                return std::abs(share) >= kSideMin && id == ids_[face];
             });
             if (apart && ids[0] >= 0 && ids[1] >= 0) {
                 return MaterialSides{static_cast<std::uint8_t>(axis), static_cast<std::uint8_t>(ids[0]),
@@ -218,7 +230,7 @@ class TreeBuilder {
         for (const std::uint32_t face : faces) {
             if (const double square = faces_[face].squareTo(p); square < least) {
                 least = square;
-                id = source_.ids[face];
+                id = ids_[face];
             }
         }
         return id;
@@ -299,15 +311,18 @@ class TreeBuilder {
         for (std::size_t i = 0; i < octants.size(); ++i) {
             const auto number = static_cast<std::uint32_t>(cells_.size());
             cells_[cells[i / 8]].octants[i % 8] = number;
-            if (!octants[i].final) {
+            held_ += octants[i].faces.size();
+            if (!octants[i].final && held_ <= kFacesHeldMax) {
                 open_.push({octants[i].fit.wrong, ~number});  // of equals the first
             } else {
+                held_ -= octants[i].faces.size();
                 octants[i].faces = {};
                 octants[i].samples = {};
             }
             cells_.push_back(std::move(octants[i]));
         }
         for (const std::uint32_t cell : cells) {
+            held_ -= std::min(held_, cells_[cell].faces.size());
             cells_[cell].faces = {};
             cells_[cell].samples = {};
         }
@@ -352,7 +367,9 @@ class TreeBuilder {
     const MaterialTreeOptions& options_;
     std::vector<Sample> samples_;
     Materials result_;
-    std::vector<Face> faces_;
+    std::vector<Face> faces_;        // that meet the root
+    std::vector<std::uint8_t> ids_;  // as many
+    std::size_t held_ = 0;           // faces of the cells that may yet be split
     std::vector<Cell> cells_;
     std::priority_queue<std::pair<std::size_t, std::uint32_t>> open_;  // wrong samples, and ~ the cell
     double margin_ = 0.0;

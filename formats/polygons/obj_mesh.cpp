@@ -17,6 +17,7 @@
 namespace relief {
 namespace {
 
+constexpr std::size_t kNameMax = 1024;  // bytes
 constexpr std::array<std::string_view, 6> kFreeForms = {"curv", "surf", "bzp", "bsp", "cdc", "cdp"};
 
 class ObjReader {
@@ -53,13 +54,14 @@ class ObjReader {
         if (word == "l" || word == "p") {
             return readOther(word == "l");
         }
-        if (word == "g") {
-            begin(text_.restOfLine());
-            group_ = name_;
-        } else if (word == "o") {
-            begin(text_.word());
+        if (word == "g" || word == "o") {
+            const std::string_view name = word == "g" ? text_.restOfLine() : text_.word();
+            RELIEF_TRY(checkName(name));
+            begin(name);
+            group_ = word == "g" ? name_ : group_;
         } else if (word == "usemtl") {
             if (const std::string_view name = text_.restOfLine(); !name.empty()) {
+                RELIEF_TRY(checkName(name));
                 material_ = name;
                 by_material_ = by_material_ || has_faces_;
                 renamed_ = true;
@@ -70,6 +72,14 @@ class ObjReader {
             ++mesh_.others.free_forms;
         }
         return {};
+    }
+
+    /// Names are kept for each change of group or material.
+    [[nodiscard]] Result<void> checkName(std::string_view name) const {
+        return name.size() <= kNameMax
+                   ? Result<void>()
+                   : wrongLine(text_.line(), "a name of " + std::to_string(name.size()) + " bytes is longer than " +
+                                                 std::to_string(kNameMax) + "; shorten it");
     }
 
     void begin(std::string_view name) {

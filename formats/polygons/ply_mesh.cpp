@@ -126,9 +126,9 @@ class PlyImport {
         const PlyColumns columns(element, kVertexColumns);
         const bool colored = colors_ == PolygonColors::kRead && columns.count(3) == 1 &&
                              columns.count(4) == 1 && columns.count(5) == 1;
-        const double scale = colored ? colorScale(element) : 0.0;
+        const std::array<double, 4> scales = colorScales(element);
         std::array<double, 7> values{};
-        values[6] = scale == 1.0 ? 255.0 : 1.0;
+        values[6] = columns.count(6) == 1 ? 0.0 : 255.0 / scales[3];
         for (std::uint64_t i = 0; i < element.count; ++i) {
             RELIEF_TRY(columns.read(numbers, values));
             mesh_.positions.emplace_back(values[0], values[1], values[2]);
@@ -136,7 +136,7 @@ class PlyImport {
                 auto& color = mesh_.colors.emplace_back();
                 for (std::size_t k = 0; k < 4; ++k) {
                     color[k] =
-                        static_cast<std::uint8_t>(std::lround(std::clamp(scale * values[3 + k], 0.0, 255.0)));
+                        static_cast<std::uint8_t>(std::lround(std::clamp(scales[k] * values[3 + k], 0.0, 255.0)));
                 }
             }
             RELIEF_TRY(endLine(element, i, numbers));
@@ -144,11 +144,19 @@ class PlyImport {
         return {};
     }
 
-    /// From numbers of the file to 0…255.
-    static double colorScale(const PlyElement& element) {
-        const auto red = std::find_if(element.properties.begin(), element.properties.end(),
-                                      [](const PlyProperty& property) { return property.name == "red"; });
-        return red->type == PlyType::kFloat32 || red->type == PlyType::kFloat64 ? 255.0 : 1.0;
+    /// Of red, green, blue and alpha: from numbers of the file to 0…255.
+    static std::array<double, 4> colorScales(const PlyElement& element) {
+        std::array<double, 4> scales{1.0, 1.0, 1.0, 1.0};
+        for (const PlyProperty& property : element.properties) {
+            const auto column = std::find(kVertexColumns.begin() + 3, kVertexColumns.end(), property.name);
+            if (column == kVertexColumns.end() || property.isList()) {
+                continue;
+            }
+            const bool real = property.type == PlyType::kFloat32 || property.type == PlyType::kFloat64;
+            const bool wide = property.type == PlyType::kUint16;
+            scales[static_cast<std::size_t>(column - kVertexColumns.begin()) - 3] = real ? 255.0 : wide ? 255.0 / 65535.0 : 1.0;
+        }
+        return scales;
     }
 
     Result<void> readFace(const PlyProperty& property, std::uint64_t index, PlyNumbers& numbers) {

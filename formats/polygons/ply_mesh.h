@@ -13,7 +13,7 @@ namespace relief {
 /// `vertex_index`) of the elements `face` and `tristrips`. In a strip, three indices in a row are a triangle, every
 /// other one wound the other way; -1 ends it and begins the next. Elements of other names are passed over, with a
 /// warning where they look like faces.
-/// Colours are red, green and blue of vertices: integers 0…255, or floats 0…1.
+/// Colours are red, green and blue of vertices: bytes, integers of 16 bits, or floats 0…1.
 /// \return at least one polygon.
 /// Errors, naming the line of a text but not the file: kInvalidInput (no PLY, cut off, a vertex that is not there, no faces), kLimit.
 [[nodiscard]] Result<PolygonMesh> readPly(std::span<const std::byte> bytes,

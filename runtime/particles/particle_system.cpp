@@ -277,7 +277,7 @@ bool ParticleSystem::requestEvents(std::uint64_t tag) {
     }
     const PassState state;
     return events_->request({event_velocity_, event_surface_, position_[1 - current_], birth_, width_,
-                             stepped_extent_, types_, tag, steps_, step_begin_, time_, materialCount()});
+                             stepped_extent_, types_, tag, steps_, step_begin_, time_, stepped_materials_});
 }
 
 std::optional<StepEvents> ParticleSystem::pollEvents() {
@@ -398,6 +398,7 @@ void ParticleSystem::runBirths(float dt) {
 void ParticleSystem::runStep(float dt, float now) {
     const std::uint32_t extent = allocator_.extent();
     stepped_extent_ = extent;
+    stepped_materials_ = materialCount();
     if (extent == 0) {
         return;
     }

@@ -2,7 +2,7 @@
 // long to follow rays through. Shadows come from a depth map towards the sun, what rain and snow reach from one towards the
 // zenith, and the shade of corners from the picture's own depths.
 //
-//     bytes on the GPU = 28 · vertices + 4 · corners + 24 · width · height + 144 MB
+//     bytes on the GPU = 28 · vertices + 4 · corners + 16 · width · height + 144 MiB
 #pragma once
 
 #include <cstdint>

@@ -35,9 +35,15 @@ Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard) {
     return guard.writes(options.events, "--events");
 }
 
-Result<void> checkFrames(const PlayerOptions& options, const Scene& scene, FileGuard& guard) {
+Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded, FileGuard& guard) {
+    const Scene& scene = loaded.scene;
     for (const fs::path& file : filesOf(scene)) {
         RELIEF_TRY(guard.reads(file));
+    }
+    if (!options.frames.empty() && !scene.render.meshes.empty()) {
+        for (const fs::path& file : RELIEF_TRY(loadDrawnMeshes(loaded)).files) {
+            RELIEF_TRY(guard.reads(file));
+        }
     }
     const std::uint32_t count = frameCount(scene);
     if (!options.frames.empty()) {

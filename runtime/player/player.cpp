@@ -139,7 +139,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     RELIEF_TRY(checkOutputs(options, guard));
     const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     std::vector<std::string> warnings = sceneWarnings(loaded);
-    RELIEF_TRY(checkFrames(options, loaded.scene, guard));
+    RELIEF_TRY(checkFrames(options, loaded, guard));
     const auto context = RELIEF_TRY(makeContext(options));
     auto simulation =
         RELIEF_TRY(Simulation::create(loaded, {.path = options.path, .watchdog = options.watchdog}));

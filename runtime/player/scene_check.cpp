@@ -7,6 +7,7 @@
 #include "formats/container.h"
 #include "runtime/picture/frame.h"
 #include "runtime/player/scene_warnings.h"
+#include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"
 
 namespace relief {
@@ -66,6 +67,11 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
          {std::pair(loaded.scene.render.atlas, "atlas"), {loaded.scene.render.mesh, "mesh"}}) {
         if (!path.empty()) {
             report.files.push_back(checkedFile(path, kind));
+        }
+    }
+    if (!loaded.scene.render.meshes.empty()) {
+        for (const fs::path& file : RELIEF_TRY(loadDrawnMeshes(loaded)).files) {
+            report.files.push_back(checkedFile(file, "mesh"));
         }
     }
     report.steps = loaded.scene.time.steps;

@@ -38,9 +38,9 @@ Result<void> ScenePicture::makeCollider(const ColliderView& view) {
 }
 
 Result<void> ScenePicture::makeMeshes() {
-    scene_meshes_ = RELIEF_TRY(loadSceneMeshes(*loaded_));
-    meshes_ = RELIEF_TRY(MeshRenderer::create(scene_meshes_.meshes));
-    for (const SceneMesh& mesh : scene_meshes_.places) {
+    drawn_ = RELIEF_TRY(loadDrawnMeshes(*loaded_));
+    meshes_ = RELIEF_TRY(MeshRenderer::create(drawn_.meshes));
+    for (const SceneMesh& mesh : drawn_.places) {
         if (mesh.motion == MeshMotion::kLive) {
             waves_.push_back({mesh.mesh, RELIEF_TRY(wobbleOf(*loaded_->live[mesh.collider]))});
         }
@@ -74,7 +74,7 @@ Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, doubl
         RELIEF_TRY(collider_->draw(camera, collider_style_, frame_.target()));
         return &collider_->depth();
     }
-    for (const SceneMesh& mesh : scene_meshes_.places) {
+    for (const SceneMesh& mesh : drawn_.places) {
         if (mesh.motion == MeshMotion::kPlayed) {
             const PlayedMesh& played = *loaded_->played[mesh.collider];
             RELIEF_TRY(meshes_->setPositions(mesh.mesh, posed(*played.mesh, played.poseAt(seconds))));
@@ -85,7 +85,7 @@ Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, doubl
         meshes_->setVertices(mesh, pass.buffer());
     }
     RELIEF_TRY(meshes_->draw(camera, meshStyle(loaded_->scene, seconds),
-                             meshPlaces(*loaded_, scene_meshes_, seconds), shadowBounds(*loaded_),
+                             meshPlaces(*loaded_, drawn_, seconds), shadowBounds(*loaded_),
                              frame_.target()));
     return &meshes_->depth();
 }

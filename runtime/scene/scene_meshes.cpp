@@ -82,11 +82,11 @@ PictureMesh animatedMesh(const PlayedMesh& played) {
 
 }  // namespace
 
-Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded) {
+Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     const std::string origin = scene.render.meshes_origin + ": render.meshes";
     const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
-    SceneMeshes out;
+    DrawnMeshes out;
     std::map<std::pair<fs::path, std::vector<float>>, std::uint32_t> known;  // by colour, too
     // Of a world's mesh that was cut into tiles the bodies of a node are one.
     std::map<std::tuple<std::string, std::uint32_t>, std::vector<Pose>> drawn;
@@ -133,7 +133,7 @@ Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded) {
     return out;
 }
 
-std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const SceneMeshes& meshes, double seconds) {
+std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes, double seconds) {
     std::vector<MeshPlace> places;
     for (const SceneMesh& mesh : meshes.places) {
         places.push_back({mesh.mesh, poseAt(loaded.scene.colliders[mesh.collider], seconds),

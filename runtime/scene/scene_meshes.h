@@ -18,12 +18,12 @@ enum class MeshMotion : std::uint8_t { kNone, kPlayed, kLive };
 
 /// One of them: of a world's mesh, which may be several colliders, it is drawn once.
 struct SceneMesh {
-    std::uint32_t mesh = 0;    ///< of SceneMeshes::meshes
+    std::uint32_t mesh = 0;    ///< of DrawnMeshes::meshes
     std::size_t collider = 0;  ///< of the scene, whose pose it has
     MeshMotion motion = MeshMotion::kNone;
 };
 
-struct SceneMeshes {
+struct DrawnMeshes {
     std::vector<PictureMesh> meshes;
     std::vector<std::filesystem::path> files;  ///< that were read, sorted
     std::vector<SceneMesh> places;
@@ -35,10 +35,10 @@ struct SceneMeshes {
 /// \param loaded  with render.meshes.
 /// Errors: kInvalidInput (no such file; a name that leaves the folder), and as loadPictureMesh() fails; messages begin with the
 /// place in the scene.
-[[nodiscard]] Result<SceneMeshes> loadSceneMeshes(const LoadedScene& loaded);
+[[nodiscard]] Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded);
 
 /// Where they are after so many seconds. Those that play a clip press the snow.
-[[nodiscard]] std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const SceneMeshes& meshes,
+[[nodiscard]] std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes,
                                                 double seconds);
 
 /// The style of their picture after so many seconds.

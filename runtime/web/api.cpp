@@ -290,6 +290,16 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
         return fail(ErrorCode::kUsage,
                     "of 'stream' only the radius changes as it plays; make a new system for the rest");
     }
+    if (wanted.materials != now.materials) {
+        return fail(ErrorCode::kUsage, "other materials need a new system; make one");
+    }
+    const std::span<const std::string> materials = player.simulation->textures().materialNames();
+    for (const SceneSpawn& spawn : wanted.spawns) {
+        if (!spawn.on_material.empty() && std::ranges::find(materials, spawn.on_material) == materials.end()) {
+            return fail(ErrorCode::kUsage,
+                        "spawn.material = '" + cleanUtf8(spawn.on_material) + "' is the name of no material of the colliders");
+        }
+    }
     std::optional<std::vector<Emitter>> made;
     if (emitters) {
         made = RELIEF_TRY(makeEmitters(wanted.emitters, player.loaded.meshes()));

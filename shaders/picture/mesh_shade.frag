@@ -137,12 +137,13 @@ void main() {
 
         float shelter = openShare(u_zenith_depth, u_zenith_clip, p + (0.03 * u_metre) * n, 0.25 * u_metre, 0.05 * u_metre, seed);
         vec2 on_map = 0.5 * (u_zenith_clip * vec4(p, 1.0)).xy + 0.5;
+        float on_it = all(greaterThanEqual(on_map, vec2(0.0))) && all(lessThan(on_map, vec2(1.0))) ? 1.0 : 0.0;
         float texel = 1.0 / float(textureSize(u_prints, 0).x);
         vec2 slope = vec2(0.0);
         float pressed = 0.0;
         for (int i = 0; i < 9; ++i) {
             vec2 off = vec2(float(i % 3 - 1), float(i / 3 - 1));
-            float there = textureLod(u_prints, on_map + 1.5 * texel * off, 0.0).r;
+            float there = on_it * textureLod(u_prints, on_map + 1.5 * texel * off, 0.0).r;
             pressed += there / 9.0;
             slope += (there / 6.0) * off;
         }

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class SceneMeshesTest : public testing::Test {
+class DrawnMeshesTest : public testing::Test {
   protected:
     void SetUp() override {
         for (const char* name : {"floor.obj", "door.ply", "own.obj"}) {
@@ -62,10 +62,10 @@ World namedWorld() {
     return world;
 }
 
-TEST_F(SceneMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
+TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
     const LoadedScene scene = loaded(
         namedWorld(), "world = \"world.json\"\n[[collider]]\nfile = \"own.relief\"\nposition = [0, 5, 0]\n");
-    const auto meshes = loadSceneMeshes(scene);
+    const auto meshes = loadDrawnMeshes(scene);
     ASSERT_TRUE(meshes) << meshes.error().message;
     EXPECT_EQ(meshes->meshes.size(), 3U);
     EXPECT_EQ(meshes->files, (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
@@ -79,30 +79,30 @@ TEST_F(SceneMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
     EXPECT_FALSE(places[2].moves);
 }
 
-TEST_F(SceneMeshesTest, TilesOfAMeshAreDrawnOnce) {
+TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
     World world = namedWorld();
     world.colliders.push_back(world.colliders[0]);  // another tile of the floor
     world.colliders.back().file = "floor-1.relief";
     WorldBody tile = world.bodies[0];
     tile.collider = static_cast<std::uint32_t>(world.colliders.size() - 1);
     world.bodies.push_back(tile);
-    EXPECT_EQ(loadSceneMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
+    EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
     world.bodies.back().position.x += 10.0F;  // elsewhere it is another body
-    EXPECT_EQ(loadSceneMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
+    EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
 }
 
-TEST_F(SceneMeshesTest, NamesThatAreNoFilesAreErrors) {
+TEST_F(DrawnMeshesTest, NamesThatAreNoFilesAreErrors) {
     for (const char* name : {"", ".", "..", "../door", "a/b", "a\\b"}) {
         World world = namedWorld();
         world.colliders[1].mesh = name;
-        const auto meshes = loadSceneMeshes(loaded(world, "world = \"world.json\"\n"));
+        const auto meshes = loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"));
         ASSERT_FALSE(meshes) << name;
         EXPECT_EQ(meshes.error().code, ErrorCode::kInvalidInput);
         EXPECT_NE(meshes.error().message.find("scene.toml:5:"), std::string::npos) << meshes.error().message;
     }
     World world = namedWorld();
     world.colliders[1].mesh = "window";
-    const auto meshes = loadSceneMeshes(loaded(world, "world = \"world.json\"\n"));
+    const auto meshes = loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"));
     ASSERT_FALSE(meshes);
     EXPECT_NE(meshes.error().message.find("'window.ply' or .obj for a collider; add it"), std::string::npos)
         << meshes.error().message;
