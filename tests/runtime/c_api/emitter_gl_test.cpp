@@ -1,0 +1,142 @@
+// Births on the surface of a character, through C.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/container.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/c_api/stage.h"
+
+namespace relief::c_api {
+namespace {
+
+class CApiEmitter : public testing::Test {
+  protected:
+    void TearDown() override { EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR)); }
+
+    Stage stage_;
+};
+
+// Sparks of a character that bends and goes aside: on its posed mesh, with the velocity of their place.
+TEST_F(CApiEmitter, SparksComeOffACharacter) {
+    const AnimatedMesh mesh = bendingTube(8, 6);  // the stage's
+    constexpr float kDt = 0.02F;
+    stage_.options.capacity = 4096;
+    stage_.options.gravity[1] = 0.0F;
+    relief_particles* particles = relief_particles_create(nullptr, &stage_.options);
+    relief_emitter_options& options = stage_.emitter_options;
+    options.rate = 0.0F;
+    options.burst = 1000;
+    options.inherit = 1.0F;
+    options.lifetime_min = options.lifetime_max = 100.0F;
+    options.type = 7;
+    options.seed = 3;
+    relief_emitter* emitter = relief_emitter_create(stage_.animation, "middle", "cloth", &options);
+    ASSERT_NE(emitter, nullptr) << relief_error();
+    const std::uint32_t body = 0;
+    const auto placeAt = [](double time) {
+        return relief_pose{{static_cast<float>(2.0 * time), 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
+    };
+    for (int step = 0; step <= 5; ++step) {
+        const double time = double{kDt} * step;
+        const relief_pose place = placeAt(time);
+        ASSERT_EQ(relief_textures_play(stage_.animated_textures, body, "bend", time), 0) << relief_error();
+        ASSERT_EQ(relief_textures_set_poses(stage_.animated_textures, &body, &place, 1), 0);
+    }
+    ASSERT_EQ(relief_particles_emit(particles, emitter, stage_.animated_textures, body, kDt), 1000)
+        << relief_error();
+    EXPECT_EQ(relief_particles_emit(particles, emitter, stage_.animated_textures, body, kDt), 0)
+        << "one burst";
+    ASSERT_EQ(relief_particles_step(particles, kDt), 0);
+    std::vector<relief_particle> sparks(1000);
+    ASSERT_EQ(relief_particles_read(particles, sparks.data(), sparks.size()), 1000);
+    const double now = 5.0 * double{kDt};
+    const double turn = std::acos(0.0) * now;  // of the upper half, about z at a height of 1
+    for (const relief_particle& spark : sparks) {
+        EXPECT_EQ(spark.type, 7U);
+        const glm::dvec3 velocity(spark.velocity[0], spark.velocity[1], spark.velocity[2]);
+        const glm::dvec3 place = glm::dvec3(spark.position[0], spark.position[1], spark.position[2]) -
+                                 double{kDt} * velocity - glm::dvec3(2.0 * now, 0.0, 0.0);
+        // Rings lie 1/3 apart; from that at 4/3 on the upper joint alone moves them.
+        const double up = -std::sin(turn) * place.x + std::cos(turn) * (place.y - 1.0);
+        EXPECT_GT(up, -1.0 / 3.0 - 0.05) << "a triangle of the group";
+        if (up < 0.34) {
+            continue;
+        }
+        const double side = std::cos(turn) * place.x + std::sin(turn) * (place.y - 1.0);
+        EXPECT_LE(std::hypot(side, place.z), 0.1 + 1e-5);
+        EXPECT_TRUE(std::hypot(side, place.z) >= 0.1 * std::cos(std::acos(-1.0) / 8) - 1e-5 ||
+                    std::abs(up - 1.0) < 1e-5)
+            << "on the tube or its lid";
+        // ω × r at the middle of the step that led here, and the body's own.
+        const double half = std::acos(0.0) * 0.5 * double{kDt};
+        const double speed = std::acos(0.0);
+        const glm::dvec3 arm(std::cos(half) * place.x + std::sin(half) * (place.y - 1.0),
+                             -std::sin(half) * place.x + std::cos(half) * (place.y - 1.0), 0.0);
+        EXPECT_LT(glm::length(velocity - glm::dvec3(2.0 - speed * arm.y, speed * arm.x, 0.0)), 2e-3);
+    }
+    // By rate: as many as are due, each from its own moment; at rest they have no velocity to take on.
+    options.burst = 0;
+    options.rate = 1000.0F;
+    relief_emitter* steady = relief_emitter_create(stage_.animation, nullptr, nullptr, &options);
+    ASSERT_EQ(relief_textures_set_poses(stage_.animated_textures, nullptr, nullptr, 0), 0);
+    EXPECT_EQ(relief_particles_emit(particles, steady, stage_.animated_textures, body, 0.1F), 100);
+    ASSERT_EQ(relief_particles_step(particles, kDt), 0);
+    sparks.resize(1100);
+    ASSERT_EQ(relief_particles_read(particles, sparks.data(), sparks.size()), 1100);
+    int still = 0;
+    for (const relief_particle& spark : sparks) {
+        still += spark.velocity[0] == 0.0F && spark.velocity[1] == 0.0F && spark.velocity[2] == 0.0F ? 1 : 0;
+    }
+    EXPECT_EQ(still, 100);
+    relief_emitter_free(steady);
+    relief_emitter_free(emitter);
+    relief_particles_free(particles);
+}
+
+TEST_F(CApiEmitter, MistakesOfEmittersAreNamed) {
+    relief_emitter_options& options = stage_.emitter_options;
+    const auto refused = [&](const char* group, const char* material, const std::string& words) {
+        EXPECT_EQ(relief_emitter_create(stage_.animation, group, material, &options), nullptr) << words;
+        EXPECT_NE(std::string(relief_error()).find("relief_emitter_create(): " + words), std::string::npos)
+            << relief_error();
+    };
+    refused("Head", nullptr,
+            "group: there is no joint or node with vertices of its own 'Head'; it has 'foot', 'middle'");
+    refused("", nullptr, "group: ");
+    refused(nullptr, "skin", "material: there is no material 'skin'; it has 'cloth'");
+    options.speed_min = 2.0F;
+    refused(nullptr, nullptr, "options->speed_min is above speed_max");
+    options.speed_min = 0.0F;
+    options.lifetime_max = 0.5F;
+    refused(nullptr, nullptr, "options->lifetime_min is above lifetime_max");
+    options.lifetime_max = 1.0F;
+    options.rate = 0.0F;
+    refused(nullptr, nullptr, "options->rate and options->burst are 0");
+    options.rate = 1.0F;
+
+    Collider other = loadCollider(stage_.good<const char*>("path")).value();
+    other.animation = writeAnimatedMesh(bendingTube(9, 6));
+    const std::vector<std::byte> bytes = writeContainer(other).value();
+    relief_collider* collider = relief_collider_read(bytes.data(), bytes.size());
+    relief_animation* animation = relief_animation_create(collider);
+    relief_emitter* emitter = relief_emitter_create(animation, nullptr, nullptr, &options);
+    ASSERT_NE(emitter, nullptr) << relief_error();
+    EXPECT_EQ(relief_particles_emit(stage_.particles, emitter, stage_.animated_textures, 0, 1.0F), -1);
+    EXPECT_NE(std::string(relief_error()).find("emitter is of another animation"), std::string::npos);
+    EXPECT_EQ(relief_particles_emit(stage_.particles, stage_.emitter, stage_.world_textures, 0, 1.0F), -1);
+    EXPECT_NE(std::string(relief_error()).find("body is 0, which does not move by clips"), std::string::npos);
+    // Of a step of next to no length nothing is wrong, and none of it infinite.
+    EXPECT_GE(relief_particles_emit(stage_.particles, stage_.emitter, stage_.animated_textures, 0, 1e-40F), 0)
+        << relief_error();
+    relief_emitter_free(emitter);
+    relief_animation_free(animation);
+    relief_collider_free(collider);
+}
+
+}  // namespace
+}  // namespace relief::c_api
