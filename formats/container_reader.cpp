@@ -110,10 +110,12 @@ Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, 
 Result<Materials> readMaterials(const fb::Materials& stored) {
     Materials materials;
     const auto is_long = [](const fb::Material* one) { return one->name()->size() > kMaterialNameMax; };
-    if (stored.list()->size() > kMaterialsMax || std::any_of(stored.list()->begin(), stored.list()->end(), is_long) ||
+    if (stored.list()->size() > kMaterialsMax ||
+        std::any_of(stored.list()->begin(), stored.list()->end(), is_long) ||
         (stored.sides() != nullptr && stored.sides()->size() > kMaterialSidesMax)) {
-        return invalidInput("its materials are more than " + std::to_string(kMaterialsMax) + ", or have names of more than " +
-                            std::to_string(kMaterialNameMax) + " bytes; bake the mesh again");
+        return invalidInput("its materials are more than " + std::to_string(kMaterialsMax) +
+                            ", or have names of more than " + std::to_string(kMaterialNameMax) +
+                            " bytes; bake the mesh again");
     }
     for (const fb::Material* one : *stored.list()) {
         materials.list.push_back({one->name()->str(), one->restitution(), one->friction(),
@@ -300,12 +302,13 @@ bool ContainerReader::readMetadata() {
                            readRecordedOptions(from.options_text()->string_view())};
     if (from.options() != nullptr) {
         // Many options may share one text.
-        std::uint64_t bytes = 0;
+        std::uint64_t text_bytes = 0;
         for (const fb::Option* option : *from.options()) {
-            bytes += std::uint64_t{option->name()->size()} + option->value()->size();
+            text_bytes += std::uint64_t{option->name()->size()} + option->value()->size();
         }
-        if (bytes > kContainerMetadataMax) {
-            add(IssueCode::kMetadataTable, "the options take " + std::to_string(bytes) + " bytes; bake the mesh again",
+        if (text_bytes > kContainerMetadataMax) {
+            add(IssueCode::kMetadataTable,
+                "the options take " + std::to_string(text_bytes) + " bytes; bake the mesh again",
                 header.metadata_offset);
             return false;
         }

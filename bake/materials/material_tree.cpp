@@ -155,8 +155,10 @@ class TreeBuilder {
         for (std::size_t i = 0; i < source_.triangles.size(); ++i) {
             const glm::uvec3& t = source_.triangles[i];
             // A tile's tree needs the faces in the tile alone.
-            const glm::vec3 low = glm::min(glm::min(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
-            const glm::vec3 high = glm::max(glm::max(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
+            const glm::vec3 low =
+                glm::min(glm::min(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
+            const glm::vec3 high =
+                glm::max(glm::max(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
             if (glm::any(glm::greaterThan(glm::dvec3(low), root.center + half)) ||
                 glm::any(glm::lessThan(glm::dvec3(high), root.center - half))) {
                 continue;

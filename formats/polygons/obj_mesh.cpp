@@ -78,8 +78,9 @@ class ObjReader {
     [[nodiscard]] Result<void> checkName(std::string_view name) const {
         return name.size() <= kNameMax
                    ? Result<void>()
-                   : wrongLine(text_.line(), "a name of " + std::to_string(name.size()) + " bytes is longer than " +
-                                                 std::to_string(kNameMax) + "; shorten it");
+                   : wrongLine(text_.line(), "a name of " + std::to_string(name.size()) +
+                                                 " bytes is longer than " + std::to_string(kNameMax) +
+                                                 "; shorten it");
     }
 
     void begin(std::string_view name) {

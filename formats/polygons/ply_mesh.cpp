@@ -135,8 +135,8 @@ class PlyImport {
             if (colored) {
                 auto& color = mesh_.colors.emplace_back();
                 for (std::size_t k = 0; k < 4; ++k) {
-                    color[k] =
-                        static_cast<std::uint8_t>(std::lround(std::clamp(scales[k] * values[3 + k], 0.0, 255.0)));
+                    color[k] = static_cast<std::uint8_t>(
+                        std::lround(std::clamp(scales[k] * values[3 + k], 0.0, 255.0)));
                 }
             }
             RELIEF_TRY(endLine(element, i, numbers));
@@ -154,7 +154,9 @@ class PlyImport {
             }
             const bool real = property.type == PlyType::kFloat32 || property.type == PlyType::kFloat64;
             const bool wide = property.type == PlyType::kUint16;
-            scales[static_cast<std::size_t>(column - kVertexColumns.begin()) - 3] = real ? 255.0 : wide ? 255.0 / 65535.0 : 1.0;
+            scales[static_cast<std::size_t>(column - kVertexColumns.begin()) - 3] = real   ? 255.0
+                                                                                    : wide ? 255.0 / 65535.0
+                                                                                           : 1.0;
         }
         return scales;
     }

@@ -206,7 +206,8 @@ Result<ColliderSurface> colliderSurface(const Collider& collider, std::uint32_t 
     ColliderSurface made = Contour(collider, cells).run();
     if (made.triangles.empty()) {
         return invalidInput("no surface is found in it: all of it is thinner than 1/" +
-                            std::to_string(cells) + " of its longest side; name the mesh that it was baked from as emitter.mesh");
+                            std::to_string(cells) +
+                            " of its longest side; name the mesh that it was baked from as emitter.mesh");
     }
     return made;
 }

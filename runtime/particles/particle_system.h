@@ -218,7 +218,7 @@ class ParticleSystem {
     std::deque<Replaced> replaced_;  // since the oldest list of events under way
     std::uint64_t steps_ = 0;
     std::uint32_t stepped_materials_ = 0;  // of the collider of the last step
-    std::uint32_t stepped_extent_ = 0;  // of the last step: those that died in it included
+    std::uint32_t stepped_extent_ = 0;     // of the last step: those that died in it included
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
     std::uint64_t refused_ = 0;

@@ -18,7 +18,8 @@ namespace relief {
 /// Fails as FileGuard does, and with kUnsupported (OpenVDB).
 [[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
 /// The same with every file that the scene names, and with the numbered files of its frames.
-[[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded, FileGuard& guard);
+[[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded,
+                                       FileGuard& guard);
 
 class Outputs {
   public:

@@ -85,8 +85,7 @@ Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, doubl
         meshes_->setVertices(mesh, pass.buffer());
     }
     RELIEF_TRY(meshes_->draw(camera, meshStyle(loaded_->scene, seconds),
-                             meshPlaces(*loaded_, drawn_, seconds), shadowBounds(*loaded_),
-                             frame_.target()));
+                             meshPlaces(*loaded_, drawn_, seconds), shadowBounds(*loaded_), frame_.target()));
     return &meshes_->depth();
 }
 

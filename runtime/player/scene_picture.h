@@ -47,7 +47,7 @@ class ScenePicture {
     Frame frame_;
     std::optional<ColliderRenderer> collider_;  // or:
     std::optional<MeshRenderer> meshes_;
-    DrawnMeshes drawn_;                                 // of that
+    DrawnMeshes drawn_;                                        // of that
     std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of those that deform
     ParticleRenderer particles_;
     ColliderStyle collider_style_;
