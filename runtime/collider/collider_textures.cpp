@@ -259,14 +259,15 @@ Result<void> ColliderTextures::uploadMaterials(std::span<const Materials* const>
         return {};
     }
     const std::size_t width = std::size_t{1} << table.log2_width;
-    const std::size_t height = table.words.size() / width;
+    const std::size_t height = table.texels.size() / width;
     RELIEF_TRY(checkTextureSize(width, height, "the materials of these colliders",
                                 "bake some with --materials none"));
-    materials_ = makeTexture2D(GL_R32UI, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
-                               GL_RED_INTEGER, GL_UNSIGNED_INT, table.words.data());
-    bytes_ += table.words.size() * sizeof(std::uint32_t);
-    defines_ += "#define RELIEF_MATERIALS " + std::to_string(table.names.size()) +
-                "\n#define RELIEF_MATERIALS_LOG2_WIDTH " + std::to_string(table.log2_width) + "\n";
+    materials_ = makeTexture2D(GL_RGBA32UI, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
+                               GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.texels.data());
+    bytes_ += table.texels.size() * sizeof(glm::uvec4);
+    materials_respond_ = table.responds;
+    material_defines_ = "#define RELIEF_MATERIALS " + std::to_string(table.names.size()) +
+                        "\n#define RELIEF_MATERIALS_LOG2_WIDTH " + std::to_string(table.log2_width) + "\n";
     material_names_ = std::move(table.names);
     return {};
 }

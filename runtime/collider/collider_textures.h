@@ -9,7 +9,7 @@
 //
 // The width is the least power of two that makes the texture no higher than wide.
 //
-// Materials of colliders that have some lie in one more texture, of R32UI (material_table.h); only steps read it.
+// Materials of colliders that have some lie in one more texture, of RGBA32UI (material_table.h); only steps read it.
 //
 // The maps of a live body (live_collider.h) have no texels yet: each gets a rectangle of its texture to be
 // drawn to, below what is packed, and one of the float texture, of RGBA32F, for how the surface in each of
@@ -128,6 +128,10 @@ class ColliderTextures {
     /// The names of all materials, of which a shader has the numbers; equal names of several colliders are one. Empty: no collider
     /// has materials, or those that do are live.
     [[nodiscard]] std::span<const std::string> materialNames() const { return material_names_; }
+    /// Some material has another restitution than 1, a friction or a loss of lifetime: without one only events need them.
+    [[nodiscard]] bool materialsRespond() const { return materials_respond_; }
+    /// Lines for makeProgram of a shader that includes materials.glsl, behind defines(); none without materials.
+    [[nodiscard]] const std::string& materialDefines() const { return material_defines_; }
     [[nodiscard]] int mapCount() const { return map_count_; }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }  ///< of maps and materials
     /// Lines for makeProgram (collider_block.h).
@@ -155,6 +159,8 @@ class ColliderTextures {
     std::array<GlTexture, kTexelKinds> textures_;
     GlTexture materials_;
     std::vector<std::string> material_names_;
+    std::string material_defines_;
+    bool materials_respond_ = false;
     GlBuffer block_;
     int map_count_ = 0;
     std::size_t room_ = 0;

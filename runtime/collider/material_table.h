@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,8 +14,9 @@ namespace relief {
 struct MaterialTable {
     std::vector<std::string>
         names;  ///< different ones, in the order of the bodies; empty: there are no materials
-    std::vector<std::uint32_t> words;  ///< texels of the texture, row by row; none without names
-    int log2_width = 0;                ///< of its rows; it is no higher than wide
+    std::vector<glm::uvec4> texels;  ///< of the texture, row by row; none without names
+    int log2_width = 0;              ///< of its rows; it is no higher than wide
+    bool responds = false;           ///< some material changes what particles do
 };
 
 /// \param bodies  the materials of each; null, or empty: it has none. Bodies may share some.

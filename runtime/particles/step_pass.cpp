@@ -47,6 +47,9 @@ Result<StepPass> StepPass::create(const StepFeatures& features, const StepShader
     if (features.collider != nullptr) {
         defines += "#define RELIEF_COLLIDER\n";
         defines += features.collider->defines();
+        if (features.events || features.collider->materialsRespond()) {
+            defines += features.collider->materialDefines();
+        }
     }
     pass.tours_ = toursMaps(features);
     defineIf(pass.tours_, "RELIEF_TOUR");

@@ -23,11 +23,8 @@ inline constexpr int kWorldMapTexels = 9;
 inline constexpr int kWorldBodyTexels = 8;
 inline constexpr int kWorldLevels = 16;
 
-/// Words of the materials (collider/materials.glsl): of a record before its first material, of a material, of a node; and the levels
-/// of a tree.
-inline constexpr int kMaterialHeadWords = 6;
-inline constexpr int kMaterialWords = 4;
-inline constexpr int kMaterialNodeWords = 3;
+/// Texels of a record of materials before its first material (collider/materials.glsl), and the levels of a tree.
+inline constexpr int kMaterialHeadTexels = 2;
 inline constexpr int kMaterialLevels = 20;
 
 /// The shader storage binding of the collider in a tour (collider_tour.glsl).
