@@ -31,7 +31,7 @@ MeshPose clipPose(const AnimatedMesh& mesh, const char* clip, double seconds) {
 
 std::vector<glm::vec3> readVertices(const SkinPass& pass) {
     std::vector<glm::vec3> vertices(pass.bytes() / sizeof(glm::vec3));
-    EXPECT_TRUE(readBuffer(pass.buffer(), std::as_writable_bytes(std::span(vertices))));
+    EXPECT_TRUE(readBuffer(pass.buffer(), 0, std::as_writable_bytes(std::span(vertices))));
     return vertices;
 }
 
