@@ -75,7 +75,7 @@ caption() {
     python3 - "$out/report.json" <<'P'
 import json, sys
 report = json.load(open(sys.argv[1]))
-gpu = report["device"].split(", ")[-2 if ", surfaceless" in report["device"] else -1].split("/")[0]
+gpu = report["device"].split(", ")[1].split("/")[0].split(" (")[0]
 print(f"{report['particles']['alive']:,} particles, {report['ms_per_step_median']:.2g} ms a step on {gpu}")
 P
 }
@@ -83,6 +83,7 @@ P
 # sheet: six frames spread over the run, and below them the slices if there are any, and the caption.
 sheet() {
     local frames=("$out"/frames/frame_*.png) chosen=() paper='#f4f5f7' i tile=3x2 size=640x480
+    local font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
     if [ "$name" = village ]; then  # wide ones, and larger
         tile=2x3 size=960x540
     fi
@@ -93,7 +94,7 @@ sheet() {
         montage "${chosen[@]}" -tile "$tile" -geometry "$size+6+6" -background "$paper" miff:-
         [ ! -f "$out/slice_x.png" ] ||
             montage "$out"/slice_[xyz].png -tile 3x1 -geometry '640x>+6+6' -background "$paper" miff:-
-        convert -background "$paper" -fill '#3b4148' -pointsize 34 label:"$(caption)" -bordercolor "$paper" -border 0x10 miff:-
+        convert -background "$paper" -fill '#3b4148' -font "$font" -pointsize 34 label:"$(caption)" -bordercolor "$paper" -border 0x10 miff:-
     } | convert miff:- -background "$paper" -gravity center -append \
         -bordercolor "$paper" -border 12 -depth 8 -strip "$out/contact_sheet.png"
 }

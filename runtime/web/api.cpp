@@ -296,7 +296,7 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     const std::span<const std::string> materials = player.simulation->textures().materialNames();
     for (const SceneSpawn& spawn : wanted.spawns) {
         if (!spawn.on_material.empty() &&
-            std::ranges::find(materials, spawn.on_material) == materials.end()) {
+            std::find(materials.begin(), materials.end(), spawn.on_material) == materials.end()) {
             return fail(ErrorCode::kUsage, "spawn.material = '" + cleanUtf8(spawn.on_material) +
                                                "' is the name of no material of the colliders");
         }

@@ -175,12 +175,6 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
     vec3 relative = v - carried;
     float vn = dot(relative, n);
     float contact = float(RELIEF_CONTACT_COLLIDED);
-    float after = sinceContact(sweep, vn);
-    vec4 material = vec4(1.0, 1.0, 0.0, 0.0);
-    if (sweep.hit.body >= 0) {
-        material = materialOf(sweep.hit.body, sweep.to - after * relative - type.radius * n, n);
-    }
-    g_cost = material.z;
     dies = false;
     if (sweep.first && caught(p, type.radius, sweep.hit)) {
         contact = float(RELIEF_CONTACT_CAUGHT);
@@ -189,6 +183,11 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
         }
     } else {
         dies = type.behaviour == float(RELIEF_ON_COLLISION_DIE);
+        float after = sinceContact(sweep, vn);
+        vec4 material = vec4(1.0, 1.0, 0.0, 0.0);
+        if (sweep.hit.body >= 0) {
+            material = materialOf(sweep.hit.body, sweep.to - after * relative - type.radius * n, n);
+        }
         vec3 along = relative - vn * n;
         if (type.behaviour == float(RELIEF_ON_COLLISION_STOP)) {
             v = carried;
@@ -200,6 +199,7 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
             response *= sweep.hit.body < 0 ? vec2(1.0) : bodyResponse(sweep.hit.body);
             v = carried + bounced(state.velocity - carried, relative, vn, along, n, type, response);
         }
+        g_cost = material.z;
         writeHit(sweep, after, vn, material.w, state.contact != float(RELIEF_CONTACT_NONE), dies);
     }
     vec3 to = dies ? p : sweepEnd(sweep, carried, v, contact, type.radius);

@@ -39,6 +39,7 @@ class Imported:
             self.at += 4
             self.text()
             self.text()
+            self.at += 8  # of its material: restitution and friction
         positions = self.threes("<3f")
         self.triangles = [[positions[k] for k in t] for t in self.threes("<3I")]
 

@@ -62,7 +62,7 @@ done
 
 # play NAME STEPS: NAME.json, NAME.ply and a frame.
 play() {
-    expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --dump "$1.ply" --json
+    expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --dump "end_$1.ply" --json
     cp stdout "$1.json"
     json "$1.json" "d['steps'] == $2 and d['particles']['refused'] == 0 and d['particles']['in_contact'] > 0"
     json "$1.json" "d['particles']['born'] == d['particles']['alive'] + d['particles']['died']"
@@ -86,7 +86,7 @@ import struct
 
 def read(name):
     """Of each particle: x y z, velocity, type."""
-    head, body = open(name, 'rb').read().split(b'end_header\n', 1)
+    head, body = open('end_' + name, 'rb').read().split(b'end_header\n', 1)
     names = [l.split()[2] for l in head.decode().splitlines() if l.startswith('property')]
     record = struct.Struct('<' + ''.join('I' if n in ('id', 'type') else 'f' for n in names))
     for values in record.iter_unpack(body):
