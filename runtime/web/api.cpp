@@ -15,6 +15,7 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/finite.h"
+#include "formats/base/text.h"
 #include "formats/config/toml_reader.h"
 #include "formats/texel.h"
 #include "runtime/c_api/call.h"
