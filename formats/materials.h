@@ -77,7 +77,7 @@ template <class Vector>
     return axis < 3 ? v[first] : v[first] + other;
 }
 
-/// What breaks an invariant above, in one line; "" where nothing does.
+/// The first invariant above that does not hold, in one line; "": all do.
 [[nodiscard]] std::string faultOfMaterials(const Materials& materials);
 
 /// The material of a contact: an index into `list`, 0 without any.

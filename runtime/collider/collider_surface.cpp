@@ -20,7 +20,7 @@ constexpr int kHalvings = 16;
 constexpr double kMeanWeight = 0.01;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// What the planes of the crossings of a cell add up to.
+/// The sums over the planes of the crossings of a cell.
 struct Planes {
     glm::dmat3 squares{0.0};  // Σ n nᵀ
     glm::dvec3 right{0.0};    // Σ n (n · p)

@@ -37,7 +37,7 @@ class EmitterSurface {
 
     [[nodiscard]] std::size_t vertices() const { return end_.size(); }
 
-    /// Where its vertices are now, and where they were `seconds` ago. Takes a time by its triangles.
+    /// Its vertices now, and `seconds` ago. Takes a time by its triangles.
     /// \param before, now  object units, vertices() each; a place without numbers gives no birth.
     /// \param seconds      > 0; 0: it has jumped there, and `before` does not count.
     void move(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds);

@@ -12,8 +12,6 @@
 namespace relief {
 namespace {
 
-static_assert(kEventFlags * kEventDirections == 48);
-
 // Texture units.
 constexpr int kVelocityUnit = 0;
 constexpr int kSurfaceUnit = 1;

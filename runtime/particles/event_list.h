@@ -16,6 +16,7 @@
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_event.h"
 #include "runtime/particles/particle_type.h"
+#include "shaders/particles/constants.h"
 
 namespace relief {
 
@@ -39,7 +40,7 @@ class EventList {
         std::uint32_t materials = 0;  ///< names of materials, ColliderTextures::materialNames()
     };
     /// The most (bodies + 1) · (names of materials + 1) whose events a step can tell apart.
-    static constexpr std::size_t kPlacesMax = (std::size_t{1} << 24) / 48;
+    static constexpr std::size_t kPlacesMax = (std::size_t{1} << 24) / (kEventFlags * kEventDirections);
     /// A list read back: ids are modulo 2^24.
     struct Collected {
         StepEvents events;

@@ -1,68 +1,27 @@
 #include "runtime/picture/collider_mesh.h"
 
 #include <array>
-#include <cstddef>
 #include <glm/glm.hpp>
-#include <limits>
-#include <vector>
 
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
-namespace {
-
-struct Vertex {
-    glm::vec3 position;
-    glm::vec3 normal;
-};
-
-void setAttribute(GLuint location, std::size_t offset) {
-    glEnableVertexAttribArray(location);
-    glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(offset));
-}
-
-}  // namespace
 
 Result<ColliderMesh> ColliderMesh::create(const PictureMesh& mesh) {
     RELIEF_TRY(checkContext());
-    RELIEF_TRY(checkMesh(mesh));
-    if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
-        return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");
-    }
-    const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
-    const PictureMesh& full = mesh.normals.empty() ? made : mesh;
-    std::vector<Vertex> vertices(full.positions.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        vertices[i] = {full.positions[i], full.normals[i]};
-    }
     const PassState state;
     forgetGlErrors();
     ColliderMesh out;
     out.program_ = RELIEF_TRY(makeProgram("picture/mesh.vert", "picture/mesh.frag"));
-    out.vertex_bytes_ = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
-    out.corners_ = static_cast<GLsizei>(full.triangles.size());
-    out.vertices_ = makeBuffer();
-    out.triangles_ = makeBuffer();
-    out.array_ = makeVertexArray();
-    glBindVertexArray(out.array_.name());
-    glBindBuffer(GL_ARRAY_BUFFER, out.vertices_.name());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
-                 GL_STATIC_DRAW);
-    setAttribute(0, offsetof(Vertex, position));
-    setAttribute(1, offsetof(Vertex, normal));
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, out.triangles_.name());
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
-                 full.triangles.data(), GL_STATIC_DRAW);
+    out.buffers_ = RELIEF_TRY(MeshBuffers::create(mesh));
     RELIEF_TRY(checkAllocated("the collider's mesh", "choose a smaller one"));
     return out;
 }
 
 void ColliderMesh::setVertices(const GlBuffer& buffer) {
-    copyBuffer(buffer, vertices_, 0, vertex_bytes_);
+    buffers_.setVertices(buffer);
 }
 
 Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei width, GLsizei height) const {
@@ -87,8 +46,7 @@ Result<ColliderMesh::View> ColliderMesh::view(const Camera& camera, GLsizei widt
     glDepthFunc(GL_LESS);
     program_.use();
     program_.set("u_clip", clip);
-    glBindVertexArray(array_.name());
-    glDrawElements(GL_TRIANGLES, corners_, GL_UNSIGNED_INT, nullptr);
+    buffers_.draw();
     return view;
 }
 

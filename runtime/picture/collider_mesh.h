@@ -1,12 +1,11 @@
 // The mesh that a collider was baked from, on the GPU, for the collider's picture: it has the detail that depth maps
 // leave out.
-//
-//     bytes on the GPU = 24 · vertices + 12 · triangles
 #pragma once
 
 #include "formats/base/result.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/picture/camera.h"
+#include "runtime/picture/mesh_buffers.h"
 #include "runtime/picture/picture_mesh.h"
 
 namespace relief {
@@ -18,8 +17,7 @@ class ColliderMesh {
     /// Errors: kInvalidInput (checkMesh), kFailure (the driver's compiler).
     [[nodiscard]] static Result<ColliderMesh> create(const PictureMesh& mesh);
 
-    /// Moves the vertices: copies 24 bytes a vertex, position and normal as floats, from the beginning of a
-    /// buffer of the GPU (wobble_pass.h). As many as the mesh was created with, which then has normals.
+    /// As MeshBuffers::setVertices().
     void setVertices(const GlBuffer& buffer);
 
     /// A camera's view of it, pixel by pixel.
@@ -32,12 +30,8 @@ class ColliderMesh {
     [[nodiscard]] Result<View> view(const Camera& camera, GLsizei width, GLsizei height) const;
 
   private:
-    GlBuffer vertices_;
-    GlBuffer triangles_;
-    GlVertexArray array_;
+    MeshBuffers buffers_;
     GlProgram program_;
-    GLsizei corners_ = 0;
-    GLsizeiptr vertex_bytes_ = 0;
 };
 
 }  // namespace relief

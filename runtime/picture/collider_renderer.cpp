@@ -26,14 +26,7 @@ constexpr const char* kSmallerPicture = "choose a smaller size";
 
 void setViewUniforms(const GlProgram& program, const Camera& camera, const ColliderStyle& style,
                      GLsizei width, GLsizei height) {
-    const float tangent = camera.tanHalfFov();
-    const float aspect = static_cast<float>(width) / static_cast<float>(height);
-    program.use();
-    program.set("u_eye", camera.eye);
-    program.set("u_forward", camera.forward());
-    program.set("u_right", tangent * aspect * camera.right());
-    program.set("u_up", tangent * camera.up());
-    program.set("u_depth", camera.depthOfDistance());
+    setCameraUniforms(program, camera, static_cast<float>(width) / static_cast<float>(height));
     program.set("u_has_ground", style.ground.has_value());
     program.set("u_ground", style.ground.value_or(0.0F));
     program.set("u_background", linearColor(style.background));

@@ -46,6 +46,16 @@ glm::vec3 linearColor(const glm::vec3& srgb) {
     return linear;
 }
 
+void setCameraUniforms(const GlProgram& program, const Camera& camera, float aspect) {
+    const float tangent = camera.tanHalfFov();
+    program.use();
+    program.set("u_eye", camera.eye);
+    program.set("u_forward", camera.forward());
+    program.set("u_right", tangent * aspect * camera.right());
+    program.set("u_up", tangent * camera.up());
+    program.set("u_depth", camera.depthOfDistance());
+}
+
 void setLightUniforms(const GlProgram& program, const ColliderView& view, const LightRays& rays) {
     program.use();
     program.set("u_bounds_min", view.bounds.min - glm::vec3(2.0F * view.texel));

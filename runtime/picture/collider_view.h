@@ -7,6 +7,7 @@
 #include "formats/collider.h"
 #include "runtime/collider/collider_textures.h"
 #include "runtime/collider/world_bodies.h"
+#include "runtime/picture/camera.h"
 
 namespace relief {
 
@@ -26,6 +27,9 @@ struct ColliderView {
 
 /// sRGB in [0, 1] to the linear colours that shaders take.
 [[nodiscard]] glm::vec3 linearColor(const glm::vec3& srgb);
+
+/// Sets u_eye, u_depth, and what makes the ray of each pixel: u_forward, u_right and u_up. Leaves the program current.
+void setCameraUniforms(const GlProgram& program, const Camera& camera, float aspect);
 
 /// The sampling of a point's light: rays, and samples of the field on each.
 struct LightRays {

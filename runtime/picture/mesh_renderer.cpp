@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 #include <string>
 
 #include "runtime/gl/gl_fault.h"
@@ -21,11 +19,6 @@ constexpr GLsizei kPrintSide = 4096;   // and of the prints, seen from below
 constexpr float kSoleHeight = 0.035F;  // of what presses the snow, metres above the ground
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
-
-struct Vertex {
-    glm::vec3 position;
-    glm::vec3 normal;
-};
 
 glm::mat4 placeMatrix(const Pose& pose) {
     const glm::mat4 turned = glm::translate(glm::mat4(1.0F), pose.position) * glm::mat4_cast(pose.rotation);
@@ -54,55 +47,13 @@ glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
 
 }  // namespace
 
-Result<MeshRenderer::Mesh> MeshRenderer::upload(const PictureMesh& mesh) {
-    RELIEF_TRY(checkMesh(mesh));
-    if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
-        return fail(ErrorCode::kInvalidInput, "a mesh of more triangles than one draw takes");
-    }
-    const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
-    const PictureMesh& full = mesh.normals.empty() ? made : mesh;
-    std::vector<Vertex> vertices(full.positions.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        vertices[i] = {full.positions[i], full.normals[i]};
-    }
-    Mesh out;
-    out.shape = mesh;
-    out.corners = static_cast<GLsizei>(full.triangles.size());
-    out.vertices = makeBuffer();
-    out.colors = makeBuffer();
-    out.vertex_bytes = static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex));
-    out.triangles = makeBuffer();
-    out.array = makeVertexArray();
-    glBindVertexArray(out.array.name());
-    const auto attribute = [](GLuint location, GLint size, GLenum type, GLsizei stride, std::size_t offset) {
-        glEnableVertexAttribArray(location);
-        glVertexAttribPointer(location, size, type, type == GL_FLOAT ? GL_FALSE : GL_TRUE, stride,
-                              reinterpret_cast<const void*>(offset));
-    };
-    glBindBuffer(GL_ARRAY_BUFFER, out.vertices.name());
-    glBufferData(GL_ARRAY_BUFFER, out.vertex_bytes, vertices.data(), GL_STATIC_DRAW);
-    attribute(0, 3, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, position));
-    attribute(1, 3, GL_FLOAT, sizeof(Vertex), offsetof(Vertex, normal));
-    glBindBuffer(GL_ARRAY_BUFFER, out.colors.name());
-    if (!full.colors.empty()) {
-        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(full.colors.size() * sizeof(full.colors[0])),
-                     full.colors.data(), GL_STATIC_DRAW);
-        attribute(2, 4, GL_UNSIGNED_BYTE, sizeof(full.colors[0]), 0);
-    }
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, out.triangles.name());
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(full.triangles.size() * sizeof(full.triangles[0])),
-                 full.triangles.data(), GL_STATIC_DRAW);
-    return out;
-}
-
 Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
     RELIEF_TRY(checkContext());
     const PassState state;
     forgetGlErrors();
     MeshRenderer renderer;
     for (const PictureMesh& mesh : meshes) {
-        renderer.meshes_.push_back(RELIEF_TRY(upload(mesh)));
+        renderer.meshes_.push_back({mesh, RELIEF_TRY(MeshBuffers::create(mesh))});
     }
     renderer.surface_program_ =
         RELIEF_TRY(makeProgram("picture/mesh_surface.vert", "picture/mesh_surface.frag"));
@@ -128,13 +79,12 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
     Mesh& to = meshes_[mesh];
     to.shape.positions.assign(positions.begin(), positions.end());
     to.shape.normals.clear();
-    PictureMesh shape = std::move(to.shape);
-    to = RELIEF_TRY(upload(shape));
+    to.buffers = RELIEF_TRY(MeshBuffers::create(to.shape));
     return checkAllocated("the meshes of a picture", "choose smaller ones");
 }
 
 void MeshRenderer::setVertices(std::size_t mesh, const GlBuffer& buffer) {
-    copyBuffer(buffer, meshes_[mesh].vertices, 0, meshes_[mesh].vertex_bytes);
+    meshes_[mesh].buffers.setVertices(buffer);
 }
 
 Result<void> MeshRenderer::resize(GLsizei width, GLsizei height) {
@@ -164,8 +114,7 @@ void MeshRenderer::drawPlaces(const GlProgram& program, std::span<const MeshPlac
         const Mesh& mesh = meshes_[place.mesh];
         program.set("u_place", placeMatrix(place.pose));
         program.set("u_colored", !mesh.shape.colors.empty());
-        glBindVertexArray(mesh.array.name());
-        glDrawElements(GL_TRIANGLES, mesh.corners, GL_UNSIGNED_INT, nullptr);
+        mesh.buffers.draw();
     }
 }
 
@@ -242,12 +191,7 @@ Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
         useTexture(static_cast<int>(i), *textures[i]);
         shade.set(samplers[i], static_cast<GLint>(i));
     }
-    const float tangent = camera.tanHalfFov();
-    shade.set("u_eye", camera.eye);
-    shade.set("u_forward", camera.forward());
-    shade.set("u_right", tangent * aspect * camera.right());
-    shade.set("u_up", tangent * camera.up());
-    shade.set("u_depth", camera.depthOfDistance());
+    setCameraUniforms(shade, camera, aspect);
     shade.set("u_clip", camera.projection(aspect) * camera.view());
     shade.set("u_sun_clip", sun_.clip);
     shade.set("u_zenith_clip", zenith_.clip);

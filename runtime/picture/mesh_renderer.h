@@ -14,6 +14,7 @@
 #include "runtime/collider/pose.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/picture/camera.h"
+#include "runtime/picture/mesh_buffers.h"
 #include "runtime/picture/picture_mesh.h"
 #include "runtime/picture/render_target.h"
 
@@ -48,7 +49,7 @@ class MeshRenderer {
     /// Other vertices for a mesh, of as many positions; its normals are made anew.
     /// Errors: kUsage (no such mesh, another number).
     [[nodiscard]] Result<void> setPositions(std::size_t mesh, std::span<const glm::vec3> positions);
-    /// As ColliderMesh::setVertices(). \param mesh  created with normals.
+    /// As MeshBuffers::setVertices(). \param mesh  created with normals.
     void setVertices(std::size_t mesh, const GlBuffer& buffer);
 
     /// Fills the target's colour and depth. Prints stay from one call to the next.
@@ -64,12 +65,7 @@ class MeshRenderer {
   private:
     struct Mesh {
         PictureMesh shape;
-        GlBuffer vertices;
-        GlBuffer colors;
-        GlBuffer triangles;
-        GLsizeiptr vertex_bytes = 0;
-        GlVertexArray array;
-        GLsizei corners = 0;
+        MeshBuffers buffers;
     };
     /// A depth map of the world along parallel rays.
     struct ParallelMap {
@@ -78,7 +74,6 @@ class MeshRenderer {
         glm::mat4 clip{1.0F};  // world to its clip space
     };
 
-    [[nodiscard]] static Result<Mesh> upload(const PictureMesh& mesh);
     [[nodiscard]] Result<void> resize(GLsizei width, GLsizei height);
     void drawPlaces(const GlProgram& program, std::span<const MeshPlace> places, bool still,
                     bool moving) const;

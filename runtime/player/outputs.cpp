@@ -41,7 +41,7 @@ Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded
         RELIEF_TRY(guard.reads(file));
     }
     if (!options.frames.empty() && !scene.render.meshes.empty()) {
-        for (const fs::path& file : RELIEF_TRY(loadDrawnMeshes(loaded)).files) {
+        for (const fs::path& file : RELIEF_TRY(drawnFiles(loaded))) {
             RELIEF_TRY(guard.reads(file));
         }
     }

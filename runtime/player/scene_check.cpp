@@ -70,7 +70,8 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
         }
     }
     if (!loaded.scene.render.meshes.empty()) {
-        for (const fs::path& file : RELIEF_TRY(loadDrawnMeshes(loaded)).files) {
+        RELIEF_TRY(loadDrawnMeshes(loaded));
+        for (const fs::path& file : RELIEF_TRY(drawnFiles(loaded))) {
             report.files.push_back(checkedFile(file, "mesh"));
         }
     }

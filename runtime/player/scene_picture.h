@@ -37,7 +37,7 @@ class ScenePicture {
     /// By maps, or by the mesh of a single collider.
     [[nodiscard]] Result<void> makeCollider(const ColliderView& view);
     [[nodiscard]] Result<void> makeMeshes();
-    /// What is behind the particles. \return its depth.
+    /// All behind the particles. \return its depth.
     [[nodiscard]] Result<const GlTexture*> drawColliders(const Camera& camera, double seconds);
 
     const LoadedScene* loaded_;

@@ -45,6 +45,28 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& name) {
                         ".ply' or .obj for a collider; add it");
 }
 
+/// The place of render.meshes, for messages.
+std::string originOf(const Scene& scene) {
+    return scene.render.meshes_origin + ": render.meshes";
+}
+
+/// Of each collider the file that is drawn for it; empty: none is.
+Result<std::vector<fs::path>> fileOfEach(const LoadedScene& loaded) {
+    const Scene& scene = loaded.scene;
+    const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
+    std::vector<fs::path> files(scene.colliders.size());
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const SceneCollider& collider = scene.colliders[i];
+        if (collider.tile_of || loaded.played[i] || loaded.live[i]) {
+            continue;
+        }
+        const auto named = of_world.find(collider.path);
+        const std::string name = named != of_world.end() ? named->second : collider.path.stem().string();
+        files[i] = RELIEF_TRY(inFront(originOf(scene), fileOf(scene.render.meshes, name)));
+    }
+    return files;
+}
+
 /// A mesh without colours takes on that of its collider, if it has one.
 PictureMesh colored(PictureMesh mesh, const SceneCollider& collider) {
     if (mesh.colors.empty() && collider.color) {
@@ -82,13 +104,20 @@ PictureMesh animatedMesh(const PlayedMesh& played) {
 
 }  // namespace
 
+Result<std::vector<fs::path>> drawnFiles(const LoadedScene& loaded) {
+    std::vector<fs::path> files = RELIEF_TRY(fileOfEach(loaded));
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    files.erase(std::remove(files.begin(), files.end(), fs::path()), files.end());
+    return files;
+}
+
 Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
-    const std::string origin = scene.render.meshes_origin + ": render.meshes";
-    const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
+    const std::vector<fs::path> files = RELIEF_TRY(fileOfEach(loaded));
     DrawnMeshes out;
     std::map<std::pair<fs::path, std::vector<float>>, std::uint32_t> known;  // by colour, too
-    // Of a world's mesh that was cut into tiles the bodies of a node are one.
+    // A world's mesh that was cut into tiles is several colliders in one place.
     std::map<std::tuple<std::string, std::uint32_t>, std::vector<Pose>> drawn;
     for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
         const SceneCollider& collider = scene.colliders[i];
@@ -102,9 +131,7 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
                 colored(loaded.played[i] ? animatedMesh(*loaded.played[i]) : loaded.live[i]->mesh, collider));
             continue;
         }
-        const auto named = of_world.find(collider.path);
-        const std::string name = named != of_world.end() ? named->second : collider.path.stem().string();
-        const fs::path file = RELIEF_TRY(inFront(origin, fileOf(scene.render.meshes, name)));
+        const fs::path& file = files[i];
         std::vector<float> color;
         if (collider.color) {
             color = {collider.color->r, collider.color->g, collider.color->b};
@@ -112,10 +139,10 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
         const auto [entry, is_new] =
             known.try_emplace({file, color}, static_cast<std::uint32_t>(out.meshes.size()));
         if (is_new) {
-            out.meshes.push_back(colored(RELIEF_TRY(inFront(origin, loadPictureMesh(file))), collider));
-            out.files.push_back(file);
+            out.meshes.push_back(
+                colored(RELIEF_TRY(inFront(originOf(scene), loadPictureMesh(file))), collider));
         }
-        if (named != of_world.end()) {
+        if (collider.keys.empty()) {
             std::vector<Pose>& there = drawn[{collider.node, entry->second}];
             if (std::find(there.begin(), there.end(), collider.pose) != there.end()) {
                 continue;
@@ -128,8 +155,6 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
         out.floor = static_cast<std::uint32_t>(out.meshes.size());
         out.meshes.push_back(floorMesh(loaded));
     }
-    std::sort(out.files.begin(), out.files.end());
-    out.files.erase(std::unique(out.files.begin(), out.files.end()), out.files.end());
     return out;
 }
 

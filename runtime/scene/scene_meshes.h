@@ -25,19 +25,20 @@ struct SceneMesh {
 
 struct DrawnMeshes {
     std::vector<PictureMesh> meshes;
-    std::vector<std::filesystem::path> files;  ///< that were read, sorted
     std::vector<SceneMesh> places;
     std::optional<std::uint32_t> floor;  ///< that of the scene's ground
 };
 
-/// Reads render.meshes. That of a world's collider has the name of its mesh there, that of another one the name of its
+/// The files of render.meshes that the scene's colliders are drawn from, sorted; none is read. That of a world's collider has the name of its mesh there, that of another one the name of its
 /// container; of one that plays a clip it is the container's own.
 /// \param loaded  with render.meshes.
-/// Errors: kInvalidInput (no such file; a name that leaves the folder), and as loadPictureMesh() fails; messages begin with the
-/// place in the scene.
+/// Errors: kInvalidInput (no such file; a name that leaves the folder); messages begin with the place in the scene.
+[[nodiscard]] Result<std::vector<std::filesystem::path>> drawnFiles(const LoadedScene& loaded);
+
+/// Reads them. Fails as drawnFiles() and loadPictureMesh() do.
 [[nodiscard]] Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded);
 
-/// Where they are after so many seconds. Those that play a clip press the snow.
+/// Their places after so many seconds. Those that play a clip press the snow.
 [[nodiscard]] std::vector<MeshPlace> meshPlaces(const LoadedScene& loaded, const DrawnMeshes& meshes,
                                                 double seconds);
 

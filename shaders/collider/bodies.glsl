@@ -22,20 +22,6 @@ vec3 reliefMovedBack(int body, vec3 p) {
     return before;
 }
 
-// One body and a ball about p, as reliefSolid or, with `whole`, reliefEvaluate.
-#if RELIEF_PLACED
-
-ReliefField reliefBodyField(int body, vec3 p, float radius, bool whole) {
-#if defined(RELIEF_RADIUS)
-    if (radius > 0.0) {
-        return reliefBall(body, body + 1, p, radius);
-    }
-#endif
-    return reliefMaps(body, body + 1, p, whole);
-}
-
-#else
-
 // A direction of the world in object space, but for its length; and back.
 vec3 reliefTurned(int body, vec3 v) {
     return vec3(reliefDot(reliefBodyRow(body, 0).xyz, v), reliefDot(reliefBodyRow(body, 1).xyz, v),
@@ -50,6 +36,20 @@ vec3 reliefToObject(int body, vec3 p) {
     return vec3(reliefRow(reliefBodyRow(body, 0), p), reliefRow(reliefBodyRow(body, 1), p),
                 reliefRow(reliefBodyRow(body, 2), p));
 }
+
+// One body and a ball about p, as reliefSolid or, with `whole`, reliefEvaluate.
+#if RELIEF_PLACED
+
+ReliefField reliefBodyField(int body, vec3 p, float radius, bool whole) {
+#if defined(RELIEF_RADIUS)
+    if (radius > 0.0) {
+        return reliefBall(body, body + 1, p, radius);
+    }
+#endif
+    return reliefMaps(body, body + 1, p, whole);
+}
+
+#else
 
 ReliefField reliefInObject(int body, vec3 q, float radius, bool whole) {
     int first = reliefBodyMaps(body).x;

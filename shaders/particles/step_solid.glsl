@@ -113,11 +113,7 @@ vec4 materialOf(int body, vec3 p, vec3 n) {
 #else
 
 vec4 materialOf(int body, vec3 p, vec3 n) {
-    vec4 x = reliefBodyRow(body, 0);
-    vec4 y = reliefBodyRow(body, 1);
-    vec4 z = reliefBodyRow(body, 2);
-    return reliefMaterial(body, vec3(reliefRow(x, p), reliefRow(y, p), reliefRow(z, p)),
-                          vec3(dot(x.xyz, n), dot(y.xyz, n), dot(z.xyz, n)));
+    return reliefMaterial(body, reliefToObject(body, p), reliefTurned(body, n));
 }
 
 #endif

@@ -2,19 +2,13 @@
 // field along rays. For the collider's picture, which is kept; particles look the same light up (particle_light.glsl). Needs
 // collider.glsl.
 //!include picture/sky.glsl
+//!include base/noise.glsl
 
 uniform vec3 u_bounds_min;    // of the collider, with a small margin
 uniform vec3 u_bounds_max;
 uniform float u_scale;        // longest side of the bounds
 uniform float u_texel;        // object units of the finest texel
 uniform vec3 u_sun;           // unit vector towards it
-
-// Uniform in [0, 1), different for every seed (PCG's output permutation).
-float noise(inout uint seed) {
-    seed = seed * 747796405u + 2891336453u;
-    uint word = ((seed >> ((seed >> 28) + 4u)) ^ seed) * 277803737u;
-    return float(((word >> 22) ^ word) >> 8) / 16777216.0;
-}
 
 // The part of a ray p + t d, t in [t_min, t_max], that lies in the bounds; empty where x > y.
 vec2 clipToBounds(vec3 p, vec3 d, float t_min, float t_max) {

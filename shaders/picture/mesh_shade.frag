@@ -1,6 +1,7 @@
 // The meshes' colours in the light of sun and sky, under rain and snow, in fog.
 //!include picture/sky.glsl
 //!include base/srgb.glsl
+//!include base/noise.glsl
 
 in vec2 v_uv;
 
@@ -34,17 +35,6 @@ const vec3 CLEAR_SKY = vec3(0.13, 0.30, 0.62);
 const vec3 SNOW_COLOR = vec3(0.84, 0.87, 0.92);
 const int SUN_TAPS = 8;
 const int CORNER_TAPS = 12;
-
-vec3 linearOf(vec3 srgb) {
-    return mix(pow((srgb + 0.055) / 1.055, vec3(2.4)), srgb / 12.92, vec3(lessThanEqual(srgb, vec3(0.04045))));
-}
-
-// Uniform in [0, 1), different for every seed (PCG's output permutation).
-float noise(inout uint seed) {
-    seed = seed * 747796405u + 2891336453u;
-    uint word = ((seed >> ((seed >> 28) + 4u)) ^ seed) * 277803737u;
-    return float(((word >> 22) ^ word) >> 8) / 16777216.0;
-}
 
 float latticeNoise(ivec3 at) {
     uint seed = uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u ^ uint(at.z) * 0xcb1ab31fu;

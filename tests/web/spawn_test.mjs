@@ -1,12 +1,11 @@
 // [[spawn]] in the browser: as many births as relief-sim makes, where it makes them. The hits come back from WebGL2,
 // which maps no buffers.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
 import { libraryPage } from "./lib/library.mjs";
-import { bunny, run, scratch } from "./lib/native.mjs";
+import { bunny, playWithHits, run, scratch } from "./lib/native.mjs";
 
 const kSteps = 150;
 const kScene = `[time]
@@ -45,10 +44,7 @@ lifetime = 40
 test("a browser splashes as relief-sim does", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     run("relief", "bake", bunny, "-q", "-o", path.join(folder, "bunny.relief"), "--budget", "200kB");
-    writeFileSync(path.join(folder, "scene.toml"), kScene);
-    run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"),
-        "--events", path.join(folder, "hits.jsonl"));
-    const hits = readFileSync(path.join(folder, "hits.jsonl"), "utf8").trim().split("\n").map((line) => JSON.parse(line));
+    const { places: native, hits } = playWithHits(folder, kScene);
     // Those of the last two steps have made nothing yet.
     const due = 5 * hits.filter((hit) => hit.type === 0 && hit.step <= kSteps - 2).length;
     assert.ok(due > 1000, `${due}`);
@@ -66,12 +62,6 @@ test("a browser splashes as relief-sim does", { timeout: 120_000 }, async (t) =>
     assert.deepEqual(said, []);
     assert.equal(info.born, 300 + due);
 
-    const bytes = readFileSync(path.join(folder, "final.ply"));
-    const begin = bytes.indexOf("end_header\n") + "end_header\n".length;
-    const native = new Map();
-    for (let at = begin; at < bytes.length; at += 40) {
-        native.set(bytes.readUInt32LE(at + 32), [0, 4, 8].map((k) => bytes.readFloatLE(at + k)));
-    }
     assert.equal(rows.length / 12, native.size);
     let far = 0;
     for (let i = 0; i < rows.length; i += 12) {

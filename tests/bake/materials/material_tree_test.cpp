@@ -125,7 +125,7 @@ Scene board() {
     return scene;
 }
 
-/// Where the collider has its surface, along a normal of the mesh.
+/// The collider's surface along a normal of the mesh.
 std::optional<glm::vec3> contactAlong(const Collider& collider, const glm::vec3& at, const glm::vec3& n,
                                       float reach) {
     const auto inside = [&](float along) { return evaluate(collider, at + along * n).inside(); };

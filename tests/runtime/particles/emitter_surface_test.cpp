@@ -197,7 +197,7 @@ TEST(EmitterSurface, IsUniformOnAPosedMesh) {
             const glm::dvec3 a(now[t.x]);
             const glm::dvec3 b(now[t.y]);
             const glm::dvec3 c(now[t.z]);
-            // Where it lies in the triangle, the areas with its sides add up to the whole.
+            // In the triangle, the areas with its sides add up to the whole.
             const double excess = glm::length(glm::cross(b - a, p - a)) +
                                   glm::length(glm::cross(c - b, p - b)) +
                                   glm::length(glm::cross(a - c, p - c)) - areas[i];

@@ -221,7 +221,7 @@ TEST_P(SurfaceBirthsGlTest, FollowPosesOfTheProgram) {
     }
 }
 
-// Where a clip that ends elsewhere than it began starts again, the surface has not moved there: no spark is born on the way.
+// A clip that ends elsewhere than it began jumps as it starts again: no spark is born on the way.
 TEST_P(SurfaceBirthsGlTest, AJumpThrowsNothing) {
     const std::string scene = R"(
 time = { dt = 0.02, steps = 60 }

@@ -68,8 +68,9 @@ TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
     const auto meshes = loadDrawnMeshes(scene);
     ASSERT_TRUE(meshes) << meshes.error().message;
     EXPECT_EQ(meshes->meshes.size(), 3U);
-    EXPECT_EQ(meshes->files, (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
-                                                    folder_.path() / "own.obj"}));
+    EXPECT_EQ(*drawnFiles(scene),
+              (std::vector<fs::path>{folder_.path() / "door.ply", folder_.path() / "floor.obj",
+                                     folder_.path() / "own.obj"}));
     ASSERT_EQ(meshes->places.size(), 4U);
     EXPECT_FALSE(meshes->floor) << "the scene has no ground";
     EXPECT_EQ(meshes->places[2].mesh, meshes->places[3].mesh) << "door and gate are one mesh";

@@ -1,6 +1,6 @@
 // The native tools, which the browser is compared with.
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 
@@ -30,4 +30,23 @@ export function generator(seed) {
         t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
         return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
     };
+}
+
+/** Plays a scene in a folder; words: options of relief-sim. Of its particles at the end the places, by id. */
+export function play(folder, scene, ...words) {
+    writeFileSync(path.join(folder, "scene.toml"), scene);
+    run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"), ...words);
+    const bytes = readFileSync(path.join(folder, "final.ply"));
+    const places = new Map();
+    for (let at = bytes.indexOf("end_header\n") + "end_header\n".length; at < bytes.length; at += 40) {
+        places.set(bytes.readUInt32LE(at + 32), [0, 4, 8].map((k) => bytes.readFloatLE(at + k)));
+    }
+    return places;
+}
+
+/** The same, and its hits. */
+export function playWithHits(folder, scene) {
+    const file = path.join(folder, "hits.jsonl");
+    const places = play(folder, scene, "--events", file);
+    return { places, hits: readFileSync(file, "utf8").trim().split("\n").map((line) => JSON.parse(line)) };
 }

@@ -1,9 +1,7 @@
 // Particles at rest above a cube of side 2, which pushes them upwards as it moves: the page against relief-sim.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
-import path from "node:path";
 
-import { run } from "./native.mjs";
+import { play } from "./native.mjs";
 
 const kScene = (steps) => `[time]
 dt = 0.015625
@@ -35,13 +33,7 @@ export const pushedTables = (steps) => ({
 
 /** The places where relief-sim has them at the end, by id. `collider`: its table of the scene. */
 export function pushedNatively(folder, steps, collider) {
-    writeFileSync(path.join(folder, "scene.toml"), kScene(steps) + collider);
-    run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"));
-    const bytes = readFileSync(path.join(folder, "final.ply"));
-    const native = new Map();
-    for (let at = bytes.indexOf("end_header\n") + 11; at < bytes.length; at += 40) {
-        native.set(bytes.readUInt32LE(at + 32), [0, 4, 8].map((k) => bytes.readFloatLE(at + k)));
-    }
+    const native = play(folder, kScene(steps) + collider);
     assert.equal(native.size, 400);
     return native;
 }
