@@ -266,8 +266,11 @@ Result<void> ColliderTextures::uploadMaterials(std::span<const Materials* const>
                                GL_RGBA_INTEGER, GL_UNSIGNED_INT, table.texels.data());
     bytes_ += table.texels.size() * sizeof(glm::uvec4);
     materials_respond_ = table.responds;
+    material_head_ = table.head;
     material_defines_ = "#define RELIEF_MATERIALS " + std::to_string(table.names.size()) +
-                        "\n#define RELIEF_MATERIALS_LOG2_WIDTH " + std::to_string(table.log2_width) + "\n";
+                        "\n#define RELIEF_MATERIALS_LOG2_WIDTH " + std::to_string(table.log2_width) +
+                        "\n#define RELIEF_MATERIAL_BRICKS " + std::to_string(table.bricks) + "\n" +
+                        (table.loses ? "#define RELIEF_MATERIAL_LOSS\n" : "");
     material_names_ = std::move(table.names);
     return {};
 }
@@ -297,6 +300,8 @@ void ColliderTextures::attach(GLuint program, const Binding& binding) const {
     }
     if (materials_) {
         glUniform1i(glGetUniformLocation(program, "u_relief_materials"), binding.material_unit);
+        glUniform4fv(glGetUniformLocation(program, "u_relief_material_cube"), 1, &material_head_.cube.x);
+        glUniform4iv(glGetUniformLocation(program, "u_relief_material_grids"), 1, &material_head_.grids.x);
     }
     const GLuint index = glGetUniformBlockIndex(program, "ReliefCollider");
     if (index != GL_INVALID_INDEX) {

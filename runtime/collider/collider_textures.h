@@ -30,6 +30,7 @@
 #include "runtime/collider/body_table.h"
 #include "runtime/collider/collider_block.h"
 #include "runtime/collider/map_layout.h"
+#include "runtime/collider/material_table.h"
 #include "runtime/collider/pose.h"
 #include "runtime/gl/gl_object.h"
 
@@ -160,6 +161,7 @@ class ColliderTextures {
     GlTexture materials_;
     std::vector<std::string> material_names_;
     std::string material_defines_;
+    MaterialHead material_head_;  // of a single collider
     bool materials_respond_ = false;
     GlBuffer block_;
     int map_count_ = 0;

@@ -23,9 +23,9 @@ inline constexpr int kWorldMapTexels = 9;
 inline constexpr int kWorldBodyTexels = 8;
 inline constexpr int kWorldLevels = 16;
 
-/// Texels of a record of materials before its first material (collider/materials.glsl), and the levels of a tree.
+/// Of materials (collider/materials.glsl): texels of a body, and the flag of a brick among entries.
 inline constexpr int kMaterialHeadTexels = 2;
-inline constexpr int kMaterialLevels = 20;
+inline constexpr int kMaterialIsBrick = 0x40000000;
 
 /// The shader storage binding of the collider in a tour (collider_tour.glsl).
 inline constexpr int kTourStorage = 0;

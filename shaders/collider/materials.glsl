@@ -1,42 +1,31 @@
-// The material of a contact: formats/materials.cpp is the same in C++. The data lie in one texture, as
+// The material of a contact: formats/materials.cpp has the same in C++. The octree of a collider is a top grid here, with bricks
+// of 4^3 entries where it goes on, two levels each: fewer fetches that wait for one another. The data lie in one texture, as
 // runtime/collider/material_table.h writes them, texel i at (i mod width, i / width):
 //
-//     from 0         bodies: the first texel of the record of each one's collider; 0: it has no materials
-//     a record       lowest corner of the cube, object space, and 1 / its side; then materials, and the texel of the root, 0 without
-//                    a tree (RELIEF_MATERIAL_HEAD_TEXELS); then each material: restitution, 1 - friction and loss of lifetime as
-//                    floats, number of the name; then each pair of sides: axis, towards, against; then the nodes of
-//                    formats/materials.h, three words each
+//     bodies       RELIEF_MATERIAL_HEAD_TEXELS of each: lowest corner of the cube, object space, and 1 / its side; then the
+//                  texels of the first material, 0: it has none, and of the top grid, log2 of cells along the cube, and of
+//                  those of the top grid
+//     a collider   each material: restitution, 1 - friction and loss of lifetime as floats, number of the name; then the top
+//                  grid, x fastest, four entries a texel; then bricks
+//     an entry     RELIEF_MATERIAL_IS_BRICK and its first texel; or a material; or, by bytes from the lowest, the materials of
+//                  surfaces that face against an axis and along it, and 1 + the axis
 uniform highp usampler2D u_relief_materials;
+// The texels of a single collider in its own space.
+#if RELIEF_BODIES == 0
+uniform vec4 u_relief_material_cube;
+uniform ivec4 u_relief_material_grids;
+#endif
 
 uvec4 reliefMaterialTexel(int i) {
     return texelFetch(u_relief_materials, reliefTexel(i, RELIEF_MATERIALS_LOG2_WIDTH), 0);
 }
 
-// How many of the low `count` bits of a byte are set, up to 7.
-int reliefBitsBelow(uint bits, int count) {
-    uint some = bits & ((1u << uint(count)) - 1u);
-    some -= (some >> 1u) & 0x55u;
-    some = (some & 0x33u) + ((some >> 2u) & 0x33u);
-    return int((some + (some >> 4u)) & 15u);
-}
-
-// The leaf of a tree at q, of the cube's [0, 1]^3.
-int reliefMaterialLeaf(int root, vec3 q) {
-    int node = root;
-    int leaf = -1;
-    for (int level = 0; level < RELIEF_MATERIAL_LEVELS && leaf < 0; ++level) {
-        q *= 2.0;
-        ivec3 upper = ivec3(greaterThanEqual(q, vec3(1.0)));
-        q -= vec3(upper);
-        int octant = upper.x + 2 * upper.y + 4 * upper.z;
-        uvec4 words = reliefMaterialTexel(node);
-        if ((words.x >> uint(octant) & 1u) == 0u) {
-            leaf = int((octant < 4 ? words.y : words.z) >> uint(8 * (octant & 3)) & 255u);
-        } else {
-            node = root + int(words.x >> 8u) + reliefBitsBelow(words.x, octant);
-        }
-    }
-    return max(leaf, 0);
+// The entry of a grid of 2^log2 cells along each axis.
+uint reliefMaterialEntry(int grid, ivec3 at, int log2) {
+    int i = at.x + (at.y << log2) + (at.z << 2 * log2);
+    uvec4 four = reliefMaterialTexel(grid + (i >> 2));
+    uvec2 two = (i & 2) == 0 ? four.xy : four.zw;
+    return (i & 1) == 0 ? two.x : two.y;
 }
 
 // 0 to 8: x, y, z, x + y, x - y, x + z, x - z, y + z, y - z.
@@ -49,21 +38,33 @@ float reliefAlongMaterialAxis(vec3 v, int axis) {
 // Of a body's surface near p, with the normal n, of any length; both in the body's object space: restitution, 1 - friction,
 // seconds of life that a step in contact costs, and the number of the name + 1. Without a material 1, 1, 0, 0.
 vec4 reliefMaterial(int body, vec3 p, vec3 n) {
-    int record = int(reliefMaterialTexel(body).x);
-    if (record == 0) {
+#if RELIEF_BODIES == 0
+    vec4 cube = u_relief_material_cube;
+    ivec4 grids = u_relief_material_grids;
+#else
+    vec4 cube = uintBitsToFloat(reliefMaterialTexel(RELIEF_MATERIAL_HEAD_TEXELS * body));
+    ivec4 grids = ivec4(reliefMaterialTexel(RELIEF_MATERIAL_HEAD_TEXELS * body + 1));
+#endif
+#if RELIEF_BODIES > 0
+    if (grids.x == 0) {
         return vec4(1.0, 1.0, 0.0, 0.0);
     }
-    vec4 cube = uintBitsToFloat(reliefMaterialTexel(record));
-    ivec2 sizes = ivec2(reliefMaterialTexel(record + 1).xy);
-    int first = record + RELIEF_MATERIAL_HEAD_TEXELS;
-    int leaf = 0;
-    if (sizes.y > 0) {
-        leaf = reliefMaterialLeaf(sizes.y, clamp((p - cube.xyz) * cube.w, 0.0, 1.0));
+#endif
+    float cells = float(1 << grids.z);
+    ivec3 cell = ivec3(min(clamp((p - cube.xyz) * cube.w, 0.0, 1.0) * cells, cells - 1.0));
+    int below = grids.z - grids.w;  // log2 of the cells along an entry
+    uint entry = reliefMaterialEntry(grids.y, cell >> below, grids.w);
+    // A loop that ends early is not unrolled, and made the whole step on an H100 a fifth slower than this.
+    for (int i = 0; i < RELIEF_MATERIAL_BRICKS; ++i) {
+        if ((entry & uint(RELIEF_MATERIAL_IS_BRICK)) != 0u) {
+            below -= 2;
+            entry = reliefMaterialEntry(int(entry) - RELIEF_MATERIAL_IS_BRICK, (cell >> below) & 3, 2);
+        }
     }
-    if (leaf >= sizes.x) {
-        ivec3 pair = ivec3(reliefMaterialTexel(first + leaf).xyz);
-        leaf = reliefAlongMaterialAxis(n, pair.x) >= 0.0 ? pair.y : pair.z;
+    if (entry > 255u) {
+        bool along = reliefAlongMaterialAxis(n, int(entry >> 16u) - 1) >= 0.0;
+        entry = along ? entry >> 8u & 255u : entry & 255u;
     }
-    uvec4 words = reliefMaterialTexel(first + leaf);
+    uvec4 words = reliefMaterialTexel(grids.x + int(entry));
     return vec4(uintBitsToFloat(words.xyz), float(words.w) + 1.0);
 }

@@ -233,7 +233,7 @@ void stepAt(ivec2 texel) {
     // A mere comparison of numbers that the CPU made: both agree on the step. (Only the GPU knows a loss of life; the CPU
     // then frees the index at its original time of death.)
     float death = birth.y - type.loss * state.collisions;
-#if defined(RELIEF_MATERIALS)
+#if defined(RELIEF_MATERIAL_LOSS)
     death -= g_lost * (birth.y - birth.x);
     bool spent = u_now >= birth.y || ((type.loss > 0.0 || g_lost > 0.0) && u_now >= death);
 #else
@@ -250,7 +250,7 @@ void stepAt(ivec2 texel) {
         after = rested(state);
     } else {
         after = moved(state, type, dies);
-#if defined(RELIEF_MATERIALS)
+#if defined(RELIEF_MATERIAL_LOSS)
         g_lost += g_cost > 0.0 ? min(g_cost / (birth.y - birth.x), 1.0) : 0.0;
 #endif
     }

@@ -29,7 +29,7 @@ RELIEF_STATE_OUT(0) vec4 o_position;
 RELIEF_STATE_OUT(1) vec4 o_velocity;
 
 // Share of the lifetime that materials have cost the particle of this invocation.
-#if defined(RELIEF_MATERIALS)
+#if defined(RELIEF_MATERIAL_LOSS)
 float g_lost = 0.0;
 #endif
 
@@ -44,7 +44,7 @@ State stateAt(ivec2 texel) {
     vec4 position = texelFetch(u_position, texel, 0);
     vec4 velocity = texelFetch(u_velocity, texel, 0);
     float contact = floor(velocity.w);
-#if defined(RELIEF_MATERIALS)
+#if defined(RELIEF_MATERIAL_LOSS)
     g_lost = velocity.w - contact;
     g_lost = g_lost >= RELIEF_LOST_MOST ? 1.0 : g_lost;
 #endif
@@ -63,7 +63,7 @@ void writeState(State before, State after) {
 #endif
     o_position = vec4(after.position, after.collisions);
     o_velocity = vec4(after.velocity, after.contact);
-#if defined(RELIEF_MATERIALS)
+#if defined(RELIEF_MATERIAL_LOSS)
     o_velocity.w += min(g_lost, RELIEF_LOST_MOST);
 #endif
 }
