@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -181,6 +182,7 @@ struct Player {
     std::optional<glm::vec3> eye;     // of the last picture
     std::vector<PointOfInterest> near;
     std::vector<std::string> warnings;  // not told yet
+    std::deque<StepEvents> hits;        // not passed on yet
 
     /// The points that a world is streamed for, besides the emitters.
     void setPoints() {
@@ -426,6 +428,61 @@ EMSCRIPTEN_KEEPALIVE void relief_player_free(Player* player) {
     delete player;
 }
 
+/// Has the new hits of each step from the next one on kept for relief_player_next_hits(). 0, or -1.
+/// \param min_speed  of approach; slower ones are left out.
+EMSCRIPTEN_KEEPALIVE int relief_player_list_hits(Player* player, float min_speed) {
+    return inPass(__func__, -1, [&]() -> Result<int> {
+        RELIEF_TRY(player->simulation->listHits(min_speed, [=](const StepEvents& events) -> Result<void> {
+            StepEvents& hits = player->hits.emplace_back(events);
+            std::erase_if(hits.events, [min_speed](const ParticleEvent& one) {
+                return !one.hit || one.lasts || one.speed < min_speed;
+            });
+            return {};
+        }));
+        return 0;
+    });
+}
+
+/// Of the first step whose hits have come and were not written yet: step, time, events dropped, and how many hits there are.
+/// \return 0: no step.
+EMSCRIPTEN_KEEPALIVE int relief_player_next_hits(const Player* player, double* out) {
+    if (player->hits.empty()) {
+        return 0;
+    }
+    const StepEvents& next = player->hits.front();
+    const double row[4] = {static_cast<double>(next.tag), next.time, static_cast<double>(next.dropped),
+                           static_cast<double>(next.events.size())};
+    std::memcpy(out, row, sizeof(row));
+    return 1;
+}
+
+/// Those of relief_player_next_hits(), which then has the next step: 16 floats each, position, seconds before the end of the
+/// step, velocity, speed of approach, normal, body, material, type, 1 where it dies of it, and the low 24 bits of the id.
+EMSCRIPTEN_KEEPALIVE void relief_player_hits(Player* player, float* out) {
+    const StepEvents& step = player->hits.front();
+    for (const ParticleEvent& one : step.events) {
+        const float row[16] = {one.position.x,
+                               one.position.y,
+                               one.position.z,
+                               static_cast<float>(step.time - one.time),
+                               one.velocity.x,
+                               one.velocity.y,
+                               one.velocity.z,
+                               one.speed,
+                               one.normal.x,
+                               one.normal.y,
+                               one.normal.z,
+                               static_cast<float>(one.body),
+                               static_cast<float>(one.material),
+                               static_cast<float>(one.type),
+                               one.death ? 1.0F : 0.0F,
+                               static_cast<float>(one.id & 0xffffffU)};
+        std::memcpy(out, row, sizeof(row));
+        out += 16;
+    }
+    player->hits.pop_front();
+}
+
 /// The number of lines that relief_player_warnings() has, or -1.
 EMSCRIPTEN_KEEPALIVE int relief_player_step(Player* player, float dt) {
     return inPass(__func__, -1, [&]() -> Result<int> {
@@ -533,6 +590,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
     const ParticleCounts counts = particles.counts();
     const Scene& scene = player->loaded.scene;
     const Bounds& bounds = player->loaded.bounds;
+    const std::span<const std::string> materials = player->simulation->textures().materialNames();
     const Camera camera = sceneCamera(scene, bounds, particles.time());
     return returned(
         Json{{"time", particles.time()},
@@ -549,6 +607,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
              {"ground", scene.ground.enabled && scene.ground.height ? Json(*scene.ground.height) : Json()},
              {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},
              {"background", json(scene.render.background)},
+             {"materials", std::vector<std::string>(materials.begin(), materials.end())},
              {"stream", describeStream(player->simulation->streamCounts())},
              {"bodies", describeBodies(scene.colliders, player->simulation->poses())}}
             .dump());

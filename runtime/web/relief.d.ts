@@ -202,6 +202,28 @@ export interface ParticleSystemOptions {
     shaded?: boolean;
     /** Takes a line for each collider of a world that is streamed that cannot be loaded, once. Default: console.warn(). */
     warn?: (line: string) => void;
+    /**
+     * Takes the hits of each step, new contacts with a surface, in the order of steps. step() calls it, two steps late, so that
+     * nothing waits for the GPU.
+     */
+    hits?: (hits: StepHits) => void;
+    /** Hits that approach the surface slower are left out. Default 0. */
+    hitSpeed?: number;
+}
+
+export interface StepHits {
+    /** From 1; since the system began or was restarted. */
+    step: number;
+    /** Its end, in seconds. */
+    time: number;
+    /** Events beyond the 262,144 that a step has room for, some of which were hits. */
+    dropped: number;
+    /**
+     * 16 numbers each: position of the contact; seconds before `time`; velocity that it came with; speed of approach along the
+     * normal; the surface's normal; body (-1: the floor); material (index into info.materials; -1: none); type; 1 where the
+     * particle dies of it, else 0; id, as read() has it.
+     */
+    rows: Float32Array;
 }
 
 /** A ball in the world. */
@@ -253,6 +275,8 @@ export interface SystemInfo {
     ground: number | null;
     camera: { eye: Vec3; target: Vec3; fov: number };
     background: Vec3;
+    /** Names of the materials of all colliders, which hits number. */
+    materials: string[];
     /**
      * Of a world that is streamed, else null: colliders wanted in full detail, those of them that are there, those that cannot
      * be loaded, and the bytes of all that is there.

@@ -505,13 +505,15 @@ export class ParticleSystem {
     #scene;
     #shaded;
     #warn;
+    #hits; // takes those of a step; or undefined
+    #hitSpeed;
     #fetches = null; // of a world that is streamed
     #near = null; // 4 numbers each
 
     constructor(gl, options = {}) {
-        const wrong = Object.keys(options).find((key) => !["collider", "files", "scene", "shaded", "warn", "world"].includes(key));
+        const wrong = Object.keys(options).find((key) => !["collider", "files", "hits", "hitSpeed", "scene", "shaded", "warn", "world"].includes(key));
         if (wrong !== undefined) {
-            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, scene, shaded, warn and world`);
+            throw new ReliefError(`ParticleSystem has no option '${wrong}'; it has collider, files, hits, hitSpeed, scene, shaded, warn and world`);
         }
         if (options.collider) {
             collider("the option 'collider'", options.collider);
@@ -528,10 +530,19 @@ export class ParticleSystem {
         if (options.warn !== undefined && typeof options.warn !== "function") {
             throw new ReliefError("the option 'warn' is a function that takes a line");
         }
+        if (options.hits !== undefined && typeof options.hits !== "function") {
+            throw new ReliefError("the option 'hits' is a function that takes those of a step");
+        }
+        const { hitSpeed = 0 } = options;
+        if (!(Number.isFinite(hitSpeed) && hitSpeed >= 0)) {
+            throw new ReliefError("the option 'hitSpeed' is a speed, 0 or more, below which hits are left out");
+        }
         use(gl);
         this.#gl = gl;
         this.#shaded = options.shaded ?? true;
         this.#warn = options.warn ?? ((line) => console.warn(line));
+        this.#hits = options.hits;
+        this.#hitSpeed = hitSpeed;
         this.#fetches = options.world?.stream ? new Fetches(options.world.stream.load) : null;
         this.#folder = makeFolder();
         const files = { ...options.files };
@@ -580,6 +591,9 @@ export class ParticleSystem {
         this.#handle = made("relief_player_create", ...this.#text(), this.#shaded ? 1 : 0, this.#fetches ? 1 : 0);
         if (this.#near) {
             done("relief_player_near", this.#handle, this.#near, this.#near.length / 4);
+        }
+        if (this.#hits) {
+            done("relief_player_list_hits", this.#handle, this.#hitSpeed);
         }
     }
 
@@ -647,9 +661,21 @@ export class ParticleSystem {
         if (seconds > 0) {
             const warnings = done("relief_player_step", this.handle, seconds);
             this.#fetch();
+            this.#passHits();
             if (warnings > 0) {
                 this.#tell();
             }
+        }
+    }
+
+    /** Of the steps whose hits have come. The function that takes them may dispose of the system. */
+    #passHits() {
+        const head = new Float64Array(4);
+        while (this.#handle && this.#hits && call("relief_player_next_hits", this.#handle, head)) {
+            const [step, time, dropped, count] = head;
+            const rows = new Float32Array(16 * count);
+            call("relief_player_hits", this.#handle, rows);
+            this.#hits({ step, time, dropped, rows });
         }
     }
 

@@ -1,4 +1,5 @@
-// Materials in the browser: as many births on one of them, and as many deaths on another, as relief-sim has.
+// Materials in the browser: as many births on one of them, and as many deaths on another, as relief-sim has; and the hits that
+// a page gets to know are those that relief-sim lists.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
@@ -62,13 +63,18 @@ test("a browser knows the material that is hit as relief-sim does", { timeout: 1
     assert.ok(drops.every((hit) => Math.abs(hit.position[0]) < 0.01 || (hit.position[0] < 0) === (hit.material === "oak")));
 
     const { page, said } = await libraryPage(t, folder);
-    const [rows, info, error] = await page.evaluate(async ([scene, steps]) => {
+    const [rows, info, told, error] = await page.evaluate(async ([scene, steps]) => {
         const collider = await relief.load("/files/slab.relief");
-        const system = new relief.ParticleSystem(gl, { scene, files: { "slab.relief": collider } });
+        const told = [];
+        const system = new relief.ParticleSystem(gl, {
+            scene,
+            files: { "slab.relief": collider },
+            hits: ({ step, time, dropped, rows }) => told.push({ step, time, dropped, rows: [...rows] }),
+        });
         for (let i = 0; i < steps; ++i) {
             system.step();
         }
-        return [[...system.read()].length, system.info, gl.getError()];
+        return [[...system.read()].length, system.info, told, gl.getError()];
     }, [kScene, kSteps]);
     assert.equal(error, 0, "a GL error");
     assert.deepEqual(said, []);
@@ -77,4 +83,37 @@ test("a browser knows the material that is hit as relief-sim does", { timeout: 1
     const native = places.size;
     assert.ok(native < info.born - 100, `${native} of ${info.born}`);
     assert.equal(rows / 12, native);
+
+    assert.deepEqual(told.map(({ step }) => step), Array.from({ length: kSteps - 2 }, (_, i) => i + 1));
+    const heard = told.flatMap(({ step, time, dropped, rows: all }) => {
+        assert.equal(dropped, 0);
+        return Array.from({ length: all.length / 16 }, (_, i) => ({ step, end: time, row: all.slice(16 * i, 16 * i + 16) }));
+    });
+    const listed = hits.filter((hit) => hit.step <= kSteps - 2);
+    assert.equal(heard.length, listed.length);
+    listed.forEach((hit, i) => {
+        const { step, end, row } = heard[i];
+        assert.equal(step, hit.step);
+        assert.equal(info.materials[row[12]], hit.material);
+        assert.equal(row[13], hit.type);
+        assert.equal(row[15], hit.id % 2 ** 24);
+        const off = [...hit.position.map((x, k) => x - row[k]), end - row[3] - hit.time, hit.speed - row[7],
+                     ...hit.velocity.map((x, k) => x - row[4 + k]), ...hit.normal.map((x, k) => x - row[8 + k])];
+        assert.ok(Math.max(...off.map(Math.abs)) < 1e-3, `${off}`);
+    });
+});
+
+test("what takes hits is a function, and a slowest speed is one", { timeout: 60_000 }, async (t) => {
+    const folder = scratch(t);
+    const { page } = await libraryPage(t, folder);
+    const said = await page.evaluate(() => [{ hits: 3 }, { hits: () => {}, hitSpeed: -1 }].map((options) => {
+        try {
+            new relief.ParticleSystem(gl, options);
+            return "";
+        } catch (error) {
+            return `${error.name}: ${error.message}`;
+        }
+    }));
+    assert.match(said[0], /option 'hits' is a function/);
+    assert.match(said[1], /option 'hitSpeed' is a speed/);
 });
