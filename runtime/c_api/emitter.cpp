@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -7,6 +8,7 @@
 
 #include "formats/animation/mesh_parts.h"
 #include "runtime/c_api/objects.h"
+#include "runtime/collider/collider_surface.h"
 #include "runtime/collider/pose_keys.h"
 
 using namespace relief;  // NOLINT: what C sees has C's names
@@ -65,6 +67,16 @@ Result<T> ofArgument(const Call& call, const char* argument, Result<T> result) {
                   : Result<T>(call.refuse(std::string(argument) + ": " + result.error().message));
 }
 
+Result<EmitterSurface> surfaceOf(const Call& call, const Collider& collider, const char* material) {
+    const ColliderSurface surface = RELIEF_TRY(ofArgument(call, "collider", colliderSurface(collider)));
+    std::vector<glm::uvec3> triangles = surface.triangles;
+    if (material != nullptr) {
+        triangles = RELIEF_TRY(
+            ofArgument(call, "material", materialTriangles(surface, collider.materials, material)));
+    }
+    return ofArgument(call, "collider", EmitterSurface::create(triangles, {}, surface.positions));
+}
+
 Result<EmitterSurface> surfaceOf(const Call& call, const AnimatedMesh& mesh, const char* group,
                                  const char* material) {
     std::vector<float> weights;
@@ -77,6 +89,35 @@ Result<EmitterSurface> surfaceOf(const Call& call, const AnimatedMesh& mesh, con
     }
     return ofArgument(call, "animation",
                       EmitterSurface::create(triangles, std::move(weights), posed(mesh, firstPose(mesh))));
+}
+
+/// \param mesh     of an animation; null: of a collider.
+/// \param surface  the mesh at rest, or the collider's.
+Result<std::shared_ptr<EmitterObject>> emitterOf(const Call& call, const relief_emitter_options& options,
+                                                 std::shared_ptr<const AnimatedMesh> mesh,
+                                                 EmitterSurface surface) {
+    EmitterSettings settings = RELIEF_TRY(settingsOf(call, options));
+    settings.surface = std::move(surface);
+    RELIEF_TRY(ofArgument(call, "options", Emitter::check(settings)));
+    return std::make_shared<EmitterObject>(
+        EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit});
+}
+
+/// Poses the emitter's mesh as a body has it, that comes to its pose within the last dt seconds.
+Result<void> bendWith(const Call& call, EmitterObject& emitter, relief_textures* textures, std::uint32_t body,
+                      double dt) {
+    AnimatedBody& on = *RELIEF_TRY(animatedOf(call, textures, body));
+    if (on.collider.shared() != emitter.mesh) {
+        if (*on.collider.shared() != *emitter.mesh) {
+            return call.refuse("emitter is of another animation than body " + std::to_string(body) +
+                               "; make one of the animation that the body was added with");
+        }
+        emitter.mesh = on.collider.shared();  // alike, and known to be from now on
+    }
+    if (emitter.emitter.isDue(dt)) {
+        on.trail.bend(emitter.emitter, dt);
+    }
+    return {};
 }
 
 /// The way of a body within the last `seconds`, and on at the same speed, so that it moves at their end, too.
@@ -94,11 +135,17 @@ relief_emitter* relief_emitter_create(const relief_animation* animation, const c
         const auto mesh = RELIEF_TRY(call.object(animation, "animation"))->mesh;
         RELIEF_TRY(call.notNull(options, "options"));
         const auto all = RELIEF_TRY(call.structure(options, "options", "relief_emitter_options"));
-        EmitterSettings settings = RELIEF_TRY(settingsOf(call, all));
-        settings.surface = RELIEF_TRY(surfaceOf(call, *mesh, group, material));
-        RELIEF_TRY(ofArgument(call, "options", Emitter::check(settings)));
-        return std::make_shared<EmitterObject>(
-            EmitterObject{mesh, Emitter(std::move(settings), all.seed), all.inherit});
+        return emitterOf(call, all, mesh, RELIEF_TRY(surfaceOf(call, *mesh, group, material)));
+    });
+}
+
+relief_emitter* relief_emitter_create_on(const relief_collider* collider, const char* material,
+                                         const relief_emitter_options* options) {
+    return create<relief_emitter>(__func__, [&](const Call& call) -> Result<std::shared_ptr<EmitterObject>> {
+        const Collider& on = *RELIEF_TRY(call.object(collider, "collider"));
+        RELIEF_TRY(call.notNull(options, "options"));
+        const auto all = RELIEF_TRY(call.structure(options, "options", "relief_emitter_options"));
+        return emitterOf(call, all, nullptr, RELIEF_TRY(surfaceOf(call, on, material)));
     });
 }
 
@@ -106,29 +153,27 @@ void relief_emitter_free(relief_emitter* emitter) {
     release(__func__, emitter, "emitter");
 }
 
-int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter,
-                              relief_textures* animated_textures, uint32_t body, float seconds) {
+int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter, relief_textures* textures,
+                              uint32_t body, float seconds) {
     return answer(__func__, int64_t{-1}, [&](const Call& call) -> Result<int64_t> {
         ParticlesObject& to = *RELIEF_TRY(call.object(particles, "particles"));
         EmitterObject& from = *RELIEF_TRY(call.object(emitter, "emitter"));
-        AnimatedBody& on = *RELIEF_TRY(animatedOf(call, animated_textures, body));
-        const TexturesObject& among = *RELIEF_TRY(call.object(animated_textures, "animated_textures"));
+        const TexturesObject& among = *RELIEF_TRY(call.object(textures, "textures"));
         RELIEF_TRY(call.number(seconds, kStep, {"seconds"}));
-        if (on.collider.shared() != from.mesh) {
-            if (*on.collider.shared() != *from.mesh) {
-                return call.refuse("emitter is of another animation than body " + std::to_string(body) +
-                                   "; make one of the animation that the body was added with");
-            }
-            from.mesh = on.collider.shared();  // alike, and known to be from now on
-        }
         const double dt{seconds};
-        if (from.emitter.isDue(dt)) {
-            on.trail.bend(from.emitter, dt);
+        if (from.mesh) {
+            RELIEF_TRY(bendWith(call, from, textures, body, dt));
+        } else if (body >= std::max<std::size_t>(among.poses.size(), 1)) {
+            return call.refuse("body is " + std::to_string(body) + " of " +
+                               std::to_string(std::max<std::size_t>(among.poses.size(), 1)) +
+                               "; they count from 0");
         }
         to.births.clear();
         from.emitter.emit(dt, to.system.room(), to.births);
-        const EmitterMotion motion{
-            .keys = {}, .body = wayOf(among.before[body], among.poses[body], dt), .inherit = from.inherit};
+        EmitterMotion motion{.keys = {}, .body = {}, .inherit = from.inherit};
+        if (!among.poses.empty()) {
+            motion.body = wayOf(among.before[body], among.poses[body], dt);
+        }
         carry(motion, dt, to.births, from.emitter.placeVelocities());
         return static_cast<int64_t>(RELIEF_TRY(to.system.spawn(to.births)));
     });

@@ -240,7 +240,7 @@ relief_counts relief_particles_counts(const relief_particles* particles);
 /* Waits for the GPU. Writes at most `room` particles, in the order of their indices; returns how many live, or -1. */
 int64_t relief_particles_read(const relief_particles* particles, relief_particle* out, size_t room);
 
-/* --- births on the surface of characters and machines. Since 1.2 --- */
+/* --- births on the surface of characters, machines and colliders. Since 1.2 --- */
 
 typedef struct relief_emitter relief_emitter;
 
@@ -263,12 +263,17 @@ typedef struct relief_emitter_options {
  * `material`: the name of the material that has them; NULL: any. The animation may be freed at once. */
 relief_emitter* relief_emitter_create(const relief_animation* animation, const char* group,
                                       const char* material, const relief_emitter_options* options);
+/* The same on the surface of a collider as it lies in its maps, but for parts thinner than a 96th of its longest side. The collider may
+ * be freed at once. Takes some tenths of a second. */
+relief_emitter* relief_emitter_create_on(const relief_collider* collider, const char* material,
+                                         const relief_emitter_options* options);
 void relief_emitter_free(relief_emitter* emitter);
-/* The births of the last `seconds`, above 0 up to 1e9: of the step that has been taken, in which a body of that animation came to where it
- * is now. They go with the next step, each from where the surface was at its own moment, in a straight line between the two poses. Call
- * it before the relief_textures_set_poses() of the next step. Returns how many there was room for; -1: an error. Needs no context. */
-int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter,
-                              relief_textures* animated_textures, uint32_t body, float seconds);
+/* The births of the last `seconds`, above 0 up to 1e9: of the step that has been taken, in which a body of that animation or collider came
+ * to where it is now; of textures of a single collider it is body 0. They go with the next step, each from where the surface was at its
+ * own moment, in a straight line between the two poses. Call it before the relief_textures_set_poses() of the next step. Returns
+ * how many there was room for; -1: an error. Needs no context. */
+int64_t relief_particles_emit(relief_particles* particles, relief_emitter* emitter, relief_textures* textures,
+                              uint32_t body, float seconds);
 
 /* --- pictures (GL) --- */
 

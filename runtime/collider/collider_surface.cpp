@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "formats/animation/mesh_parts.h"
 #include "formats/base/finite.h"
 
 namespace relief {
@@ -210,6 +212,28 @@ Result<ColliderSurface> colliderSurface(const Collider& collider, std::uint32_t 
                             " of its longest side; name the mesh that it was baked from as emitter.mesh");
     }
     return made;
+}
+
+Result<std::vector<glm::uvec3>> materialTriangles(const ColliderSurface& surface, const Materials& materials,
+                                                  std::string_view name) {
+    std::vector<std::string> names;
+    std::transform(materials.list.begin(), materials.list.end(), std::back_inserter(names),
+                   [](const Material& one) { return one.name; });
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (name.empty() || found == names.end()) {
+        return invalidInput(noSuchPart("material", name, names));
+    }
+    const auto material = static_cast<std::size_t>(found - names.begin());
+    std::vector<glm::uvec3> kept;
+    for (const glm::uvec3& t : surface.triangles) {
+        const glm::vec3& a = surface.positions[t.x];
+        const glm::vec3& b = surface.positions[t.y];
+        const glm::vec3& c = surface.positions[t.z];
+        if (materialAt(materials, (a + b + c) / 3.0F, glm::cross(b - a, c - a)) == material) {
+            kept.push_back(t);
+        }
+    }
+    return kept;
 }
 
 }  // namespace relief

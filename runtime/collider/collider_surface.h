@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <string_view>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -26,5 +27,11 @@ inline constexpr std::uint32_t kSurfaceCellsMax = 512;
 /// Errors: kUsage (cells), kInvalidInput (bounds without extent, no surface in them).
 [[nodiscard]] Result<ColliderSurface> colliderSurface(const Collider& collider,
                                                       std::uint32_t cells = kSurfaceCells);
+
+/// The triangles of a material, which materialAt() has at the middle of each.
+/// Errors: kInvalidInput (no material of this name).
+[[nodiscard]] Result<std::vector<glm::uvec3>> materialTriangles(const ColliderSurface& surface,
+                                                                const Materials& materials,
+                                                                std::string_view name);
 
 }  // namespace relief

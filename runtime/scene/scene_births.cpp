@@ -71,16 +71,21 @@ Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& 
         const AnimatedMesh mesh = RELIEF_TRY(readAnimatedMesh(container.animation));
         return surfaceOf(mesh, restPose(mesh), emitter);
     }
-    if (!emitter.group.empty() || !emitter.material.empty()) {
-        return invalidInput(std::string(emitter.group.empty() ? "emitter.material" : "emitter.group") +
-                            " needs a mesh, and it keeps none; name the one that it was baked from by "
-                            "emitter.mesh, or bake it with --animated");
+    if (!emitter.group.empty()) {
+        return invalidInput(
+            "emitter.group needs a mesh, and it keeps none; name the one that it was baked from by "
+            "emitter.mesh, or bake it with --animated");
     }
     if (!known.contains(&container)) {
         known[&container] = RELIEF_TRY(colliderSurface(container));
     }
     const ColliderSurface& surface = known[&container];
-    return EmitterSurface::create(surface.triangles, {}, surface.positions);
+    std::vector<glm::uvec3> triangles = surface.triangles;
+    if (!emitter.material.empty()) {
+        triangles = RELIEF_TRY(
+            inFront("emitter.material", materialTriangles(surface, container.materials, emitter.material)));
+    }
+    return EmitterSurface::create(triangles, {}, surface.positions);
 }
 
 Result<EmitterSurface> surfaceOf(const SceneEmitter& emitter, const SceneMeshes& meshes, Surfaces& known) {

@@ -40,7 +40,7 @@ const std::set<std::pair<std::string, std::string>> kMayBeNull{
     {"relief_picture_draw", "options"},      {"relief_world_free", "world"},
     {"relief_animation_free", "animation"},  {"relief_world_add", "room"},
     {"relief_emitter_free", "emitter"},      {"relief_emitter_create", "group"},
-    {"relief_emitter_create", "material"},
+    {"relief_emitter_create", "material"},   {"relief_emitter_create_on", "material"},
 };
 const std::set<std::string> kNeedNoContext{"relief_api_version",
                                            "relief_version",
@@ -80,6 +80,7 @@ const std::set<std::string> kNeedNoContext{"relief_api_version",
                                            "relief_animation_joint_name",
                                            "relief_animation_weight_count",
                                            "relief_emitter_create",
+                                           "relief_emitter_create_on",
                                            "relief_emitter_free",
                                            "relief_particles_emit"};
 

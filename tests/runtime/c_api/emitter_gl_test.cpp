@@ -1,9 +1,11 @@
-// Births on the surface of a character, through C.
+// Births on the surfaces of a character and of a collider, through C.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <string>
 #include <vector>
 
@@ -98,6 +100,71 @@ TEST_F(CApiEmitter, SparksComeOffACharacter) {
     relief_particles_free(particles);
 }
 
+// Dust of a box that goes aside and stands turned: on each of its faces by area, with the body's velocity.
+TEST_F(CApiEmitter, DustComesOffACollider) {
+    constexpr float kDt = 0.02F;
+    constexpr int kCount = 4000;
+    stage_.options.capacity = 2 * kCount;
+    stage_.options.gravity[1] = 0.0F;
+    relief_particles* particles = relief_particles_create(nullptr, &stage_.options);
+    relief_emitter_options& options = stage_.emitter_options;
+    options.rate = 0.0F;
+    options.burst = kCount;
+    options.inherit = 1.0F;
+    options.lifetime_min = options.lifetime_max = 100.0F;
+    relief_emitter* emitter = relief_emitter_create_on(stage_.collider, "cloth", &options);
+    ASSERT_NE(emitter, nullptr) << relief_error();
+    EXPECT_EQ(relief_particles_emit(particles, emitter, stage_.textures, 1, kDt), -1);
+    EXPECT_NE(std::string(relief_error()).find("body is 1 of 1; they count from 0"), std::string::npos);
+    const std::uint32_t body = 1;
+    relief_pose place{{1.0F, 2.0F, 3.0F}, {0.0F, 0.6F, 0.0F, 0.8F}};
+    ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, &body, &place, 1), 0);
+    place.position[0] += 0.5F * kDt;
+    ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, &body, &place, 1), 0);
+    ASSERT_EQ(relief_particles_emit(particles, emitter, stage_.world_textures, body, kDt), kCount)
+        << relief_error();
+    ASSERT_EQ(relief_particles_step(particles, kDt), 0);
+    std::vector<relief_particle> dust(kCount);
+    ASSERT_EQ(relief_particles_read(particles, dust.data(), dust.size()), kCount);
+    const glm::dvec3 half(0.4, 0.2, 0.3);
+    const glm::dquat turned(0.8, 0.0, 0.6, 0.0);
+    std::array<int, 6> faces{};
+    for (const relief_particle& one : dust) {
+        EXPECT_NEAR(one.velocity[0], 0.5, 1e-4);
+        EXPECT_LT(std::hypot(one.velocity[1], one.velocity[2]), 1e-4);
+        const glm::dvec3 moved(place.position[0] + 0.5 * double{kDt}, place.position[1], place.position[2]);
+        const glm::dvec3 p = glm::conjugate(turned) *
+                             (glm::dvec3(one.position[0], one.position[1], one.position[2]) - moved) /
+                             2.0;  // the scale of that body
+        std::size_t nearest = 0;
+        double off = 1.0;
+        for (int i = 0; i < 3; ++i) {
+            if (std::abs(std::abs(p[i]) - half[i]) < off) {
+                off = std::abs(std::abs(p[i]) - half[i]);
+                nearest = static_cast<std::size_t>(2 * i + (p[i] < 0.0 ? 1 : 0));
+            }
+        }
+        EXPECT_LT(off, 1e-3);
+        ++faces[nearest];
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const int axis = static_cast<int>(i / 2);
+        const double share = half[(axis + 1) % 3] * half[(axis + 2) % 3] / (2.0 * (0.12 + 0.08 + 0.06));
+        EXPECT_NEAR(faces[i], kCount * share, 5.0 * std::sqrt(kCount * share * (1.0 - share))) << i;
+    }
+    // Of textures of a single collider it lies where its object space does.
+    relief_emitter* again = relief_emitter_create_on(stage_.collider, nullptr, &options);
+    EXPECT_EQ(relief_particles_emit(particles, again, stage_.textures, 0, kDt), kCount);
+    relief_emitter_free(again);
+    relief_emitter_free(emitter);
+    relief_particles_free(particles);
+    EXPECT_EQ(relief_emitter_create_on(stage_.collider, "oak", &options), nullptr);
+    EXPECT_NE(
+        std::string(relief_error()).find("material: there is no material 'oak'; it has 'cloth', 'felt'"),
+        std::string::npos)
+        << relief_error();
+}
+
 TEST_F(CApiEmitter, MistakesOfEmittersAreNamed) {
     relief_emitter_options& options = stage_.emitter_options;
     const auto refused = [&](const char* group, const char* material, const std::string& words) {
@@ -128,11 +195,13 @@ TEST_F(CApiEmitter, MistakesOfEmittersAreNamed) {
     ASSERT_NE(emitter, nullptr) << relief_error();
     EXPECT_EQ(relief_particles_emit(stage_.particles, emitter, stage_.animated_textures, 0, 1.0F), -1);
     EXPECT_NE(std::string(relief_error()).find("emitter is of another animation"), std::string::npos);
-    EXPECT_EQ(relief_particles_emit(stage_.particles, stage_.emitter, stage_.world_textures, 0, 1.0F), -1);
+    relief_emitter* own = relief_emitter_create(stage_.animation, nullptr, nullptr, &options);
+    EXPECT_EQ(relief_particles_emit(stage_.particles, own, stage_.world_textures, 0, 1.0F), -1);
     EXPECT_NE(std::string(relief_error()).find("body is 0, which does not move by clips"), std::string::npos);
     // Of a step of next to no length nothing is wrong, and none of it infinite.
-    EXPECT_GE(relief_particles_emit(stage_.particles, stage_.emitter, stage_.animated_textures, 0, 1e-40F), 0)
+    EXPECT_GE(relief_particles_emit(stage_.particles, own, stage_.animated_textures, 0, 1e-40F), 0)
         << relief_error();
+    relief_emitter_free(own);
     relief_emitter_free(emitter);
     relief_animation_free(animation);
     relief_collider_free(collider);

@@ -40,7 +40,7 @@ class Stage {
         EXPECT_TRUE(context) << context.error().message;
         context_ = std::move(*context);
         Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
-        box.materials.list = {{"oak"}, {"felt"}};
+        box.materials.list = {{"cloth"}, {"felt"}};
         AnimatedMesh tube = bendingTube(8, 6);
         tube.materials = {"cloth"};
         tube.triangle_materials.resize(tube.triangles.size(), 0);
@@ -93,8 +93,8 @@ class Stage {
             animated_textures = relief_textures_create_world(alone);
             relief_world_free(alone);
         }
-        emitter = emitter != nullptr ? emitter
-                                     : relief_emitter_create(animation, nullptr, nullptr, &emitter_options);
+        emitter =
+            emitter != nullptr ? emitter : relief_emitter_create_on(collider, nullptr, &emitter_options);
         ASSERT_TRUE(animation != nullptr && animated_textures != nullptr && emitter != nullptr)
             << relief_error();
         ASSERT_TRUE(collider != nullptr && textures != nullptr && particles != nullptr &&

@@ -136,6 +136,31 @@ TEST(ColliderSurface, BirthsOnItAreUniformByArea) {
     }
 }
 
+TEST(ColliderSurface, AMaterialHasItsPartOfTheArea) {
+    const glm::dvec3 half(0.5, 0.3, 0.2);
+    Collider box = analytic::frontBackCollider(analytic::box(-half, half), 128);
+    // Felt above x = 0.
+    box.materials.list = {{"oak"}, {"felt"}};
+    box.materials.origin = glm::vec3(-1.0F);
+    box.materials.size = 2.0F;
+    box.materials.nodes = {{0, {0, 1, 0, 1, 0, 1, 0, 1}}};
+    ASSERT_EQ(faultOfMaterials(box.materials), "");
+    ColliderSurface felt = surfaceOf(box);
+    const double all = areaOf(felt);
+    felt.triangles = materialTriangles(felt, box.materials, "felt").value();
+    // The cells of the grid that hold the border may go to either side.
+    EXPECT_NEAR(areaOf(felt), 0.5 * all, 4.0 * (half.y + half.z) / kSurfaceCells);
+    EXPECT_TRUE(std::all_of(felt.triangles.begin(), felt.triangles.end(), [&](const glm::uvec3& t) {
+        return felt.positions[t.x].x > -1.1F / kSurfaceCells;
+    }));
+    ColliderSurface oak = surfaceOf(box);
+    oak.triangles = materialTriangles(oak, box.materials, "oak").value();
+    EXPECT_NEAR(areaOf(oak) + areaOf(felt), all, 1e-9);
+    const auto none = materialTriangles(oak, box.materials, "ice");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().message, "there is no material 'ice'; it has 'oak', 'felt'");
+}
+
 TEST(ColliderSurface, RefusesWhatHasNone) {
     const Collider ball = analytic::frontBackCollider(analytic::sphere({0, 0, 0}, 0.5), 32);
     EXPECT_FALSE(colliderSurface(ball, 1));
