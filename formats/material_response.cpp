@@ -22,9 +22,15 @@ std::optional<std::size_t> repeatedName(std::span<const MaterialResponse> respon
     return std::nullopt;
 }
 
-void MaterialResponses::apply(Materials& materials) {
-    for (Material& one : materials.list) {
+void MaterialResponses::see(const Materials& materials) {
+    for (const Material& one : materials.list) {
         names_.insert(one.name);
+    }
+}
+
+void MaterialResponses::apply(Materials& materials) {
+    see(materials);
+    for (Material& one : materials.list) {
         for (const MaterialResponse& response : responses_) {
             if (response.name == one.name) {
                 one.restitution = response.restitution.value_or(one.restitution);

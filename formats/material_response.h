@@ -9,6 +9,7 @@
 
 #include "formats/base/field.h"
 #include "formats/base/result.h"
+#include "formats/base/source_place.h"
 #include "formats/materials.h"
 
 namespace relief {
@@ -19,6 +20,7 @@ struct MaterialResponse {
     std::optional<float> restitution;  ///< nullopt: as it was, as of the next two
     std::optional<float> friction;
     std::optional<float> lifetime_loss;
+    SourcePlace place{};  ///< of a scene's
 
     friend bool operator==(const MaterialResponse&, const MaterialResponse&) = default;
 };
@@ -54,6 +56,8 @@ class MaterialResponses {
     explicit MaterialResponses(std::span<const MaterialResponse> responses) : responses_(responses) {}
 
     void apply(Materials& materials);
+    /// Their names alone.
+    void see(const Materials& materials);
     /// "is the name of no material; there are 'oak' and 'stone'", if any collider that was seen has some. nullopt: one has it.
     [[nodiscard]] std::optional<std::string> faultOf(const std::string& name) const;
 

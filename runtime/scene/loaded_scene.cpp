@@ -75,25 +75,6 @@ Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& 
     return loadPlayedMesh(from, file.mesh, file.extent);
 }
 
-/// Whether every material that a scene names is one of its colliders'.
-Result<void> checkMaterials(const Scene& scene, const std::string& input, const MaterialResponses& known) {
-    const auto check = [&](const std::string& key, const std::string& name) -> Result<void> {
-        if (const std::optional<std::string> fault = known.faultOf(name)) {
-            return invalidInput(input + ": " + key + " = '" + cleanUtf8(name, kMaterialNameMax) + "' " +
-                                *fault);
-        }
-        return {};
-    };
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        RELIEF_TRY(check("material[" + std::to_string(i) + "].name", scene.materials[i].name));
-    }
-    for (std::size_t i = 0; i < scene.spawns.size(); ++i) {
-        const std::string& name = scene.spawns[i].on_material;
-        RELIEF_TRY(name.empty() ? Result<void>() : check("spawn[" + std::to_string(i) + "].material", name));
-    }
-    return {};
-}
-
 /// Reads the scene's world, if it has one, and places its bodies.
 Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& limits,
                        MaterialResponses& responses) {
@@ -137,6 +118,33 @@ std::vector<fs::path> filesOf(const Scene& scene) {
     files.erase(std::unique(files.begin(), files.end()), files.end());
     files.erase(std::remove(files.begin(), files.end(), fs::path()), files.end());
     return files;
+}
+
+Result<void> checkMaterials(const Scene& scene, const LoadedScene& of) {
+    MaterialResponses known({});
+    for (const auto* colliders : {&of.world_colliders, &of.colliders}) {
+        for (const auto& collider : *colliders) {
+            known.see(collider->materials);
+        }
+    }
+    const auto check = [&](const std::string& place, const std::string& key,
+                           const std::string& name) -> Result<void> {
+        const std::optional<std::string> fault = known.faultOf(name);
+        return fault ? invalidInput(place + ": " + key + " = '" + cleanUtf8(name, kMaterialNameMax) + "' " +
+                                    *fault)
+                     : Result<void>();
+    };
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const MaterialResponse& one = scene.materials[i];
+        RELIEF_TRY(check(one.place.text, "material[" + std::to_string(i) + "].name", one.name));
+    }
+    for (std::size_t i = 0; i < scene.spawns.size(); ++i) {
+        const SceneSpawn& one = scene.spawns[i];
+        if (!one.on_material.empty()) {
+            RELIEF_TRY(check(one.place.text, "spawn[" + std::to_string(i) + "].material", one.on_material));
+        }
+    }
+    return {};
 }
 
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
@@ -209,7 +217,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         loaded.bounds.max = glm::max(loaded.bounds.max, bounds.max);
         loaded.colliders.push_back(std::move(read));
     }
-    RELIEF_TRY(checkMaterials(scene, quotedPath(input), responses));
+    RELIEF_TRY(checkMaterials(scene, loaded));
     loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
     loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters, loaded.meshes()));
     if (loaded.scene.flow) {

@@ -51,6 +51,10 @@ struct LoadedScene {
     [[nodiscard]] SceneMeshes meshes() const { return {scene.colliders, colliders, live, played}; }
 };
 
+/// Whether every material that a scene names is one of the colliders of a scene that is loaded.
+/// Errors: kInvalidInput, with the place in the scene and the names that there are.
+[[nodiscard]] Result<void> checkMaterials(const Scene& scene, const LoadedScene& of);
+
 /// Every file that a scene names, sorted; without the scene itself.
 [[nodiscard]] std::vector<std::filesystem::path> filesOf(const Scene& scene);
 

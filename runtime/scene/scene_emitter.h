@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "formats/base/source_place.h"
 #include "formats/collider.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_type.h"
@@ -189,6 +190,7 @@ inline constexpr std::size_t kSpawnsMax = 16;
 struct SceneSpawn : SpawnSettings {
     std::uint64_t seed = 1;
     std::string on_material;  ///< SpawnSettings::material by its name; empty: any
+    SourcePlace place;        ///< of the table
     friend bool operator==(const SceneSpawn&, const SceneSpawn&) = default;
 };
 

@@ -16,7 +16,6 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/finite.h"
-#include "formats/base/text.h"
 #include "formats/config/toml_reader.h"
 #include "formats/texel.h"
 #include "runtime/c_api/call.h"
@@ -296,14 +295,7 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     if (wanted.materials != now.materials) {
         return fail(ErrorCode::kUsage, "other materials need a new system; make one");
     }
-    const std::span<const std::string> materials = player.simulation->textures().materialNames();
-    for (const SceneSpawn& spawn : wanted.spawns) {
-        if (!spawn.on_material.empty() &&
-            std::find(materials.begin(), materials.end(), spawn.on_material) == materials.end()) {
-            return fail(ErrorCode::kUsage, "spawn.material = '" + cleanUtf8(spawn.on_material) +
-                                               "' is the name of no material of the colliders");
-        }
-    }
+    RELIEF_TRY(checkMaterials(wanted, player.loaded));
     std::optional<std::vector<Emitter>> made;
     if (emitters) {
         made = RELIEF_TRY(makeEmitters(wanted.emitters, player.loaded.meshes()));

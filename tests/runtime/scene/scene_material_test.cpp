@@ -57,15 +57,24 @@ TEST(SceneMaterial, MistakesHaveTheirPlace) {
     const test::TemporaryFolder folder;
     static_cast<void>(boxIn(folder));
     for (const auto& [more, words] :
-         {std::pair("[[material]]\nname = \"stave\"\n",
-                    "material[0].name = 'stave' is the name of no material; did you mean 'stove'? "
-                    "There are 'oak', 'stove'"),
+         {std::pair(
+              "[[material]]\nname = \"stave\"\n",
+              "scene.toml:3:1: material[0].name = 'stave' is the name of no material; did you mean 'stove'? "
+              "There are 'oak', 'stove'"),
           std::pair("[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n",
-                    "spawn[0].material = 'ice' is the name of no material; there are 'oak', 'stove'")}) {
+                    "scene.toml:3:1: spawn[0].material = 'ice' is the name of no material; there are 'oak', "
+                    "'stove'")}) {
         const auto loaded = loadAll(folder.write("scene.toml", kHead + more), {});
         ASSERT_FALSE(loaded);
         EXPECT_NE(loaded.error().message.find(words), std::string::npos) << loaded.error().message;
-        EXPECT_NE(loaded.error().message.find("scene.toml"), std::string::npos) << loaded.error().message;
+        // A scene that another one becomes as it plays.
+        const auto plays = loadAll(folder.write("plays.toml", kHead), {});
+        const auto changed = parseScene(kHead + more, "scene.toml");
+        ASSERT_TRUE(plays && changed);
+        EXPECT_TRUE(checkMaterials(plays->scene, *plays));
+        const auto checked = checkMaterials(*changed, *plays);
+        ASSERT_FALSE(checked);
+        EXPECT_NE(checked.error().message.find(words), std::string::npos) << checked.error().message;
     }
 }
 
