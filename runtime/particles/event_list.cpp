@@ -91,6 +91,8 @@ void EventList::useFilter(const GlProgram& program) const {
     program.use();
     program.set("u_min_speed", options_.min_speed);
     program.set("u_event_kinds", glm::ivec3(options_.hits, options_.lasting, options_.deaths));
+    program.set("u_event_type", options_.type ? static_cast<GLint>(*options_.type) : -1);
+    program.set("u_event_material", options_.material ? *options_.material + 1 : -1);
 }
 
 Result<void> EventList::createPrograms() {
@@ -104,10 +106,10 @@ Result<void> EventList::createPrograms() {
     for (const GlProgram* program : {&count_program_, &list_program_}) {
         useFilter(*program);
         program->set("u_event_surface", kSurfaceUnit);
+        program->set("u_birth", kBirthUnit);
     }
     list_program_.set("u_event_velocity", kVelocityUnit);
     list_program_.set("u_position_before", kBeforeUnit);
-    list_program_.set("u_birth", kBirthUnit);
     for (int level = 0; level < kEventLevels; ++level) {
         list_program_.set(("u_count_" + std::to_string(level + 1)).c_str(), kCountUnit + level);
     }
@@ -143,7 +145,9 @@ void EventList::count(const Step& step) const {
     count_program_.use();
     count_program_.set("u_width", static_cast<GLint>(step.width));
     count_program_.set("u_count", static_cast<GLint>(step.extent));
+    count_program_.set("u_materials", static_cast<GLint>(step.materials + 1));
     useTexture(kSurfaceUnit, step.surface);
+    useTexture(kBirthUnit, step.birth);
     std::uint32_t count = reduced(step.extent);
     drawEntries(count_program_, counts_.front().target, count);
     sum_program_.use();

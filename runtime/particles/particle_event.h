@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 namespace relief {
@@ -15,6 +16,8 @@ struct EventOptions {
     float min_speed = 0.0F;  ///< slower hits are left out; world units a second, ≥ 0
     std::uint32_t most =
         65'536;  ///< of a step, 1…kCapacityMax; the rest, of the highest indices, is left out
+    std::optional<std::uint32_t> type{};  ///< events of others are left out
+    std::optional<int> material{};        ///< as ParticleEvent::material: hits on others are left out
     friend bool operator==(const EventOptions&, const EventOptions&) = default;
 };
 

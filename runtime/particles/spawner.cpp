@@ -19,14 +19,29 @@ bool Spawner::heeds(const ParticleEvent& event) const {
                      settings_.material.value_or(event.material) == event.material;
 }
 
+EventOptions Spawner::heeded() const {
+    const bool hits = settings_.on == SpawnOn::kCollision;
+    return {.hits = hits,
+            .deaths = !hits,
+            .min_speed = hits ? settings_.min_speed : 0.0F,
+            .most = settings_.most,
+            .type = settings_.of,
+            .material = hits ? settings_.material : std::nullopt};
+}
+
 std::uint64_t Spawner::spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
                              std::vector<Birth>& births) {
     const float radius =
         types.empty() ? 0.0F : types[std::min<std::size_t>(settings_.type, types.size() - 1)].radius;
     std::uint64_t left = std::min<std::uint64_t>(room, settings_.most);
     std::uint64_t refused = 0;
+    std::uint64_t heeded = 0;
     for (const ParticleEvent& event : step.events) {
         if (!heeds(event)) {
+            continue;
+        }
+        if (++heeded > settings_.most) {  // nothing is drawn: a shorter list makes the same births
+            refused += settings_.count_min;
             continue;
         }
         const std::uint64_t due =

@@ -97,7 +97,8 @@ class Spawner {
     /// \param stream    spawners of one seed and different streams are independent.
     Spawner(const SpawnSettings& settings, std::uint64_t seed, std::uint64_t stream = 0);
 
-    /// The births that the events of a step make, in their order, of age 0. Where a hit makes them, they touch the
+    /// The births that the events of a step make, in their order, of age 0. Those behind the first `most` that it heeds change
+    /// nothing but the number refused, where each counts as its least number of births. Where a hit makes them, they touch the
     /// surface from outside.
     /// \param types   of the particle system: their radii.
     /// \param room    at most so many are made.
@@ -106,6 +107,9 @@ class Spawner {
     /// event has none.
     std::uint64_t spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
                         std::vector<Birth>& births);
+
+    /// Exactly the events that it heeds, and as many of a step as it can use.
+    [[nodiscard]] EventOptions heeded() const;
 
     [[nodiscard]] const SpawnSettings& settings() const { return settings_; }
 

@@ -148,7 +148,24 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
 Result<void> Simulation::listHits(float min_speed, EventSink sink) {
     event_sink_ = std::move(sink);
     sink_min_speed_ = min_speed;
+    sink_from_ = steps_ + 1;
     return setEvents();
+}
+
+std::optional<EventOptions> Simulation::heededAlone() const {
+    if (event_sink_ || spawners_.empty()) {
+        return std::nullopt;
+    }
+    EventOptions all = spawners_.front().heeded();
+    for (const Spawner& spawner : spawners_) {
+        EventOptions one = spawner.heeded();
+        one.most = all.most = std::max(all.most, one.most);
+        if (!(one == all)) {
+            return std::nullopt;
+        }
+    }
+    all.most = std::min(all.most, kEventsMax);
+    return all;
 }
 
 Result<void> Simulation::setEvents() {
@@ -166,9 +183,19 @@ Result<void> Simulation::setEvents() {
     }
     options.hits = options.min_speed < kNone;
     options.min_speed = options.hits ? options.min_speed : 0.0F;
-    const auto wanted = options.hits || options.deaths ? std::optional(options) : std::nullopt;
+    const auto alone = heededAlone();
+    const auto wanted = alone                            ? alone
+                        : options.hits || options.deaths ? std::optional(options)
+                                                         : std::nullopt;
+    refused_each_ = alone ? 0 : 1;
+    for (const Spawner& spawner : spawners_) {
+        refused_each_ += alone ? spawner.settings().count_min : 0;
+    }
     if (wanted == event_options_) {
         return {};
+    }
+    while (auto events = RELIEF_TRY(particles_->waitEvents())) {
+        held_events_.push_back(std::move(*events));
     }
     RELIEF_TRY(particles_->setEvents(wanted));
     event_options_ = wanted;
@@ -176,15 +203,21 @@ Result<void> Simulation::setEvents() {
 }
 
 Result<void> Simulation::takeEvents(int in_flight) {
-    while (particles_->eventsInFlight() > in_flight) {
-        const auto events = RELIEF_TRY(particles_->waitEvents());
+    while (static_cast<int>(held_events_.size()) + particles_->eventsInFlight() > in_flight) {
+        std::optional<StepEvents> events;
+        if (held_events_.empty()) {
+            events = RELIEF_TRY(particles_->waitEvents());
+        } else {
+            events = std::move(held_events_.front());
+            held_events_.erase(held_events_.begin());
+        }
         if (!events) {
             return {};
         }
-        if (event_sink_ && events->tag > 0) {
+        if (event_sink_ && events->tag >= sink_from_) {
             RELIEF_TRY(event_sink_(*events));
         }
-        refused_ += spawners_.empty() ? 0 : events->dropped;
+        refused_ += spawners_.empty() ? 0 : refused_each_ * events->dropped;
         for (Spawner& spawner : spawners_) {
             const std::uint64_t room =
                 particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());

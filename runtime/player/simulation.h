@@ -151,6 +151,9 @@ class Simulation {
     [[nodiscard]] Result<void> moveColliders(double time);
     /// Has the events listed that the scene's [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
+    /// The events that the scene's [[spawn]] need, if all heed the same ones, and nothing else needs any: then the list is no
+    /// longer than they can use. Of several that heed different ones, the last event of one may lie behind any number of others.
+    [[nodiscard]] std::optional<EventOptions> heededAlone() const;
     /// Until the events of at most so many steps are in flight.
     [[nodiscard]] Result<void> takeEvents(int in_flight);
 
@@ -179,6 +182,9 @@ class Simulation {
     std::optional<EventOptions> event_options_;
     EventSink event_sink_;  // may be empty
     float sink_min_speed_ = 0.0F;
+    std::uint64_t sink_from_ = 1;          // the first step whose events it gets
+    std::vector<StepEvents> held_events_;  // of a list that another one has replaced
+    std::uint64_t refused_each_ = 1;       // births for each event that a list dropped
 };
 
 }  // namespace relief

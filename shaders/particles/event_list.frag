@@ -12,13 +12,11 @@
 //!include particles/events.glsl
 uniform highp sampler2D u_event_velocity;
 uniform highp sampler2D u_position_before;
-uniform highp sampler2D u_birth;
 uniform highp sampler2D u_count_1;  // of particles
 uniform highp sampler2D u_count_2;  // of count_1's
 uniform highp sampler2D u_count_3;
 uniform highp sampler2D u_count_4;  // of all
 uniform int u_width;      // of the particles' textures
-uniform int u_materials;  // names of materials, + 1
 uniform float u_radius[RELIEF_TYPES];
 
 layout(location = 0) out vec4 o_position;
@@ -78,7 +76,7 @@ void main() {
     int flags = code % RELIEF_EVENT_FLAGS;
     int place = code / (RELIEF_EVENT_FLAGS * RELIEF_EVENT_DIRECTIONS);
     int body = place / u_materials - 1;
-    int material = place % u_materials;
+    int material = materialOf(code);
     vec3 normal = vec3(0.0);
     float radius = 0.0;
     if ((flags & RELIEF_EVENT_COLLISION) != 0) {

@@ -346,14 +346,21 @@ TEST_P(EventsGlTest, TheListKeepsWhatIsAskedFor) {
     const auto all = run({.lasting = true});
     const auto fast = run({.lasting = false, .min_speed = 1.5F});
     const auto few = run({.lasting = true, .most = 7});
+    const auto third = run({.lasting = true, .type = 3});
     ASSERT_EQ(all.size(), 25U);
     std::size_t left_out = 0;
     std::size_t lasting = 0;
+    std::size_t thirds = 0;
     std::uint32_t dropped = 0;
     for (std::size_t step = 0; step < all.size(); ++step) {
         std::size_t next = 0;
+        std::size_t next_third = 0;
         for (std::size_t i = 0; i < all[step].events.size(); ++i) {
             const ParticleEvent& event = all[step].events[i];
+            if (event.type == 3) {
+                ASSERT_LT(next_third, third[step].events.size());
+                EXPECT_EQ(third[step].events[next_third++].id, event.id);
+            }
             lasting += event.lasts ? 1 : 0;
             if (!event.lasts && event.speed >= 1.5F) {
                 ASSERT_LT(next, fast[step].events.size());
@@ -367,6 +374,8 @@ TEST_P(EventsGlTest, TheListKeepsWhatIsAskedFor) {
             }
         }
         EXPECT_EQ(next, fast[step].events.size());
+        EXPECT_EQ(next_third, third[step].events.size());
+        thirds += next_third;
         EXPECT_EQ(all[step].dropped, 0U);
         EXPECT_EQ(few[step].events.size() + few[step].dropped, all[step].events.size());
         EXPECT_LE(few[step].events.size(), 7U);
@@ -374,6 +383,7 @@ TEST_P(EventsGlTest, TheListKeepsWhatIsAskedFor) {
     }
     EXPECT_GT(left_out, 100U);
     EXPECT_GT(lasting, 10U);
+    EXPECT_GT(thirds, 100U);
     EXPECT_GT(dropped, 100U);
 }
 

@@ -132,6 +132,43 @@ TEST_P(MaterialsGlTest, DropsNameTheSquareThatTheyHit) {
     }
 }
 
+TEST_P(MaterialsGlTest, HitsOnOneMaterialMayBeListedAlone) {
+    const auto run = [&](const EventOptions& options) {
+        make({.capacity = 4000});
+        collideWith(ColliderTextures::create(board_));
+        EXPECT_TRUE(particles_->setGround(-0.05F));
+        EXPECT_TRUE(particles_->setEvents(options));
+        Pcg32 random(12);
+        std::vector<Birth> births;
+        for (std::uint32_t i = 0; i < 3000; ++i) {
+            const float x = random.between(-0.39F, 0.39F);
+            // On the board, beside it on the ground, and old ones that die.
+            const glm::vec3 from(i % 3 == 0 ? x + 1.0F : x, i % 3 == 0 ? -0.04F : 0.21F,
+                                 random.between(-0.29F, 0.29F));
+            births.push_back({from, {0.0F, -3.0F, 0.0F}, i % 7 == 0 ? 0.5F * kDt : 100.0F, 0});
+        }
+        EXPECT_EQ(particles_->spawn(births), births.size());
+        EXPECT_TRUE(particles_->step(kDt));
+        return hits();
+    };
+    const std::vector<ParticleEvent> all = run({.deaths = true});
+    for (const int material : {-1, 0, 1}) {
+        const std::vector<ParticleEvent> some = run({.deaths = true, .material = material});
+        std::vector<std::uint32_t> wanted;
+        for (const ParticleEvent& event : all) {
+            if (event.death || event.material == material) {
+                wanted.push_back(event.id);
+            }
+        }
+        EXPECT_GT(wanted.size(), 500U);
+        EXPECT_LT(wanted.size(), all.size() - 500);
+        ASSERT_EQ(some.size(), wanted.size()) << material;
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            EXPECT_EQ(some[i].id, wanted[i]);
+        }
+    }
+}
+
 TEST_P(MaterialsGlTest, NamesAreOneOverColliders) {
     const Collider plain = boxCollider();
     Collider other = boxCollider();

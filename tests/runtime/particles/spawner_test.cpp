@@ -132,6 +132,53 @@ TEST(Spawner, NothingIsLostAboveTheLimits) {
     EXPECT_EQ(Spawner(settings, 9).spawn(step, {}, 4321, some), 5000U - 4321U);
 }
 
+// A list that ends behind the last event that can be used.
+TEST(Spawner, AListOfWhatItHeedsMayBeShort) {
+    SpawnSettings settings;
+    settings.of = 1;
+    settings.min_speed = 2.0F;
+    settings.material = 4;
+    settings.count_min = 1;
+    settings.count_max = 3;
+    settings.most = 20;
+    Spawner by_all(settings, 9);
+    Spawner by_few(settings, 9);
+    const EventOptions heeded = by_all.heeded();
+    EXPECT_EQ(heeded, (EventOptions{.min_speed = 2.0F, .most = 20, .type = 1, .material = 4}));
+    for (std::uint32_t step = 0; step < 5; ++step) {
+        std::vector<ParticleEvent> all;
+        std::vector<ParticleEvent> few;
+        std::uint32_t dropped = 0;
+        for (std::uint32_t i = 0; i < 100 + 40 * step; ++i) {
+            ParticleEvent hit = hitOf(i, i % 2, i % 3 == 0 ? 1.0F : 3.0F);
+            hit.material = i % 5 == 0 ? 3 : 4;
+            all.push_back(hit);
+            if (hit.type == heeded.type && hit.speed >= heeded.min_speed && hit.material == heeded.material) {
+                if (few.size() < heeded.most) {
+                    few.push_back(hit);
+                } else {
+                    ++dropped;
+                }
+            }
+        }
+        std::vector<Birth> births;
+        std::vector<Birth> same;
+        const std::uint64_t refused = by_all.spawn(stepOf(all), {}, 1000, births);
+        EXPECT_EQ(by_few.spawn(stepOf(few), {}, 1000, same) + dropped, refused);
+        EXPECT_GT(dropped, 0U);
+        ASSERT_EQ(births.size(), 20U);
+        ASSERT_EQ(same.size(), births.size());
+        for (std::size_t i = 0; i < births.size(); ++i) {
+            EXPECT_EQ(same[i].position, births[i].position);
+            EXPECT_EQ(same[i].velocity, births[i].velocity);
+        }
+    }
+    settings.on = SpawnOn::kDeath;
+    settings.material.reset();
+    EXPECT_EQ(Spawner(settings, 9).heeded(),
+              (EventOptions{.hits = false, .deaths = true, .most = 20, .type = 1}));
+}
+
 TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
     ParticleEvent age;
     age.death = true;

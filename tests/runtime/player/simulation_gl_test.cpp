@@ -72,5 +72,76 @@ lifetime = [9, 9]
     EXPECT_EQ(made->mesh(1)->triangleCount(), mesh.triangles.size());
 }
 
+// The list of events is as short as the spawns can use, or long for a log: the particles are the same.
+TEST_P(SimulationGlTest, ALogOfHitsChangesNoBirth) {
+    const test::TemporaryFolder folder;
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
+    const std::string scene = R"(
+time = { dt = 0.02, steps = 60, prewarm = 0.5 }
+particles = { capacity = 20000 }
+forces = { gravity = [0, -3, 0], drag = 0 }
+[collider]
+file = "tube.relief"
+play = { clip = "bend", resolution = 64 }
+[[type]]
+name = "drop"
+on_collision = "die"
+[[type]]
+name = "splash"
+collides = ["ground"]
+[[emitter]]
+box_min = [-1.2, 2.3, -1.2]
+box_max = [1.2, 2.5, 1.2]
+rate = 4000
+velocity = [0, -1, 0]
+lifetime = 2
+[[spawn]]
+on = "collision"
+of = "drop"
+type = "splash"
+count = [1, 3]
+most = 60
+lifetime = [0.2, 0.4]
+speed = 1
+)";
+    const auto loaded = loadAll(folder.write("scene.toml", scene), {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    const auto run = [&](bool log, std::size_t& longest) {
+        auto made = Simulation::create(*loaded);
+        EXPECT_TRUE(made) << made.error().message;
+        std::uint64_t next = 1;
+        if (log) {
+            EXPECT_TRUE(made->listHits(0.0F, [&](const StepEvents& events) -> Result<void> {
+                EXPECT_EQ(events.tag, next++);
+                longest = std::max(longest, events.events.size());
+                return {};
+            }));
+        }
+        for (int step = 0; step < 60; ++step) {
+            EXPECT_TRUE(made->step());
+        }
+        EXPECT_TRUE(made->finishEvents());
+        EXPECT_EQ(next, log ? 61U : 1U);
+        EXPECT_GT(made->refused(), 100U);
+        auto particles = made->particles().readState();
+        EXPECT_TRUE(particles);
+        return std::pair(made->refused(), *particles);
+    };
+    std::size_t longest = 0;
+    const auto [refused, plain] = run(false, longest);
+    const auto [refused_logged, logged] = run(true, longest);
+    EXPECT_GT(longest, 60U) << "more than can be used";
+    EXPECT_EQ(refused_logged, refused);
+    ASSERT_EQ(logged.size(), plain.size());
+    std::size_t splashes = 0;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        ASSERT_EQ(logged[i].id, plain[i].id);
+        ASSERT_EQ(logged[i].position, plain[i].position);
+        ASSERT_EQ(logged[i].velocity, plain[i].velocity);
+        splashes += plain[i].type == 1 ? 1 : 0;
+    }
+    EXPECT_GT(splashes, 200U);
+}
+
 }  // namespace
 }  // namespace relief
