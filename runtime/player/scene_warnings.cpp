@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <set>
+#include <span>
 
 #include "formats/base/file_io.h"
 #include "formats/nearest_surface.h"
@@ -88,6 +89,26 @@ Fastest fastestAt(std::size_t group, const LoadedScene& loaded, std::span<const 
     return fastest;
 }
 
+/// A body that is thinner than a step is long.
+struct Thin {
+    std::string file;
+    float thick = 0.0F;  // world units, as are the next
+    float speed = 0.0F;
+    float step = 0.0F;
+};
+
+/// Of several, the thinnest decides the cure.
+std::string thinWarning(std::span<const Thin> all) {
+    const Thin& worst = *std::min_element(all.begin(), all.end(),
+                                          [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
+    const bool several = all.size() > 1;
+    return "at a speed of " + number(double{worst.speed}) + " a step is " + number(double{worst.step}) +
+           " long, and " + worst.file + " mostly " + number(double{worst.thick}) + " thick" +
+           (several ? ", the thinnest of " + std::to_string(all.size()) + " such colliders" : "") +
+           ": particles may pass through " + (several ? "them" : "it") +
+           "; set collision.sweep = " + number(0.5 * double{worst.thick}) + ", or a smaller time.dt";
+}
+
 /// Mostly from one side of a body to the other, in units of its object space; nullopt: too little of it is seen.
 std::optional<float> typicalThickness(const Collider& collider) {
     const float longest = collider.bounds.longestSide();
@@ -125,7 +146,7 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
         const std::vector<Birth> more = birthsOf(loaded.emitters[i], motions[i], scene);
         births.insert(births.end(), more.begin(), more.end());
     }
-    std::vector<std::string> warnings;
+    std::vector<Thin> thin;
     std::vector<Fastest> of_groups;
     for (std::size_t i = 0; i < std::min<std::size_t>(loaded.colliders.size(), ColliderTextures::kGroups);
          ++i) {
@@ -148,14 +169,10 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
         thicknesses.emplace(&collider, thickness);
         const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
         if (thickness && step > thick && warned.insert(body.path.string()).second) {
-            warnings.push_back("at a speed of " + number(double{speed}) + " a step is " +
-                               number(double{step}) + " long, and " + quotedPath(body.path.filename()) +
-                               " mostly " + number(double{thick}) +
-                               " thick: particles may pass through it; set collision.sweep = " +
-                               number(0.5 * double{thick}) + ", or a smaller time.dt");
+            thin.push_back({quotedPath(body.path.filename()), thick, speed, step});
         }
     }
-    return warnings;
+    return thin.empty() ? std::vector<std::string>() : std::vector{thinWarning(thin)};
 }
 
 std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {

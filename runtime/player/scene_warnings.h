@@ -10,8 +10,8 @@
 
 namespace relief {
 
-/// One line for each body, with the cure, whose thickness is below the length of a step, so that particles pass through it.
-/// Bodies that deform are left out.
+/// One line at most: bodies whose thickness is below the length of a step, so that particles pass through them; how many there
+/// are, the thinnest, and the cure for all. Bodies that deform are left out.
 [[nodiscard]] std::vector<std::string> sceneWarnings(const LoadedScene& loaded);
 
 /// The same, of a run: most births found no free place.
