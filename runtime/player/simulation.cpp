@@ -11,6 +11,7 @@
 #include "formats/base/result.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/scene/scene_stream.h"
+#include "runtime/scene/scene_touch.h"
 
 namespace relief {
 namespace {
@@ -90,7 +91,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
     made.emitters_ = loaded.emitters;
     made.emitter_balls_ = emitterBalls(made.emitters_);
     made.types_ = particleTypes(scene);
-    made.motions_ = emitterMotions(scene.emitters, scene.colliders);
+    made.motions_ = emitterMotions(loaded);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty() || c.play; });
     made.poses_ = posesAt(scene, 0.0);
@@ -232,7 +233,7 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
         emitters_ = std::move(*emitters);
         emitter_balls_ = emitterBalls(emitters_);
     }
-    motions_ = emitterMotions(scene_->emitters, scene_->colliders);
+    motions_ = emitterMotions(*loaded_);
     types_ = particleTypes(*scene_);
     poses_change_ = poses_change_ || posesAt(*scene_, particles_->time()) != poses_;
     RELIEF_TRY(applyScene(*scene_, *particles_));

@@ -144,6 +144,12 @@ Result<void> checkMaterials(const Scene& scene, const LoadedScene& of) {
             RELIEF_TRY(check(one.place.text, "spawn[" + std::to_string(i) + "].material", one.on_material));
         }
     }
+    for (std::size_t i = 0; i < scene.emitters.size(); ++i) {
+        const SceneEmitter& one = scene.emitters[i];
+        for (const std::string& name : one.touching.value_or(SceneTouching{}).materials) {
+            RELIEF_TRY(check(one.place, "emitter[" + std::to_string(i) + "].touching.material", name));
+        }
+    }
     return {};
 }
 

@@ -19,6 +19,35 @@
 
 namespace relief {
 
+/// emitter.touching.
+struct SceneTouching {
+    std::vector<std::string> materials;  ///< by name; empty: any, and what has none
+    float within = 0.0F;                 ///< world units, as is the next
+    float min_speed = 0.0F;
+};
+
+/// A name, or several.
+template <class Names>
+struct NameList {
+    Names& names;
+};
+template <class Names>
+NameList(Names&) -> NameList<Names>;
+
+template <class Visitor, FieldsOf<SceneTouching> T>
+void fields(Visitor& visit, T& touching) {
+    const NameList names{touching.materials};
+    bool named = !touching.materials.empty();
+    visit(
+        "within", touching.within,
+        {"Distance from the nearest other surface up to which it is touched", {}, kSizeRange, {}, kRequired});
+    visit(
+        "material", FieldMaybe{names, named},
+        leftOut({"Name of the material that is touched, or a list of names", {}, {}, "any, and the ground"}));
+    visit("min_speed", touching.min_speed,
+          {"Least speed of the emitter's surface relative to the one that it touches", "1/s", kSpeedRange});
+}
+
 /// An emitter as its table gives it. completeEmitters() fills what depends on the collider and on the run.
 struct SceneEmitter : EmitterSettings {
     SceneEmitter();
@@ -36,6 +65,7 @@ struct SceneEmitter : EmitterSettings {
     std::string mesh_origin;
     std::string group;     ///< of that mesh; empty: all of it
     std::string material;  ///< likewise
+    std::optional<SceneTouching> touching;
     std::uint64_t seed = 1;
     std::string place;  ///< "file:line:column" of the table
 
@@ -129,6 +159,9 @@ void fields(Visitor& visit, E& e) {
                  "all",
                  {.only = "surface"}}));
     visit("material", e.material, leftOut({"Material that gives birth", {}, {}, "all", {.only = "surface"}}));
+    visit("touching", e.touching,
+          leftOut(
+              {"Births only where the surface touches another", {}, {}, "everywhere", {.only = "surface"}}));
     visit("start", e.start, {"Time before anything is born", "s", kTimeRange});
     visit("rate", FieldMaybe{e.rate, e.has_rate},
           {"Births a second; several emitters without a rate share what the others leave of the capacity",

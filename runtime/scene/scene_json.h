@@ -37,6 +37,15 @@ template <class Aim>
     return schemaOf(std::variant<std::array<float, 2>, NormalSpeed>{});
 }
 
+template <class Names>
+[[nodiscard]] Json jsonField(const NameList<Names>& list) {
+    return jsonOf(list.names);
+}
+template <class Names>
+[[nodiscard]] Json schemaField(const NameList<Names>& /*list*/) {
+    return arraySchema(textSchema({}), kFromOne);
+}
+
 template <class Bits>
 [[nodiscard]] Json jsonField(const CollidesList<Bits>& list) {
     Json bodies = Json::array();

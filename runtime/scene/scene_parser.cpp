@@ -78,6 +78,21 @@ void readField(const TomlValue& from, EmitterSpeed<EmitterAim> speed, const Fiel
     readValue(from, FieldSpan{speed.aim.speed_min, speed.aim.speed_max}, info);
 }
 
+void readField(const TomlValue& from, NameList<std::vector<std::string>> list, const FieldInfo& /*info*/) {
+    list.names.clear();
+    const std::size_t count = from.array() == nullptr ? 1 : from.array()->size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const TomlValue one = from.array() == nullptr ? from : from[i];
+        if (!one.node().is_string()) {
+            one.wrongType("a name, or a list of names");
+        }
+        list.names.push_back(one.text());
+    }
+    if (std::count(list.names.begin(), list.names.end(), "") > 0 || count == 0) {
+        from.fail(from.name() + " has no name, or an empty one; give one, or remove it");
+    }
+}
+
 void readField(const TomlValue& from, CollidesList<std::uint32_t> list, const FieldInfo& /*info*/) {
     constexpr std::string_view kWanted = "numbers of colliders and perhaps \"ground\", as in [0, \"ground\"]";
     static constexpr std::array<std::string_view, 1> kGround{"ground"};

@@ -32,6 +32,12 @@ FieldType fieldType(const EmitterSpeed<Aim>& /*speed*/) {
     return {{{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf(NormalSpeed{}))}}}, {}};
 }
 
+template <class Names>
+FieldType fieldType(const NameList<Names>& /*list*/) {
+    const Json text = {{"type", "string"}, {"minLength", 1}};
+    return {{{"oneOf", {text, {{"type", "array"}, {"items", text}, {"minItems", 1}}}}}, {}};
+}
+
 template <class Bits>
 FieldType fieldType(const CollidesList<Bits>& /*list*/) {
     return {{{"type", "array"}, {"items", {{"oneOf", {{{"type", "integer"}}, {{"const", "ground"}}}}}}},
@@ -48,6 +54,8 @@ GeneratedTexts sceneReference() {
     for (const std::string_view name : {"collider", "type", "emitter", "spawn"}) {
         texts.push_back({readme, std::string(name), markdownTable(tableOf(fields, name).fields)});
     }
+    texts.push_back(
+        {readme, "touching", markdownTable(tableOf(tableOf(fields, "emitter").fields, "touching").fields)});
     const FieldReference& collider = tableOf(fields, "collider");
     texts.push_back({readme, "key", markdownTable(tableOf(collider.fields, "key").fields)});
     texts.push_back({readme, "play", markdownTable(tableOf(collider.fields, "play").fields)});

@@ -9,6 +9,7 @@
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/temporary_folder.h"
@@ -206,6 +207,35 @@ TEST_P(SurfaceBirthsGlTest, DoNotDependOnTheSteps) {
         other += glm::length(fine[i].second - coarse[i].second) > 4.5 * 0.5 * kDt + 0.005 ? 1 : 0;
     }
     EXPECT_LE(other, 5U);
+}
+
+// Dust beneath the lower end of the tube, which stands a finger above a box, while its upper end swings past another.
+TEST_P(SurfaceBirthsGlTest, LieWhereTheyTouchAnotherCollider) {
+    const auto box = [&](const char* name, const glm::dvec3& low, const glm::dvec3& high) {
+        Collider made = analytic::frontBackCollider(analytic::box(low, high), 64);
+        made.materials.list = {{name}};
+        made.materials.size = 1.0F;
+        EXPECT_TRUE(saveCollider(folder_.path() / (std::string(name) + ".relief"), made));
+    };
+    box("earth", {-3.0, -0.5, -3.0}, {3.0, -0.02, 3.0});
+    box("wood", {-9.0, 3.0, -9.0}, {9.0, 5.0, 9.0});
+    const std::string others =
+        "[[collider]]\nfile = \"earth.relief\"\n[[collider]]\nfile = \"wood.relief\"\n";
+    const std::string keys = "rate = 20000\nspeed = 0\n";
+    const auto lowestOf = [&](const std::vector<ParticleState>& dust) {
+        return static_cast<std::size_t>(std::count_if(
+            dust.begin(), dust.end(), [](const ParticleState& one) { return one.position.y < 0.1F; }));
+    };
+    const std::vector<ParticleState> all = played(keys, 20);
+    const std::string touching = "touching = { within = 0.12, material = \"earth\" }\n";
+    const std::vector<ParticleState> dust = played(keys + touching + others, 20);
+    EXPECT_GT(dust.size(), 100U);
+    // The map's heights may decide otherwise at the very limit.
+    const auto nearly = [](std::size_t a, std::size_t b) { return std::max(a, b) - std::min(a, b) <= 3; };
+    EXPECT_TRUE(nearly(dust.size(), lowestOf(all))) << dust.size() << " of " << all.size();
+    EXPECT_TRUE(nearly(dust.size(), lowestOf(dust)));
+    // Nothing of it is that fast.
+    EXPECT_EQ(played(keys + "touching = { within = 0.12, min_speed = 9 }\n" + others, 20).size(), 0U);
 }
 
 // A skeleton of the program's own is a jump at first, and from then on moves as the same clip does.

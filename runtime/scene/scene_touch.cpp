@@ -1,0 +1,123 @@
+#include "runtime/scene/scene_touch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "formats/nearest_surface.h"
+
+namespace relief {
+namespace {
+
+/// Of a trajectory, whose box worldBounds() knows to a thousandth of the body's radius, and of roundings.
+constexpr float kRoom = 0.002F;
+
+Bounds grown(const Bounds& box, float room) {
+    return {box.min - room, box.max + room};
+}
+
+bool meet(const Bounds& a, const Bounds& b) {
+    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
+}
+
+bool holds(const Bounds& box, const glm::vec3& p) {
+    return meet(box, {p, p});
+}
+
+/// The body that named a node of several tiles; else itself.
+std::size_t wholeOf(const Scene& scene, std::size_t collider) {
+    return scene.colliders[collider].tile_of.value_or(collider);
+}
+
+}  // namespace
+
+TouchFilter::TouchFilter(const LoadedScene& loaded, const SceneEmitter& emitter)
+    : loaded_(&loaded), touching_(*emitter.touching) {
+    const Scene& scene = loaded.scene;
+    for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
+        const SceneCollider& body = scene.colliders[i];
+        const bool own = emitter.attach && wholeOf(scene, *emitter.attach) == wholeOf(scene, i);
+        if (!own && !body.deforms()) {
+            const Bounds box = worldBounds(body, loaded.colliders[i]->bounds);
+            bodies_.push_back({i, grown(box, touching_.within + kRoom * box.longestSide())});
+        }
+    }
+}
+
+std::vector<bool> TouchFilter::operator()(std::span<const Birth> births,
+                                          std::span<const glm::vec3> velocities, double time) const {
+    Bounds all;
+    for (const Birth& birth : births) {
+        all.add(birth.position);
+    }
+    std::vector<Body> near;
+    std::copy_if(bodies_.begin(), bodies_.end(), std::back_inserter(near),
+                 [&](const Body& body) { return meet(body.box, all); });
+    std::vector<bool> touching;
+    for (std::size_t i = 0; i < births.size(); ++i) {
+        const double moment = time - static_cast<double>(births[i].age);
+        touching.push_back(touches(births[i].position, velocities[i], moment, near));
+    }
+    return touching;
+}
+
+std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, const glm::vec3& p,
+                                                           double moment, float within) const {
+    if (!holds(body.box, p)) {
+        return std::nullopt;
+    }
+    const SceneCollider& placed = loaded_->scene.colliders[body.index];
+    const Collider& shape = *loaded_->colliders[body.index];
+    const Pose pose = poseAt(placed, moment);
+    const glm::vec3 q = toObject(pose, p);
+    if (!holds(grown(shape.bounds, within / pose.scale), q)) {
+        return std::nullopt;
+    }
+    const SurfaceSample at = nearestSurface(shape, q);
+    const float distance = pose.scale * std::abs(at.distance);
+    if (at.map < 0 || !(distance < within)) {
+        return std::nullopt;
+    }
+    const Materials& materials = shape.materials;
+    const Motion motion = placed.keys.empty() ? Motion{} : motionAt(placed.keys, moment);
+    return Touched{
+        distance,
+        materials.empty() ? std::string() : materials.list[materialAt(materials, at.point, at.normal)].name,
+        motion.velocity + glm::cross(motion.turn, p - pose.position)};
+}
+
+bool TouchFilter::touches(const glm::vec3& p, const glm::vec3& velocity, double moment,
+                          std::span<const Body> near) const {
+    std::optional<Touched> nearest;
+    float within = touching_.within;
+    const auto offer = [&](const std::optional<Touched>& one) {
+        if (one && one->distance < within) {
+            within = one->distance;
+            nearest = one;
+        }
+    };
+    for (const Body& body : near) {
+        offer(touchedOf(body, p, moment, within));
+    }
+    const SceneGround& ground = loaded_->scene.ground;
+    if (ground.enabled && ground.height) {
+        offer(Touched{std::abs(p.y - *ground.height), {}, glm::vec3(0.0F)});
+    }
+    const std::vector<std::string>& names = touching_.materials;
+    return nearest &&
+           (names.empty() || std::find(names.begin(), names.end(), nearest->material) != names.end()) &&
+           glm::length(velocity - nearest->velocity) >= touching_.min_speed;
+}
+
+std::vector<EmitterMotion> emitterMotions(const LoadedScene& loaded) {
+    std::vector<EmitterMotion> motions = emitterMotions(loaded.scene.emitters, loaded.scene.colliders);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        const SceneEmitter& emitter = loaded.scene.emitters[i];
+        if (emitter.touching) {
+            motions[i].filter = TouchFilter(loaded, emitter);
+        }
+    }
+    return motions;
+}
+
+}  // namespace relief

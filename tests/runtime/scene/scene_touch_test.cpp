@@ -1,0 +1,299 @@
+// Births where a surface touches another: of the same births without that rule exactly those that closed forms keep.
+#include "runtime/scene/scene_touch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "formats/container.h"
+#include "tests/runtime/collider/analytic_collider.h"
+#include "tests/runtime/scene/scene_error.h"
+#include "tests/temporary_folder.h"
+
+namespace relief {
+namespace {
+
+constexpr double kDt = 1.0 / 50;
+
+/// A box of 2 x 0.5 x 2 whose top is at y = 0: oak where x < 0, earth elsewhere.
+analytic::Shape slab() {
+    return analytic::box({-1.0, -0.5, -1.0}, {1.0, 0.0, 1.0});
+}
+
+struct Born {
+    Birth birth;
+    double moment = 0.0;
+};
+struct Played {
+    std::vector<Born> births;
+    std::uint64_t refused = 0;
+};
+
+/// Whether a birth is kept; nullopt so near to the rule's edge that the maps may decide it.
+using Truth = std::function<std::optional<bool>(const glm::dvec3& p, double moment)>;
+
+std::optional<bool> below(double value, double limit, double margin) {
+    return std::abs(value - limit) < margin ? std::nullopt : std::optional(value < limit);
+}
+
+class SceneTouch : public testing::Test {
+  protected:
+    SceneTouch() {
+        Collider box = analytic::frontBackCollider(slab(), 128);
+        EXPECT_TRUE(saveCollider(folder_.path() / "bare.relief", box));
+        box.materials.list = {{"oak"}, {"earth"}};
+        box.materials.size = 2.0F;
+        box.materials.origin = glm::vec3(-1.0F);
+        box.materials.nodes.resize(1);
+        box.materials.nodes[0].leaves = {0, 1, 0, 1, 0, 1, 0, 1};
+        EXPECT_TRUE(saveCollider(folder_.path() / "box.relief", box));
+        folder_.write("foot.obj", "v -0.5 0 -0.3\nv -0.5 0 0.3\nv 0.5 0 0.3\nv 0.5 0 -0.3\nf 1 2 3 4\n");
+    }
+
+    Result<LoadedScene> load(const std::string& text) {
+        return loadAll(folder_.write("scene.toml", text), {});
+    }
+    /// \param room  of each step.
+    Played run(const std::string& text, double seconds, std::uint64_t room = 1U << 20) {
+        Played made;
+        auto loaded = load(text);
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        if (!loaded) {
+            return made;
+        }
+        const std::vector<EmitterMotion> motions = emitterMotions(*loaded);
+        for (int step = 0; step < std::lround(seconds / kDt); ++step) {
+            std::vector<Birth> births;
+            made.refused += emitAll(loaded->emitters, kDt, room, births, motions, step * kDt);
+            for (const Birth& birth : births) {
+                made.births.push_back({birth, step * kDt - double{birth.age}});
+            }
+        }
+        return made;
+    }
+    /// \param scene  that ends with an emitter of a surface. \return how many births touch something.
+    std::size_t expectTruth(const std::string& scene, const std::string& touching, double seconds,
+                            const Truth& truth) {
+        const std::vector<Born> all = run(scene, seconds).births;
+        const std::vector<Born> kept = run(scene + "touching = { " + touching + " }\n", seconds).births;
+        std::size_t next = 0;
+        std::size_t unknown = 0;
+        for (const Born& one : all) {
+            const bool stays = next < kept.size() && kept[next].birth.position == one.birth.position &&
+                               kept[next].birth.velocity == one.birth.velocity &&
+                               kept[next].birth.age == one.birth.age && kept[next].moment == one.moment;
+            next += stays ? 1 : 0;
+            const glm::vec3& p = one.birth.position;
+            const std::optional<bool> wanted = truth(p, one.moment);
+            unknown += wanted ? 0 : 1;
+            EXPECT_EQ(stays, wanted.value_or(stays))
+                << p.x << " " << p.y << " " << p.z << " at " << one.moment;
+        }
+        EXPECT_EQ(next, kept.size()) << "births that are not among all";
+        EXPECT_LT(unknown, all.size() / 10);
+        return kept.size();
+    }
+
+    const test::TemporaryFolder folder_;
+};
+
+const std::string kNoGround = "ground = { enabled = false }\n";
+const std::string kBox = "[[collider]]\nfile = \"box.relief\"\n";
+const std::string kFoot = "[[emitter]]\nshape = \"surface\"\nmesh = \"foot.obj\"\nrate = 3000\nspeed = 0\n";
+
+/// A step: the foot, at height 0.3, is down from 1 s to 2 s.
+double footHeight(double time) {
+    return 0.3 * std::clamp(std::max(1.0 - time, time - 2.0), 0.0, 1.0);
+}
+const std::string kStep =
+    "[[emitter.key]]\ntime = 0\nposition = [0, 0.3, 0]\n[[emitter.key]]\ntime = 1\n"
+    "[[emitter.key]]\ntime = 2\n[[emitter.key]]\ntime = 3\nposition = [0, 0.3, 0]\n";
+
+TEST_F(SceneTouch, AFootRaisesDustWhereAndWhileItIsDown) {
+    const std::string touching = "touching = { within = 0.05, material = \"earth\" }\n";
+    const std::vector<Born> all = run(kNoGround + kBox + kFoot + kStep, 3.0).births;
+    const std::vector<Born> kept = run(kNoGround + kBox + kFoot + touching + kStep, 3.0).births;
+    ASSERT_EQ(all.size(), 9000U);
+    std::size_t next = 0;
+    for (const Born& one : all) {
+        const bool stays = next < kept.size() && kept[next].birth.position == one.birth.position;
+        next += stays ? 1 : 0;
+        const double height = footHeight(one.moment);
+        ASSERT_NEAR(height, double{one.birth.position.y}, 1e-6);
+        if (std::abs(height - 0.05) > 0.002 && std::abs(one.birth.position.x) > 0.002F) {
+            ASSERT_EQ(stays, height < 0.05 && one.birth.position.x > 0.0F)
+                << one.moment << " " << one.birth.position.x;
+        }
+    }
+    EXPECT_EQ(next, kept.size());
+    // Half of the area, 4/3 of 3 s; five standard deviations.
+    EXPECT_NEAR(static_cast<double>(kept.size()), 2000.0, 200.0);
+    // Several names, and none: both halves.
+    for (const char* names : {", material = [\"earth\", \"oak\"]", ""}) {
+        const std::string both = std::string("touching = { within = 0.05") + names + " }\n";
+        EXPECT_NEAR(static_cast<double>(run(kNoGround + kBox + kFoot + both + kStep, 3.0).births.size()),
+                    4000.0, 240.0);
+    }
+}
+
+TEST_F(SceneTouch, ABodyThatComesToTheSurface) {
+    const std::string rises = kNoGround + kBox +
+                              "[[collider.key]]\ntime = 0\nposition = [0.2, -1, 0]\n"
+                              "[[collider.key]]\ntime = 1\nposition = [0.2, 0, 0]\n" +
+                              kFoot;
+    const std::size_t touched =
+        expectTruth(rises, "within = 0.1, material = \"oak\"", 1.5, [](const glm::dvec3& p, double time) {
+            const double top = std::min(time, 1.0) - 1.0;
+            const auto near = below(-top, 0.1, 0.004);
+            const auto oak = below(p.x, 0.2, 0.002);
+            return near && oak ? std::optional(*near && *oak) : std::nullopt;
+        });
+    EXPECT_NEAR(static_cast<double>(touched), 3000 * 0.6 * 0.7, 150.0);
+    // A foot inside of the body does not touch its surface.
+    const std::string deep =
+        kNoGround + kBox + "position = [0, 0.25, 0]\n" + kFoot + "touching = { within = 0.2 }\n";
+    EXPECT_TRUE(run(deep, 0.1).births.empty());
+}
+
+TEST_F(SceneTouch, SpeedIsRelativeToWhatIsTouched) {
+    const std::string slides =
+        "[[collider.key]]\ntime = 0\nposition = [-0.2, 0, 0]\n[[collider.key]]\ntime = 1\nposition = [0.2, "
+        "0, 0]\n";
+    const auto count = [&](const std::string& body_keys, const std::string& foot_keys, const char* speed) {
+        return run(kNoGround + kBox + body_keys + kFoot + "touching = { within = 0.05, min_speed = " + speed +
+                       " }\n" + foot_keys,
+                   1.0)
+            .births.size();
+    };
+    std::string along = slides;
+    for (std::size_t at = 0; (at = along.find("collider", at)) != std::string::npos;) {
+        along.replace(at, 8, "emitter");
+    }
+    // The first births are of moments up to time 0, when nothing moves.
+    EXPECT_NEAR(static_cast<double>(count(slides, "", "0.39")), 2940.0, 1.0);
+    EXPECT_EQ(count(slides, "", "0.41"), 0U);
+    EXPECT_NEAR(static_cast<double>(count("", along, "0.39")), 2940.0, 1.0) << "the foot slides";
+    EXPECT_EQ(count("", along, "0.41"), 0U);
+    EXPECT_EQ(count(slides, along, "0.001"), 0U) << "both go together";
+    EXPECT_EQ(count(slides, along, "0"), 3000U);
+}
+
+TEST_F(SceneTouch, ATurningBodyIsFasterFartherOut) {
+    const std::string turns =
+        kNoGround + kBox + "[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\nangle = 90\n" + kFoot;
+    expectTruth(turns, "within = 0.05, min_speed = 0.5", 0.9, [](const glm::dvec3& p, double time) {
+        const auto fast = below(-1.5707963 * std::hypot(p.x, p.z), -0.5, 1e-3);
+        return time < 0.0 ? false : fast;
+    });
+}
+
+TEST_F(SceneTouch, TheColliderItLiesOnDoesNotCount) {
+    const std::string two = kNoGround + kBox +
+                            "[[collider]]\nfile = \"bare.relief\"\nposition = [0.5, 0.55, 0]\n" +
+                            "[[emitter]]\nshape = \"surface\"\nattach = 0\nrate = 4000\nspeed = 0\n";
+    const std::size_t touching = expectTruth(two, "within = 0.1", 1.0, [](const glm::dvec3& p, double) {
+        return below(std::abs(slab().distance(p - glm::dvec3(0.5, 0.55, 0.0))), 0.1, 0.03);
+    });
+    // 1.5 x 2 of the top, and strips beside, of a surface of 12.
+    EXPECT_GT(touching, 900U);
+    EXPECT_EQ(expectTruth(two, "within = 0.1, material = \"earth\"", 1.0,
+                          [](const glm::dvec3&, double) { return false; }),
+              0U)
+        << "the other one has no material";
+}
+
+TEST_F(SceneTouch, TheNearestOfManyBodiesDecides) {
+    std::string scene = kNoGround;
+    std::vector<glm::dvec3> places;
+    for (int i = 0; i < 500; ++i) {
+        // Slabs of 0.16 in a grid, some of them out of reach.
+        const glm::dvec3 at(-0.6 + 0.05 * (i % 25), -0.01 * (i % 11), -0.5 + 0.05 * (i / 25));
+        places.push_back(at);
+        scene += std::string("[[collider]]\nfile = \"") + (i % 3 == 0 ? "bare" : "box") +
+                 ".relief\"\nscale = 0.02\nposition = [" + std::to_string(at.x) + ", " +
+                 std::to_string(at.y) + ", " + std::to_string(at.z) + "]\n";
+    }
+    scene += "[[collider]]\nfile = \"box.relief\"\nposition = [0, -0.03, 0]\n" + kFoot;
+    const analytic::Shape shape = slab();
+    const std::size_t touching = expectTruth(scene, "within = 0.04, material = \"earth\"", 0.5,
+                                             [&](const glm::dvec3& p, double) -> std::optional<bool> {
+                                                 double nearest = std::abs(p.y + 0.03);
+                                                 double second = 0.04;
+                                                 double x = p.x;
+                                                 bool bare = false;
+                                                 for (std::size_t i = 0; i < places.size(); ++i) {
+                                                     const glm::dvec3 q = (p - places[i]) / 0.02;
+                                                     const double distance =
+                                                         0.02 * std::abs(shape.distance(q));
+                                                     second = std::min(second, std::max(distance, nearest));
+                                                     if (distance < nearest) {
+                                                         nearest = distance;
+                                                         x = q.x * 0.02;
+                                                         bare = i % 3 == 0;
+                                                     }
+                                                 }
+                                                 if (second - nearest < 5e-4 || std::abs(x) < 1e-3) {
+                                                     return std::nullopt;
+                                                 }
+                                                 return !bare && x > 0.0;
+                                             });
+    EXPECT_GT(touching, 300U);
+}
+
+TEST_F(SceneTouch, TheGroundIsNoMaterial) {
+    const std::string scene =
+        "ground = { height = -0.03 }\n[collider]\nfile = \"box.relief\"\n"
+        "position = [0.8, -0.02, 0]\n" +
+        kFoot;
+    expectTruth(scene, "within = 0.05", 0.1, [](const glm::dvec3&, double) { return true; });
+    // The box from x = -0.2 on is 0.02 below, and round its edge.
+    expectTruth(scene, "within = 0.025", 0.2,
+                [](const glm::dvec3& p, double) { return below(-p.x, 0.2 + 0.015, 0.02); });
+    // Beside the box, but for a little of it round the edge, the ground lies nearer.
+    const std::string beside =
+        "ground = { height = -0.03 }\n[collider]\nfile = \"box.relief\"\n"
+        "position = [1, -0.02, 0]\n" +
+        kFoot;
+    expectTruth(beside, "within = 0.05, material = [\"oak\", \"earth\"]", 0.2,
+                [](const glm::dvec3& p, double) { return below(-p.x, std::sqrt(5e-4), 0.02); });
+}
+
+TEST_F(SceneTouch, DroppedBirthsTakeNoRoom) {
+    const std::string scene = kNoGround + kBox + kFoot;
+    const std::string earth = "touching = { within = 0.05, material = \"earth\" }\n";
+    const Played whole = run(scene + earth, 0.2);
+    const Played tight = run(scene + earth, 0.2, 20);
+    EXPECT_EQ(whole.refused, 0U);
+    EXPECT_EQ(tight.births.size(), 200U);
+    EXPECT_EQ(tight.births.size() + tight.refused, whole.births.size());
+    EXPECT_EQ(tight.births[19].birth.position, whole.births[19].birth.position);
+}
+
+TEST_F(SceneTouch, MistakesHaveTheirPlaceAndCure) {
+    const auto mistake = [](const std::string& more, const std::string& place, const std::string& part) {
+        expectSceneError(kBox + kFoot + more, "dir/scene.toml:" + place + ": ", part);
+    };
+    mistake("touching = {}\n", "8:12", "emitter.touching.within is missing");
+    mistake("touching = \"earth\"\n", "8:12", "must be a table");
+    mistake("touching = { within = 0 }\n", "8:23", "out of range");
+    mistake("touching = { within = 1, min_speed = -1 }\n", "8:38", "out of range");
+    mistake("touching = { within = 1, material = 3 }\n", "8:37", "a name, or a list of names");
+    mistake("touching = { within = 1, material = [\"earth\", 3] }\n", "8:47", "a name, or a list of names");
+    mistake("touching = { within = 1, material = [] }\n", "8:37", "has no name");
+    mistake("touching = { within = 1, material = \"\" }\n", "8:37", "an empty one");
+    mistake("touching = { within = 1, speed = 1 }\n", "8:26", "unknown key");
+    expectSceneError(kBox + "[[emitter]]\npoint = [0, 0, 0]\ntouching = { within = 1 }\n",
+                     "dir/scene.toml:5:12: ", "choose emitter.shape = \"surface\"");
+    const auto unknown = load(kBox + kFoot + "touching = { within = 1, material = [\"oak\", \"erth\"] }\n");
+    ASSERT_FALSE(unknown);
+    EXPECT_EQ(unknown.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(
+        unknown.error().message.find("scene.toml:3:1: emitter[0].touching.material = 'erth' is the name of "
+                                     "no material; did you mean 'earth'? There are 'earth', 'oak'"),
+        std::string::npos)
+        << unknown.error().message;
+}
+
+}  // namespace
+}  // namespace relief
