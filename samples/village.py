@@ -5,7 +5,6 @@ Writes OUT/village.glb, some five hundred things on a terrain with a material fo
 PLY with colours for each thing's shape, as pictures take them. The same argument gives the same bytes. Needs nothing but
 Python itself.
 """
-import json
 import math
 import os
 import random
@@ -13,6 +12,7 @@ import struct
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from gltf import Gltf  # noqa: E402
 from meshes import smooth_noise  # noqa: E402
 
 HALF = 64.0  # metres from the middle to the rim
@@ -557,36 +557,19 @@ def ply(shape):
 
 
 def glb(made, placed):
-    data, views, accessors, meshes, nodes = bytearray(), [], [], [], []
+    level, order = Gltf(), list(made)
     names = [m for m in MATERIALS if any(m in shape.materials for shape in made.values())]
-
-    def add(kind, component, numbers, count, **more):
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 4 * len(numbers)})
-        data.extend(struct.pack(f"<{len(numbers)}{'f' if component == 5126 else 'I'}", *numbers))
-        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": count, "type": kind, **more})
-        return len(accessors) - 1
-
+    for name in names:
+        level.material(name, MATERIALS[name])
     for name, shape in made.items():
-        primitives = []
-        flat = [x for p in shape.points for x in p]
-        at = add("VEC3", 5126, flat, len(shape.points), min=[min(flat[k::3]) for k in range(3)], max=[max(flat[k::3]) for k in range(3)])
-        for material in sorted(set(shape.materials), key=names.index):
-            corners = [i for t, m in zip(shape.triangles, shape.materials) if m == material for i in t]
-            primitives.append({"attributes": {"POSITION": at}, "indices": add("SCALAR", 5125, corners, len(corners)), "material": names.index(material)})
-        meshes.append({"name": name, "primitives": primitives})
-    order = list(made)
+        parts = [([t for t, m in zip(shape.triangles, shape.materials) if m == material], names.index(material))
+                 for material in sorted(set(shape.materials), key=names.index)]
+        level.mesh(shape.points, parts, name=name)
     for shape, node, x, y, z, turn, scale in placed:
         half = math.radians(turn) / 2
-        nodes.append({"name": node, "mesh": order.index(shape), "translation": [x, y, z], "rotation": [0.0, math.sin(half), 0.0, math.cos(half)],
-                      "scale": [scale] * 3})
-    text = json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": meshes,
-        "materials": [{"name": n, "pbrMetallicRoughness": {"baseColorFactor": [round(c ** 2.2, 4) for c in MATERIALS[n]] + [1.0]}} for n in names],
-        "buffers": [{"byteLength": len(data)}], "bufferViews": views, "accessors": accessors}).encode()
-    text += b" " * (-len(text) % 4)
-    data += b"\0" * (-len(data) % 4)
-    return (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data)) + struct.pack("<I4s", len(text), b"JSON") + text +
-            struct.pack("<I4s", len(data), b"BIN\0") + bytes(data))
+        level.nodes.append({"name": node, "mesh": order.index(shape), "translation": [x, y, z],
+                            "rotation": [0.0, math.sin(half), 0.0, math.cos(half)], "scale": [scale] * 3})
+    return level
 
 
 def main():
@@ -598,8 +581,7 @@ def main():
     for name, shape in made.items():
         with open(os.path.join(folder, "meshes", name + ".ply"), "wb") as out:
             out.write(ply(shape))
-    with open(os.path.join(folder, "village.glb"), "wb") as out:
-        out.write(glb(made, placed))
+    glb(made, placed).write(os.path.join(folder, "village.glb"))
     print(f"{len(placed)} things of {len(made)} shapes, {sum(len(s.triangles) for s in made.values())} triangles")
 
 

@@ -3,11 +3,12 @@
 
 The same argument gives the same bytes. Needs nothing but Python itself.
 """
-import base64
-import json
 import math
-import struct
+import os
 import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from gltf import Gltf  # noqa: E402
 
 SECONDS = 1.1  # of two steps
 KEYS = 44
@@ -87,54 +88,36 @@ def capsule(end, radius, sides=24, rings=8):
         for k in range(sides):
             a, b = ring * sides + k, ring * sides + (k + 1) % sides
             # The ends are points, round which one of the two has no area.
-            triangles += [a, b, b + sides] if ring > 0 else []
-            triangles += [a, b + sides, a + sides] if ring + 2 < len(profile) else []
+            triangles += [(a, b, b + sides)] if ring > 0 else []
+            triangles += [(a, b + sides, a + sides)] if ring + 2 < len(profile) else []
     return positions, triangles
 
 
-def gltf():
-    data, views, accessors, meshes, nodes, channels, samplers = b"", [], [], [], [], [], []
-
-    def add(kind, component, numbers, width, **more):
-        nonlocal data
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 4 * len(numbers)})
-        data += struct.pack(f"<{len(numbers)}{'f' if component == 5126 else 'I'}", *numbers)
-        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(numbers) // width,
-                          "type": kind, **more})
-        return len(accessors) - 1
-
+def figure():
+    walker, channels, samplers = Gltf(), [], []
     phases = [key / KEYS for key in range(KEYS + 1)]
-    times = add("SCALAR", 5126, [SECONDS * phase for phase in phases], 1, min=[0.0], max=[SECONDS])
+    times = walker.accessor("SCALAR", "f", [SECONDS * phase for phase in phases], min=[0.0], max=[SECONDS])
 
-    def channel(node, path, kind, numbers, width):
-        samplers.append({"input": times, "output": add(kind, 5126, numbers, width)})
+    def channel(node, path, kind, numbers):
+        samplers.append({"input": times, "output": walker.accessor(kind, "f", numbers)})
         channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
 
     names = [part[0] for part in PARTS]
     for i, (name, _, place, end, radius) in enumerate(PARTS):
         positions, triangles = capsule(end, radius)
-        low = [min(p[k] for p in positions) for k in range(3)]
-        high = [max(p[k] for p in positions) for k in range(3)]
-        at = add("VEC3", 5126, [x for p in positions for x in p], 3, min=low, max=high)
-        meshes.append({"primitives": [{"attributes": {"POSITION": at}, "indices": add("SCALAR", 5125, triangles, 1)}]})
-        nodes.append({"name": name, "mesh": i, "translation": place})
+        walker.nodes.append({"name": name, "mesh": walker.mesh(positions, [(triangles, None)]), "translation": place})
         children = [names.index(part[0]) for part in PARTS if part[1] == name]
         if children:
-            nodes[-1]["children"] = children
+            walker.nodes[-1]["children"] = children
         turns = [0.5 * bend(name, phase) for phase in phases]
-        channel(i, "rotation", "VEC4", [x for t in turns for x in (math.sin(t), 0.0, 0.0, math.cos(t))], 4)
+        channel(i, "rotation", "VEC4", [x for t in turns for x in (math.sin(t), 0.0, 0.0, math.cos(t))])
         if i == 0:
-            channel(i, "translation", "VEC3",
-                    [x for phase in phases for x in (place[0], place[1] + rise(phase), place[2])], 3)
-    return json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": nodes, "meshes": meshes,
-        "animations": [{"name": "walk", "channels": channels, "samplers": samplers}],
-        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
-        "bufferViews": views, "accessors": accessors})
+            channel(i, "translation", "VEC3", [x for phase in phases for x in (place[0], place[1] + rise(phase), place[2])])
+    walker.animations.append({"name": "walk", "channels": channels, "samplers": samplers})
+    return walker
 
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit("usage: walker.py OUT.gltf")
-    with open(sys.argv[1], "w", encoding="ascii") as out:
-        out.write(gltf())
+    figure().write(sys.argv[1])

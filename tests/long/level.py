@@ -5,16 +5,14 @@ A terrain of hills, a node, and as many pieces of Debian's sweethome3d-furniture
 models by turns. The same arguments give the same bytes.
 """
 import argparse
-import array
-import json
 import math
 import os
 import random
-import struct
 import sys
 import zipfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../samples'))
+from gltf import Gltf  # noqa: E402
 from meshes import smooth_noise  # noqa: E402
 
 FURNITURE = '/usr/share/sweethome3d/furniture'
@@ -65,45 +63,6 @@ def terrain(size, cells):
     return points, triangles
 
 
-class Glb:
-    """Meshes and the nodes that place them."""
-
-    def __init__(self):
-        self.bytes = bytearray()
-        self.views, self.accessors, self.meshes, self.nodes = [], [], [], []
-
-    def accessor(self, data, component, kind, count, **bounds):
-        self.views.append({'buffer': 0, 'byteOffset': len(self.bytes), 'byteLength': len(data)})
-        self.bytes += data
-        self.accessors.append({'bufferView': len(self.views) - 1, 'componentType': component, 'count': count,
-                               'type': kind, **bounds})
-        return len(self.accessors) - 1
-
-    def mesh(self, name, points, triangles):
-        flat = array.array('f', (c for p in points for c in p))
-        low = [min(flat[i::3]) for i in range(3)]
-        high = [max(flat[i::3]) for i in range(3)]
-        position = self.accessor(flat.tobytes(), 5126, 'VEC3', len(points), min=low, max=high)
-        indices = self.accessor(array.array('I', (i for t in triangles for i in t)).tobytes(), 5125, 'SCALAR',
-                                3 * len(triangles))
-        self.meshes.append({'name': name, 'primitives': [{'attributes': {'POSITION': position}, 'indices': indices}]})
-        return len(self.meshes) - 1
-
-    def node(self, name, mesh, **place):
-        self.nodes.append({'name': name, 'mesh': mesh, **place})
-
-    def save(self, path):
-        document = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': list(range(len(self.nodes)))}],
-                    'nodes': self.nodes, 'meshes': self.meshes, 'accessors': self.accessors,
-                    'bufferViews': self.views, 'buffers': [{'byteLength': len(self.bytes)}]}
-        text = json.dumps(document, separators=(',', ':')).encode()
-        text += b' ' * (-len(text) % 4)
-        body = bytes(self.bytes) + b'\0' * (-len(self.bytes) % 4)
-        with open(path, 'wb') as file:
-            file.write(struct.pack('<4sII', b'glTF', 2, 28 + len(text) + len(body)))
-            file.write(struct.pack('<I4s', len(text), b'JSON') + text + struct.pack('<I4s', len(body), b'BIN\0') + body)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('out')
@@ -113,8 +72,9 @@ def main():
     parser.add_argument('--seed', type=int, default=1)
     options = parser.parse_args()
     draw = random.Random(options.seed)
-    glb = Glb()
-    glb.node('terrain', glb.mesh('terrain', *terrain(options.size, options.cells)))
+    glb = Gltf()
+    points, triangles = terrain(options.size, options.cells)
+    glb.nodes.append({'name': 'terrain', 'mesh': glb.mesh(points, [(triangles, None)], name='terrain')})
     models = []
     for name, points, triangles in furniture():
         low = [min(p[i] for p in points) for i in range(3)]
@@ -122,14 +82,14 @@ def main():
         scale = LONG / max(b - a for a, b in zip(low, high))
         middle = [(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2]
         placed = [tuple((c - m) * scale for c, m in zip(p, middle)) for p in points]
-        models.append((name, glb.mesh(name, placed, triangles)))
+        models.append((name, glb.mesh(placed, [(triangles, None)], name=name)))
     reach = 0.45 * options.size
     for i in range(options.props):
         name, mesh = models[i % len(models)]
         x, z, angle = draw.uniform(-reach, reach), draw.uniform(-reach, reach), draw.uniform(0, 2 * math.pi)
-        glb.node(f'{name}_{i + 1}', mesh, translation=[x, height(x, z), z],
-                 rotation=[0, math.sin(angle / 2), 0, math.cos(angle / 2)])
-    glb.save(options.out)
+        glb.nodes.append({'name': f'{name}_{i + 1}', 'mesh': mesh, 'translation': [x, height(x, z), z],
+                          'rotation': [0, math.sin(angle / 2), 0, math.cos(angle / 2)]})
+    glb.write(options.out)
 
 
 if __name__ == '__main__':
