@@ -148,6 +148,21 @@ Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* n
                     : Result<std::vector<T>>(std::vector<T>());
 }
 
+/// The modes of a physics material, of which a smaller or a larger value alone would count.
+Result<void> checkCombineModes(const GltfValue& material, std::vector<std::string>& warnings) {
+    constexpr const char* kWarning =
+        "physics materials have a frictionCombine or restitutionCombine of minimum or maximum, which has no "
+        "effect: their values are factors of those of a particle";
+    for (const char* name : {"frictionCombine", "restitutionCombine"}) {
+        const auto mode = RELIEF_TRY(material.get<std::string>(name, "average"));
+        if (mode != "average" && mode != "multiply" &&
+            std::find(warnings.begin(), warnings.end(), kWarning) == warnings.end()) {
+            warnings.emplace_back(kWarning);
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings) {
@@ -227,7 +242,8 @@ std::optional<Transform> affineOf(const float* m) {
                      {m[12], m[13], m[14]}};
 }
 
-Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, const GltfNode& node) {
+Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, const GltfNode& node,
+                                                 std::vector<std::string>& warnings) {
     constexpr const char* kPhysics = "KHR_physics_rigid_bodies";
     const auto inside = [&](const std::optional<GltfValue>& of,
                             const char* name) -> Result<std::optional<GltfValue>> {
@@ -259,6 +275,7 @@ Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, cons
         }
         *share = std::min(*share, 1.0F);
     }
+    RELIEF_TRY(checkCombineModes(material, warnings));
     return response;
 }
 

@@ -39,10 +39,11 @@ struct GltfNode {
     std::optional<GltfValue> skin{};
 };
 
-/// The response of a node's surface by KHR_physics_rigid_bodies: what its physics material says. A share above 1 counts as 1.
-/// Errors: kInvalidInput.
+/// The response of a node's surface by KHR_physics_rigid_bodies: that of its physics material. A share above 1 counts as 1.
+/// \param warnings  receives one line, once, on combine modes. Errors: kInvalidInput.
 [[nodiscard]] Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document,
-                                                               const GltfNode& node);
+                                                               const GltfNode& node,
+                                                               std::vector<std::string>& warnings);
 
 /// Version and extensions. \param warnings  receives those of optional extensions. Errors: kInvalidInput, kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);

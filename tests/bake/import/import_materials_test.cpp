@@ -53,6 +53,33 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
     EXPECT_EQ(importLevel(path, without)->meshes.size(), 1U);
 }
 
+TEST(ImportMaterials, CombineModesWarnOnceWhereTheyWouldChangeMuch) {
+    const TemporaryFolder folder;
+    const auto warningsOf = [&](const std::string& first, const std::string& second) {
+        const auto mesh = importMeshInWorker(folder.write(
+            "m.gltf",
+            tetrahedronGltf({.nodes = node(physics("0")) + "," + node(physics("1")),
+                             .roots = "0,1",
+                             .more = R"("extensions":{"KHR_physics_rigid_bodies":{"physicsMaterials":[{)" +
+                                     first + "},{" + second + "}]}},"})));
+        EXPECT_TRUE(mesh) << mesh.error().message;
+        return mesh ? mesh->warnings : std::vector<std::string>();
+    };
+    EXPECT_EQ(warningsOf(R"("restitutionCombine":"multiply")", R"("frictionCombine":"average")").size(), 0U);
+    for (const auto& [first, second] :
+         {std::pair(R"("restitutionCombine":"maximum","frictionCombine":"minimum")", R"("restitution":1)"),
+          std::pair(R"("frictionCombine":"maximum")", R"("restitutionCombine":"minimum")")}) {
+        const std::vector<std::string> warnings = warningsOf(first, second);
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_NE(warnings[0].find("minimum or maximum, which has no effect"), std::string::npos)
+            << warnings[0];
+    }
+    EXPECT_FALSE(importMeshInWorker(folder.write(
+        "m.gltf", tetrahedronGltf({.nodes = node(physics("0")),
+                                   .more = R"("extensions":{"KHR_physics_rigid_bodies":{"physicsMaterials":[)"
+                                           R"({"frictionCombine":2}]}},)"}))));
+}
+
 TEST(ImportMaterials, ABrokenPhysicsMaterialHasItsPlace) {
     const TemporaryFolder folder;
     for (const auto& [material, words] :
