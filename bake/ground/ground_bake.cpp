@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -247,7 +248,9 @@ class GroundBaker {
         if (world.bodies.empty()) {
             return noGround();
         }
-        result_.removed = RELIEF_TRY(replaceWorld(options_.folder, world, map_.name()));
+        ReplacedWorld replaced = RELIEF_TRY(replaceWorld(options_.folder, world, {}, map_.name()));
+        result_.removed = std::move(replaced.removed);
+        std::move(replaced.warnings.begin(), replaced.warnings.end(), std::back_inserter(result_.warnings));
         return {};
     }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <numeric>
+#include <set>
 
 #include "bake/director/director.h"
 #include "bake/import/level_folder.h"
@@ -392,6 +393,10 @@ class WorldBaker {
         collider.has_coarse = hasCoarse(from);
         collider.bytes = bytes.size();
         collider.hash = xxh3_128Hex(bytes);
+        collider.materials.clear();
+        for (const Material& material : from.materials.list) {
+            collider.materials.push_back(material.name);
+        }
     }
 
     /// The largest first, so that the last to end is a small one.
@@ -557,7 +562,13 @@ class WorldBaker {
         if (result_.countOf(WorldColliderState::kFailed) > 0) {
             return {};
         }
-        result_.removed = RELIEF_TRY(replaceWorld(request_.folder, world, level_.name));
+        std::set<std::string> materials;
+        for (const WorldColliderResult& collider : result_.colliders) {
+            materials.insert(collider.materials.begin(), collider.materials.end());
+        }
+        ReplacedWorld replaced = RELIEF_TRY(replaceWorld(request_.folder, world, materials, level_.name));
+        result_.removed = std::move(replaced.removed);
+        std::ranges::move(replaced.warnings, std::back_inserter(result_.warnings));
         result_.written = true;
         return {};
     }
@@ -601,60 +612,8 @@ std::uint64_t WorldBakeResult::gpuBytes() const {
     return bytes;
 }
 
-Result<void> checkWorldRequest(const BakeRequest& request) {
-    const std::array<std::pair<const char*, bool>, 9> of_one = {{
-        {"--map", !request.map.empty()},
-        {"--paper", request.paper},
-        {"--resolution", request.resolution.has_value()},
-        {"--decode", request.decode.has_value()},
-        {"--depth", request.depth.has_value()},
-        {"--plan", !request.plan.empty()},
-        {"--plan-out", !request.plan_out.empty()},
-        {"--max-error", request.max_error.has_value()},
-        {"--animated", request.animated},
-    }};
-    for (const auto& [option, given] : of_one) {
-        if (given) {
-            return fail(ErrorCode::kUsage,
-                        std::string(option) + " is for one mesh, and a level has many; leave it out");
-        }
-    }
-    static_cast<void>(RELIEF_TRY(settingsOf(request)));
-    return {};
-}
-
 Result<WorldBakeResult> bakeWorld(const WorldRequest& request, const WorldWatcher& watcher) {
     return WorldBaker(request, watcher).run();
-}
-
-BakeRequest requestOf(const BakeRequest& request, const std::vector<std::string>& names, TriangleMesh& mesh) {
-    std::vector<std::uint8_t> number(names.size() + 1, 0);
-    for (const std::uint8_t mark : mesh.marks) {
-        number[mark] = 1;
-    }
-    BakeRequest own = request;
-    own.mesh.clear();
-    own.as.clear();
-    std::size_t named = 0;
-    std::uint8_t next = 0;
-    for (const std::string& word : request.as) {
-        const bool has_name = word.find('=') != std::string::npos;
-        named += has_name ? 1 : 0;
-        if (!has_name || number[named] != 0) {
-            own.as.push_back(word);
-        }
-        if (has_name && number[named] != 0) {
-            number[named] = ++next;
-        }
-    }
-    number[0] = 0;
-    for (std::uint8_t& mark : mesh.marks) {
-        mark = number[mark];
-    }
-    if (next == 0) {
-        mesh.marks.clear();
-    }
-    return own;
 }
 
 }  // namespace relief

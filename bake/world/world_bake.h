@@ -51,7 +51,8 @@ struct WorldColliderResult {
     std::uint64_t bytes = 0;              ///< of the container
     std::uint64_t gpu_bytes = 0;
     Bounds box;
-    bool has_coarse = false;  ///< hasCoarse(), and then the next
+    std::vector<std::string> materials;  ///< names
+    bool has_coarse = false;             ///< hasCoarse(), and then the next
     std::optional<WorldFile> coarse;
     std::uint64_t coarse_bytes = 0;     ///< of that container
     std::optional<WrongShare> wrong;    ///< near its mesh's surface; of one that was baked

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +16,19 @@ namespace relief {
 /// A name as a part of a file's: letters, digits and _ - . of ASCII.
 [[nodiscard]] std::string fileStem(std::string_view name);
 
+struct ReplacedWorld {
+    std::vector<std::string> removed;   ///< containers
+    std::vector<std::string> warnings;  ///< of what was written by hand and is left out; one line each
+};
+
 /// Writes kWorldFileName; its containers are there. Containers of the world from before that this one does not name are removed,
-/// if they still are what that one named.
-/// \param name  stands in front of what is wrong with the world.
-/// \return the names of those that were removed.
+/// if they still are what that one named. What people write into that file stays: responses by the names of materials,
+/// restitution and friction of bodies by their nodes.
+/// \param materials  names of those of all its colliders.
+/// \param name       stands in front of what is wrong with the world.
 /// Errors: those of parseWorld: no reader would take it; kIo.
-[[nodiscard]] Result<std::vector<std::string>> replaceWorld(const std::filesystem::path& folder,
-                                                            const World& world, const std::string& name);
+[[nodiscard]] Result<ReplacedWorld> replaceWorld(const std::filesystem::path& folder, World& world,
+                                                 const std::set<std::string>& materials,
+                                                 const std::string& name);
 
 }  // namespace relief
