@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes a figure of capsules that walks on the spot, as glTF with one clip: walker.py OUT.gltf
+"""Makes a figure of capsules that walks on the spot, as glTF with materials and one clip: walker.py OUT.gltf
 
 The same argument gives the same bytes. Needs nothing but Python itself.
 """
@@ -31,6 +31,11 @@ PARTS = [
     ("right shin", "right thigh", (0.0, -0.43, 0.0), (0.0, -0.38, 0.0), 0.06),
     ("right foot", "right shin", (0.0, -0.41, 0.0), (0.0, -0.01, 0.15), 0.052),
 ]
+
+MATERIALS = {  # sRGB
+    "skin": (0.80, 0.60, 0.48), "shirt": (0.24, 0.42, 0.58), "trousers": (0.25, 0.26, 0.31), "shoes": (0.20, 0.13, 0.10),
+}
+WEARS = {"hips": "trousers", "thigh": "trousers", "shin": "trousers", "foot": "shoes", "chest": "shirt", "arm": "shirt"}
 
 
 def bend(name, phase):
@@ -102,10 +107,13 @@ def figure():
         samplers.append({"input": times, "output": walker.accessor(kind, "f", numbers)})
         channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
 
-    names = [part[0] for part in PARTS]
+    names, materials = [part[0] for part in PARTS], list(MATERIALS)
+    for material, color in MATERIALS.items():
+        walker.material(material, color)
     for i, (name, _, place, end, radius) in enumerate(PARTS):
         positions, triangles = capsule(end, radius)
-        walker.nodes.append({"name": name, "mesh": walker.mesh(positions, [(triangles, None)]), "translation": place})
+        mesh = walker.mesh(positions, [(triangles, materials.index(WEARS.get(name.split()[-1], "skin")))])
+        walker.nodes.append({"name": name, "mesh": mesh, "translation": place})
         children = [names.index(part[0]) for part in PARTS if part[1] == name]
         if children:
             walker.nodes[-1]["children"] = children

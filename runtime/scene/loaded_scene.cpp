@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"
@@ -71,6 +72,10 @@ Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& 
         file.mesh = std::make_shared<const AnimatedMesh>(
             RELIEF_TRY(inFront(place, readAnimatedMesh(collider.animation))));
         file.extent = poseExtent(*file.mesh);
+    }
+    for (const SceneMaterialColor& material : from.materials) {
+        RELIEF_TRY(
+            inFront(from.origin + ": collider.material", materialTriangles(*file.mesh, material.name)));
     }
     return loadPlayedMesh(from, file.mesh, file.extent);
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/animation/animated_mesh.h"
 #include "formats/base/field.h"
 #include "formats/base/scene_limits.h"
 #include "formats/collider.h"
@@ -102,6 +103,19 @@ void fields(Visitor& visit, P& play) {
     visit("resolution", play.resolution, {"Texels of its maps along its longest side", {}, {16.0, 4096.0}});
 }
 
+/// [[collider.material]]: of an animated mesh.
+struct SceneMaterialColor {
+    std::string name;
+    glm::vec3 color{0.0F};  ///< sRGB
+};
+
+template <class Visitor, FieldsOf<SceneMaterialColor> M>
+void fields(Visitor& visit, M& material) {
+    visit("name", material.name,
+          {"Name of a material of the animated mesh, as in relief info", {}, {}, {}, kRequired});
+    visit("color", material.color, {"Its colour in pictures", "[r, g, b]", kShareRange, {}, kRequired});
+}
+
 struct SceneCollider {
     std::filesystem::path path;  ///< resolved against the scene's folder
     std::string origin;          ///< "scene.toml:3:8" of that key, for messages; empty without a scene file
@@ -110,12 +124,13 @@ struct SceneCollider {
     std::optional<std::size_t> tile_of{};
     ScenePose given_pose;
     float scale = 1.0F;
-    float restitution = 1.0F;        ///< factor of the particles' own
-    float friction = 0.0F;           ///< on top of the particles' own
-    std::optional<SceneLive> live;   ///< wobbles: `path` is a mesh, not a container
-    std::optional<ScenePlay> play;   ///< an animated mesh of the container moves
-    std::uint32_t resolution = 256;  ///< of its maps
-    std::optional<glm::vec3> color;  ///< of its picture, sRGB
+    float restitution = 1.0F;                   ///< factor of the particles' own
+    float friction = 0.0F;                      ///< on top of the particles' own
+    std::optional<SceneLive> live;              ///< wobbles: `path` is a mesh, not a container
+    std::optional<ScenePlay> play;              ///< an animated mesh of the container moves
+    std::uint32_t resolution = 256;             ///< of its maps
+    std::optional<glm::vec3> color;             ///< of its picture, sRGB
+    std::vector<SceneMaterialColor> materials;  ///< that have colours of their own
     std::vector<SceneKey> given_keys;
     // Filled by check() (of a body by placeBodies()), which also completes the pose and the keys above:
     /// Any key of the table but its file is given: else the particles live in the collider's own object space.
@@ -164,6 +179,12 @@ void fields(Visitor& visit, C& c) {
                    "[r, g, b]",
                    {0.0, 1.0},
                    "clay"}));
+    visit("material", c.materials,
+          leftOut({"Colours of materials of an animated mesh",
+                   {},
+                   {},
+                   {},
+                   {.needs = "play", .most = kMeshMaterialsMax}}));
     visit("key", c.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
 }
 [[nodiscard]] std::optional<FieldFault> check(SceneCollider& collider, const GivenFields& given);

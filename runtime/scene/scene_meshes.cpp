@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "runtime/files/mesh_file.h"
@@ -67,13 +68,16 @@ Result<std::vector<fs::path>> fileOfEach(const LoadedScene& loaded) {
     return files;
 }
 
+std::array<std::uint8_t, 4> vertexColor(const glm::vec3& color) {
+    const glm::vec3 bytes = glm::round(255.0F * color);
+    return {static_cast<std::uint8_t>(bytes.r), static_cast<std::uint8_t>(bytes.g),
+            static_cast<std::uint8_t>(bytes.b), 255};
+}
+
 /// A mesh without colours takes on that of its collider, if it has one.
 PictureMesh colored(PictureMesh mesh, const SceneCollider& collider) {
     if (mesh.colors.empty() && collider.color) {
-        const glm::vec3 bytes = glm::round(255.0F * *collider.color);
-        mesh.colors.assign(mesh.positions.size(),
-                           {static_cast<std::uint8_t>(bytes.r), static_cast<std::uint8_t>(bytes.g),
-                            static_cast<std::uint8_t>(bytes.b), 255});
+        mesh.colors.assign(mesh.positions.size(), vertexColor(*collider.color));
     }
     return mesh;
 }
@@ -93,11 +97,23 @@ PictureMesh floorMesh(const LoadedScene& loaded) {
     return mesh;
 }
 
-PictureMesh animatedMesh(const PlayedMesh& played) {
+/// Its materials' colours; the rest has that of its collider.
+Result<PictureMesh> animatedMesh(const PlayedMesh& played, const SceneCollider& collider) {
     PictureMesh mesh;
     mesh.positions = posed(*played.mesh, played.poseAt(0.0));
     for (const glm::uvec3& triangle : played.mesh->triangles) {
         mesh.triangles.insert(mesh.triangles.end(), {triangle.x, triangle.y, triangle.z});
+    }
+    if (!collider.materials.empty()) {
+        mesh.colors.assign(mesh.positions.size(), vertexColor(collider.color.value_or(MeshStyle().clay)));
+    }
+    for (const SceneMaterialColor& material : collider.materials) {
+        const std::vector<glm::uvec3> its = RELIEF_TRY(materialTriangles(*played.mesh, material.name));
+        for (const glm::uvec3& triangle : its) {
+            for (int i = 0; i < 3; ++i) {
+                mesh.colors[triangle[i]] = vertexColor(material.color);
+            }
+        }
     }
     return mesh;
 }
@@ -127,8 +143,9 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
         if (loaded.played[i] || loaded.live[i]) {
             const MeshMotion motion = loaded.played[i] ? MeshMotion::kPlayed : MeshMotion::kLive;
             out.places.push_back({static_cast<std::uint32_t>(out.meshes.size()), i, motion});
-            out.meshes.push_back(
-                colored(loaded.played[i] ? animatedMesh(*loaded.played[i]) : loaded.live[i]->mesh, collider));
+            PictureMesh mesh = loaded.played[i] ? RELIEF_TRY(animatedMesh(*loaded.played[i], collider))
+                                                : loaded.live[i]->mesh;
+            out.meshes.push_back(colored(std::move(mesh), collider));
             continue;
         }
         const fs::path& file = files[i];

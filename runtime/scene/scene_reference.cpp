@@ -58,6 +58,7 @@ GeneratedTexts sceneReference() {
         {readme, "touching", markdownTable(tableOf(tableOf(fields, "emitter").fields, "touching").fields)});
     const FieldReference& collider = tableOf(fields, "collider");
     texts.push_back({readme, "key", markdownTable(tableOf(collider.fields, "key").fields)});
+    texts.push_back({readme, "material-colors", markdownTable(tableOf(collider.fields, "material").fields)});
     texts.push_back({readme, "play", markdownTable(tableOf(collider.fields, "play").fields)});
     texts.push_back({readme, "deform", markdownTable(tableOf(collider.fields, "deform").fields)});
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <glm/glm.hpp>
 
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_meshes.h"
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/scene/scene_error.h"
@@ -73,6 +76,60 @@ TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
     collider.animation.clear();
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", collider));
     expectRefused("bake it with --animated");
+}
+
+/// A tube whose upper half is of another material.
+AnimatedMesh tubeInASleeve() {
+    AnimatedMesh mesh = bendingTube(12, 8);
+    mesh.materials = {"arm", "sleeve"};
+    for (const glm::uvec3& t : mesh.triangles) {
+        const bool upper = mesh.positions[t.x].y + mesh.positions[t.y].y + mesh.positions[t.z].y > 3.0F;
+        mesh.triangle_materials.push_back(upper ? 1 : 0);
+    }
+    return mesh;
+}
+
+TEST(ScenePlay, MaterialsHaveTheirColoursInPictures) {
+    const test::TemporaryFolder folder;
+    const AnimatedMesh mesh = tubeInASleeve();
+    ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(mesh)));
+    const auto load = [&](const std::string& keys) {
+        return loadAll(
+            folder.write("scene.toml", kHead + "play = {}\n" + keys +
+                                           "[ground]\nenabled = false\n[render]\nmeshes = \".\"\n"),
+            {});
+    };
+    using Color = std::array<std::uint8_t, 4>;
+    for (const auto& [keys, rest] :
+         {std::pair<std::string, Color>("color = [0, 1, 0.2]\n", {0, 255, 51, 255}),
+          std::pair<std::string, Color>("", {189, 153, 133, 255})}) {  // clay
+        const auto loaded = load(keys + "[[collider.material]]\nname = \"sleeve\"\ncolor = [1, 0.4, 0]\n");
+        ASSERT_TRUE(loaded) << loaded.error().message;
+        const auto drawn = loadDrawnMeshes(*loaded);
+        ASSERT_TRUE(drawn) << drawn.error().message;
+        const std::vector<Color>& colors = drawn->meshes.front().colors;
+        ASSERT_EQ(colors.size(), mesh.positions.size());
+        std::vector<Color> expected(colors.size(), rest);
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            for (int k = 0; k < 3 && mesh.triangle_materials[i] == 1; ++k) {
+                expected[mesh.triangles[i][k]] = {255, 102, 0, 255};
+            }
+        }
+        EXPECT_EQ(colors, expected);
+        EXPECT_NE(std::count(colors.begin(), colors.end(), rest), 0);
+    }
+    EXPECT_TRUE(loadDrawnMeshes(*load(""))->meshes.front().colors.empty());
+    const auto unknown = load("[[collider.material]]\nname = \"hat\"\ncolor = [1, 1, 1]\n");
+    ASSERT_FALSE(unknown);
+    EXPECT_NE(
+        unknown.error().message.find("scene.toml:2:8: collider.material: there is no material 'hat'; it "
+                                     "has 'arm', 'sleeve'"),
+        std::string::npos)
+        << unknown.error().message;
+    expectSceneError(
+        "[[collider]]\nfile = \"a.relief\"\n[[collider.material]]\nname = \"a\"\ncolor = [1, 1, "
+        "1]\n",
+        "dir/scene.toml:3", "play");
 }
 
 }  // namespace
