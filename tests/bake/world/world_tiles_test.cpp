@@ -24,6 +24,11 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kBudget = 800'000;
 constexpr std::uint64_t kTileBytes = 205'000;  ///< more than the share of the box
 
+/// Stripes of 25 units, which rows of squares keep to where there are eight of them, or a multiple.
+const char* stripeAt(float x) {
+    return static_cast<int>(std::floor((x + kHillsHalf) / 25.0F)) % 2 == 0 ? "grass" : "rock";
+}
+
 using Files = std::map<std::string, std::vector<std::byte>>;
 
 class WorldTiles : public testing::Test {
@@ -31,7 +36,8 @@ class WorldTiles : public testing::Test {
     void SetUp() override { writeLevel(1.0, 60); }
 
     /// Hills, and a box beside them.
-    void writeLevel(double high, std::uint32_t squares) const {
+    /// \param striped  of two materials, by stripeAt().
+    void writeLevel(double high, std::uint32_t squares, bool striped = false) const {
         std::ostringstream text;
         std::size_t before = 1;
         const auto add = [&](const char* name, const TriangleMesh& mesh) {
@@ -40,6 +46,11 @@ class WorldTiles : public testing::Test {
                 text << "v " << p.x << " " << p.y << " " << p.z << "\n";
             }
             for (const glm::uvec3& t : mesh.triangles) {
+                if (striped) {
+                    const float x =
+                        (mesh.positions[t.x].x + mesh.positions[t.y].x + mesh.positions[t.z].x) / 3.0F;
+                    text << "usemtl " << stripeAt(x) << "\n";
+                }
                 text << "f " << before + t.x << " " << before + t.y << " " << before + t.z << "\n";
             }
             before += mesh.positions.size();
@@ -163,6 +174,39 @@ TEST_F(WorldTiles, CoarseOnesAreTheWholeToo) {
     const auto [wrong, at_seams] = wrongAmong(coarse, result, 1.0F);
     EXPECT_LT(wrong, 0.1);
     EXPECT_LT(at_seams, 1.3 * wrong + 0.01);
+}
+
+TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
+    writeLevel(1.0, 200, true);
+    const WorldBakeResult result = bake("w");
+    ASSERT_GE(result.colliders.size(), 4U);
+    for (const WorldDetail detail : {WorldDetail::kFine, WorldDetail::kCoarse}) {
+        const WorldField field = load("w", detail);
+        std::mt19937 random(12);
+        std::uniform_real_distribution<float> along(-kHillsHalf + 1.0F, kHillsHalf - 1.0F);
+        int wrong = 0;
+        int asked = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const float x = along(random);
+            const float z = along(random);
+            if (std::abs(x / 25.0F - std::round(x / 25.0F)) * 25.0F < 0.5F) {
+                continue;
+            }
+            // Where a drop stops, which comes from above.
+            const glm::vec3 p(x, hillsAt(x, z) - 0.05F, z);
+            const auto body = static_cast<std::size_t>(std::max(field.evaluate(p).body, 0));
+            const Materials& materials = field.colliderOf(body).materials;
+            ++asked;
+            wrong += materials.empty() || materials
+                                                  .list[materialAt(materials, field.toObject(body, p),
+                                                                   glm::vec3(0.0F, 1.0F, 0.0F))]
+                                                  .name != stripeAt(x)
+                         ? 1
+                         : 0;
+        }
+        EXPECT_GT(asked, 15'000);
+        EXPECT_LE(wrong, asked / 100) << (detail == WorldDetail::kFine ? "fine" : "coarse");
+    }
 }
 
 TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
