@@ -31,9 +31,9 @@ std::uint32_t rowsOf(std::uint32_t count) {
     return (count + kWidth - 1) / kWidth;
 }
 
-GlTexture makeTexture(GLenum format, std::uint32_t width, std::uint32_t height) {
-    return makeTexture2D(format, static_cast<GLsizei>(width), static_cast<GLsizei>(height),
-                         format == GL_R32F ? GL_RED : GL_RGBA, GL_FLOAT);
+GlTexture makeTexture(std::uint32_t width, std::uint32_t height) {
+    return makeTexture2D(GL_RGBA32F, static_cast<GLsizei>(width), static_cast<GLsizei>(height), GL_RGBA,
+                         GL_FLOAT);
 }
 
 /// Over the texels of `count` entries.
@@ -44,25 +44,52 @@ void drawEntries(const GlProgram& program, const GlFramebuffer& target, std::uin
 
 }  // namespace
 
-Result<EventList> EventList::create(const EventOptions& options, std::uint32_t capacity) {
-    if (options.most == 0 || options.most > kMostMax || !(options.min_speed >= 0.0F)) {
-        return fail(ErrorCode::kUsage, "a list of events needs room for 1 to " + std::to_string(kMostMax) +
-                                           " of them, and a least speed of at least 0");
+Result<EventList> EventList::create(std::span<const EventOptions> lists, std::uint32_t capacity) {
+    if (lists.empty() || lists.size() > kEventLists) {
+        return fail(ErrorCode::kUsage,
+                    "there may be 1 to " + std::to_string(kEventLists) + " lists of events");
     }
-    static_assert(kLevels == kEventLevels);
-    EventList list;
-    list.options_ = options;
-    list.options_.most = std::min(options.most, capacity);
-    RELIEF_TRY(checkTextureSize(kWidth, rowsOf(std::max(list.options_.most, reduced(capacity))),
-                                "a list of " + std::to_string(list.options_.most) + " events",
+    EventList made;
+    for (EventOptions options : lists) {
+        if (options.most == 0 || options.most > kMostMax || !(options.min_speed >= 0.0F)) {
+            return fail(ErrorCode::kUsage, "a list of events needs room for 1 to " +
+                                               std::to_string(kMostMax) +
+                                               " of them, and a least speed of at least 0");
+        }
+        options.most = std::min(options.most, capacity);
+        made.lists_.push_back(options);
+    }
+    std::array<std::uint32_t, kEventLists> first_row{};
+    RELIEF_TRY(checkTextureSize(kWidth, std::max(made.layOut(capacity, first_row), rowsOf(reduced(capacity))),
+                                "a list of " + std::to_string(made.longest()) + " events",
                                 "choose a shorter one"));
-    RELIEF_TRY(list.createTextures(capacity));
-    RELIEF_TRY(list.createPrograms());
-    return list;
+    RELIEF_TRY(made.createTextures(capacity));
+    RELIEF_TRY(made.createPrograms());
+    return made;
+}
+
+std::uint32_t EventList::longest() const {
+    std::uint32_t most = 0;
+    for (const EventOptions& list : lists_) {
+        most = std::max(most, list.most);
+    }
+    return most;
 }
 
 std::uint32_t EventList::listWidth() const {
-    return std::min(options_.most, kWidth);
+    return std::min(longest(), kWidth);
+}
+
+std::uint32_t EventList::layOut(std::uint32_t particles,
+                                std::array<std::uint32_t, kEventLists>& first_row) const {
+    constexpr std::uint32_t kNever = 1U << 30;
+    first_row.fill(kNever);
+    std::uint32_t rows = 0;
+    for (std::size_t i = 0; i < lists_.size(); ++i) {
+        first_row[i] = rows;
+        rows += rowsOf(std::min(lists_[i].most, particles));
+    }
+    return rows;
 }
 
 Result<void> EventList::createTextures(std::uint32_t capacity) {
@@ -70,15 +97,16 @@ Result<void> EventList::createTextures(std::uint32_t capacity) {
     std::uint32_t count = capacity;
     for (Level& level : counts_) {
         count = reduced(count);
-        level.texture = makeTexture(GL_R32F, std::min(count, kWidth), rowsOf(count));
+        level.texture = makeTexture(std::min(count, kWidth), rowsOf(count));
     }
+    std::array<std::uint32_t, kEventLists> first_row{};
+    const std::uint32_t rows = layOut(capacity, first_row);
     std::array<GLuint, 4> names{};
     for (std::size_t i = 0; i < list_.size(); ++i) {
-        list_[i] = makeTexture(GL_RGBA32F, listWidth(), rowsOf(options_.most));
+        list_[i] = makeTexture(listWidth(), rows);
         names[i] = list_[i].name();
     }
-    RELIEF_TRY(
-        checkAllocated("a list of " + std::to_string(options_.most) + " events", "choose a shorter one"));
+    RELIEF_TRY(checkAllocated("a list of " + std::to_string(longest()) + " events", "choose a shorter one"));
     for (Level& level : counts_) {
         level.target = RELIEF_TRY(makeFramebuffer({level.texture.name()}));
     }
@@ -88,11 +116,22 @@ Result<void> EventList::createTextures(std::uint32_t capacity) {
 
 /// Makes the program current.
 void EventList::useFilter(const GlProgram& program) const {
+    std::array<float, kEventLists> min_speed{};
+    std::array<GLint, kEventLists> kinds{};  // of a list that does not exist: none
+    std::array<GLint, kEventLists> type{};
+    std::array<GLint, kEventLists> material{};
+    for (std::size_t i = 0; i < lists_.size(); ++i) {
+        const EventOptions& list = lists_[i];
+        min_speed[i] = list.min_speed;
+        kinds[i] = (list.hits ? 1 : 0) + (list.lasting ? 2 : 0) + (list.deaths ? 4 : 0);
+        type[i] = list.type ? static_cast<GLint>(*list.type) : -1;
+        material[i] = list.material ? *list.material + 1 : -1;
+    }
     program.use();
-    program.set("u_min_speed", options_.min_speed);
-    program.set("u_event_kinds", glm::ivec3(options_.hits, options_.lasting, options_.deaths));
-    program.set("u_event_type", options_.type ? static_cast<GLint>(*options_.type) : -1);
-    program.set("u_event_material", options_.material ? *options_.material + 1 : -1);
+    program.set("u_min_speed", min_speed);
+    program.set("u_event_kinds", kinds);
+    program.set("u_event_type", type);
+    program.set("u_event_material", material);
 }
 
 Result<void> EventList::createPrograms() {
@@ -120,12 +159,12 @@ bool EventList::request(const Step& step) {
     if (in_flight_ == kInFlightMax) {
         return false;
     }
-    const std::uint32_t rows = rowsOf(std::min(options_.most, step.extent));
     Request& request = requests_[(oldest_ + static_cast<std::size_t>(in_flight_++)) % kInFlightMax];
     request.tag = step.tag;
     request.number = step.number;
     request.begin = step.begin;
     request.end = step.end;
+    const std::uint32_t rows = layOut(step.extent, request.first_row);
     request.floats = rows == 0 ? 0 : kFloats * (list_.size() * listWidth() * rows + 1);
     if (rows == 0) {  // the list on the GPU becomes empty, too
         const std::array<float, 4> zero{};
@@ -135,7 +174,7 @@ bool EventList::request(const Step& step) {
     }
     bindPackBuffer(request.buffer, static_cast<GLsizeiptr>(request.floats * sizeof(float)));
     count(step);
-    makeList(step, rows);
+    makeLists(step, request, rows);
     read(rows);
     request.fence.insert();
     return true;
@@ -159,8 +198,11 @@ void EventList::count(const Step& step) const {
     }
 }
 
-void EventList::makeList(const Step& step, std::uint32_t rows) const {
+void EventList::makeLists(const Step& step, const Request& request, std::uint32_t rows) const {
     list_program_.use();
+    std::array<GLint, kEventLists> first_row{};
+    std::copy(request.first_row.begin(), request.first_row.end(), first_row.begin());
+    list_program_.set("u_first_row", first_row);
     list_program_.set("u_width", static_cast<GLint>(step.width));
     list_program_.set("u_materials", static_cast<GLint>(step.materials + 1));
     std::array<float, kParticleTypesMax> radius{};
@@ -227,41 +269,46 @@ std::optional<EventList::Collected> EventList::collect() {
             return std::nullopt;
         }
     }
-    // Of the list, which is as long as it may ever be, the events alone: the rest would take milliseconds.
-    const auto count = static_cast<std::uint32_t>(total[0]);
-    const std::size_t listed = std::min(count, options_.most);
+    Collected collected;
+    collected.number = request.number;
+    collected.events.tag = request.tag;
+    collected.events.time = request.end;
+    // Of the lists, which are as long as they may ever be, the events alone: the rest would take milliseconds.
     const std::size_t plane = request.floats / kFloats / list_.size() * kFloats;
-    std::vector<float> values(kFloats * list_.size() * listed);
-    for (std::size_t i = 0; i < list_.size() && listed > 0; ++i) {
-        if (!readFloats(request, i * plane,
-                        std::span(values).subspan(i * kFloats * listed, kFloats * listed))) {
-            return std::nullopt;
+    for (std::size_t i = 0; i < lists_.size(); ++i) {
+        const auto count = static_cast<std::uint32_t>(total[i]);
+        const std::size_t listed = std::min(count, lists_[i].most);
+        const std::size_t first = listed == 0 ? 0 : kFloats * listWidth() * request.first_row[i];
+        std::vector<float> values(kFloats * list_.size() * listed);
+        for (std::size_t p = 0; p < list_.size() && listed > 0; ++p) {
+            if (!readFloats(request, p * plane + first,
+                            std::span(values).subspan(p * kFloats * listed, kFloats * listed))) {
+                return std::nullopt;
+            }
         }
+        const std::uint32_t dropped = count - static_cast<std::uint32_t>(listed);
+        collected.events.lists.push_back({listed, dropped});
+        collected.events.dropped += dropped;
+        decode(request, values, collected.events);
     }
-    return decoded(request, count, values);
+    return collected;
 }
 
 bool EventList::readFloats(const Request& request, std::size_t first, std::span<float> out) {
     return readBuffer(request.buffer, first * sizeof(float), std::as_writable_bytes(out));
 }
 
-EventList::Collected EventList::decoded(const Request& request, std::uint32_t count,
-                                        std::span<const float> values) const {
-    Collected collected;
-    collected.number = request.number;
-    collected.events.tag = request.tag;
-    collected.events.time = request.end;
+void EventList::decode(const Request& request, std::span<const float> values, StepEvents& to) const {
     const std::size_t plane = values.size() / list_.size();
     const std::size_t listed = plane / kFloats;
-    collected.events.dropped = count - static_cast<std::uint32_t>(listed);
-    collected.events.events.reserve(listed);
+    to.events.reserve(to.events.size() + listed);
     for (std::size_t i = 0; i < listed; ++i) {
         const float* position = &values[kFloats * i];
         const float* surface = position + plane;
         const float* velocity = surface + plane;
         const float* identity = velocity + plane;
         const int flags = static_cast<int>(identity[3]);
-        ParticleEvent& event = collected.events.events.emplace_back();
+        ParticleEvent& event = to.events.emplace_back();
         event.index = static_cast<std::uint32_t>(identity[0]);
         event.id = static_cast<std::uint32_t>(identity[1]);
         event.type = static_cast<std::uint32_t>(identity[2]);
@@ -276,7 +323,6 @@ EventList::Collected EventList::decoded(const Request& request, std::uint32_t co
         event.body = static_cast<int>(velocity[3]);
         event.material = flags / kEventFlags - 1;
     }
-    return collected;
 }
 
 }  // namespace relief

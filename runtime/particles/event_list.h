@@ -1,4 +1,4 @@
-// The events of a step as a list on the GPU, and its way back to the CPU some steps later.
+// The events of a step as lists on the GPU, and its way back to the CPU some steps later.
 //
 // The step writes what happened to each particle into two textures (shaders/particles/step_event.glsl). The list is made of them
 // by fragments alone, on either path: sums of kEventsCounted in kEventLevels levels count the events before each
@@ -47,9 +47,10 @@ class EventList {
         std::uint64_t number = 0;
     };
 
-    /// \param capacity  of the particle system.
+    /// \param lists     1 to kEventLists. \param capacity  of the particle system.
     /// Errors: kUsage (the options), kLimit, kUnsupported, kFailure.
-    [[nodiscard]] static Result<EventList> create(const EventOptions& options, std::uint32_t capacity);
+    [[nodiscard]] static Result<EventList> create(std::span<const EventOptions> lists,
+                                                  std::uint32_t capacity);
 
     /// Makes the list, and requests its read-back. With the state of a pass (PassState).
     /// \return false, and nothing is made, while kInFlightMax are under way.
@@ -65,11 +66,10 @@ class EventList {
         return in_flight_ == 0 ? std::nullopt : std::optional(requests_[oldest_].number);
     }
 
-    [[nodiscard]] const EventOptions& options() const { return options_; }
-    /// The list of the last request, four textures of RGBA32F, kEventsWidth texels in a row: position, surface,
-    /// velocity and identity of shaders/particles/event_list.frag.
+    /// The lists of the last request, four textures of RGBA32F, kEventsWidth texels in a row: position, surface,
+    /// velocity and identity of shaders/particles/event_list.frag. Each list begins with a row of its own.
     [[nodiscard]] std::span<const GlTexture, 4> textures() const { return list_; }
-    /// A texel: x is the number of events; the list holds `most` of them.
+    /// A texel: x is the number of events of the first list, y that of the second, and so on; each list holds `most` of them.
     [[nodiscard]] const GlTexture& total() const { return counts_[kLevels - 1].texture; }
 
   private:
@@ -85,6 +85,7 @@ class EventList {
         double begin = 0.0;
         double end = 0.0;
         std::size_t floats = 0;  // 0: nothing to wait for
+        std::array<std::uint32_t, kEventLists> first_row{};
         GlBuffer buffer;
         GlFence fence;
     };
@@ -92,18 +93,20 @@ class EventList {
     [[nodiscard]] Result<void> createTextures(std::uint32_t capacity);
     [[nodiscard]] Result<void> createPrograms();
     [[nodiscard]] std::uint32_t listWidth() const;
+    [[nodiscard]] std::uint32_t longest() const;
+    /// Of a system of so many particles. \return of all lists. \param first_row  of each; of those that do not exist, never met.
+    std::uint32_t layOut(std::uint32_t particles, std::array<std::uint32_t, kEventLists>& first_row) const;
     void useFilter(const GlProgram& program) const;
     void count(const Step& step) const;
-    void makeList(const Step& step, std::uint32_t rows) const;
+    void makeLists(const Step& step, const Request& request, std::uint32_t rows) const;
     void read(std::uint32_t rows) const;
     /// The oldest, which the GPU has finished; nullopt if its memory was lost.
     [[nodiscard]] std::optional<Collected> collect();
     [[nodiscard]] static bool readFloats(const Request& request, std::size_t first, std::span<float> out);
-    /// \param count  of the step's events. \param values  of those that are listed, plane by plane.
-    [[nodiscard]] Collected decoded(const Request& request, std::uint32_t count,
-                                    std::span<const float> values) const;
+    /// Adds the events of a list. \param values  of them, plane by plane.
+    void decode(const Request& request, std::span<const float> values, StepEvents& to) const;
 
-    EventOptions options_;
+    std::vector<EventOptions> lists_;
     std::array<Level, kLevels> counts_;
     std::array<GlTexture, 4> list_;
     GlFramebuffer list_target_;

@@ -1,9 +1,11 @@
 // Events of particles in a step: hits and deaths.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace relief {
@@ -40,12 +42,26 @@ struct ParticleEvent {
     int material = -1;       ///< of it there: a number of ColliderTextures::materialNames(); −1: none
 };
 
-/// The events of one step, in ascending order of index.
+/// The events of one step, in ascending order of index. Of several lists those of the first come first.
 struct StepEvents {
     std::uint64_t tag = 0;      ///< as requested
     double time = 0.0;          ///< the end of the step, seconds
     std::uint32_t dropped = 0;  ///< events beyond EventOptions::most
     std::vector<ParticleEvent> events;
+    struct List {
+        std::size_t size = 0;  ///< of `events`
+        std::uint32_t dropped = 0;
+    };
+    std::vector<List> lists{};  ///< as many as there are EventOptions
+
+    /// The events of a list.
+    [[nodiscard]] std::span<const ParticleEvent> of(std::size_t list) const {
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < list; ++i) {
+            first += lists[i].size;
+        }
+        return std::span(events).subspan(first, lists[list].size);
+    }
 };
 
 }  // namespace relief

@@ -228,10 +228,14 @@ Result<void> ParticleSystem::setAir(const AirSettings& air) {
 }
 
 Result<void> ParticleSystem::setEvents(const std::optional<EventOptions>& options) {
+    return setEvents(options ? std::span(&*options, 1) : std::span<const EventOptions>());
+}
+
+Result<void> ParticleSystem::setEvents(std::span<const EventOptions> lists) {
     const PassState state;
     std::unique_ptr<EventList> made;
-    if (options) {
-        made = std::make_unique<EventList>(RELIEF_TRY(EventList::create(*options, capacity())));
+    if (!lists.empty()) {
+        made = std::make_unique<EventList>(RELIEF_TRY(EventList::create(lists, capacity())));
         RELIEF_TRY(createEventTextures());
     }
     std::swap(events_, made);

@@ -136,6 +136,9 @@ class ParticleSystem {
     /// then costs nothing more, in time or memory. Compiles the step where that changes; what is under way is lost.
     /// Errors: kUsage (the options), kLimit, kUnsupported (a GL that draws to fewer textures), kFailure.
     [[nodiscard]] Result<void> setEvents(const std::optional<EventOptions>& options);
+    /// The same with several lists, each of events of its own; an event may be in more than one.
+    /// \param lists  up to kEventLists.
+    [[nodiscard]] Result<void> setEvents(std::span<const EventOptions> lists);
     /// Lists the events of the last step on the GPU, and requests their read-back. Restores the GL state. Collect each request:
     /// until then the system keeps every id that a birth takes the place of.
     /// \param tag  comes back with them, the number of the step for example.

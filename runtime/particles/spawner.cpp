@@ -29,14 +29,14 @@ EventOptions Spawner::heeded() const {
             .material = hits ? settings_.material : std::nullopt};
 }
 
-std::uint64_t Spawner::spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
-                             std::vector<Birth>& births) {
+std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,
+                             std::uint64_t room, std::vector<Birth>& births) {
     const float radius =
         types.empty() ? 0.0F : types[std::min<std::size_t>(settings_.type, types.size() - 1)].radius;
     std::uint64_t left = std::min<std::uint64_t>(room, settings_.most);
     std::uint64_t refused = 0;
     std::uint64_t heeded = 0;
-    for (const ParticleEvent& event : step.events) {
+    for (const ParticleEvent& event : events) {
         if (!heeds(event)) {
             continue;
         }

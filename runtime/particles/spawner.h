@@ -105,8 +105,12 @@ class Spawner {
     /// \param births  they are added at its end.
     /// \return how many were due but found no room, were above `most`, or have no finite place or velocity, because the
     /// event has none.
+    std::uint64_t spawn(std::span<const ParticleEvent> events, std::span<const ParticleType> types,
+                        std::uint64_t room, std::vector<Birth>& births);
     std::uint64_t spawn(const StepEvents& step, std::span<const ParticleType> types, std::uint64_t room,
-                        std::vector<Birth>& births);
+                        std::vector<Birth>& births) {
+        return spawn(step.events, types, room, births);
+    }
 
     /// Exactly the events that it heeds, and as many of a step as it can use.
     [[nodiscard]] EventOptions heeded() const;

@@ -153,20 +153,16 @@ Result<void> Simulation::listHits(float min_speed, EventSink sink) {
     return setEvents();
 }
 
-std::optional<EventOptions> Simulation::heededAlone() const {
-    if (event_sink_ || spawners_.empty()) {
-        return std::nullopt;
+std::vector<EventOptions> Simulation::heededLists() const {
+    std::vector<EventOptions> lists;
+    if (event_sink_ || spawners_.size() > kEventLists) {
+        return lists;
     }
-    EventOptions all = spawners_.front().heeded();
     for (const Spawner& spawner : spawners_) {
-        EventOptions one = spawner.heeded();
-        one.most = all.most = std::max(all.most, one.most);
-        if (!(one == all)) {
-            return std::nullopt;
-        }
+        lists.push_back(spawner.heeded());
+        lists.back().most = std::min(lists.back().most, kEventsMax);
     }
-    all.most = std::min(all.most, kEventsMax);
-    return all;
+    return lists;
 }
 
 Result<void> Simulation::setEvents() {
@@ -184,22 +180,19 @@ Result<void> Simulation::setEvents() {
     }
     options.hits = options.min_speed < kNone;
     options.min_speed = options.hits ? options.min_speed : 0.0F;
-    const auto alone = heededAlone();
-    const auto wanted = alone                            ? alone
-                        : options.hits || options.deaths ? std::optional(options)
-                                                         : std::nullopt;
-    refused_each_ = alone ? 0 : 1;
-    for (const Spawner& spawner : spawners_) {
-        refused_each_ += alone ? spawner.settings().count_min : 0;
+    std::vector<EventOptions> lists = heededLists();
+    list_each_ = !lists.empty();
+    if (!list_each_ && (options.hits || options.deaths)) {
+        lists.push_back(options);
     }
-    if (wanted == event_options_) {
+    if (lists == event_lists_) {
         return {};
     }
     while (auto events = RELIEF_TRY(particles_->waitEvents())) {
         held_events_.push_back(std::move(*events));
     }
-    RELIEF_TRY(particles_->setEvents(wanted));
-    event_options_ = wanted;
+    RELIEF_TRY(particles_->setEvents(lists));
+    event_lists_ = std::move(lists);
     return {};
 }
 
@@ -218,14 +211,26 @@ Result<void> Simulation::takeEvents(int in_flight) {
         if (event_sink_ && events->tag >= sink_from_) {
             RELIEF_TRY(event_sink_(*events));
         }
-        refused_ += spawners_.empty() ? 0 : refused_each_ * events->dropped;
-        for (Spawner& spawner : spawners_) {
-            const std::uint64_t room =
-                particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());
-            refused_ += spawner.spawn(*events, types_, room, spawned_);
-        }
+        spawnFrom(*events);
     }
     return {};
+}
+
+void Simulation::spawnFrom(const StepEvents& step) {
+    // Several lists are one for each spawner, also where others have replaced them since.
+    const bool several = step.lists.size() > 1;
+    const bool each = several || list_each_;
+    refused_ += each || spawners_.empty() ? 0 : step.dropped;
+    for (std::size_t i = 0; i < spawners_.size(); ++i) {
+        const bool own = i < step.lists.size();
+        const std::uint64_t room =
+            particles_->room() - std::min<std::uint64_t>(particles_->room(), spawned_.size());
+        const std::uint64_t least = spawners_[i].settings().count_min;
+        refused_ += each && own ? least * step.lists[i].dropped : 0;
+        if (own || !several) {
+            refused_ += spawners_[i].spawn(several ? step.of(i) : step.events, types_, room, spawned_);
+        }
+    }
 }
 
 Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {

@@ -151,9 +151,9 @@ class Simulation {
     [[nodiscard]] Result<void> moveColliders(double time);
     /// Has the events listed that the scene's [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
-    /// The events that the scene's [[spawn]] need, if all heed the same ones, and nothing else needs any: then the list is no
-    /// longer than they can use. Of several that heed different ones, the last event of one may lie behind any number of others.
-    [[nodiscard]] std::optional<EventOptions> heededAlone() const;
+    /// A list for each of the scene's [[spawn]], no longer than it can use; none where there are too many, or a sink needs more.
+    [[nodiscard]] std::vector<EventOptions> heededLists() const;
+    void spawnFrom(const StepEvents& step);
     /// Until the events of at most so many steps are in flight.
     [[nodiscard]] Result<void> takeEvents(int in_flight);
 
@@ -179,12 +179,12 @@ class Simulation {
     std::vector<SceneSpawn> spawns_;  // that the spawners are made of
     std::vector<Spawner> spawners_;
     std::vector<Birth> spawned_;  // for the next step
-    std::optional<EventOptions> event_options_;
-    EventSink event_sink_;  // may be empty
+    std::vector<EventOptions> event_lists_;
+    bool list_each_ = false;  // one for each spawner; else one for all
+    EventSink event_sink_;    // may be empty
     float sink_min_speed_ = 0.0F;
     std::uint64_t sink_from_ = 1;          // the first step whose events it gets
     std::vector<StepEvents> held_events_;  // of a list that another one has replaced
-    std::uint64_t refused_each_ = 1;       // births for each event that a list dropped
 };
 
 }  // namespace relief

@@ -41,6 +41,8 @@ inline constexpr int kEventDirections = 6;
 /// A count of events is that of so many counts before it; kEventLevels of them count the largest system.
 inline constexpr int kEventsCounted = 64;
 inline constexpr int kEventLevels = 4;
+/// Lists of the events of a step: a count has a component for each.
+inline constexpr int kEventLists = 4;
 /// Texels in a row of the counts and of the list of events.
 inline constexpr int kEventsWidth = 1024;
 

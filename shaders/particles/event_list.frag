@@ -1,5 +1,5 @@
-// The list of a step's events in ascending order of index: fragment k finds the k-th event that counts, down the
-// levels of counts.
+// Lists of a step's events in ascending order of index, one below the other: fragment k of a list finds the k-th event that
+// counts there, down the levels of counts.
 //
 //     position  x y z   of the contact with the surface, or of the death; world space
 //               w       seconds from the step's beginning to the event
@@ -16,7 +16,8 @@ uniform highp sampler2D u_count_1;  // of particles
 uniform highp sampler2D u_count_2;  // of count_1's
 uniform highp sampler2D u_count_3;
 uniform highp sampler2D u_count_4;  // of all
-uniform int u_width;      // of the particles' textures
+uniform int u_width;                          // of the particles' textures
+uniform int u_first_row[RELIEF_EVENT_LISTS];  // of each list
 uniform float u_radius[RELIEF_TYPES];
 
 layout(location = 0) out vec4 o_position;
@@ -25,10 +26,11 @@ layout(location = 2) out vec4 o_velocity;
 layout(location = 3) out vec4 o_identity;
 
 // In: the k-th event counted by the entries from `first` on, k from 0. Out: the k-th of the entry returned.
-int descended(highp sampler2D level, int first, inout float k) {
+// of: 1 at the component of the list.
+int descended(highp sampler2D level, vec4 of, int first, inout float k) {
     int i = first;
     for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
-        float count = texelFetch(level, texelOf(i, RELIEF_EVENTS_WIDTH), 0).x;
+        float count = dot(texelFetch(level, texelOf(i, RELIEF_EVENTS_WIDTH), 0), of);
         if (k < count) {
             break;
         }
@@ -37,10 +39,11 @@ int descended(highp sampler2D level, int first, inout float k) {
     return i;
 }
 
-int indexOf(int first, float k) {
+int indexOf(int list, int first, float k) {
     int i = first;
     for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
-        if (counts(texelOf(i, u_width))) {
+        ivec2 texel = texelOf(i, u_width);
+        if (countsIn(list, texel, texelFetch(u_event_surface, texel, 0))) {
             if (k < 1.0) {
                 break;
             }
@@ -58,15 +61,20 @@ vec3 normalOf(vec2 two, int direction) {
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    float k = float(at.y * RELIEF_EVENTS_WIDTH + at.x);
-    if (k >= texelFetch(u_count_4, ivec2(0), 0).x) {
+    int list = 0;
+    for (int i = 1; i < RELIEF_EVENT_LISTS; ++i) {
+        list = at.y >= u_first_row[i] ? i : list;
+    }
+    vec4 of = vec4(equal(ivec4(list), ivec4(0, 1, 2, 3)));
+    float k = float((at.y - u_first_row[list]) * RELIEF_EVENTS_WIDTH + at.x);
+    if (k >= dot(texelFetch(u_count_4, ivec2(0), 0), of)) {
         o_position = o_surface = o_velocity = o_identity = vec4(0.0);  // beyond, the counts are leftovers
         return;
     }
-    int first = descended(u_count_3, 0, k);
-    first = descended(u_count_2, first * RELIEF_EVENTS_COUNTED, k);
-    first = descended(u_count_1, first * RELIEF_EVENTS_COUNTED, k);
-    int index = indexOf(first * RELIEF_EVENTS_COUNTED, k);
+    int first = descended(u_count_3, of, 0, k);
+    first = descended(u_count_2, of, first * RELIEF_EVENTS_COUNTED, k);
+    first = descended(u_count_1, of, first * RELIEF_EVENTS_COUNTED, k);
+    int index = indexOf(list, first * RELIEF_EVENTS_COUNTED, k);
     ivec2 texel = texelOf(index, u_width);
 
     vec4 surface = texelFetch(u_event_surface, texel, 0);

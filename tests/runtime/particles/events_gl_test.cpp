@@ -441,6 +441,47 @@ TEST_P(EventsGlTest, AQuarterOfAMillionHitsAreAllThere) {
     }
 }
 
+// Each of several lists is as it would be alone, in one request.
+TEST_P(EventsGlTest, SeveralListsAreAsEachAlone) {
+    auto textures = ColliderTextures::create(boxCollider());
+    ASSERT_TRUE(textures);
+    const auto run = [&](std::span<const EventOptions> lists) {
+        make({.capacity = 70'000});
+        EXPECT_TRUE(particles_->setEvents(lists));
+        return played(*particles_, *textures, 1500, 25, OnCollision::kBounce, true).events;
+    };
+    const std::vector<EventOptions> options{{.lasting = true, .most = 1500, .type = 2},
+                                            {.min_speed = 1.5F, .most = 7},
+                                            {.hits = false, .deaths = true},
+                                            {.lasting = true, .most = 2000, .type = 4}};
+    for (const std::size_t count : {2U, 3U, 4U}) {
+        const std::span<const EventOptions> some = std::span(options).first(count);
+        const std::vector<StepEvents> together = run(some);
+        ASSERT_EQ(together.size(), 25U);
+        std::vector<std::size_t> listed(count);
+        std::uint32_t dropped = 0;
+        for (std::size_t list = 0; list < count; ++list) {
+            const std::vector<StepEvents> alone = run(some.subspan(list, 1));
+            for (std::size_t step = 0; step < alone.size(); ++step) {
+                ASSERT_EQ(together[step].lists.size(), count);
+                const std::span<const ParticleEvent> own = together[step].of(list);
+                ASSERT_EQ(own.size(), alone[step].events.size()) << list << " " << step;
+                EXPECT_EQ(together[step].lists[list].dropped, alone[step].dropped);
+                for (std::size_t i = 0; i < own.size(); ++i) {
+                    ASSERT_EQ(own[i].id, alone[step].events[i].id);
+                    ASSERT_EQ(own[i].index, alone[step].events[i].index);
+                    ASSERT_EQ(own[i].position, alone[step].events[i].position);
+                    ASSERT_EQ(own[i].speed, alone[step].events[i].speed);
+                }
+                listed[list] += own.size();
+                dropped += alone[step].dropped;
+            }
+        }
+        EXPECT_GT(*std::min_element(listed.begin(), listed.end()), 100U);
+        EXPECT_GT(dropped, 100U);
+    }
+}
+
 // The list on the GPU is the one that comes back.
 TEST_P(EventsGlTest, TheListIsThereForShaders) {
     make({.capacity = 5000});
@@ -483,6 +524,10 @@ TEST_P(EventsGlTest, WrongOptionsAreRefused) {
         ASSERT_FALSE(set);
         EXPECT_EQ(set.error().code, ErrorCode::kUsage);
     }
+    const std::vector<EventOptions> many(kEventLists + 1);
+    const auto set = particles_->setEvents(many);
+    ASSERT_FALSE(set);
+    EXPECT_EQ(set.error().code, ErrorCode::kUsage);
     ASSERT_TRUE(particles_->setEvents(EventOptions{}));
     EXPECT_TRUE(taken().events.empty()) << "nobody was there";
     for (int i = 0; i < EventList::kInFlightMax; ++i) {

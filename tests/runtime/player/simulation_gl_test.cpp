@@ -103,6 +103,18 @@ count = [1, 3]
 most = 60
 lifetime = [0.2, 0.4]
 speed = 1
+[[spawn]]
+on = "death"
+of = "drop"
+type = "splash"
+most = 30
+lifetime = 0.1
+[[spawn]]
+on = "collision"
+of = "drop"
+min_speed = 2
+type = "splash"
+lifetime = 0.1
 )";
     const auto loaded = loadAll(folder.write("scene.toml", scene), {});
     ASSERT_TRUE(loaded) << loaded.error().message;
