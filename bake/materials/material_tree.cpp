@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bake/materials/material_samples.h"
 #include "bake/mesh/mesh_query.h"
 #include "formats/base/text.h"
 
@@ -24,8 +25,8 @@ constexpr double kMargin = 0.5;
 /// The least component of unit normals along the axis that tells two sides apart.
 constexpr double kSideMin = 0.5;
 constexpr double kDiagonal = 0.70710678118654752;
-/// Of the surface, to find where leaves are wrong.
-constexpr std::size_t kSamples = 200'000;
+/// Nodes that are tried for each that is kept: a split may mend nothing by itself, and much by those below it.
+constexpr std::size_t kTriedPerNode = 2;
 /// Faces that lie in one plane stay in one another's cells down to the smallest: beyond so many in all, cells stay unsplit.
 constexpr std::size_t kFacesHeldMax = std::size_t{1} << 26;
 /// Bytes of a material in the container, beside its name.
@@ -82,18 +83,11 @@ bool meets(const Face& face, const glm::dvec3& center, double half) {
     return true;
 }
 
-/// A point of the surface that the collider shows, with the normal that a contact finds there.
-struct Sample {
-    glm::dvec3 point;
-    glm::dvec3 normal;
-    std::uint8_t id;
-};
-
 /// How a cell without nodes below it is: the leaf that fits its samples best.
 struct Fit {
     std::optional<MaterialSides> sides;
     std::uint8_t single = 0;  ///< without them
-    std::size_t wrong = 0;    ///< samples
+    std::size_t wrong = 0;    ///< weight of the samples
 };
 
 /// A cell, and the triangles and samples near it.
@@ -104,13 +98,15 @@ struct Cell {
     std::vector<std::uint32_t> samples;
     Fit fit;
     bool final = false;                      ///< nothing tells its surfaces apart any better
+    bool kept = false;                       ///< with its octants
     std::array<std::uint32_t, 8> octants{};  ///< cells; 0: it is a leaf
 };
 
 /// Splits the cell whose leaf is wrong at most samples, again and again.
 class TreeBuilder {
   public:
-    TreeBuilder(const MaterialSource& source, const MaterialTreeOptions& options, std::vector<Sample> samples)
+    TreeBuilder(const MaterialSource& source, const MaterialTreeOptions& options,
+                std::vector<MaterialSample> samples)
         : source_(source), options_(options), samples_(std::move(samples)) {
         result_.list = source.list;
     }
@@ -133,7 +129,7 @@ class TreeBuilder {
         held_ = root.faces.size();
         cells_.push_back(std::move(root));
         split({0});
-        std::size_t left = std::min(kMaterialNodesMax, mostNodes()) - 1;
+        std::size_t left = kTriedPerNode * mostNodes(0) - 1;
         while (!open_.empty() && left > 0) {
             // So many at once, for the threads; always as many.
             constexpr std::size_t kAtOnce = 32;
@@ -144,6 +140,15 @@ class TreeBuilder {
             }
             left -= next.size();
             split(next);
+        }
+        // Pairs of sides take bytes as well, and fewer nodes may have other pairs.
+        for (std::size_t pairs = 0;;) {
+            keepBest(mostNodes(pairs));
+            const std::size_t used = pairsKept();
+            if (used <= pairs) {
+                break;
+            }
+            pairs = used;
         }
         writeNodes();
         return std::move(result_);
@@ -184,13 +189,14 @@ class TreeBuilder {
         result_.size = 0.0F;
     }
 
-    [[nodiscard]] std::size_t mostNodes() const {
-        std::size_t taken = 0;
+    /// \param pairs  of sides.
+    [[nodiscard]] std::size_t mostNodes(std::size_t pairs) const {
+        std::size_t taken = pairs * sizeof(MaterialSides);
         for (const Material& one : source_.list) {
             taken += one.name.size() + kMaterialBytes;
         }
-        return std::max<std::size_t>((options_.most - std::min(taken, options_.most)) / sizeof(MaterialNode),
-                                     1);
+        return std::clamp<std::size_t>(
+            (options_.most - std::min(taken, options_.most)) / sizeof(MaterialNode), 1, kMaterialNodesMax);
     }
 
     [[nodiscard]] std::optional<std::uint8_t> singleOf(const std::vector<std::uint32_t>& faces) const {
@@ -248,6 +254,18 @@ class TreeBuilder {
         return {static_cast<std::uint8_t>(found - counts.begin()), all - *found};
     }
 
+    [[nodiscard]] std::size_t wrongOf(const Fit& fit, const std::vector<std::uint32_t>& samples) const {
+        std::size_t wrong = 0;
+        for (const std::uint32_t i : samples) {
+            const MaterialSample& sample = samples_[i];
+            const std::uint8_t id = !fit.sides                                     ? fit.single
+                                    : along(sample.normal, fit.sides->axis) >= 0.0 ? fit.sides->towards
+                                                                                   : fit.sides->against;
+            wrong += id == sample.id ? 0 : sample.weight;
+        }
+        return wrong;
+    }
+
     /// \param otherwise  material without samples.
     [[nodiscard]] Fit fitOf(const std::vector<std::uint32_t>& samples, std::uint8_t otherwise) const {
         Fit best{std::nullopt, otherwise, 0};
@@ -256,14 +274,14 @@ class TreeBuilder {
         }
         std::vector<std::size_t> counts(source_.list.size());
         for (const std::uint32_t i : samples) {
-            ++counts[samples_[i].id];
+            counts[samples_[i].id] += samples_[i].weight;
         }
         std::tie(best.single, best.wrong) = most(counts);
         for (int axis = 0; axis < kMaterialAxes && best.wrong > 0; ++axis) {
             std::array<std::vector<std::size_t>, 2> sides{std::vector<std::size_t>(counts.size()),
                                                           std::vector<std::size_t>(counts.size())};
             for (const std::uint32_t i : samples) {
-                ++sides[along(samples_[i].normal, axis) < 0.0 ? 1 : 0][samples_[i].id];
+                sides[along(samples_[i].normal, axis) < 0.0 ? 1 : 0][samples_[i].id] += samples_[i].weight;
             }
             const auto [towards, wrong_towards] = most(sides[0]);
             const auto [against, wrong_against] = most(sides[1]);
@@ -296,13 +314,17 @@ class TreeBuilder {
         const std::optional<std::uint8_t> single = singleOf(octant.faces);
         const std::optional<MaterialSides> sides =
             single || octant.faces.empty() ? std::nullopt : sidesOf(octant.faces);
-        octant.final = single || sides || octant.faces.empty() || octant.depth >= levels_;
-        if (single || sides) {
-            octant.fit = {sides, single.value_or(0), 0};
-        } else {
+        bool decided = single || sides;
+        octant.fit = {sides, single.value_or(0), 0};
+        if (decided) {
+            octant.fit.wrong = wrongOf(octant.fit, octant.samples);
+            decided = octant.fit.wrong == 0;
+        }
+        if (!decided) {  // by what contacts find: they may lie further off than the faces are looked for
             octant.fit = fitOf(octant.samples,
                                nearest(octant.faces.empty() ? cell.faces : octant.faces, octant.center));
         }
+        octant.final = decided || (octant.faces.empty() && octant.fit.wrong == 0) || octant.depth >= levels_;
         return octant;
     }
 
@@ -346,6 +368,97 @@ class TreeBuilder {
         return static_cast<std::uint8_t>(result_.list.size() + index);
     }
 
+    /// Chooses the cells that have octants: of all trees the one of least wrong + least · nodes, from below.
+    /// \return its nodes.
+    std::size_t keepWorth(double least) {
+        std::vector<double> cost(cells_.size());
+        for (std::size_t i = cells_.size(); i-- > 0;) {
+            Cell& cell = cells_[i];
+            cost[i] = static_cast<double>(cell.fit.wrong);
+            if (cell.octants[0] == 0) {
+                continue;
+            }
+            double split = least;
+            for (const std::uint32_t octant : cell.octants) {
+                split += cost[octant];
+            }
+            // Between samples, too, surfaces are told apart where that costs nothing.
+            cell.kept = i == 0 || (least > 0.0 ? split < cost[i] : split <= cost[i]);
+            cost[i] = cell.kept ? split : cost[i];
+        }
+        std::size_t nodes = 1;
+        for (const Cell& cell : cells_) {
+            for (const std::uint32_t octant : cell.octants) {
+                cells_[octant].kept = cells_[octant].kept && (octant == 0 || cell.kept);
+                nodes += octant != 0 && cells_[octant].kept ? 1 : 0;
+            }
+        }
+        return nodes;
+    }
+
+    /// Level by level, the root first.
+    [[nodiscard]] std::vector<std::uint32_t> keptNodes() const {
+        std::vector<std::uint32_t> order{0};
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            for (const std::uint32_t octant : cells_[order[i]].octants) {
+                if (cells_[octant].kept) {
+                    order.push_back(octant);
+                }
+            }
+        }
+        return order;
+    }
+
+    /// The tree that is wrong at least of those of so many nodes. Breiman et al., "Classification and Regression Trees" (1984),
+    /// chapter 3: each worth of a node has its own best tree, and these are nested.
+    void keepBest(std::size_t most) {
+        double small = 0.0;  // keeps too many
+        if (keepWorth(small) <= most) {
+            return;
+        }
+        double large = static_cast<double>(kClearContact) * static_cast<double>(samples_.size()) + 1.0;
+        constexpr int kHalvings = 30;
+        for (int i = 0; i < kHalvings; ++i) {
+            const double middle = 0.5 * (small + large);
+            (keepWorth(middle) > most ? small : large) = middle;
+        }
+        static_cast<void>(keepWorth(small));
+        const std::vector<std::uint32_t> worth = keptNodes();
+        std::vector<char> may(cells_.size(), 0);
+        for (const std::uint32_t node : worth) {
+            may[node] = 1;
+        }
+        std::size_t left = most - keepWorth(large);
+        // Of those that are worth the same the upper ones first, as far as they fit.
+        std::vector<std::uint32_t> order{0};
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            for (const std::uint32_t octant : cells_[order[i]].octants) {
+                Cell& cell = cells_[octant];
+                if (!cell.kept && may[octant] != 0 && left > 0) {
+                    cell.kept = true;
+                    --left;
+                }
+                if (cell.kept) {
+                    order.push_back(octant);
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] std::size_t pairsKept() const {
+        std::vector<MaterialSides> pairs;
+        for (const std::uint32_t node : keptNodes()) {
+            for (const std::uint32_t octant : cells_[node].octants) {
+                const Cell& cell = cells_[octant];
+                if (!cell.kept && cell.fit.sides &&
+                    std::find(pairs.begin(), pairs.end(), *cell.fit.sides) == pairs.end()) {
+                    pairs.push_back(*cell.fit.sides);
+                }
+            }
+        }
+        return std::min(pairs.size(), kMaterialSidesMax + 1 - result_.list.size());
+    }
+
     /// Level by level.
     void writeNodes() {
         std::vector<std::uint32_t> order{0};
@@ -353,7 +466,7 @@ class TreeBuilder {
             MaterialNode node;
             for (std::size_t k = 0; k < 8; ++k) {
                 const std::uint32_t number = cells_[order[i]].octants[k];
-                if (cells_[number].octants[0] == 0) {
+                if (!cells_[number].kept) {
                     node.leaves[k] = leafOf(cells_[number].fit);
                     continue;
                 }
@@ -367,7 +480,7 @@ class TreeBuilder {
 
     const MaterialSource& source_;
     const MaterialTreeOptions& options_;
-    std::vector<Sample> samples_;
+    std::vector<MaterialSample> samples_;
     Materials result_;
     std::vector<Face> faces_;        // that meet the root
     std::vector<std::uint8_t> ids_;  // as many
@@ -377,52 +490,6 @@ class TreeBuilder {
     double margin_ = 0.0;
     int levels_ = 1;
 };
-
-/// The points of the source, spread evenly over its area, where the collider has its surface: what lies within solids is in no
-/// contact's way.
-std::vector<Sample> samplesOf(const Collider& collider, const MaterialSource& source, double texel) {
-    std::vector<double> sums;
-    double area = 0.0;
-    for (const glm::uvec3& t : source.triangles) {
-        area += length(planeOf(source.positions, t).normal);
-        sums.push_back(area);
-    }
-    std::vector<std::optional<Sample>> all(kSamples);
-    tbb::parallel_for(std::size_t{0}, kSamples, [&](std::size_t k) {
-        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(kSamples) * area;
-        const auto i =
-            static_cast<std::size_t>(std::lower_bound(sums.begin(), sums.end(), at) - sums.begin());
-        const glm::uvec3& t = source.triangles[std::min(i, sums.size() - 1)];
-        // Roberts' sequence R2, folded into the triangle.
-        double u = std::fmod(static_cast<double>(k) * 0.7548776662466927, 1.0);
-        double v = std::fmod(static_cast<double>(k) * 0.5698402909980532, 1.0);
-        if (u + v > 1.0) {
-            u = 1.0 - u;
-            v = 1.0 - v;
-        }
-        const glm::dvec3 a(source.positions[t.x]);
-        const glm::dvec3 point =
-            a + u * (glm::dvec3(source.positions[t.y]) - a) + v * (glm::dvec3(source.positions[t.z]) - a);
-        const glm::dvec3 normal = unit(planeOf(source.positions, t).normal);
-        int inside = 0;
-        for (int step = -2; step <= 2; ++step) {
-            inside += evaluate(collider, glm::vec3(point + step * texel * normal)).inside() ? 1 : 0;
-        }
-        if (inside > 0 && inside < 5) {
-            all[k] = Sample{point, normal, source.ids[std::min(i, sums.size() - 1)]};
-        }
-    });
-    std::vector<Sample> samples;
-    for (const std::optional<Sample>& one : all) {
-        if (one) {
-            samples.push_back(*one);
-            if (!source.sides) {  // a sheet shows both of its sides
-                samples.push_back({one->point, -one->normal, one->id});
-            }
-        }
-    }
-    return samples;
-}
 
 double areaOf(const TriangleMesh& mesh, std::uint32_t triangle) {
     return 0.5 * length(planeOf(mesh, triangle).normal);
@@ -507,7 +574,7 @@ Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     options.most =
         std::max(static_cast<std::size_t>(kMaterialsShare * static_cast<double>(collider.gpuBytes())),
                  kMaterialsBytesMin);
-    return TreeBuilder(*source, options, samplesOf(collider, *source, options.texel)).build();
+    return TreeBuilder(*source, options, sampleContacts(collider, *source)).build();
 }
 
 }  // namespace relief

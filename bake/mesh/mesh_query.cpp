@@ -115,6 +115,32 @@ struct Search {
     }
 };
 
+/// One search for any triangle of another label within a distance; in Embree's units.
+struct OtherSearch {
+    const TriangleMesh& mesh;
+    const EmbreeMesh& tree;
+    glm::dvec3 p;
+    double squared;
+    std::span<const std::uint8_t> labels;
+    std::uint8_t label;
+    bool found = false;
+
+    static bool visit(RTCPointQueryFunctionArguments* args) {
+        auto* self = static_cast<OtherSearch*>(args->userPtr);
+        if (self->found || self->labels[args->primID] == self->label) {
+            return false;
+        }
+        const auto corners = cornersOf(self->mesh, args->primID);
+        const glm::dvec3 offset =
+            closestOnTriangle(self->p, self->tree.toLocal(corners[0]), self->tree.toLocal(corners[1]),
+                              self->tree.toLocal(corners[2])) -
+            self->p;
+        self->found = dot(offset, offset) <= self->squared;
+        args->query->radius = self->found ? 0.0F : args->query->radius;
+        return self->found;
+    }
+};
+
 /// The parity directions, each turned to leave the box sooner, the shortest first: of many layers of leaves or grass, a ray
 /// meets fewer.
 class WaysOut {
@@ -405,6 +431,24 @@ ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t>
     rtcPointQuery(tree_->scene.get(), &query, &context, Search::visit, &search);
     return {std::sqrt(search.best_squared) / tree_->scale, search.triangle,
             search.point / tree_->scale + tree_->center};
+}
+
+bool MeshQuery::otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
+                            std::uint8_t label) const {
+    const glm::dvec3 local = tree_->toLocal(p);
+    const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
+    const double reach = radius * tree_->scale;
+    OtherSearch search{mesh(), *tree_, local, reach * reach, labels, label};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    RTCPointQuery query{};
+    const glm::vec3 at = local;
+    query.x = at.x;
+    query.y = at.y;
+    query.z = at.z;
+    query.radius = static_cast<float>(reach + 2e-6 * (1.0 + size));
+    rtcPointQuery(tree_->scene.get(), &query, &context, OtherSearch::visit, &search);
+    return search.found;
 }
 
 double MeshQuery::signedDistance(const glm::vec3& p) const {

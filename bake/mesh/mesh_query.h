@@ -130,6 +130,11 @@ class MeshQuery {
     /// \param hint  a triangle that is probably near: saves time, and does not change the distance.
     [[nodiscard]] ClosestPoint closest(const glm::vec3& p, std::optional<std::uint32_t> hint = {}) const;
 
+    /// Whether a triangle of another label than `label` is that near.
+    /// \param labels  of the triangles.
+    [[nodiscard]] bool otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
+                                   std::uint8_t label) const;
+
     /// Object units, negative inside.
     [[nodiscard]] double signedDistance(const glm::vec3& p) const;
 
