@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "bake/materials/material_tree.h"
+#include "bake/materials/material_source.h"
 #include "formats/collider.h"
 
 namespace relief {

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <glm/vec3.hpp>
-#include <vector>
 
+#include "bake/materials/material_source.h"
 #include "bake/mesh/mesh.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
@@ -18,18 +16,6 @@ namespace relief {
 inline constexpr double kMaterialsShare = 0.06;
 /// Of a small collider: patches of flat surfaces take few bytes, whatever the materials on them.
 inline constexpr std::size_t kMaterialsBytesMin = 4096;
-
-/// The surface that materials are of. Copies of it are large.
-struct MaterialSource {
-    std::vector<glm::vec3> positions;   ///< object space
-    std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
-    std::vector<std::uint8_t> ids;      ///< of the triangles, in `list`
-    std::vector<Material> list;         ///< in the order of the file
-    /// It has no sheets, which have one material on both of their sides: a normal tells the sides of a board apart.
-    bool sides = true;
-
-    [[nodiscard]] bool empty() const { return list.empty(); }
-};
 
 /// The materials of an imported mesh, those with the same name as one; none where they all have one name.
 /// \param mesh    whose labels are still the source's.
