@@ -71,10 +71,11 @@ Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& 
         const AnimatedMesh mesh = RELIEF_TRY(readAnimatedMesh(container.animation));
         return surfaceOf(mesh, restPose(mesh), emitter);
     }
-    if (!emitter.group.empty()) {
-        return invalidInput(
-            "emitter.group needs a mesh, and it keeps none; name the one that it was baked from by "
-            "emitter.mesh, or bake it with --animated");
+    const bool unknown_material = !emitter.material.empty() && container.materials.empty();
+    if (!emitter.group.empty() || unknown_material) {
+        return invalidInput(std::string(emitter.group.empty() ? "emitter.material" : "emitter.group") +
+                            " needs a mesh, and it keeps none; name the one that it was baked from by "
+                            "emitter.mesh, or bake it with --animated");
     }
     if (!known.contains(&container)) {
         known[&container] = RELIEF_TRY(colliderSurface(container));
