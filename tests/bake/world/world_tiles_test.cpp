@@ -194,7 +194,11 @@ TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
             }
             // Where a drop stops, which comes from above.
             const glm::vec3 p(x, hillsAt(x, z) - 0.05F, z);
-            const auto body = static_cast<std::size_t>(std::max(field.evaluate(p).body, 0));
+            const WorldSample sample = field.evaluate(p);
+            if (!sample.inside()) {
+                continue;  // the coarse ones have their surface below
+            }
+            const auto body = static_cast<std::size_t>(sample.body);
             const Materials& materials = field.colliderOf(body).materials;
             ++asked;
             wrong += materials.empty() || materials
