@@ -209,7 +209,9 @@ TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
                          : 0;
         }
         EXPECT_GT(asked, 15'000);
-        EXPECT_LE(wrong, asked / 100) << (detail == WorldDetail::kFine ? "fine" : "coarse");
+        // A coarse tile decides beyond its own part of the hills, too, whose materials alone it has.
+        const bool fine = detail == WorldDetail::kFine;
+        EXPECT_LE(wrong, fine ? asked / 100 : asked / 20) << (fine ? "fine" : "coarse");
     }
 }
 
