@@ -81,7 +81,7 @@ double texelAt(const Collider& collider, const glm::vec3& p, float finest) {
     return double{texel};
 }
 
-/// Where the line along a normal leaves the collider, no further off than `reach`, and the normal just within.
+/// The point in which a line along a normal leaves the collider, no further off than `reach`, and the normal just within.
 std::optional<SurfacePoint> contactOf(const Collider& collider, const SurfacePoint& from, double reach) {
     double low = -reach;
     double high = reach;

@@ -83,7 +83,7 @@ struct Search {
     const TriangleMesh& mesh;
     const EmbreeMesh& tree;
     glm::dvec3 p;
-    float slack;  // of the search radius: Embree's boxes and the query are floats
+    float slack;  // slackAt(p)
     double best_squared = std::numeric_limits<double>::infinity();
     std::uint32_t triangle = RTC_INVALID_GEOMETRY_ID;
     glm::dvec3 point{0.0};
@@ -140,6 +140,25 @@ struct OtherSearch {
         return self->found;
     }
 };
+
+/// Room of a search radius: Embree's boxes and its queries are floats.
+float slackAt(const glm::dvec3& p) {
+    return static_cast<float>(2e-6 * (1.0 + std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)})));
+}
+
+/// Visits the triangles that may be within a radius of the search's point; in Embree's units.
+template <class S>
+void visitNear(S& search, float radius) {
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    RTCPointQuery query{};
+    const glm::vec3 at = search.p;
+    query.x = at.x;
+    query.y = at.y;
+    query.z = at.z;
+    query.radius = radius;
+    rtcPointQuery(search.tree.scene.get(), &query, &context, S::visit, &search);
+}
 
 /// The parity directions, each turned to leave the box sooner, the shortest first: of many layers of leaves or grass, a ray
 /// meets fewer.
@@ -415,20 +434,11 @@ MeshQuery::Crossing MeshQuery::crossingOf(const LineHit& hit, const glm::dvec3& 
 
 ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t> hint) const {
     const glm::dvec3 local = tree_->toLocal(p);
-    const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
-    Search search{mesh(), *tree_, local, static_cast<float>(2e-6 * (1.0 + size))};
+    Search search{mesh(), *tree_, local, slackAt(local)};
     if (hint) {
         search.add(*hint);
     }
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    RTCPointQuery query{};
-    const glm::vec3 at = local;
-    query.x = at.x;
-    query.y = at.y;
-    query.z = at.z;
-    query.radius = search.radius();
-    rtcPointQuery(tree_->scene.get(), &query, &context, Search::visit, &search);
+    visitNear(search, search.radius());
     return {std::sqrt(search.best_squared) / tree_->scale, search.triangle,
             search.point / tree_->scale + tree_->center};
 }
@@ -436,18 +446,9 @@ ClosestPoint MeshQuery::closest(const glm::vec3& p, std::optional<std::uint32_t>
 bool MeshQuery::otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
                             std::uint8_t label) const {
     const glm::dvec3 local = tree_->toLocal(p);
-    const double size = std::max({std::abs(local.x), std::abs(local.y), std::abs(local.z)});
     const double reach = radius * tree_->scale;
     OtherSearch search{mesh(), *tree_, local, reach * reach, labels, label};
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    RTCPointQuery query{};
-    const glm::vec3 at = local;
-    query.x = at.x;
-    query.y = at.y;
-    query.z = at.z;
-    query.radius = static_cast<float>(reach + 2e-6 * (1.0 + size));
-    rtcPointQuery(tree_->scene.get(), &query, &context, OtherSearch::visit, &search);
+    visitNear(search, static_cast<float>(reach) + slackAt(local));
     return search.found;
 }
 

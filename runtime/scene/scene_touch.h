@@ -37,7 +37,7 @@ class TouchFilter {
         std::string material;   // empty: it has none
         glm::vec3 velocity{0.0F};
     };
-    /// What a place touches of a body, if its surface is nearer than `within`.
+    /// The surface of a body at a place, if it is nearer than `within`.
     [[nodiscard]] std::optional<Touched> touchedOf(const Body& body, const glm::vec3& p, double moment,
                                                    float within) const;
     [[nodiscard]] bool touches(const glm::vec3& p, const glm::vec3& velocity, double moment,

@@ -1,4 +1,4 @@
-// What is written into a world's file by hand, and is there after the next bake.
+// Values written into a world.json by hand are there after the next bake.
 #include "bake/world/world_files.h"
 
 #include <gtest/gtest.h>

@@ -192,7 +192,7 @@ TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
             if (std::abs(x / 25.0F - std::round(x / 25.0F)) * 25.0F < 0.5F) {
                 continue;
             }
-            // Where a drop stops, which comes from above.
+            // The place in which a drop from above stops.
             const glm::vec3 p(x, hillsAt(x, z) - 0.05F, z);
             const WorldSample sample = field.evaluate(p);
             if (!sample.inside()) {
