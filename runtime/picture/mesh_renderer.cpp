@@ -17,12 +17,19 @@ namespace {
 constexpr GLsizei kMapSide = 4096;     // texels of the maps towards sun and zenith
 constexpr GLsizei kPrintSide = 4096;   // and of the prints, seen from below
 constexpr float kSoleHeight = 0.035F;  // of what presses the snow, metres above the ground
+constexpr std::array<GLfloat, 4> kNothing{};
 
 constexpr const char* kSmallerPicture = "choose a smaller size";
 
 glm::mat4 placeMatrix(const Pose& pose) {
     const glm::mat4 turned = glm::translate(glm::mat4(1.0F), pose.position) * glm::mat4_cast(pose.rotation);
     return glm::scale(turned, glm::vec3(pose.scale));
+}
+
+void keepNearest() {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glDepthMask(GL_TRUE);
 }
 
 /// Parallel rays against `towards` that see all of a box.
@@ -128,7 +135,7 @@ void MeshRenderer::drawMap(const ParallelMap& map, std::span<const MeshPlace> pl
     drawPlaces(depth_program_, places, true, moving);
 }
 
-void MeshRenderer::press(std::span<const MeshPlace> places, float metre) {
+void MeshRenderer::drawPrints(std::span<const MeshPlace> places, float metre) {
     glDisable(GL_DEPTH_TEST);
     glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
     glViewport(0, 0, kPrintSide, kPrintSide);
@@ -143,37 +150,54 @@ void MeshRenderer::press(std::span<const MeshPlace> places, float metre) {
     glEnable(GL_DEPTH_TEST);
 }
 
-Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
-                                std::span<const MeshPlace> places, const Bounds& around,
-                                const RenderTarget& target) {
+Result<void> MeshRenderer::checkPlaces(std::span<const MeshPlace> places) const {
     for (const MeshPlace& place : places) {
         if (place.mesh >= meshes_.size()) {
             return fail(ErrorCode::kUsage, "a picture of mesh " + std::to_string(place.mesh) + " of " +
                                                std::to_string(meshes_.size()));
         }
     }
-    const PassState state;
-    RELIEF_TRY(resize(target.width, target.height));
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glDepthMask(GL_TRUE);
-    sun_.clip = parallelClip(around, sunDirection());
+    return {};
+}
+
+void MeshRenderer::drawZenith(std::span<const MeshPlace> places, const Bounds& around) {
     zenith_.clip = parallelClip(around, glm::vec3(0.0F, 1.0F, 0.0F));
-    drawMap(sun_, places, true);
     drawMap(zenith_, places, false);
-    const std::array<GLfloat, 4> nothing{};
     if (!(around_ == around)) {
         glBindFramebuffer(GL_FRAMEBUFFER, prints_target_.name());
-        glClearBufferfv(GL_COLOR, 0, nothing.data());
+        glClearBufferfv(GL_COLOR, 0, kNothing.data());
         around_ = around;
     }
-    press(places, style.metre);
+}
+
+Result<void> MeshRenderer::press(std::span<const MeshPlace> places, float metre, const Bounds& around) {
+    RELIEF_TRY(checkPlaces(places));
+    const PassState state;
+    if (!(around_ == around)) {
+        keepNearest();
+        drawZenith(places, around);
+    }
+    drawPrints(places, metre);
+    return {};
+}
+
+Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
+                                std::span<const MeshPlace> places, const Bounds& around,
+                                const RenderTarget& target) {
+    RELIEF_TRY(checkPlaces(places));
+    const PassState state;
+    RELIEF_TRY(resize(target.width, target.height));
+    keepNearest();
+    sun_.clip = parallelClip(around, sunDirection());
+    drawMap(sun_, places, true);
+    drawZenith(places, around);
+    drawPrints(places, style.metre);
 
     glBindFramebuffer(GL_FRAMEBUFFER, surface_.name());
     glViewport(0, 0, width_, height_);
     const GLfloat far = 1.0F;
-    glClearBufferfv(GL_COLOR, 0, nothing.data());
-    glClearBufferfv(GL_COLOR, 1, nothing.data());
+    glClearBufferfv(GL_COLOR, 0, kNothing.data());
+    glClearBufferfv(GL_COLOR, 1, kNothing.data());
     glClearBufferfv(GL_DEPTH, 0, &far);
     const float aspect = target.aspect();
     surface_program_.use();

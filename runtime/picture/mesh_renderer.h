@@ -59,6 +59,10 @@ class MeshRenderer {
                                     std::span<const MeshPlace> places, const Bounds& around,
                                     const RenderTarget& target);
 
+    /// Prints of what moves, without a picture: for the time between two of them.
+    /// \param metre  as in MeshStyle. \param around  as in draw(). Errors: kUsage (no such mesh).
+    [[nodiscard]] Result<void> press(std::span<const MeshPlace> places, float metre, const Bounds& around);
+
     /// The window depth of what draw() drew last, of that target's size and not attached to it; empty before.
     [[nodiscard]] const GlTexture& depth() const { return depth_; }
 
@@ -78,7 +82,10 @@ class MeshRenderer {
     void drawPlaces(const GlProgram& program, std::span<const MeshPlace> places, bool still,
                     bool moving) const;
     void drawMap(const ParallelMap& map, std::span<const MeshPlace> places, bool moving) const;
-    void press(std::span<const MeshPlace> places, float metre);
+    [[nodiscard]] Result<void> checkPlaces(std::span<const MeshPlace> places) const;
+    /// What the sky sees; around another part of the world there are no prints yet.
+    void drawZenith(std::span<const MeshPlace> places, const Bounds& around);
+    void drawPrints(std::span<const MeshPlace> places, float metre);
 
     std::vector<Mesh> meshes_;
     GlProgram surface_program_;

@@ -1,10 +1,17 @@
 #include "runtime/player/scene_picture.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "runtime/gl/gl_fault.h"
 #include "runtime/scene/scene_pictures.h"
 
 namespace relief {
 namespace {
+
+constexpr double kPrintsASecond = 15.0;  // a sole stands for half a second
+constexpr double kMostPrints = 256.0;    // between two pictures
 
 ColliderStyle colliderStyle(const Scene& scene) {
     ColliderStyle style;
@@ -65,6 +72,36 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     return picture;
 }
 
+Result<void> ScenePicture::poseMeshes(double seconds) {
+    for (const SceneMesh& mesh : drawn_.places) {
+        if (mesh.motion == MeshMotion::kPlayed) {
+            const PlayedMesh& played = *loaded_->played[mesh.collider];
+            RELIEF_TRY(meshes_->setPositions(mesh.mesh, posed(*played.mesh, played.poseAt(seconds))));
+        }
+    }
+    return {};
+}
+
+Result<void> ScenePicture::pressPrints(double seconds) {
+    const double since = std::exchange(pressed_, seconds);
+    const bool snows =
+        std::ranges::any_of(loaded_->scene.render.weather, [](const auto& key) { return key.snow > 0.0F; });
+    const bool walks = std::ranges::any_of(
+        drawn_.places, [](const SceneMesh& mesh) { return mesh.motion == MeshMotion::kPlayed; });
+    if (!snows || !walks || !(since < seconds)) {
+        return {};
+    }
+    const auto steps =
+        static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsASecond), 1.0, kMostPrints));
+    for (int i = 0; i < steps; ++i) {
+        const double then = since + (seconds - since) * i / steps;
+        RELIEF_TRY(poseMeshes(then));
+        RELIEF_TRY(meshes_->press(meshPlaces(*loaded_, drawn_, then), meshStyle(loaded_->scene, then).metre,
+                                  shadowBounds(*loaded_)));
+    }
+    return {};
+}
+
 Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, double seconds) {
     if (!meshes_) {
         if (wobble_) {
@@ -74,12 +111,8 @@ Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, doubl
         RELIEF_TRY(collider_->draw(camera, collider_style_, frame_.target()));
         return &collider_->depth();
     }
-    for (const SceneMesh& mesh : drawn_.places) {
-        if (mesh.motion == MeshMotion::kPlayed) {
-            const PlayedMesh& played = *loaded_->played[mesh.collider];
-            RELIEF_TRY(meshes_->setPositions(mesh.mesh, posed(*played.mesh, played.poseAt(seconds))));
-        }
-    }
+    RELIEF_TRY(pressPrints(seconds));
+    RELIEF_TRY(poseMeshes(seconds));
     for (auto& [mesh, pass] : waves_) {
         pass.run(seconds);
         meshes_->setVertices(mesh, pass.buffer());

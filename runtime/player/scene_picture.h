@@ -39,6 +39,9 @@ class ScenePicture {
     [[nodiscard]] Result<void> makeMeshes();
     /// All behind the particles. \return its depth.
     [[nodiscard]] Result<const GlTexture*> drawColliders(const Camera& camera, double seconds);
+    [[nodiscard]] Result<void> poseMeshes(double seconds);
+    /// Prints that figures have left in the snow since the last picture, or the beginning.
+    [[nodiscard]] Result<void> pressPrints(double seconds);
 
     const LoadedScene* loaded_;
     std::unique_ptr<SpriteAtlas> atlas_;
@@ -49,6 +52,7 @@ class ScenePicture {
     std::optional<MeshRenderer> meshes_;
     DrawnMeshes drawn_;                                        // of that
     std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of those that deform
+    double pressed_ = 0.0;                                     // seconds up to which there are prints
     ParticleRenderer particles_;
     ColliderStyle collider_style_;
     ParticleStyle particle_style_;

@@ -60,8 +60,7 @@ class MeshRendererGlTest : public GlTest {
     }
 
     void draw(const MeshStyle& style, const std::vector<MeshPlace>& places) {
-        const Bounds around{{-8.0F, -1.0F, -8.0F}, {8.0F, 3.0F, 8.0F}};
-        const auto drawn = renderer_->draw(camera_, style, places, around, frame_->target());
+        const auto drawn = renderer_->draw(camera_, style, places, around_, frame_->target());
         ASSERT_TRUE(drawn) << drawn.error().message;
         rgb_ = frame_->read();
     }
@@ -86,6 +85,7 @@ class MeshRendererGlTest : public GlTest {
         return {sum[0] / 9, sum[1] / 9, sum[2] / 9};
     }
 
+    const Bounds around_{{-8.0F, -1.0F, -8.0F}, {8.0F, 3.0F, 8.0F}};
     Camera camera_;
     std::optional<MeshRenderer> renderer_;
     std::optional<Frame> frame_;
@@ -164,6 +164,29 @@ TEST_P(MeshRendererGlTest, FeetLeaveTheirPrintsInSnowAndNowhereElse) {
     EXPECT_NEAR(at({-3.0F, 0.0F, 1.0F}).light(), fresh, 0.06F * fresh);
     draw({}, places);
     EXPECT_NEAR(at(open_).light(), at({4.5F, 0.0F, 1.0F}).light(), 0.1F * fresh) << "a print is of snow";
+}
+
+TEST_P(MeshRendererGlTest, FeetLeavePrintsWithoutAPictureToo) {
+    std::vector<MeshPlace> places = meadow();
+    const MeshPlace above{2, {{-3.0F, 5.0F, 1.0F}, {1.0F, 0.0F, 0.0F, 0.0F}, 1.0F}, true};
+    places.push_back(above);
+    const auto stepOn = [&](const glm::vec3& place) {
+        places.back().pose.position = place;
+        ASSERT_TRUE(renderer_->press(places, 1.0F, around_));
+        places.back() = above;
+    };
+    const glm::vec3 untouched(4.5F, 0.0F, 1.0F);
+    const glm::vec3 first(3.0F, 0.0F, 3.5F);
+    stepOn(first);
+    draw({.snow = 1.0F}, places);
+    EXPECT_LT(at(first).light(), 0.93F * at(untouched).light()) << "before the first picture";
+    EXPECT_NEAR(at(open_).light(), at(untouched).light(), 0.06F * at(untouched).light());
+    stepOn({3.0F, 0.0F, 1.0F});
+    draw({.snow = 1.0F}, places);
+    EXPECT_LT(at(open_).light(), 0.93F * at(untouched).light()) << "between two pictures";
+    EXPECT_LT(at(first).light(), 0.93F * at(untouched).light());
+    places.back().mesh = 3;
+    EXPECT_EQ(renderer_->press(places, 1.0F, around_).error().code, ErrorCode::kUsage);
 }
 
 TEST_P(MeshRendererGlTest, VerticesMove) {
