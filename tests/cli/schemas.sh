@@ -205,7 +205,7 @@ eye = [5, 1, 0]
 on = "collision"
 [render]
 size = [32, 24]
-every = 2
+every = 20
 sprite = "quad"
 T
 "$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json >sim.json
