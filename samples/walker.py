@@ -10,9 +10,10 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from gltf import Gltf  # noqa: E402
 
-SECONDS = 1.1  # of two steps
-KEYS = 44
-STRIDE = 1.30  # metres that the ground goes back in that time
+SECONDS = 0.95  # of two steps
+KEYS = 57
+STRIDE = 1.1227  # metres that the ground goes back in that time
+STANCE = 0.56  # of a cycle a foot is on the ground
 
 # Name, parent, place in the parent, the capsule's other end, and its radius; metres, y up, facing +z.
 PARTS = [
@@ -20,6 +21,7 @@ PARTS = [
     ("chest", "hips", (0.0, 0.20, 0.0), (0.0, 0.24, 0.0), 0.15),
     ("neck", "chest", (0.0, 0.36, 0.0), (0.0, 0.12, 0.01), 0.055),
     ("head", "neck", (0.0, 0.16, 0.02), (0.0, 0.09, 0.015), 0.1),
+    ("hair", "head", (0.0, 0.075, -0.012), (0.0, 0.035, -0.012), 0.1),
     ("left arm", "chest", (0.205, 0.27, 0.0), (0.05, -0.27, 0.0), 0.052),
     ("left forearm", "left arm", (0.05, -0.28, 0.0), (0.0, -0.27, 0.0), 0.043),
     ("right arm", "chest", (-0.205, 0.27, 0.0), (-0.05, -0.27, 0.0), 0.052),
@@ -34,24 +36,65 @@ PARTS = [
 
 MATERIALS = {  # sRGB
     "skin": (0.80, 0.60, 0.48), "shirt": (0.24, 0.42, 0.58), "trousers": (0.25, 0.26, 0.31), "shoes": (0.20, 0.13, 0.10),
+    "hair": (0.22, 0.15, 0.10),
 }
-WEARS = {"hips": "trousers", "thigh": "trousers", "shin": "trousers", "foot": "shoes", "chest": "shirt", "arm": "shirt"}
+WEARS = {"hips": "trousers", "thigh": "trousers", "shin": "trousers", "foot": "shoes", "chest": "shirt", "arm": "shirt",
+         "hair": "hair"}
+
+
+def ease(x):
+    """From 0 to 1, level at both ends."""
+    x = min(max(x, 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
+
+
+def part(name):
+    return next(p for p in PARTS if p[0] == name)
+
+
+def hips(phase):
+    """Their height: highest where one leg passes the other."""
+    return 0.859 - 0.029 * math.cos(4 * math.pi * (phase - 0.01))
+
+
+def foot(phase):
+    """The left ankle, (height, place along z), and the turn of its foot, toes down above 0: heel first, then flat, then off by the toes."""
+    _, _, _, (_, toe_y, toe_z), radius = part("left foot")
+    swing = max(0.0, (phase - STANCE) / (1.0 - STANCE))
+    turn = -0.3 * (1.0 - ease(phase / 0.12)) + 0.75 * ease((phase - 0.3) / (STANCE - 0.3))
+    if swing > 0.0:
+        turn = 0.75 - 1.05 * ease(swing / 0.8)
+    reach = 0.5 * STANCE * STRIDE
+    # A cubic that leaves the ground and meets it at the ground's own speed.
+    back = STRIDE * (1.0 - STANCE)
+    z = reach - STRIDE * phase if swing == 0.0 else -reach - back * swing + (2.0 * reach + back) * ease(swing)
+    c, s = math.cos(turn), math.sin(turn)
+    toes = c * toe_y - s * toe_z
+    if turn > 0.0:  # about the toes
+        z += toe_z - (s * toe_y + c * toe_z)
+    return radius + max(0.0, -toes) + 0.05 * math.sin(math.pi * swing) ** 2, z, turn
+
+
+def leg(phase):
+    """The turns of a left leg's thigh, shin and foot that take it where foot() is."""
+    thigh, shin = (math.hypot(*part(name)[2]) for name in ("left shin", "left foot"))
+    y, z, turn = foot(phase)
+    down = hips(phase) - y
+    far = min(math.hypot(down, z), 0.9995 * (thigh + shin))
+    along = math.atan2(-z, down)
+    upper = along - math.acos((thigh * thigh + far * far - shin * shin) / (2 * thigh * far))
+    knee = math.pi - math.acos((thigh * thigh + shin * shin - far * far) / (2 * thigh * shin))
+    return {"thigh": upper, "shin": knee, "foot": turn - upper - knee}
 
 
 def bend(name, phase):
-    """The turn of a joint about x, in radians: below 0 forwards. phase: 0 to 1, of two steps."""
-    side = 0.5 if name.startswith("right") else 0.0
-    swing = math.sin(2 * math.pi * (phase + side))
-    lift = max(0.0, math.sin(2 * math.pi * (phase + side) + 1.1))
+    """The turn of a joint about x, in radians: below 0 forwards. phase: 0 to 1, of two steps, from where the left heel lands."""
+    phase = (phase + (0.5 if name.startswith("right") else 0.0)) % 1.0
+    swing = math.cos(2 * math.pi * phase)
     return {
-        "arm": 0.55 * swing, "forearm": -0.45 - 0.2 * swing, "thigh": -0.52 * swing - 0.08,
-        "shin": 0.12 + 0.95 * lift * lift, "foot": -0.04 - 0.25 * lift, "chest": 0.05, "neck": 0.08, "head": -0.1, "hips": 0.0,
+        "arm": 0.08 + 0.5 * swing, "forearm": -0.42 + 0.2 * swing, "chest": 0.05, "neck": 0.08, "head": -0.1, "hair": 0.0,
+        "hips": 0.0, **leg(phase),
     }[name.split()[-1]]
-
-
-def rise(phase):
-    """Of the hips, in metres: highest where one leg passes the other."""
-    return 0.022 * math.cos(4 * math.pi * phase)
 
 
 def capsules(phase):
@@ -61,7 +104,7 @@ def capsules(phase):
         x, y, z = place
         angle = bend(name, phase)
         if parent is None:
-            y += rise(phase)
+            y = hips(phase)
         else:
             (px, py, pz), turn = frames[parent]
             c, s = math.cos(turn), math.sin(turn)
@@ -120,7 +163,7 @@ def figure():
         turns = [0.5 * bend(name, phase) for phase in phases]
         channel(i, "rotation", "VEC4", [x for t in turns for x in (math.sin(t), 0.0, 0.0, math.cos(t))])
         if i == 0:
-            channel(i, "translation", "VEC3", [x for phase in phases for x in (place[0], place[1] + rise(phase), place[2])])
+            channel(i, "translation", "VEC3", [x for phase in phases for x in (place[0], hips(phase), place[2])])
     walker.animations.append({"name": "walk", "channels": channels, "samplers": samplers})
     return walker
 

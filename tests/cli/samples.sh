@@ -77,7 +77,7 @@ play linked_tori 180
 play rain 300
 play village 200
 play wobbling_torus 180
-play walker 100
+play walker 60
 expect 0 "$relief_sim" kitchen.toml --events hits.ndjson -q
 play kitchen 480
 
@@ -178,10 +178,10 @@ plates = sum(over(p, kitchen.PLATE_TOP) and any(math.hypot(p[0] - x, p[2] - z) <
 assert plates == 0, plates
 P
 
-# Walkers, at 100/120 s: outside all their capsules, which walker.py places, wherever these were driven to.
+# Walkers, at 60/120 s: outside all their capsules, which walker.py places, wherever these were driven to.
 python3 - <<'P'
 import math, particles, walker
-time = 100 / 120
+time = 60 / 120
 bodies = [((-0.55, -1.6 + 4.727 * time / 4), 0, time), ((0.55, -2.3 + 4.727 * time / 4), 0, 0.4 + time),
           ((1.5 - 3.686 * time / 4, 1.4 + 2.128 * time / 4), -60, 0.75 + 0.9 * time)]
 drops = [p for p, _, _ in particles.read('walker.ply')]
@@ -205,6 +205,47 @@ assert min(depths) > -0.02, min(depths)
 assert sum(depth < -0.008 for depth in depths) <= 3, sorted(depths)[:9]
 P
 
+# Its feet press prints into snow all the way, not only where a picture is drawn of it.
+cat >prints.toml <<'T'
+[[collider]]
+file = "walker.relief"
+play = { clip = "walk", resolution = 128 }
+[[collider.key]]
+time = 0.0
+[[collider.key]]
+time = 2.0
+position = [0.0, 0.0, 2.36]
+[time]
+dt = 0.033333
+steps = 60
+[particles]
+capacity = 1
+[camera]
+eye = [0.3, 6.0, 1.0]
+target = [0.0, 0.0, 1.0]
+fov = 40.0
+[render]
+size = [320, 240]
+meshes = "."
+[[render.weather]]
+snow = 1.0
+T
+expect 0 "$relief_sim" prints.toml --frame-every 60 --frames prints_seldom -q
+expect 0 "$relief_sim" prints.toml --frame-every 4 --frames prints_often -q
+python3 - <<'P'
+import glob, subprocess
+
+def light(folder):
+    frame = sorted(glob.glob(folder + '/*.png'))[-1]
+    return subprocess.check_output(['convert', frame, '-colorspace', 'gray', '-depth', '8', 'gray:-'])
+
+seldom, often = light('prints_seldom'), light('prints_often')
+white = sorted(often)[len(often) // 2]
+apart = sum(abs(a - b) > 0.04 * white for a, b in zip(seldom, often))
+print('prints: pixels apart', apart)
+assert apart < 20, apart
+P
+
 # The village: drops are above its ground, some have met roofs, and none that falls is as deep in a barn as its roof is thick.
 python3 - <<'P'
 import particles, village
@@ -218,6 +259,8 @@ assert sum(p[1] > 2.5 for p in splashes) > 5 and sum(p[1] < 1.0 for p in splashe
 x, z = 15.5, 17.5  # a barn, whose eaves are at 3.6
 inside = [p for p, _, _ in drops if abs(p[0] - x) < 2.0 and abs(p[2] - z) < 2.0 and p[1] - village.ground(x, z) < 3.4]
 assert not inside, inside[:3]
+mud = [p for p, _, t in drops if t == 3]
+assert mud and all(p[1] < 1.0 for p in mud), mud  # from under feet
 P
 
 # Tori, at 3 s, where the second one turns round: outside both, by the distance to a torus.
