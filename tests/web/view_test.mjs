@@ -212,7 +212,8 @@ test("a browser without what the page needs is told so; a lost context is made a
         window.bodyBefore = reliefView.body;
         window.loss.restoreContext();
     });
-    await page.waitForFunction("reliefView.body && reliefView.body !== window.bodyBefore");
+    // The page loads itself anew, and has no reliefView for a moment.
+    await page.waitForFunction("window.reliefView?.body && reliefView.body !== window.bodyBefore");
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
     assert.deepEqual(said.filter((line) => !/CONTEXT_LOST_WEBGL/.test(line)), []);
