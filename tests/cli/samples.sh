@@ -48,8 +48,8 @@ text = open(path).read()
 share = {'walker': 8, 'wobbling_torus': 10}.get(path[:-5], 40)
 text = re.sub(r'(?m)^rate = ([0-9.]+)', lambda m: 'rate = %g' % (float(m[1]) / share), text)
 text = re.sub(r'(?m)^every = .*', 'every = 100000', text)
-if path == 'village.toml':
-    text = text.replace('clip = "walk"', 'clip = "walk", resolution = 128')
+if path in ('village.toml', 'walker.toml'):
+    text = text.replace('clip = "walk"', 'clip = "walk", resolution = %d' % (128 if path == 'village.toml' else 256))
 open(path, 'w').write(text)
 P
 done
@@ -199,7 +199,7 @@ for (x, z), degrees, seconds in bodies:
     for p in drops:
         dx, dz = p[0] - x, p[2] - z
         depths.append(min(distance((c * dx - s * dz, p[1], s * dx + c * dz), *solid) for solid in solids))
-# A texel is 4 mm; a hand swings as far in a step.
+# A texel is 7 mm; a hand swings as far in a step.
 assert sum(depth < 0.1 for depth in depths) > 10, sorted(depths)[:20]
 assert min(depths) > -0.02, min(depths)
 assert sum(depth < -0.008 for depth in depths) <= 3, sorted(depths)[:9]
