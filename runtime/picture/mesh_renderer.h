@@ -83,7 +83,7 @@ class MeshRenderer {
                     bool moving) const;
     void drawMap(const ParallelMap& map, std::span<const MeshPlace> places, bool moving) const;
     [[nodiscard]] Result<void> checkPlaces(std::span<const MeshPlace> places) const;
-    /// What the sky sees; around another part of the world there are no prints yet.
+    /// The map of the still things from above; around another part of the world it clears the prints.
     void drawZenith(std::span<const MeshPlace> places, const Bounds& around);
     void drawPrints(std::span<const MeshPlace> places, float metre);
 
