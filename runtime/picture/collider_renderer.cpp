@@ -26,7 +26,7 @@ constexpr const char* kSmallerPicture = "choose a smaller size";
 
 void setViewUniforms(const GlProgram& program, const Camera& camera, const ColliderStyle& style,
                      GLsizei width, GLsizei height) {
-    setCameraUniforms(program, camera, static_cast<float>(width) / static_cast<float>(height));
+    setCameraUniforms(program, {camera, static_cast<float>(width) / static_cast<float>(height)});
     program.set("u_has_ground", style.ground.has_value());
     program.set("u_ground", style.ground.value_or(0.0F));
     program.set("u_background", linearColor(style.background));

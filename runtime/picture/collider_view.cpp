@@ -46,13 +46,14 @@ glm::vec3 linearColor(const glm::vec3& srgb) {
     return linear;
 }
 
-void setCameraUniforms(const GlProgram& program, const Camera& camera, float aspect) {
-    const float tangent = camera.tanHalfFov();
+void setCameraUniforms(const GlProgram& program, const CameraMatrices& camera) {
+    const glm::mat3 to_world = glm::transpose(glm::mat3(camera.view));
+    const glm::mat4& p = camera.projection;
     program.use();
-    program.set("u_eye", camera.eye);
-    program.set("u_forward", camera.forward());
-    program.set("u_right", tangent * aspect * camera.right());
-    program.set("u_up", tangent * camera.up());
+    program.set("u_eye", camera.eye());
+    program.set("u_forward", to_world * glm::vec3(p[2][0] / p[0][0], p[2][1] / p[1][1], -1.0F));
+    program.set("u_right", to_world[0] / p[0][0]);
+    program.set("u_up", to_world[1] / p[1][1]);
     program.set("u_depth", camera.depthOfDistance());
 }
 

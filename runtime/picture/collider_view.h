@@ -29,7 +29,7 @@ struct ColliderView {
 [[nodiscard]] glm::vec3 linearColor(const glm::vec3& srgb);
 
 /// Sets u_eye, u_depth, and what makes the ray of each pixel: u_forward, u_right and u_up. Leaves the program current.
-void setCameraUniforms(const GlProgram& program, const Camera& camera, float aspect);
+void setCameraUniforms(const GlProgram& program, const CameraMatrices& camera);
 
 /// The sampling of a point's light: rays, and samples of the field on each.
 struct LightRays {

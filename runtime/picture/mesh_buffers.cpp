@@ -15,6 +15,15 @@ struct Vertex {
     glm::vec3 normal;
 };
 
+/// \param mesh  with normals.
+std::vector<Vertex> verticesOf(const PictureMesh& mesh) {
+    std::vector<Vertex> vertices(mesh.positions.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        vertices[i] = {mesh.positions[i], mesh.normals[i]};
+    }
+    return vertices;
+}
+
 }  // namespace
 
 Result<MeshBuffers> MeshBuffers::create(const PictureMesh& mesh) {
@@ -24,10 +33,7 @@ Result<MeshBuffers> MeshBuffers::create(const PictureMesh& mesh) {
     }
     const PictureMesh made = mesh.normals.empty() ? withNormals(mesh) : PictureMesh{};
     const PictureMesh& full = mesh.normals.empty() ? made : mesh;
-    std::vector<Vertex> vertices(full.positions.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        vertices[i] = {full.positions[i], full.normals[i]};
-    }
+    const std::vector<Vertex> vertices = verticesOf(full);
     MeshBuffers out;
     out.corners_ = static_cast<GLsizei>(full.triangles.size());
     out.vertices_ = makeBuffer();
@@ -60,6 +66,13 @@ Result<MeshBuffers> MeshBuffers::create(const PictureMesh& mesh) {
 
 void MeshBuffers::setVertices(const GlBuffer& buffer) const {
     copyBuffer(buffer, vertices_, 0, vertex_bytes_);
+}
+
+void MeshBuffers::setVertices(const PictureMesh& mesh) const {
+    const std::vector<Vertex> vertices = verticesOf(mesh);
+    glBindBuffer(GL_ARRAY_BUFFER, vertices_.name());
+    // Anew: what a draw before still reads is not waited for.
+    glBufferData(GL_ARRAY_BUFFER, vertex_bytes_, vertices.data(), GL_STREAM_DRAW);
 }
 
 void MeshBuffers::draw() const {

@@ -20,6 +20,9 @@ class MeshBuffers {
     /// buffer of the GPU (wobble_pass.h). As many as the mesh was created with, which then has normals.
     void setVertices(const GlBuffer& buffer) const;
 
+    /// The same from memory. \param mesh  with normals, of as many vertices.
+    void setVertices(const PictureMesh& mesh) const;
+
     /// All triangles: attribute 0 is the position, 1 the normal, and 2 the colour of a mesh that has some.
     void draw() const;
 

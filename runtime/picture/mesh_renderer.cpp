@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 
+#include "formats/base/finite.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
@@ -82,12 +83,19 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
         return fail(ErrorCode::kUsage,
                     "vertices of a mesh that a picture does not have, or of another number");
     }
+    if (!std::all_of(positions.begin(), positions.end(), [](const glm::vec3& p) { return isFinite(p); })) {
+        return invalidInput("a mesh of a picture has a position that is not finite");
+    }
     const PassState state;
     Mesh& to = meshes_[mesh];
-    to.shape.positions.assign(positions.begin(), positions.end());
-    to.shape.normals.clear();
-    to.buffers = RELIEF_TRY(MeshBuffers::create(to.shape));
-    return checkAllocated("the meshes of a picture", "choose smaller ones");
+    if (!to.moving) {
+        to.moving.emplace(to.shape);
+        to.buffers = RELIEF_TRY(MeshBuffers::create(to.moving->mesh()));
+        RELIEF_TRY(checkAllocated("the meshes of a picture", "choose smaller ones"));
+    }
+    to.moving->setPositions(positions);
+    to.buffers.setVertices(to.moving->mesh());
+    return {};
 }
 
 void MeshRenderer::setVertices(std::size_t mesh, const GlBuffer& buffer) {
@@ -181,7 +189,7 @@ Result<void> MeshRenderer::press(std::span<const MeshPlace> places, float metre,
     return {};
 }
 
-Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
+Result<void> MeshRenderer::draw(const CameraMatrices& camera, const MeshStyle& style,
                                 std::span<const MeshPlace> places, const Bounds& around,
                                 const RenderTarget& target) {
     RELIEF_TRY(checkPlaces(places));
@@ -199,9 +207,9 @@ Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
     glClearBufferfv(GL_COLOR, 0, kNothing.data());
     glClearBufferfv(GL_COLOR, 1, kNothing.data());
     glClearBufferfv(GL_DEPTH, 0, &far);
-    const float aspect = target.aspect();
+    const glm::mat4 clip = camera.projection * camera.view;
     surface_program_.use();
-    surface_program_.set("u_clip", camera.projection(aspect) * camera.view());
+    surface_program_.set("u_clip", clip);
     surface_program_.set("u_clay", style.clay);
     drawPlaces(surface_program_, places, true, true);
 
@@ -215,8 +223,8 @@ Result<void> MeshRenderer::draw(const Camera& camera, const MeshStyle& style,
         useTexture(static_cast<int>(i), *textures[i]);
         shade.set(samplers[i], static_cast<GLint>(i));
     }
-    setCameraUniforms(shade, camera, aspect);
-    shade.set("u_clip", camera.projection(aspect) * camera.view());
+    setCameraUniforms(shade, camera);
+    shade.set("u_clip", clip);
     shade.set("u_sun_clip", sun_.clip);
     shade.set("u_zenith_clip", zenith_.clip);
     shade.set("u_sun", sunDirection());

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,8 +47,8 @@ class MeshRenderer {
     /// Errors: kInvalidInput (checkMesh), kFailure (the driver's compiler), kLimit (no room).
     [[nodiscard]] static Result<MeshRenderer> create(std::span<const PictureMesh> meshes);
 
-    /// Other vertices for a mesh, of as many positions; its normals are made anew.
-    /// Errors: kUsage (no such mesh, another number).
+    /// Other vertices for a mesh, of as many positions; its normals are made anew (MovingMesh).
+    /// Errors: kUsage (no such mesh, another number), kInvalidInput (a position that is not finite).
     [[nodiscard]] Result<void> setPositions(std::size_t mesh, std::span<const glm::vec3> positions);
     /// As MeshBuffers::setVertices(). \param mesh  created with normals.
     void setVertices(std::size_t mesh, const GlBuffer& buffer);
@@ -55,7 +56,7 @@ class MeshRenderer {
     /// Fills the target's colour and depth. Prints stay from one call to the next.
     /// \param around  the part of the world that has shadows, shelter and prints; finite, with an extent.
     /// Errors: kUnsupported, kLimit (the target's size, no room), kUsage (no such mesh).
-    [[nodiscard]] Result<void> draw(const Camera& camera, const MeshStyle& style,
+    [[nodiscard]] Result<void> draw(const CameraMatrices& camera, const MeshStyle& style,
                                     std::span<const MeshPlace> places, const Bounds& around,
                                     const RenderTarget& target);
 
@@ -70,6 +71,7 @@ class MeshRenderer {
     struct Mesh {
         PictureMesh shape;
         MeshBuffers buffers;
+        std::optional<MovingMesh> moving = {};  // once it has moved
     };
     /// A depth map of the world along parallel rays.
     struct ParallelMap {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <span>
 #include <string>
 
 #include "formats/base/finite.h"
@@ -144,6 +143,30 @@ PictureMesh withNormals(const PictureMesh& mesh, float crease) {
         }
     }
     return out;
+}
+
+MovingMesh::MovingMesh(const PictureMesh& mesh) : mesh_(withNormals(mesh)), sources_(mesh_.positions.size()) {
+    for (std::size_t corner = 0; corner < mesh_.triangles.size(); ++corner) {
+        sources_[mesh_.triangles[corner]] = mesh.triangles[corner];
+    }
+}
+
+void MovingMesh::setPositions(std::span<const glm::vec3> positions) {
+    std::vector<glm::vec3>& at = mesh_.positions;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        at[i] = positions[sources_[i]];
+    }
+    std::fill(mesh_.normals.begin(), mesh_.normals.end(), glm::vec3(0.0F));
+    for (std::size_t t = 0; t + 2 < mesh_.triangles.size(); t += 3) {
+        const std::uint32_t* corner = &mesh_.triangles[t];
+        const glm::vec3 area = glm::cross(at[corner[1]] - at[corner[0]], at[corner[2]] - at[corner[0]]);
+        for (int i = 0; i < 3; ++i) {
+            mesh_.normals[corner[i]] += area;
+        }
+    }
+    for (glm::vec3& normal : mesh_.normals) {
+        normal = unitOrZero(normal);
+    }
 }
 
 }  // namespace relief

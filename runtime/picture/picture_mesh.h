@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "formats/base/result.h"
@@ -32,5 +33,23 @@ struct PictureMesh {
 /// \param mesh    as checkMesh wants it; its normals are replaced.
 /// \param crease  radians.
 [[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = 1.0F);
+
+/// A mesh whose vertices move. Its creases are those of the pose it begins in, so that no pose costs a search for them: what
+/// they part stays parted, and the rest has the mean of its triangles, weighted by area.
+class MovingMesh {
+  public:
+    /// \param mesh  as checkMesh wants it.
+    explicit MovingMesh(const PictureMesh& mesh);
+
+    /// \param positions  of the vertices of that mesh, as many; object units, finite.
+    void setPositions(std::span<const glm::vec3> positions);
+
+    /// With normals, and vertices on creases doubled; of as many vertices in every pose.
+    [[nodiscard]] const PictureMesh& mesh() const { return mesh_; }
+
+  private:
+    PictureMesh mesh_;
+    std::vector<std::uint32_t> sources_;  // of each vertex that of the mesh before
+};
 
 }  // namespace relief

@@ -10,9 +10,6 @@
 namespace relief {
 namespace {
 
-constexpr double kPrintsASecond = 15.0;  // a sole stands for half a second
-constexpr double kMostPrints = 256.0;    // between two pictures
-
 ColliderStyle colliderStyle(const Scene& scene) {
     ColliderStyle style;
     style.ground = scene.ground.enabled ? scene.ground.height : std::nullopt;
@@ -23,11 +20,6 @@ ColliderStyle colliderStyle(const Scene& scene) {
     return style;
 }
 
-Result<WobblePass> wobbleOf(const LiveMesh& live) {
-    return WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
-                              VertexOutput::kPositionsAndNormals);
-}
-
 }  // namespace
 
 Result<void> ScenePicture::makeCollider(const ColliderView& view) {
@@ -35,23 +27,13 @@ Result<void> ScenePicture::makeCollider(const ColliderView& view) {
     if (!scene.render.mesh.empty() && loaded_->live.front()) {
         const LiveMesh& live = *loaded_->live.front();
         mesh_ = std::make_unique<ColliderMesh>(RELIEF_TRY(ColliderMesh::create(live.mesh)));
-        wobble_ = RELIEF_TRY(wobbleOf(live));
+        wobble_ = RELIEF_TRY(WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals,
+                                                VertexOutput::kPositionsAndNormals));
     } else {
         mesh_ = RELIEF_TRY(loadColliderMesh(scene, loaded_->bounds));
     }
     collider_ = RELIEF_TRY(ColliderRenderer::create(view, mesh_.get()));
     collider_style_ = colliderStyle(scene);
-    return {};
-}
-
-Result<void> ScenePicture::makeMeshes() {
-    drawn_ = RELIEF_TRY(loadDrawnMeshes(*loaded_));
-    meshes_ = RELIEF_TRY(MeshRenderer::create(drawn_.meshes));
-    for (const SceneMesh& mesh : drawn_.places) {
-        if (mesh.motion == MeshMotion::kLive) {
-            waves_.push_back({mesh.mesh, RELIEF_TRY(wobbleOf(*loaded_->live[mesh.collider]))});
-        }
-    }
     return {};
 }
 
@@ -63,7 +45,11 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     auto atlas = RELIEF_TRY(loadAtlas(scene));
     auto particles = RELIEF_TRY(ParticleRenderer::create(view, picturePath(path)));
     ScenePicture picture(loaded, std::move(frame), std::move(particles));
-    RELIEF_TRY(scene.render.meshes.empty() ? picture.makeCollider(view) : picture.makeMeshes());
+    if (scene.render.meshes.empty()) {
+        RELIEF_TRY(picture.makeCollider(view));
+    } else {
+        picture.meshes_ = RELIEF_TRY(MeshPicture::create(loaded));
+    }
     if (scene.render.sort_frames > 0) {
         picture.sorter_ = RELIEF_TRY(DepthSorter::create(scene.particles.capacity, path));
     }
@@ -72,54 +58,18 @@ Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const Colli
     return picture;
 }
 
-Result<void> ScenePicture::poseMeshes(double seconds) {
-    for (const SceneMesh& mesh : drawn_.places) {
-        if (mesh.motion == MeshMotion::kPlayed) {
-            const PlayedMesh& played = *loaded_->played[mesh.collider];
-            RELIEF_TRY(meshes_->setPositions(mesh.mesh, posed(*played.mesh, played.poseAt(seconds))));
-        }
-    }
-    return {};
-}
-
-Result<void> ScenePicture::pressPrints(double seconds) {
-    const double since = std::exchange(pressed_, seconds);
-    const bool snows =
-        std::ranges::any_of(loaded_->scene.render.weather, [](const auto& key) { return key.snow > 0.0F; });
-    const bool walks = std::ranges::any_of(
-        drawn_.places, [](const SceneMesh& mesh) { return mesh.motion == MeshMotion::kPlayed; });
-    if (!snows || !walks || !(since < seconds)) {
-        return {};
-    }
-    const auto steps =
-        static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsASecond), 1.0, kMostPrints));
-    for (int i = 0; i < steps; ++i) {
-        const double then = since + (seconds - since) * i / steps;
-        RELIEF_TRY(poseMeshes(then));
-        RELIEF_TRY(meshes_->press(meshPlaces(*loaded_, drawn_, then), meshStyle(loaded_->scene, then).metre,
-                                  shadowBounds(*loaded_)));
-    }
-    return {};
-}
-
 Result<const GlTexture*> ScenePicture::drawColliders(const Camera& camera, double seconds) {
-    if (!meshes_) {
-        if (wobble_) {
-            wobble_->run(seconds);
-            mesh_->setVertices(wobble_->buffer());
-        }
-        RELIEF_TRY(collider_->draw(camera, collider_style_, frame_.target()));
-        return &collider_->depth();
+    const RenderTarget& target = frame_.target();
+    if (meshes_) {
+        RELIEF_TRY(meshes_->draw({camera, target.aspect()}, seconds, target));
+        return &meshes_->depth();
     }
-    RELIEF_TRY(pressPrints(seconds));
-    RELIEF_TRY(poseMeshes(seconds));
-    for (auto& [mesh, pass] : waves_) {
-        pass.run(seconds);
-        meshes_->setVertices(mesh, pass.buffer());
+    if (wobble_) {
+        wobble_->run(seconds);
+        mesh_->setVertices(wobble_->buffer());
     }
-    RELIEF_TRY(meshes_->draw(camera, meshStyle(loaded_->scene, seconds),
-                             meshPlaces(*loaded_, drawn_, seconds), shadowBounds(*loaded_), frame_.target()));
-    return &meshes_->depth();
+    RELIEF_TRY(collider_->draw(camera, collider_style_, target));
+    return &collider_->depth();
 }
 
 Result<std::vector<std::uint8_t>> ScenePicture::draw(const ParticleSystem& particles) {

@@ -12,10 +12,9 @@
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
-#include "runtime/picture/mesh_renderer.h"
 #include "runtime/picture/particle_renderer.h"
+#include "runtime/player/mesh_picture.h"
 #include "runtime/scene/loaded_scene.h"
-#include "runtime/scene/scene_meshes.h"
 
 namespace relief {
 
@@ -36,12 +35,8 @@ class ScenePicture {
 
     /// By maps, or by the mesh of a single collider.
     [[nodiscard]] Result<void> makeCollider(const ColliderView& view);
-    [[nodiscard]] Result<void> makeMeshes();
     /// All behind the particles. \return its depth.
     [[nodiscard]] Result<const GlTexture*> drawColliders(const Camera& camera, double seconds);
-    [[nodiscard]] Result<void> poseMeshes(double seconds);
-    /// Prints that figures have left in the snow since the last picture, or the beginning.
-    [[nodiscard]] Result<void> pressPrints(double seconds);
 
     const LoadedScene* loaded_;
     std::unique_ptr<SpriteAtlas> atlas_;
@@ -49,10 +44,7 @@ class ScenePicture {
     std::optional<WobblePass> wobble_;  // of mesh_
     Frame frame_;
     std::optional<ColliderRenderer> collider_;  // or:
-    std::optional<MeshRenderer> meshes_;
-    DrawnMeshes drawn_;                                        // of that
-    std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of those that deform
-    double pressed_ = 0.0;                                     // seconds up to which there are prints
+    std::optional<MeshPicture> meshes_;
     ParticleRenderer particles_;
     ColliderStyle collider_style_;
     ParticleStyle particle_style_;

@@ -261,6 +261,54 @@ TEST(MeshNormals, CreasesAreKeptAndCurvesAreSmoothed) {
     EXPECT_EQ(withNormals(roof, 0.1F).positions.size(), 8U);
 }
 
+// A tube bends by a quarter: rims stay sharp, and along its side normals turn with the place that they are of.
+TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
+    constexpr std::uint32_t kRound = 24;
+    constexpr std::uint32_t kRings = 9;
+    PictureMesh tube;
+    std::vector<glm::vec3> bent;
+    const auto turned = [](float along, const glm::vec3& v) {
+        const float angle = 1.57079633F * along;
+        return glm::vec3(v.x, std::cos(angle) * v.y + std::sin(angle) * v.z,
+                         std::cos(angle) * v.z - std::sin(angle) * v.y);
+    };
+    for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+        const float along = static_cast<float>(ring) / (kRings - 1);
+        for (std::uint32_t i = 0; i < kRound; ++i) {
+            const float angle = 6.28318531F * static_cast<float>(i) / kRound;
+            const glm::vec3 side(std::cos(angle), std::sin(angle), 0.0F);
+            tube.positions.push_back(side + glm::vec3(0.0F, 0.0F, 8.0F * along));
+            const glm::vec3 pivot(0.0F, 5.0F, 0.0F);
+            bent.push_back(turned(along, side) + pivot - turned(along, pivot));
+            const std::uint32_t at = ring * kRound + i;
+            const std::uint32_t next = ring * kRound + (i + 1) % kRound;
+            if (ring + 1 < kRings) {
+                tube.triangles.insert(tube.triangles.end(),
+                                      {at, next, at + kRound, next, next + kRound, at + kRound});
+            }
+        }
+    }
+    for (std::uint32_t i = 2; i < kRound; ++i) {  // a lid
+        tube.triangles.insert(tube.triangles.end(), {0, i, i - 1});
+    }
+    MovingMesh moving(tube);
+    ASSERT_EQ(moving.mesh().positions.size(), (kRings + 1) * kRound) << "a crease round the lid";
+    moving.setPositions(bent);
+    const PictureMesh& mesh = moving.mesh();
+    ASSERT_EQ(mesh.triangles.size(), tube.triangles.size());
+    for (std::size_t corner = 0; corner < mesh.triangles.size(); ++corner) {
+        const std::uint32_t vertex = tube.triangles[corner];
+        const glm::vec3& normal = mesh.normals[mesh.triangles[corner]];
+        EXPECT_EQ(mesh.positions[mesh.triangles[corner]], bent[vertex]);
+        const float along = static_cast<float>(vertex / kRound) / (kRings - 1);
+        const float angle = 6.28318531F * static_cast<float>(vertex % kRound) / kRound;
+        const bool lid = corner >= tube.triangles.size() - 3 * (kRound - 2);
+        const glm::vec3 wanted =
+            lid ? glm::vec3(0.0F, 0.0F, -1.0F) : turned(along, {std::cos(angle), std::sin(angle), 0.0F});
+        EXPECT_GT(glm::dot(normal, wanted), 0.98F) << "corner " << corner;
+    }
+}
+
 TEST(MeshNormals, TrianglesWithoutAreaHaveNone) {
     PictureMesh flat;
     flat.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}};

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "runtime/picture/collider_view.h"
@@ -60,7 +61,8 @@ class MeshRendererGlTest : public GlTest {
     }
 
     void draw(const MeshStyle& style, const std::vector<MeshPlace>& places) {
-        const auto drawn = renderer_->draw(camera_, style, places, around_, frame_->target());
+        const auto drawn =
+            renderer_->draw({camera_, frame_->target().aspect()}, style, places, around_, frame_->target());
         ASSERT_TRUE(drawn) << drawn.error().message;
         rgb_ = frame_->read();
     }
@@ -202,6 +204,10 @@ TEST_P(MeshRendererGlTest, VerticesMove) {
     EXPECT_GT(at({3.0F, 0.45F, 0.4F}).r, at({3.0F, 0.45F, 0.4F}).g);
     EXPECT_GT(at({0.0F, 0.45F, 0.4F}).g, at({0.0F, 0.45F, 0.4F}).r);
 
+    const glm::vec3 last = std::exchange(moved.back(), glm::vec3(std::numeric_limits<float>::infinity()));
+    EXPECT_EQ(renderer_->setPositions(2, moved).error().code, ErrorCode::kInvalidInput);
+    moved.back() = last;
+    EXPECT_TRUE(renderer_->setPositions(2, moved)) << "again, of buffers that are there";
     moved.pop_back();
     EXPECT_EQ(renderer_->setPositions(2, moved).error().code, ErrorCode::kUsage);
     EXPECT_EQ(renderer_->setPositions(3, moved).error().code, ErrorCode::kUsage);
@@ -210,7 +216,8 @@ TEST_P(MeshRendererGlTest, VerticesMove) {
 TEST_P(MeshRendererGlTest, WrongMeshesAreErrors) {
     const Bounds around{{-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}};
     const std::vector<MeshPlace> places{{3, {}, false}};
-    EXPECT_EQ(renderer_->draw(camera_, {}, places, around, frame_->target()).error().code, ErrorCode::kUsage);
+    EXPECT_EQ(renderer_->draw({camera_, 1.0F}, {}, places, around, frame_->target()).error().code,
+              ErrorCode::kUsage);
     std::vector<PictureMesh> meshes{box({0, 0, 0}, {1, 1, 1}, kRed)};
     meshes[0].colors.pop_back();
     EXPECT_EQ(MeshRenderer::create(meshes).error().code, ErrorCode::kInvalidInput);
