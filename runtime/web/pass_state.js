@@ -15,6 +15,7 @@ const kPieces = { // function that sets it: parameters that query it
     clearColor: ["COLOR_CLEAR_VALUE"],
     pack: kPack,
 };
+const kBlocks = [0, 1]; // indices of uniform blocks that passes set
 const kBuffers = ["ARRAY_BUFFER", "COPY_READ_BUFFER", "COPY_WRITE_BUFFER", "PIXEL_PACK_BUFFER", "PIXEL_UNPACK_BUFFER",
                   "UNIFORM_BUFFER"];
 const kSwitches = ["BLEND", "DEPTH_TEST", "CULL_FACE", "SCISSOR_TEST", "STENCIL_TEST", "DITHER", "SAMPLE_ALPHA_TO_COVERAGE",
@@ -34,11 +35,24 @@ export function withPassState(gl) {
         own[key] = typeof gl[key] === "function" ? gl[key].bind(gl) : gl[key];
     }
 
-    const write = (piece, values) =>
-        (piece === "pack" ? kPack.forEach((name, i) => gl.pixelStorei(gl[name], values[i])) : gl[piece](...values));
+    const blockPiece = (index) => `block ${index}`;
+    const writers = Object.fromEntries(Object.keys(kPieces).map((piece) => [piece, (values) => gl[piece](...values)]));
+    writers.pack = (values) => kPack.forEach((name, i) => gl.pixelStorei(gl[name], values[i]));
+    const askers = Object.fromEntries(Object.entries(kPieces).map(([piece, names]) =>
+        [piece, () => names.map(get).flatMap((one) => (one.length === undefined ? one : [...one]))]));
+    for (const index of kBlocks) { // the buffer, and the part of it; 0, 0: all
+        writers[blockPiece(index)] = ([buffer, start, size]) => (size > 0
+            ? gl.bindBufferRange(gl.UNIFORM_BUFFER, index, buffer, start, size) : gl.bindBufferBase(gl.UNIFORM_BUFFER, index, buffer));
+        askers[blockPiece(index)] = () => {
+            const asked = (part) => gl.getIndexedParameter(gl[`UNIFORM_BUFFER_${part}`], index);
+            const buffer = asked("BINDING");
+            return buffer === null ? [null, 0, 0] : [buffer, asked("START"), asked("SIZE")];
+        };
+    }
+    const write = (piece, values) => writers[piece](values);
     const set = (piece, values) => {
         if (levels.length > 0) {
-            const before = known[piece] ?? kPieces[piece].map(get).flatMap((one) => (one.length === undefined ? one : [...one]));
+            const before = known[piece] ?? askers[piece]();
             levels.forEach(({ kept }) => (kept[piece] ??= before));
             known[piece] = values;
         }
@@ -52,6 +66,11 @@ export function withPassState(gl) {
     for (const piece of Object.keys(kPieces)) {
         own[piece] = (...values) => set(piece, values);
     }
+    for (const [how, part] of [["bindBufferBase", () => [0, 0]], ["bindBufferRange", (start, size) => [start, size]]]) {
+        own[how] = (target, index, buffer, ...rest) => (target === gl.UNIFORM_BUFFER && kBlocks.includes(index)
+            ? set(blockPiece(index), [buffer, ...part(...rest)]) : gl[how](target, index, buffer, ...rest));
+    }
+    own.isBuffer = (buffer) => Boolean(buffer); // emscripten forgets those that it deletes
     own.blendFunc = (from, to) => own.blendFuncSeparate(from, to, from, to);
     own.blendEquation = (mode) => own.blendEquationSeparate(mode, mode);
     own.enable = (what) => (needDepth(what === gl.DEPTH_TEST), gl.enable(what));
@@ -114,12 +133,7 @@ export function withPassState(gl) {
             gl.bindSampler(unit, null);
         }
         keep(active, (unit) => gl.activeTexture(unit));
-        for (const block of [0, 1]) {
-            keep(["BINDING", "START", "SIZE"].map((part) => gl.getIndexedParameter(gl[`UNIFORM_BUFFER_${part}`], block)),
-                 ([buffer, start, size]) => (size > 0 ? gl.bindBufferRange(gl.UNIFORM_BUFFER, block, buffer, start, size)
-                                                      : gl.bindBufferBase(gl.UNIFORM_BUFFER, block, buffer)));
-        }
-        for (const target of kBuffers) { // after the blocks, which bind one too
+        for (const target of kBuffers) {
             keep(get(`${target}_BINDING`), (buffer) => gl.bindBuffer(gl[target], buffer));
         }
         for (const name of kSwitches) {
@@ -145,6 +159,7 @@ export function withPassState(gl) {
 
     own.restorePassState = () => {
         const { kept, undo } = levels.pop();
+        // Before the bindings: a block binds a buffer, too.
         Object.entries(kept).forEach(([piece, values]) => write(piece, known[piece] = values));
         undo.forEach((put) => put());
     };

@@ -66,11 +66,22 @@ test("the page's GL state is unchanged", { timeout: 60_000 }, async (t) => {
         wobbling.draw({ view, projection, width: 64, height: 64 });
         check("draw of a system that deforms");
         wobbling.dispose();
+        const bytes = async (name) => new Uint8Array(await (await fetch(`/files/${name}`)).arrayBuffer());
+        const pictured = new relief.ParticleSystem(gl, {
+            scene: { collider: { file: "cube.relief" }, render: { meshes: "meshes" } },
+            files: { "cube.relief": await bytes("cube.relief"), "meshes/cube.obj": await bytes("cube.obj") },
+        });
+        for (let i = 0; i < 2; ++i) {
+            pictured.drawMeshes({ view, projection, width: 64, height: 64 });
+            check("drawMeshes");
+        }
+        pictured.dispose();
         return report;
     });
     assert.ok(answer.pieces > 300, `${answer.pieces} pieces`);
     assert.ok(answer.alive > 100, `${answer.alive} particles`);
     assert.deepEqual(answer.changed, []);
     assert.deepEqual(answer.errors, []);
-    assert.deepEqual(said, []);
+    // The browser's own driver says how maps that are drawn come into textures.
+    assert.deepEqual(said.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line)), []);
 });
