@@ -26,6 +26,7 @@
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/scene/loaded_scene.h"
+#include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"
 #include "runtime/scene/scene_world.h"
 
@@ -253,6 +254,12 @@ Result<std::string> scenePage(const std::string& name, const ContainerLimits& li
         if (loaded.scene.stream && collider.coarse) {
             const fs::path coarse = containerOf(loaded.scene, *collider.coarse);
             page.files[nameInScene(coarse, file)] = textOf(RELIEF_TRY(page.read(coarse)));
+        }
+    }
+    if (!loaded.scene.render.meshes.empty()) {
+        RELIEF_TRY(loadDrawnMeshes(loaded));  // what cannot be read is told here, not on the page
+        for (const fs::path& drawn : RELIEF_TRY(drawnFiles(loaded))) {
+            page.files[nameInScene(drawn, file)] = textOf(RELIEF_TRY(page.read(drawn)));
         }
     }
     RELIEF_TRY(chooseShown(loaded.scene, file, page));

@@ -25,6 +25,7 @@
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/particle_renderer.h"
+#include "runtime/player/mesh_picture.h"
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_parser.h"
@@ -175,6 +176,7 @@ struct Player {
     std::unique_ptr<SpriteAtlas> atlas;
     std::optional<ParticleRenderer> renderer;
     std::optional<DepthSorter> sorter;
+    std::optional<MeshPicture> meshes;  // once they are drawn
     ParticleStyle style;
     std::vector<ParticleState> read;  // kept for its memory
     FetchedSource* source = nullptr;  // of the simulation, if it has one
@@ -322,10 +324,8 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     return 0;
 }
 
-Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& projection,
-                       const RenderTarget& target) {
+Result<int> drawPlayer(Player& player, const CameraMatrices& camera, const RenderTarget& target) {
     const ParticleSystem& particles = player.simulation->particles();
-    const CameraMatrices camera(view, projection);
     ParticleOrder order;
     if (player.sorter && player.loaded.scene.render.sort_frames > 0) {
         order = sortedFor(player.loaded.scene, particles, camera.eye(), *player.sorter);
@@ -336,6 +336,26 @@ Result<int> drawPlayer(Player& player, const glm::mat4& view, const glm::mat4& p
         player.setPoints();
     }
     return 0;
+}
+
+Result<int> drawPlayerMeshes(Player& player, const CameraMatrices& camera, const RenderTarget& target) {
+    if (player.loaded.scene.render.meshes.empty()) {
+        return fail(ErrorCode::kUsage, "the scene has no render.meshes, which drawMeshes() draws");
+    }
+    if (!player.meshes) {
+        player.meshes = RELIEF_TRY(MeshPicture::create(player.loaded));
+    }
+    RELIEF_TRY(player.meshes->draw(camera, player.simulation->particles().time(), target));
+    return 0;
+}
+
+/// Of what a page draws into. matrices: view, then projection, by columns.
+CameraMatrices cameraOf(const float* matrices) {
+    glm::mat4 view;
+    glm::mat4 projection;
+    std::memcpy(&view, matrices, sizeof(view));
+    std::memcpy(&projection, matrices + 16, sizeof(projection));
+    return {view, projection};
 }
 
 /// The result of body(), or `failed`; the context's state is then as before.
@@ -568,12 +588,15 @@ EMSCRIPTEN_KEEPALIVE int relief_player_spawn(Player* player, const float* births
 /// \param srgb      1: the framebuffer holds sRGB values.
 EMSCRIPTEN_KEEPALIVE int relief_player_draw(Player* player, const float* matrices, int framebuffer, int width,
                                             int height, int srgb) {
-    glm::mat4 view;
-    glm::mat4 projection;
-    std::memcpy(&view, matrices, sizeof(view));
-    std::memcpy(&projection, matrices + 16, sizeof(projection));
     const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
-    return inPass(__func__, -1, [&] { return drawPlayer(*player, view, projection, target); });
+    return inPass(__func__, -1, [&] { return drawPlayer(*player, cameraOf(matrices), target); });
+}
+
+/// The meshes of render.meshes, over all of the framebuffer. Parameters as those of relief_player_draw().
+EMSCRIPTEN_KEEPALIVE int relief_player_draw_meshes(Player* player, const float* matrices, int framebuffer,
+                                                   int width, int height, int srgb) {
+    const RenderTarget target{static_cast<GLuint>(framebuffer), width, height, srgb != 0};
+    return inPass(__func__, -1, [&] { return drawPlayerMeshes(*player, cameraOf(matrices), target); });
 }
 
 /// JSON.
@@ -599,6 +622,7 @@ EMSCRIPTEN_KEEPALIVE const char* relief_player_info(const Player* player) {
              {"ground", scene.ground.enabled && scene.ground.height ? Json(*scene.ground.height) : Json()},
              {"camera", {{"eye", json(camera.eye)}, {"target", json(camera.target)}, {"fov", camera.fov}}},
              {"background", json(scene.render.background)},
+             {"meshes", !scene.render.meshes.empty()},
              {"materials", std::vector<std::string>(materials.begin(), materials.end())},
              {"stream", describeStream(player->simulation->streamCounts())},
              {"bodies", describeBodies(scene.colliders, player->simulation->poses())}}

@@ -275,6 +275,8 @@ export interface SystemInfo {
     ground: number | null;
     camera: { eye: Vec3; target: Vec3; fov: number };
     background: Vec3;
+    /** Whether the scene has `render.meshes`, which drawMeshes() draws. */
+    meshes: boolean;
     /** Names of the materials of all colliders, which hits number. */
     materials: string[];
     /**
@@ -305,6 +307,12 @@ export class ParticleSystem {
     step(dt?: number): void;
     /** Draws over what is there, hidden by nearer depths of the target; writes no depth. */
     draw(options: DrawOptions): void;
+    /**
+     * Before draw(): the colliders by the meshes that the scene's `render.meshes` names, files of the option `files`, in their
+     * colours and under `render.weather`, as relief-sim's pictures show them. Fills the target's colour, where there is no mesh
+     * with the sky, and its depth. Footprints are those since the last call. Figures are as their clips have them.
+     */
+    drawMeshes(options: DrawOptions): void;
     /** Births on top of the emitters'. Also 8 numbers each: position, velocity, lifetime, type. Returns how many found room. */
     spawn(births: readonly Birth[] | Numbers): number;
     /**

@@ -752,7 +752,15 @@ export class ParticleSystem {
         return done("relief_player_spawn", this.handle, list, list.length / 8);
     }
 
-    draw({ view, projection, framebuffer, width, height, srgb = true } = {}) {
+    draw(options) {
+        this.#draw("relief_player_draw", options);
+    }
+
+    drawMeshes(options) {
+        this.#draw("relief_player_draw_meshes", options);
+    }
+
+    #draw(how, { view, projection, framebuffer, width, height, srgb = true } = {}) {
         this.#ready();
         const gl = this.#gl;
         const matrices = Float32Array.of(...matrix("view", view), ...matrix("projection", projection));
@@ -770,7 +778,7 @@ export class ParticleSystem {
             wasm.GL.framebuffers[name] = target;
         }
         try {
-            done("relief_player_draw", this.handle, matrices, name, ...size, srgb ? 1 : 0);
+            done(how, this.handle, matrices, name, ...size, srgb ? 1 : 0);
         } finally {
             if (name) {
                 wasm.GL.framebuffers[name] = null;

@@ -8,7 +8,12 @@ const kArm = 0.005; // from the eye of a flight to what it turns round, in radii
 
 export class Camera {
     constructor(changed) {
-        Object.assign(this, { changed, yaw: 0.6, pitch: 0.32, distance: 4, target: [0, 0, 0] });
+        Object.assign(this, { yaw: 0.6, pitch: 0.32, distance: 4, target: [0, 0, 0] });
+        this.taken = true; // in hand: it does not follow a scene's keys
+        this.changed = () => {
+            this.taken = true;
+            changed();
+        };
         this.box = boxOf({ min: [-1, -1, -1], max: [1, 1, 1] });
         this.fov = kFov;
         this.shift = [0, 0]; // of the picture's middle, for what lies under a panel
@@ -36,6 +41,12 @@ export class Camera {
         this.target = [...target];
         this.fov = fov ?? this.fov;
         this.changed();
+    }
+
+    /** As look(), for as long as no hand takes it. */
+    follow(eye, target, fov) {
+        this.look(eye, target, fov);
+        this.taken = false;
     }
 
     get eye() {

@@ -134,7 +134,12 @@ class App {
         this.ground = ground;
         this.look.box = boxOf(bounds);
         this.setFloor(true);
-        this.camera.look(camera.eye, camera.target, camera.fov * Math.PI / 180);
+        if (system.info.meshes) {
+            view.picture = (options) => system.drawMeshes(options);
+            this.panel.offerPicture();
+        }
+        this.camera.box = this.look.box;
+        this.camera.follow(camera.eye, camera.target, camera.fov * Math.PI / 180);
         this.panel.show(data.check ? "errors" : "particles");
     }
 
@@ -147,8 +152,8 @@ class App {
     }
 
     /** Places moving bodies where they are now. */
-    #moveBodies() {
-        this.particles.system.info.bodies.forEach(({ moves, deforms, matrix }, i) => {
+    #moveBodies(bodies) {
+        bodies.forEach(({ moves, deforms, matrix }, i) => {
             if (moves || deforms) {
                 this.view.bodies[i].place(matrix);
                 this.view.dirty = true;
@@ -198,6 +203,9 @@ class App {
             this.#drawFrame(now);
         } catch (error) {
             this.particles.paused = true;
+            if (this.look.show === "picture") {
+                this.panel.setShow("surface"); // which needs no mesh
+            }
             this.#sayError(error);
         }
     }
@@ -220,7 +228,12 @@ class App {
         this.lastFrame = now;
         if (this.placed && this.particles.steps !== this.movedAt) {
             this.movedAt = this.particles.steps; // by the clock, by hand, or back to the beginning
-            this.#moveBodies();
+            const { bodies, camera } = this.particles.system.info;
+            this.#moveBodies(bodies);
+            if (!this.camera.taken) {
+                this.camera.follow(camera.eye, camera.target, camera.fov * Math.PI / 180);
+            }
+            this.view.dirty ||= this.look.show === "picture"; // under another weather
         }
         const matrices = this.camera.matrices(width, height);
         this.view.drawBodies(matrices, width, height, { ...this.look, theme: dark.matches ? "dark" : "light" }, still && share === 1);

@@ -38,7 +38,7 @@ export class Panel {
         this.app = app;
         document.querySelectorAll(".legend > i").forEach((one) => (one.style.background = kLegend));
         this.showTab = choice("tab", { view: "View", maps: "Maps", errors: "Errors", particles: "Particles" }, (tab) => this.show(tab));
-        this.showWhat = choice("show", { surface: "Maps", mesh: "Mesh", split: "Split" }, (value) => this.setShow(value));
+        this.showWhat = choice("show", { picture: "Picture", surface: "Maps", mesh: "Mesh", split: "Split" }, (value) => this.setShow(value));
         choice("axis", ["x", "y", "z"], (value) => {
             this.#axis = Number(value);
             this.#slice();
@@ -94,6 +94,15 @@ export class Panel {
     /** A length as this collider counts them. */
     #length(v) {
         return lengthText(v, this.app.body.collider.info.unit);
+    }
+
+    /** The scene has a picture by its meshes. */
+    offerPicture() {
+        for (const value of ["picture", "surface", "mesh", "split"]) {
+            $(`show-${value}`).hidden = value === "mesh" || value === "split";
+        }
+        $("show-field").hidden = false;
+        this.setShow("picture");
     }
 
     setShow(value) {
@@ -235,6 +244,7 @@ export class Panel {
             (info.mesh.triangles ? ` from ${info.mesh.triangles.toLocaleString("en")} triangles` : "") +
             `, ${this.#length(body.box.longest)} long`;
         $("show-field").hidden = !data.mesh;
+        $("show-picture").hidden = true;
         $("tab-errors").hidden = !data.check;
         this.#fillMaps();
         if (data.check && data.mesh) {

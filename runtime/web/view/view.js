@@ -29,6 +29,7 @@ export class View {
         this.bodies = []; // all that are drawn
         this.body = null; // the one in the panel
         this.mesh = null; // Geometry, in its object space
+        this.picture = null; // draws the scene by its meshes: takes the options of ParticleSystem.drawMeshes()
         this.dirty = true;
         this.programs = {
             mesh: program(gl, kBodyVertex, kMeshFragment),
@@ -55,6 +56,11 @@ export class View {
         }
         this.#fine = fine;
         this.dirty = false;
+        if (look.show === "picture") {
+            const { view, projection } = matrices;
+            this.picture({ view, projection, framebuffer: this.#kept.name, width: width * fine, height: height * fine });
+            return;
+        }
         this.#kept.bind();
         const theme = kThemes[look.theme];
         gl.disable(gl.BLEND);
