@@ -33,6 +33,21 @@ void keepNearest() {
     glDepthMask(GL_TRUE);
 }
 
+/// Triangles face by their own order in a pass, whatever a program has set.
+class Facing {
+  public:
+    Facing() {
+        glGetIntegerv(GL_FRONT_FACE, &before_);
+        glFrontFace(GL_CCW);
+    }
+    ~Facing() { glFrontFace(static_cast<GLenum>(before_)); }
+    Facing(const Facing&) = delete;
+    Facing& operator=(const Facing&) = delete;
+
+  private:
+    GLint before_ = GL_CCW;
+};
+
 /// Parallel rays against `towards` that see all of a box.
 glm::mat4 parallelClip(const Bounds& box, const glm::vec3& towards) {
     const glm::vec3 aside =
@@ -194,6 +209,7 @@ Result<void> MeshRenderer::draw(const CameraMatrices& camera, const MeshStyle& s
                                 const RenderTarget& target) {
     RELIEF_TRY(checkPlaces(places));
     const PassState state;
+    const Facing facing;
     RELIEF_TRY(resize(target.width, target.height));
     keepNearest();
     sun_.clip = parallelClip(around, sunDirection());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <string>
+#include <utility>
 
 #include "formats/base/finite.h"
 
@@ -65,6 +66,61 @@ Fans fansOf(const PictureMesh& mesh) {
     return fans;
 }
 
+/// Of each vertex of a mesh with creases: the corners whose triangles its normal is the mean of.
+struct Sums {
+    std::vector<std::uint32_t> begin{0};
+    std::vector<std::uint32_t> corners;
+};
+
+PictureMesh creased(const PictureMesh& mesh, float crease, Sums* sums) {
+    const float cosine = std::cos(crease);
+    const std::vector<Corner> corners = cornersOf(mesh);
+    const Fans fans = fansOf(mesh);
+    PictureMesh out;
+    out.triangles.resize(mesh.triangles.size());
+    std::vector<std::uint32_t> together;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const std::span<const std::uint32_t> fan(&fans.list[0] + fans.begin[v],
+                                                 fans.begin[v + 1] - fans.begin[v]);
+        const std::size_t first = out.positions.size();  // of this vertex's doubles
+        for (const std::uint32_t c : fan) {
+            glm::vec3 sum(0.0F);
+            together.clear();
+            for (const std::uint32_t other : fan) {
+                if (fan.size() > kFanMax || other == c ||
+                    glm::dot(corners[c].face, corners[other].face) >= cosine) {
+                    sum += corners[other].angle * corners[other].face;
+                    together.push_back(other);
+                }
+            }
+            const glm::vec3 normal = unitOrZero(sum);
+            std::size_t at = first;
+            while (at < out.positions.size() && out.normals[at] != normal) {
+                ++at;
+            }
+            if (at == out.positions.size()) {
+                out.positions.push_back(mesh.positions[v]);
+                out.normals.push_back(normal);
+                if (!mesh.colors.empty()) {
+                    out.colors.push_back(mesh.colors[v]);
+                }
+                if (sums != nullptr) {
+                    sums->corners.insert(sums->corners.end(), together.begin(), together.end());
+                    sums->begin.push_back(static_cast<std::uint32_t>(sums->corners.size()));
+                }
+            }
+            out.triangles[c] = static_cast<std::uint32_t>(at);
+            if (fan.size() > kFanMax) {
+                for (const std::uint32_t other : fan) {
+                    out.triangles[other] = static_cast<std::uint32_t>(at);
+                }
+                break;
+            }
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<glm::uvec3> trianglesOf(const PictureMesh& mesh) {
@@ -105,67 +161,34 @@ Result<void> checkMesh(const PictureMesh& mesh) {
 }
 
 PictureMesh withNormals(const PictureMesh& mesh, float crease) {
-    const float cosine = std::cos(crease);
-    const std::vector<Corner> corners = cornersOf(mesh);
-    const Fans fans = fansOf(mesh);
-    PictureMesh out;
-    out.triangles.resize(mesh.triangles.size());
-    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        const std::span<const std::uint32_t> fan(&fans.list[0] + fans.begin[v],
-                                                 fans.begin[v + 1] - fans.begin[v]);
-        const std::size_t first = out.positions.size();  // of this vertex's doubles
-        for (const std::uint32_t c : fan) {
-            glm::vec3 sum(0.0F);
-            for (const std::uint32_t other : fan) {
-                const bool alike = fan.size() > kFanMax || other == c ||
-                                   glm::dot(corners[c].face, corners[other].face) >= cosine;
-                sum += alike ? corners[other].angle * corners[other].face : glm::vec3(0.0F);
-            }
-            const glm::vec3 normal = unitOrZero(sum);
-            std::size_t at = first;
-            while (at < out.positions.size() && out.normals[at] != normal) {
-                ++at;
-            }
-            if (at == out.positions.size()) {
-                out.positions.push_back(mesh.positions[v]);
-                out.normals.push_back(normal);
-                if (!mesh.colors.empty()) {
-                    out.colors.push_back(mesh.colors[v]);
-                }
-            }
-            out.triangles[c] = static_cast<std::uint32_t>(at);
-            if (fan.size() > kFanMax) {
-                for (const std::uint32_t other : fan) {
-                    out.triangles[other] = static_cast<std::uint32_t>(at);
-                }
-                break;
-            }
-        }
-    }
-    return out;
+    return creased(mesh, crease, nullptr);
 }
 
-MovingMesh::MovingMesh(const PictureMesh& mesh) : mesh_(withNormals(mesh)), sources_(mesh_.positions.size()) {
+MovingMesh::MovingMesh(const PictureMesh& mesh) : triangles_(mesh.triangles) {
+    Sums sums;
+    mesh_ = creased(mesh, kCrease, &sums);
+    sources_.resize(mesh_.positions.size());
     for (std::size_t corner = 0; corner < mesh_.triangles.size(); ++corner) {
         sources_[mesh_.triangles[corner]] = mesh.triangles[corner];
     }
+    begin_ = std::move(sums.begin);
+    corners_ = std::move(sums.corners);
 }
 
 void MovingMesh::setPositions(std::span<const glm::vec3> positions) {
-    std::vector<glm::vec3>& at = mesh_.positions;
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        at[i] = positions[sources_[i]];
+    std::vector<glm::vec3> areas(triangles_.size() / 3);
+    for (std::size_t t = 0; t < areas.size(); ++t) {
+        const glm::vec3& corner = positions[triangles_[3 * t]];
+        areas[t] =
+            glm::cross(positions[triangles_[3 * t + 1]] - corner, positions[triangles_[3 * t + 2]] - corner);
     }
-    std::fill(mesh_.normals.begin(), mesh_.normals.end(), glm::vec3(0.0F));
-    for (std::size_t t = 0; t + 2 < mesh_.triangles.size(); t += 3) {
-        const std::uint32_t* corner = &mesh_.triangles[t];
-        const glm::vec3 area = glm::cross(at[corner[1]] - at[corner[0]], at[corner[2]] - at[corner[0]]);
-        for (int i = 0; i < 3; ++i) {
-            mesh_.normals[corner[i]] += area;
+    for (std::size_t i = 0; i < mesh_.positions.size(); ++i) {
+        mesh_.positions[i] = positions[sources_[i]];
+        glm::vec3 sum(0.0F);
+        for (std::uint32_t k = begin_[i]; k < begin_[i + 1]; ++k) {
+            sum += areas[corners_[k] / 3];
         }
-    }
-    for (glm::vec3& normal : mesh_.normals) {
-        normal = unitOrZero(normal);
+        mesh_.normals[i] = unitOrZero(sum);
     }
 }
 

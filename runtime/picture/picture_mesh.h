@@ -27,15 +27,17 @@ struct PictureMesh {
 /// position that is not finite).
 [[nodiscard]] Result<void> checkMesh(const PictureMesh& mesh);
 
+inline constexpr float kCrease = 1.0F;  ///< radians
+
 /// The same triangles with normals: each corner has the mean of the triangles round its vertex, weighted by
 /// their angles there, but of those alone that lie within `crease` of its own triangle. Vertices on a crease
 /// are doubled.
 /// \param mesh    as checkMesh wants it; its normals are replaced.
 /// \param crease  radians.
-[[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = 1.0F);
+[[nodiscard]] PictureMesh withNormals(const PictureMesh& mesh, float crease = kCrease);
 
-/// A mesh whose vertices move. Its creases are those of the pose it begins in, so that no pose costs a search for them: what
-/// they part stays parted, and the rest has the mean of its triangles, weighted by area.
+/// A mesh whose vertices move. Its creases are those of the pose it begins in, so that no pose costs a search for them: each
+/// vertex has the mean, weighted by area, of the triangles that it had there.
 class MovingMesh {
   public:
     /// \param mesh  as checkMesh wants it.
@@ -49,7 +51,11 @@ class MovingMesh {
 
   private:
     PictureMesh mesh_;
-    std::vector<std::uint32_t> sources_;  // of each vertex that of the mesh before
+    std::vector<std::uint32_t> triangles_;  // of the mesh before
+    std::vector<std::uint32_t> sources_;    // of each vertex that of the mesh before
+    // Of vertex i the corners whose triangles its normal is the mean of: corners_[begin_[i]] … corners_[begin_[i + 1] - 1].
+    std::vector<std::uint32_t> begin_;
+    std::vector<std::uint32_t> corners_;
 };
 
 }  // namespace relief

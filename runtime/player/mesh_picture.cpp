@@ -50,7 +50,8 @@ Result<void> MeshPicture::press(double seconds) {
     const Bounds around = shadowBounds(*loaded_);
     const auto steps =
         static_cast<int>(std::clamp(std::ceil((seconds - since) * kPrintsASecond), 1.0, kMostPrints));
-    for (int i = 0; i < steps; ++i) {
+    // The picture before has the prints of its own moment.
+    for (int i = drawn_before_ ? 1 : 0; i < steps; ++i) {
         const double then = since + (seconds - since) * i / steps;
         RELIEF_TRY(pose(then));
         RELIEF_TRY(renderer_.press(meshPlaces(*loaded_, drawn_, then), metre, around));
@@ -60,6 +61,7 @@ Result<void> MeshPicture::press(double seconds) {
 
 Result<void> MeshPicture::draw(const CameraMatrices& camera, double seconds, const RenderTarget& target) {
     RELIEF_TRY(press(seconds));
+    drawn_before_ = true;
     RELIEF_TRY(pose(seconds));
     for (auto& [mesh, pass] : waves_) {
         pass.run(seconds);

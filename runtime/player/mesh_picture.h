@@ -41,6 +41,7 @@ class MeshPicture {
     MeshRenderer renderer_;
     std::vector<std::pair<std::uint32_t, WobblePass>> waves_;  // of those that deform
     double pressed_ = 0.0;                                     // seconds up to which there are prints
+    bool drawn_before_ = false;
 };
 
 }  // namespace relief

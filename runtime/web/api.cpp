@@ -320,6 +320,10 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
         return forward(done);
     }
     player.style = particleStyle(now, player.atlas.get());
+    if (now.ground.enabled != wanted.ground.enabled || now.ground.height != wanted.ground.height ||
+        now.render.meshes != wanted.render.meshes) {
+        player.meshes.reset();
+    }
     player.setPoints();
     return 0;
 }

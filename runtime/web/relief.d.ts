@@ -310,7 +310,7 @@ export class ParticleSystem {
     /**
      * Before draw(): the colliders by the meshes that the scene's `render.meshes` names, files of the option `files`, in their
      * colours and under `render.weather`, as relief-sim's pictures show them. Fills the target's colour, where there is no mesh
-     * with the sky, and its depth. Footprints are those since the last call. Figures are as their clips have them.
+     * with the sky, and its depth. Footprints are those since the last call, or the beginning. Figures are as their clips have them.
      */
     drawMeshes(options: DrawOptions): void;
     /** Births on top of the emitters'. Also 8 numbers each: position, velocity, lifetime, type. Returns how many found room. */

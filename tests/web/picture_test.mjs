@@ -240,6 +240,11 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
     await page.evaluate("reliefView.camera.orbit(0.5, 0)");
     const taken = await eye();
     assert.deepEqual(await after(10), taken);
+    // A slice is of the maps; from the beginning the camera is the scene's again.
+    await page.evaluate("document.getElementById('slice-on').click()");
+    assert.equal(await page.evaluate("reliefView.look.show"), "surface");
+    await page.evaluate("reliefView.restart()");
+    assert.ok(off(await after(5), await wanted()) < 1e-5);
     assert.equal(await page.locator("#message p").textContent(), "");
     assert.deepEqual(spoken(said), []);
 

@@ -171,9 +171,10 @@ export function followInput(canvas, camera, tap) {
         if (!last) {
             return;
         }
-        if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > kTap) {
-            pressed = null;
+        if (pressed && Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) <= kTap) {
+            return; // so far it picks
         }
+        pressed = null;
         const height = canvas.clientHeight;
         const before = down.size === 2 ? spread() : null;
         const dx = event.clientX - last.x;
@@ -210,9 +211,14 @@ export function followInput(canvas, camera, tap) {
     }, { passive: false });
     addEventListener("keydown", (event) => {
         if (!event.target.closest?.("input, button")) { // which have keys of their own
-            const [x, y] = kArrows[event.key] ?? [0, 0];
-            camera[event.shiftKey ? "pan" : "orbit"](0.08 * x, 0.08 * y);
-            camera.zoom({ "+": 0.85, "-": 1 / 0.85 }[event.key] ?? 1);
+            const way = kArrows[event.key];
+            if (way) {
+                camera[event.shiftKey ? "pan" : "orbit"](0.08 * way[0], 0.08 * way[1]);
+            }
+            const factor = { "+": 0.85, "-": 1 / 0.85 }[event.key];
+            if (factor) {
+                camera.zoom(factor);
+            }
         }
     });
 }

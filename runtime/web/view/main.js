@@ -29,6 +29,7 @@ class App {
         this.data = null; // page_data.js's
         this.pin = null; // a place that is marked
         this.placed = false; // are a scene's bodies
+        this.followed = null; // the scene's camera, as it was taken last
         this.camera = new Camera(() => this.changed());
         this.flight = new FlightKeys(this.camera);
         this.bodies = null; // bodies.js's, of a scene
@@ -139,7 +140,8 @@ class App {
             this.panel.offerPicture();
         }
         this.camera.box = this.look.box;
-        this.camera.follow(camera.eye, camera.target, camera.fov * Math.PI / 180);
+        this.camera.taken = false;
+        this.#follow(camera);
         this.panel.show(data.check ? "errors" : "particles");
     }
 
@@ -151,6 +153,15 @@ class App {
         }
     }
 
+    /** The scene's camera, where it has moved and no hand has taken it. */
+    #follow({ eye, target, fov }) {
+        const now = `${eye} ${target} ${fov}`;
+        if (!this.camera.taken && now !== this.followed) {
+            this.camera.follow(eye, target, fov * Math.PI / 180);
+            this.followed = now;
+        }
+    }
+
     /** Places moving bodies where they are now. */
     #moveBodies(bodies) {
         bodies.forEach(({ moves, deforms, matrix }, i) => {
@@ -159,6 +170,14 @@ class App {
                 this.view.dirty = true;
             }
         });
+    }
+
+    /** From the beginning, where a scene's camera is its own again. */
+    restart() {
+        this.particles.restart();
+        this.camera.taken = !this.placed;
+        this.followed = null;
+        this.changed(false);
     }
 
     startPreset(preset) {
@@ -213,7 +232,8 @@ class App {
     /** sharp: with all pixels, whatever moves. */
     #drawFrame(now, sharp = false) {
         const still = now - this.lastChange > 180;
-        const moving = (this.particles.system && !this.particles.paused) || !still;
+        const playing = this.particles.system && !this.particles.paused;
+        const moving = playing || !still;
         this.quality.frame(now, moving);
         const share = moving && !sharp ? this.quality.pixels : 1;
         const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((side) =>
@@ -230,13 +250,12 @@ class App {
             this.movedAt = this.particles.steps; // by the clock, by hand, or back to the beginning
             const { bodies, camera } = this.particles.system.info;
             this.#moveBodies(bodies);
-            if (!this.camera.taken) {
-                this.camera.follow(camera.eye, camera.target, camera.fov * Math.PI / 180);
-            }
+            this.#follow(camera);
             this.view.dirty ||= this.look.show === "picture"; // under another weather
         }
         const matrices = this.camera.matrices(width, height);
-        this.view.drawBodies(matrices, width, height, { ...this.look, theme: dark.matches ? "dark" : "light" }, still && share === 1);
+        this.view.drawBodies(matrices, width, height, { ...this.look, theme: dark.matches ? "dark" : "light" },
+                             still && share === 1 && !(playing && this.look.show === "picture"));
         this.view.copyBodies(width, height);
         this.particles.draw(matrices, width, height);
         this.#placePin(matrices.camera);

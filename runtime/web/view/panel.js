@@ -57,7 +57,7 @@ export class Panel {
         when("slice-at", "oninput", () => this.#slice());
         when("heat", "onchange", () => this.#heat());
         when("pause", "onclick", () => this.pause());
-        when("restart", "onclick", () => app.attempt(() => app.particles.restart()).then(() => app.changed(false)));
+        when("restart", "onclick", () => app.attempt(() => app.restart()));
     }
 
     show(tab) {
@@ -109,12 +109,16 @@ export class Panel {
         this.app.look.show = value;
         this.showWhat(value);
         $("split-at").hidden = value !== "split";
+        $("floor").parentElement.hidden = value === "picture";
         this.app.changed();
     }
 
     #slice() {
         const { look, body } = this.app;
         const on = $("slice-on").checked;
+        if (on && this.app.look.show === "picture") {
+            this.setShow("surface"); // which is cut
+        }
         const at = body.box.min[this.#axis] + Number($("slice-at").value) * body.box.size[this.#axis];
         const range = 0.1 * body.box.longest;
         look.slice = on ? { axis: this.#axis, at, range } : null;
@@ -160,7 +164,7 @@ export class Panel {
         this.#map = this.app.look.map = i;
         [...$("maps").children].forEach((button, k) => button.setAttribute("aria-pressed", k === i));
         $("tint").checked = i === -2;
-        if (i !== -1 && this.app.look.show === "mesh") {
+        if (i !== -1 && ["mesh", "picture"].includes(this.app.look.show)) {
             this.setShow("surface");
         }
         this.app.changed();

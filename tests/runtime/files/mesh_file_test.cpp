@@ -309,6 +309,30 @@ TEST(MeshNormals, AMovingMeshKeepsItsCreasesAndTurnsItsNormals) {
     }
 }
 
+// Three walls, each 50 degrees on from the one before: the first and the last are parted at their common corners, and both go on
+// smoothly into the one between.
+TEST(MeshNormals, AMovingMeshIsAsSmoothAsAtRest) {
+    PictureMesh walls;
+    walls.positions = {{0.0F, 1.0F, 0.0F}};
+    glm::vec3 at(1.0F, 0.0F, 0.0F);
+    walls.positions.push_back(at);
+    for (int i = 0; i < 3; ++i) {
+        const float angle = 0.87266463F * static_cast<float>(i);
+        at += glm::vec3(std::sin(angle), 0.0F, -std::cos(angle));
+        walls.positions.push_back(at);
+        walls.triangles.insert(walls.triangles.end(),
+                               {0, static_cast<std::uint32_t>(i) + 1, static_cast<std::uint32_t>(i) + 2});
+    }
+    const PictureMesh rest = withNormals(walls);
+    MovingMesh moving(walls);
+    moving.setPositions(walls.positions);
+    ASSERT_EQ(moving.mesh().triangles, rest.triangles);
+    for (std::size_t i = 0; i < rest.normals.size(); ++i) {
+        EXPECT_GT(glm::dot(moving.mesh().normals[i], rest.normals[i]), 0.97F) << i;
+    }
+    EXPECT_GT(rest.positions.size(), walls.positions.size());
+}
+
 TEST(MeshNormals, TrianglesWithoutAreaHaveNone) {
     PictureMesh flat;
     flat.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 0}};
