@@ -103,14 +103,15 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
     }
     const PassState state;
     Mesh& to = meshes_[mesh];
-    if (!to.moving) {
-        to.moving.emplace(to.shape);
-        to.buffers = RELIEF_TRY(MeshBuffers::create(to.moving->mesh()));
-        RELIEF_TRY(checkAllocated("the meshes of a picture", "choose smaller ones"));
+    if (to.moving) {
+        to.moving->setPositions(positions);
+        to.buffers.setVertices(to.moving->mesh());
+        return {};
     }
+    to.moving.emplace(to.shape);
     to.moving->setPositions(positions);
-    to.buffers.setVertices(to.moving->mesh());
-    return {};
+    to.buffers = RELIEF_TRY(MeshBuffers::create(to.moving->mesh()));
+    return checkAllocated("the meshes of a picture", "choose smaller ones");
 }
 
 void MeshRenderer::setVertices(std::size_t mesh, const GlBuffer& buffer) {

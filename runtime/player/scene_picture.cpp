@@ -1,7 +1,5 @@
 #include "runtime/player/scene_picture.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "runtime/gl/gl_fault.h"

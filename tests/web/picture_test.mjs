@@ -6,7 +6,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
-import { root } from "./lib/browser.mjs";
+import { root, spoken } from "./lib/browser.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
 import { dataOf, viewer } from "./lib/view.mjs";
@@ -14,7 +14,7 @@ import { dataOf, viewer } from "./lib/view.mjs";
 const kSteps = 60;
 const [kWidth, kHeight] = [320, 180];
 
-// A figure walks over white ground, past a red block, and it begins to snow.
+// A figure walks over green ground, past a red block, and it begins to snow.
 const kScene = `
 [[collider]]
 file = "ground.relief"
@@ -70,9 +70,6 @@ function box(low, high, color) {
     return corners.map((p) => `v ${[...p, ...color].join(" ")}\n`).join("") + sides.map((side) => `f ${side.join(" ")}\n`).join("");
 }
 
-/** Without what the browser's own driver says of a clip's maps. */
-const spoken = (said) => said.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line));
-
 function makeScene(folder) {
     mkdirSync(path.join(folder, "meshes"));
     writeFileSync(path.join(folder, "meshes/ground.obj"), box([-4, -0.5, -4], [4, 0, 4], [0.3, 0.5, 0.2]));
@@ -114,7 +111,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
                              0, 0, 2 * far * near / (near - far), 0],
             };
         };
-        // A quarter of the pixels of each side, as relief-sim's frames are the mean of 2 x 2.
+        // Twice as fine, as relief-sim's frames are the mean of 2 x 2.
         const color = gl.createTexture();
         gl.bindTexture(gl.TEXTURE_2D, color);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, 2 * width, 2 * height);

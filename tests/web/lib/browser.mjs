@@ -55,6 +55,9 @@ export async function launch(more = []) {
     });
 }
 
+/** What a page said, without what the browser's own driver says of the way in which maps that are drawn come into textures. */
+export const spoken = (said) => said.filter((line) => !/GL Driver Message .*TexSubImage with unpack buffer/.test(line));
+
 /** A page whose console and errors are kept in `said`, one line each. */
 export async function openPage(browser, url, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
