@@ -1,15 +1,16 @@
-# relief_folder(FOLDER [UNITY] [NUMBERS] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
+# relief_folder(FOLDER [UNITY] [NUMBERS] [READER] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
 # Makes a library of every .cpp of FOLDER, except those named after EXCEPT. The target's name is FOLDER with _ for /.
 #
 # Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; other includes
 # do not compile. To this end each folder has an include root of its own in the build tree, with a link to that folder and
 # nothing else. USES takes only folders declared earlier, so no arrow can run back.
 #
-# UNITY joins sources (scripts/fast_build.cmake). NUMBERS marks a folder whose tests would take minutes without
-# optimisation: the sanitizer build optimises it, and nothing else.
+# UNITY joins sources (scripts/fast_build.cmake). NUMBERS marks a folder whose tests take minutes without optimisation: a
+# sanitizer build optimises only these folders. READER marks a folder that reads untrusted bytes: RELIEF_SANITIZE=READERS
+# instruments only these folders.
 # LINKS are libraries that only the sources use; PUBLIC are those whose headers the folder's own headers include.
 function(relief_folder folder)
-    cmake_parse_arguments(ARG "UNITY;NUMBERS" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
+    cmake_parse_arguments(ARG "UNITY;NUMBERS;READER" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
     string(REPLACE / _ target ${folder})
     set(root ${PROJECT_BINARY_DIR}/folders/${target})
     cmake_path(GET folder PARENT_PATH parent)
@@ -22,12 +23,14 @@ function(relief_folder folder)
     add_library(${target} STATIC ${sources})
     target_include_directories(${target} PUBLIC ${root})
     target_link_libraries(${target} PUBLIC relief_options ${ARG_PUBLIC} PRIVATE ${ARG_LINKS})
-    if(RELIEF_SANITIZE AND ARG_NUMBERS)
-        target_compile_options(${target} PRIVATE -O1)
-        relief_precompile(${target} relief_number_headers)
-    else()
-        relief_precompile(${target} relief_headers)
+    set(kind)
+    if(ARG_NUMBERS)
+        set(kind NUMBERS)
     endif()
+    if(ARG_READER)
+        list(APPEND kind READER)
+    endif()
+    relief_compile_as(${target} ${kind})
     if(ARG_UNITY)
         relief_unity(${target})
     endif()
@@ -41,6 +44,43 @@ function(relief_folder folder)
     # For tests/arrows.py, which explains in words what a compiler reports as a missing file.
     string(REPLACE ";" " " uses "${ARG_USES}")
     set_property(GLOBAL APPEND PROPERTY RELIEF_FOLDERS "${folder}: ${uses}")
+endfunction()
+
+# relief_folder_options(OUT [NUMBERS] [READER]): the options of a sanitizer build for such a folder.
+function(relief_folder_options out)
+    set(options)
+    if(RELIEF_SANITIZE AND "NUMBERS" IN_LIST ARGN)
+        list(APPEND options -O1)
+    endif()
+    if(RELIEF_SANITIZE STREQUAL "READERS" AND "READER" IN_LIST ARGN)
+        list(APPEND options ${RELIEF_SANITIZE_OPTIONS})
+    endif()
+    set(${out} "${options}" PARENT_SCOPE)
+endfunction()
+
+# relief_precompiled_folders(): one set of precompiled headers for each kind of folder whose options differ.
+function(relief_precompiled_folders)
+    relief_precompiled(relief_headers)
+    if(NOT RELIEF_SANITIZE OR NOT RELIEF_PRECOMPILE)
+        return()
+    endif()
+    foreach(kind NUMBERS READER "NUMBERS;READER")
+        string(REPLACE ";" _ name "relief_headers_${kind}")
+        relief_precompiled(${name})
+        relief_folder_options(options ${kind})
+        target_compile_options(${name} PRIVATE ${options})
+    endforeach()
+endfunction()
+
+# relief_compile_as(TARGET [NUMBERS] [READER]): TARGET is compiled as a folder of that kind is.
+function(relief_compile_as target)
+    relief_folder_options(options ${ARGN})
+    target_compile_options(${target} PRIVATE ${options})
+    set(headers relief_headers)
+    if(RELIEF_SANITIZE AND ARGN)
+        string(REPLACE ";" _ headers "relief_headers_${ARGN}")
+    endif()
+    relief_precompile(${target} ${headers})
 endfunction()
 
 # relief_unit(FOLDER FILE [LINKS LIBRARY…] [OPTIONS …])
