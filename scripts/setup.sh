@@ -2,16 +2,10 @@
 # Installs the Debian 12 packages that Relief needs to build, test and run. Does nothing, and needs no network, when all are
 # there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the packages that they need besides.
 #
-# scripts/setup.sh tools [PACKAGE]…: what the preset tools needs, without tests, Python and OpenVDB.
-# scripts/setup.sh web: also what runtime/web and its tests need. node and npm may come from elsewhere.
+# scripts/setup.sh tools [PACKAGE]…: only what the preset tools needs, without tests, Python and OpenVDB.
+# scripts/setup.sh test [PACKAGE]…: only what scripts/test.sh needs.
+# scripts/setup.sh web: also what runtime/web and one browser need. node and npm may come from elsewhere.
 set -euo pipefail
-
-if [ "${1-}" = web ]; then
-    shift
-    set -- emscripten esbuild chromium fonts-liberation "$@"
-    command -v node >/dev/null || set -- nodejs "$@"
-    command -v npm >/dev/null || set -- npm "$@"
-fi
 
 tools=(
     ca-certificates cmake g++ git mold ninja-build pkg-config
@@ -26,17 +20,33 @@ tools=(
     # samples
     glmark2-data imagemagick python3 webp
 )
-tests=(
-    assimp-testmodels bsdextrautils clang clang-format doxygen groff-base libcgal-demo libclang-rt-dev libgtest-dev libglew-dev libglfw3-dev
-    libjansson-dev libopenvdb-dev libopenvdb-tools libsdl2-dev libstb-dev make man-db mandoc openexr pybind11-dev
-    python3-dev python3-jsonschema python3-matplotlib python3-numpy python3-pip python3-pytest python3-venv
-    qemu-user-static strace xauth xvfb
+test=(
+    assimp-testmodels clang clang-format libcgal-demo libclang-rt-dev libgtest-dev
+    pybind11-dev python3-dev python3-jsonschema python3-numpy python3-pytest
 )
-if [ "${1-}" = tools ]; then
-    shift
-    tests=()
-fi
-packages=("${tools[@]}" "${tests[@]}" "$@")
+everything=(
+    bsdextrautils doxygen groff-base libglew-dev libglfw3-dev libjansson-dev libopenvdb-dev libopenvdb-tools libsdl2-dev
+    make man-db mandoc openexr python3-matplotlib python3-pip python3-venv qemu-user-static strace xauth xvfb
+)
+case ${1-} in
+    tools)
+        shift
+        test=()
+        everything=()
+        ;;
+    test)
+        shift
+        everything=()
+        ;;
+    web)
+        shift
+        everything=()
+        set -- emscripten esbuild chromium fonts-liberation libstb-dev "$@"
+        command -v node >/dev/null || set -- nodejs "$@"
+        command -v npm >/dev/null || set -- npm "$@"
+        ;;
+esac
+packages=("${tools[@]}" "${test[@]}" "${everything[@]}" "$@")
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,25 +1,27 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test. Needs no GPU. scripts/test.sh [--quick]
+# Installs what is missing, builds the product once, and tests it. Needs no GPU. scripts/test.sh [--quick|--gpu]
 #
-#   (nothing)  the release build and all tests; the runtime as WebAssembly, and its tests in a real browser; then the
-#              sanitizer build, and what a sanitizer can find: no slow tests, and none of numbers and pictures
-#   --quick    for the work in between: the release build, and its tests but for the slow ones and those that only
-#              repeat another in OpenGL ES, or by compute shaders
+#   (nothing)  the default tier: every area of the product, the sanitizers over everything that reads untrusted bytes, and the
+#              page of a collider in a real browser
+#   --quick    after an edit: builds what changed; no slow cases, no scripts longer than some seconds, no browser
+#   --gpu      every GL test on this machine's GPU: scripts/gpu_test.sh
+#
+# scripts/nightly.sh has everything else. tests/README.md lists each job, its tier and its minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-jobs=$(($(nproc) + 1)) # some tests wait more than they work
 
-quick=0
+tier=default
 case ${1-} in
     "") ;;
-    --quick) quick=1 ;;
+    --quick) tier=quick ;;
+    --gpu) exec scripts/gpu_test.sh "${@:2}" ;;
     *)
-        echo "test.sh: unknown option '$1'; use --quick, or none" >&2
+        echo "test.sh: unknown option '$1'; use --quick, --gpu or none" >&2
         exit 1
         ;;
 esac
 
-# stage NAME COMMAND…: runs it, and says how long it took.
+# stage NAME COMMAND…: runs it, and prints its time.
 stage() {
     local name=$1 begun=$SECONDS
     shift
@@ -27,15 +29,11 @@ stage() {
     echo "test.sh: $name took $((SECONDS - begun)) s" >&2
 }
 
-stage setup scripts/setup.sh
+stage setup scripts/setup.sh test
 stage format scripts/format.sh --check
-stage 'release build' scripts/build.sh release
-if [ $quick = 1 ]; then
-    stage 'quick tests' ctest --preset quick -j "$jobs"
-    exit
-fi
-stage 'release tests' ctest --preset release -j "$jobs"
+stage build scripts/build.sh test
+stage tests ctest --preset $tier -j "$(nproc)"
+[ $tier = default ] || exit 0
+stage 'web setup' scripts/setup.sh web
 stage 'web build' scripts/build.sh web
-stage 'browser tests' node --test tests/web
-stage 'sanitizer build' scripts/build.sh sanitize
-stage 'sanitizer tests' ctest --preset sanitize -j "$jobs"
+stage 'browser test' env RELIEF_BIN="$PWD/build/test/bin" node --test tests/web/page_test.mjs

@@ -1,9 +1,10 @@
 // A current OpenGL context for each test, once for OpenGL 3.3 core and once for OpenGL ES 3.0. A test fails,
-// and is not skipped, where there is no context: Mesa's llvmpipe gives one on every machine.
+// and is not skipped, if there is no context: Mesa's llvmpipe gives one on every machine.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -21,24 +22,116 @@ inline GlApi apiOf(GlApi api) {
     return api;
 }
 
+/// The contexts that the tests of a program share, one for each API, so that drivers start and compile once.
+class SharedGlContexts : public testing::Environment {
+  public:
+    [[nodiscard]] static SharedGlContexts& instance() {
+        static auto* const shared =
+            static_cast<SharedGlContexts*>(testing::AddGlobalTestEnvironment(new SharedGlContexts));
+        return *shared;
+    }
+
+    /// Makes the context of an API current, with the state of a new one. nullptr: a failed assertion says why.
+    [[nodiscard]] const GlContext* use(GlApi api) {
+        std::unique_ptr<GlContext>& context = contexts_[api];
+        if (!context) {
+            Result<std::unique_ptr<GlContext>> created = GlContext::create(api);
+            if (!created) {
+                ADD_FAILURE() << created.error().message;
+                return nullptr;
+            }
+            context = std::move(*created);
+        }
+        if (const Result<void> current = context->makeCurrent(); !current) {
+            ADD_FAILURE() << current.error().message;
+            return nullptr;
+        }
+        resetState(api);
+        return context.get();
+    }
+
+    /// For tests that need a process without a context. The next use() creates another.
+    void drop() { contexts_.clear(); }
+    void TearDown() override { drop(); }
+
+  private:
+    /// Undoes what tests themselves set; passes of the product restore their state.
+    static void resetState(GlApi api) {
+        while (glGetError() != GL_NO_ERROR) {
+        }
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        glBindRenderbuffer(GL_RENDERBUFFER, 0);
+        glBindVertexArray(0);
+        glUseProgram(0);
+        for (GLenum unit = 16; unit-- > 0;) {
+            glActiveTexture(GL_TEXTURE0 + unit);
+            for (const GLenum target :
+                 {GL_TEXTURE_2D, GL_TEXTURE_2D_ARRAY, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP}) {
+                glBindTexture(target, 0);
+            }
+            glBindSampler(unit, 0);
+        }
+        for (const GLenum target :
+             {GL_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER, GL_COPY_READ_BUFFER,
+              GL_COPY_WRITE_BUFFER, GL_UNIFORM_BUFFER, GL_TRANSFORM_FEEDBACK_BUFFER}) {
+            glBindBuffer(target, 0);
+        }
+        for (const GLenum capability :
+             {GL_BLEND, GL_CULL_FACE, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL,
+              GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE}) {
+            glDisable(capability);
+        }
+        if (api == GlApi::kGl33Core) {
+            for (const GLenum capability : {GL_PROGRAM_POINT_SIZE, GL_COLOR_LOGIC_OP, GL_DEPTH_CLAMP,
+                                            GL_FRAMEBUFFER_SRGB, GL_PRIMITIVE_RESTART}) {
+                glDisable(capability);
+            }
+            glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+            glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_UPPER_LEFT);
+            glPointSize(1.0F);
+            glProvokingVertex(GL_LAST_VERTEX_CONVENTION);
+        }
+        glDepthRangef(0.0F, 1.0F);
+        glStencilFunc(GL_ALWAYS, 0, ~GLuint{0});
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glDepthMask(GL_TRUE);
+        glDepthFunc(GL_LESS);
+        glFrontFace(GL_CCW);
+        glCullFace(GL_BACK);
+        glBlendFunc(GL_ONE, GL_ZERO);
+        glBlendEquation(GL_FUNC_ADD);
+        glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+        glViewport(0, 0, 0, 0);
+        glScissor(0, 0, 0, 0);
+        for (const GLenum store :
+             {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS, GL_UNPACK_ROW_LENGTH,
+              GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS, GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SKIP_IMAGES}) {
+            glPixelStorei(store, 0);
+        }
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+        EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+    }
+
+    std::map<GlApi, std::unique_ptr<GlContext>> contexts_;
+};
+
 /// Of tests whose parameter names an API, by apiOf().
 template <class Param>
 class GlTestOf : public testing::TestWithParam<Param> {
   protected:
     void SetUp() override {
-        Result<std::unique_ptr<GlContext>> context = GlContext::create(apiOf(this->GetParam()));
-        ASSERT_TRUE(context) << context.error().message;
-        context_ = std::move(*context);
+        context_ = SharedGlContexts::instance().use(apiOf(this->GetParam()));
+        ASSERT_NE(context_, nullptr);
         this->RecordProperty("context", context_->description());
     }
     void TearDown() override {
-        if (context_) {
+        if (context_ != nullptr) {
             EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
         }
     }
 
-    // Outlives the members of a fixture, which give their GL names back.
-    std::unique_ptr<GlContext> context_;
+    const GlContext* context_ = nullptr;
 };
 
 using GlTest = GlTestOf<GlApi>;

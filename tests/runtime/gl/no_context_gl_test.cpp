@@ -9,6 +9,7 @@
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
 #include "runtime/picture/particle_renderer.h"
+#include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
 namespace {
@@ -30,6 +31,7 @@ void askForEverything() {
 }
 
 TEST(NoContext, IsSaidAsSuch) {
+    SharedGlContexts::instance().drop();
     askForEverything();
     { ASSERT_TRUE(GlContext::create()); }
     askForEverything();  // also where there was one
