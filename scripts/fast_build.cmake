@@ -14,6 +14,11 @@ if(RELIEF_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
         CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${RELIEF_CCACHE})
 endif()
 
+set(RELIEF_PRECOMPILED_HEADERS
+    <algorithm> <array> <charconv> <chrono> <cmath> <cstddef> <cstdint> <cstring> <filesystem> <functional>
+    <limits> <memory> <optional> <span> <string> <string_view> <utility> <vector>
+    <glm/glm.hpp> <tl/expected.hpp>)
+
 # relief_precompiled(NAME [LIBRARY…]): a target whose precompiled headers others reuse; with the headers of GoogleTest
 # if that is among the libraries.
 function(relief_precompiled name)
@@ -24,10 +29,7 @@ function(relief_precompiled name)
     file(CONFIGURE OUTPUT ${source} CONTENT "// For its precompiled headers.\n")
     add_library(${name} STATIC ${source})
     target_link_libraries(${name} PRIVATE relief_options glm::glm ${ARGN})
-    target_precompile_headers(${name} PRIVATE
-        <algorithm> <array> <charconv> <chrono> <cmath> <cstddef> <cstdint> <cstring> <filesystem> <functional>
-        <limits> <memory> <optional> <span> <string> <string_view> <utility> <vector>
-        <glm/glm.hpp> <tl/expected.hpp>)
+    target_precompile_headers(${name} PRIVATE ${RELIEF_PRECOMPILED_HEADERS})
     if("GTest::gtest" IN_LIST ARGN)
         target_precompile_headers(${name} PRIVATE <gtest/gtest.h>)
     endif()
