@@ -25,26 +25,7 @@ struct MaterialResponse {
     friend bool operator==(const MaterialResponse&, const MaterialResponse&) = default;
 };
 
-template <class Visitor, FieldsOf<MaterialResponse> R>
-void fields(Visitor& visit, R& response) {
-    visit("name", response.name,
-          {.help = "Name of a material of the colliders, as in relief info", .rules = kRequired});
-    visit("restitution", response.restitution,
-          leftOut({.help = "Factor of the particles' own restitution, on top of the collider's",
-                   .range = kShareRange,
-                   .fallback = "that of the container: the mesh's, or 1"}));
-    visit(
-        "friction", response.friction,
-        leftOut(
-            {.help = "1 − friction is a factor of the particles' own 1 − friction, on top of the collider's",
-             .range = kShareRange,
-             .fallback = "that of the container: the mesh's, or 0"}));
-    visit("lifetime_loss", response.lifetime_loss,
-          leftOut({.help = "Lifetime that each step in contact with it costs, on top of the type's",
-                   .unit = "s",
-                   .range = {0.0, double{kMaterialLossMax}},
-                   .fallback = "0"}));
-}
+void fields(FieldVisitor& visit, MaterialResponse& response);
 
 /// Two of a name, by the index of the second; nullopt: there are none.
 [[nodiscard]] std::optional<std::size_t> repeatedName(std::span<const MaterialResponse> responses);

@@ -24,7 +24,7 @@
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 
 namespace relief {
 namespace {

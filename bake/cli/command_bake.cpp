@@ -93,7 +93,7 @@ Result<void> writeOutputs(const BakeCommand& command, const BakeResult& result,
 Result<void> report(const BakeCommand& command, const BakeResult& result, std::span<const std::byte> bytes) {
     if (command.outputs.json) {
         const ContainerInfo info = RELIEF_TRY(readContainerInfo(bytes));
-        return printOut(jsonText(jsonOf(BakeJson{result, info, command.output, command.outputs.compress})));
+        return printOut(jsonTextOf(BakeJson{result, info, command.output, command.outputs.compress}));
     }
     if (!command.common.quiet) {
         std::fputs(bakeText(result.summary(command.common.verbose), command.output, bytes.size()).c_str(),

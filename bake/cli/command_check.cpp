@@ -56,8 +56,8 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
         RELIEF_TRY(inFront(quoted, checkAnimation(bytes, limits)));
     }
     const std::string name = inputName(file);
-    const Result<void> printed = printOut(json ? jsonText(jsonOf(InspectionReport{inspection, name}))
-                                               : inspectionText(inspection, name));
+    const Result<void> printed =
+        printOut(json ? jsonTextOf(InspectionReport{inspection, name}) : inspectionText(inspection, name));
     if (!printed || !inspection.damaged()) {
         return printed;
     }
@@ -140,9 +140,9 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
     }
     addAdvice(command, run);
     RELIEF_TRY(writePage(command, std::move(container), run, files));
-    RELIEF_TRY(printOut(
-        command.json ? jsonText(jsonOf(MeshCheckReport{run, inputName(command.file), command.max_error}))
-                     : checkText(command, run)));
+    RELIEF_TRY(printOut(command.json
+                            ? jsonTextOf(MeshCheckReport{run, inputName(command.file), command.max_error})
+                            : checkText(command, run)));
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +

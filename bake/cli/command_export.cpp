@@ -13,7 +13,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/container.h"
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 #include "runtime/collider/gpu_image.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/gl/gl_object.h"

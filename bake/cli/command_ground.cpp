@@ -95,9 +95,9 @@ Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call
     for (const std::string& warning : accuracy.warnings) {
         spdlog::warn(warning);
     }
-    RELIEF_TRY(printOut(
-        world.json ? jsonText(jsonOf(GroundCheckJson{accuracy, name, toString(*heights), world.max_error}))
-                   : groundCheckText(accuracy, name)));
+    RELIEF_TRY(printOut(world.json
+                            ? jsonTextOf(GroundCheckJson{accuracy, name, toString(*heights), world.max_error})
+                            : groundCheckText(accuracy, name)));
     if (world.max_error && accuracy.near.wrong.total() > double{*world.max_error}) {
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy.near.wrong.total()) +
@@ -126,7 +126,7 @@ Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) 
     }
     const std::string& output = folder.empty() ? call.output : folder;
     if (call.outputs.json) {
-        return printOut(jsonText(jsonOf(GroundJson{result, output, toString(heights), total.ms()})));
+        return printOut(jsonTextOf(GroundJson{result, output, toString(heights), total.ms()}));
     }
     if (!call.common.quiet) {
         std::fputs(groundText(result, cleanUtf8(output), total.ms()).c_str(), stderr);

@@ -85,7 +85,7 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info, con
 Result<void> runInfo(const InfoCommand& command) {
     if (namesWorld(command.file)) {
         const WorldInfo info = RELIEF_TRY(readWorldInfo(command.file, command.limits));
-        return printOut(command.json ? jsonText(jsonOf(info)) : worldInfoText(info));
+        return printOut(command.json ? jsonTextOf(info) : worldInfoText(info));
     }
     // Checked as a whole, payloads included.
     const ColliderFile shown = RELIEF_TRY(readColliderFile(command.file, command.limits));
@@ -96,7 +96,7 @@ Result<void> runInfo(const InfoCommand& command) {
         mesh = RELIEF_TRY(inFront(shownInput(command.file), readAnimatedMesh(shown.collider.animation)));
     }
     const AnimatedMesh* const animated = mesh ? &*mesh : nullptr;
-    return printOut(command.json ? jsonText(jsonOf(infoReport(shown.collider, info, animated)))
+    return printOut(command.json ? jsonTextOf(infoReport(shown.collider, info, animated))
                                  : humanReport(shown.collider, info, animated));
 }
 

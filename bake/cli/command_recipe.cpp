@@ -334,7 +334,7 @@ Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& c
     RecipeJson report{options.recipe, run.output_folder.string(), options.shard, countAssets(result.assets),
                       ms};
     report.assets = viewsOf<AssetReport>(result.assets, false);
-    return printOut(jsonText(jsonOf(report)));
+    return printOut(jsonTextOf(report));
 }
 
 /// The files for build systems, once everything is up to date.
@@ -434,6 +434,18 @@ Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCa
     }
     RELIEF_TRY(writeFiles(options, call, work, result.assets));
     return events.finish();
+}
+
+void fields(FieldVisitor& visit, BakeOutputs& outputs) {
+    visit("compress", outputs.compress,
+          {.help = "zstd level of the texels, 0 (none) to 19",
+           .range = {0.0, 19.0},
+           .value = "LEVEL",
+           .must = "0 (none) to 19 (smallest)"});
+    visit("json", outputs.json, {.help = "Print a report as JSON to standard output"});
+    visit("depfile", outputs.depfile,
+          {.help = "Also write which files were read, for Make and Ninja: every input of the output",
+           .value = "FILE"});
 }
 
 }  // namespace relief

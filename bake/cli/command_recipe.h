@@ -19,18 +19,7 @@ struct BakeOutputs {
     std::string depfile;
 };
 
-template <class Visitor, FieldsOf<BakeOutputs> Outputs>
-void fields(Visitor& visit, Outputs& outputs) {
-    visit("compress", outputs.compress,
-          {.help = "zstd level of the texels, 0 (none) to 19",
-           .range = {0.0, 19.0},
-           .value = "LEVEL",
-           .must = "0 (none) to 19 (smallest)"});
-    visit("json", outputs.json, {.help = "Print a report as JSON to standard output"});
-    visit("depfile", outputs.depfile,
-          {.help = "Also write which files were read, for Make and Ninja: every input of the output",
-           .value = "FILE"});
-}
+void fields(FieldVisitor& visit, BakeOutputs& outputs);
 
 /// The files that a bake of one mesh reads and writes.
 /// \param output  of -o. Errors: kUsage, kIo.

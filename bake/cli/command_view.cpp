@@ -22,7 +22,7 @@
 #include "formats/base/result.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/scene/loaded_scene.h"
@@ -379,9 +379,8 @@ CLI::Option* addMeshOptions(CLI::App& verb, CheckRequest& request) {
     CLI::Option* mesh =
         verb.add_option("--mesh", request.mesh, "The mesh or the level that it was baked from")
             ->option_text("MESH");
-    FieldOptions visitor(verb);
-    measurementFields(visitor, request);
-    for (CLI::Option* option : visitor.options()) {
+    const auto measurement = [&](FieldVisitor& visit) { measurementFields(visit, request); };
+    for (CLI::Option* option : addFields(verb, group(measurement))) {
         option->needs(mesh);
     }
     return mesh;

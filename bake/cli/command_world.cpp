@@ -127,7 +127,7 @@ Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& ca
     showMessages(result);
     RELIEF_TRY(writeWorldDepfile(folder, call, result));
     if (call.outputs.json) {
-        return printOut(jsonText(jsonOf(WorldBakeJson{result, folder_name, total.ms()})));
+        return printOut(jsonTextOf(WorldBakeJson{result, folder_name, total.ms()}));
     }
     if (!call.common.quiet) {
         std::fputs(worldBakeText(result, cleanUtf8(folder_name), total.ms(), call.common.verbose).c_str(),
@@ -166,7 +166,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
     }
     const std::string name = inputName(file);
     const WorldAccuracy* const measured = accuracy ? &*accuracy : nullptr;
-    RELIEF_TRY(printOut(call.json ? jsonText(jsonOf(WorldCheckJson{name, &field, measured, call.max_error}))
+    RELIEF_TRY(printOut(call.json ? jsonTextOf(WorldCheckJson{name, &field, measured, call.max_error})
                                   : worldCheckText(field, name, measured)));
     if (accuracy && call.max_error && accuracy->all.total() > double{*call.max_error}) {
         return fail(ErrorCode::kDifference,

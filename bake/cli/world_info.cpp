@@ -56,4 +56,22 @@ std::string worldInfoText(const WorldInfo& info) {
     return text + table(rows);
 }
 
+void fields(FieldVisitor& visit, const WorldColliderInfo& collider) {
+    FieldRef(collider.named).visit(visit);
+    visit("bodies", collider.bodies, {"Bodies that place it"});
+    visit("maps", collider.maps, {"Its maps"});
+    visit("bytes", collider.bytes, {"Size of its file", "bytes"});
+}
+
+void fields(FieldVisitor& visit, const WorldInfo& info) {
+    visit("file", info.file, {"File of the world"});
+    visit("unit", info.unit, {"Unit of lengths: m, or empty"});
+    visit("min", info.bounds.min, {"Lower corner of the box that holds all bodies", "world units"});
+    visit("max", info.bounds.max, {"Upper corner of the box that holds all bodies", "world units"});
+    visit("bodies", info.bodies, {"Bodies"});
+    visit("bytes", info.bytes, {"Size of the colliders' files together", "bytes"});
+    visit("gpu_bytes", info.gpu_bytes, {"Bytes that the colliders take on the GPU", "bytes"});
+    visit("colliders", info.colliders, {"Each different shape once"});
+}
+
 }  // namespace relief

@@ -18,13 +18,7 @@ struct WorldColliderInfo {
     std::uint64_t bytes = 0;  ///< of its file
 };
 
-template <class Visitor, FieldsOf<WorldColliderInfo> C>
-void fields(Visitor& visit, C& collider) {
-    fields(visit, collider.named);
-    visit("bodies", collider.bodies, {"Bodies that place it"});
-    visit("maps", collider.maps, {"Its maps"});
-    visit("bytes", collider.bytes, {"Size of its file", "bytes"});
-}
+void fields(FieldVisitor& visit, const WorldColliderInfo& collider);
 
 /// `relief info world.json --json`
 struct WorldInfo {
@@ -37,17 +31,7 @@ struct WorldInfo {
     std::vector<WorldColliderInfo> colliders{};
 };
 
-template <class Visitor, FieldsOf<WorldInfo> I>
-void fields(Visitor& visit, I& info) {
-    visit("file", info.file, {"File of the world"});
-    visit("unit", info.unit, {"Unit of lengths: m, or empty"});
-    visit("min", info.bounds.min, {"Lower corner of the box that holds all bodies", "world units"});
-    visit("max", info.bounds.max, {"Upper corner of the box that holds all bodies", "world units"});
-    visit("bodies", info.bodies, {"Bodies"});
-    visit("bytes", info.bytes, {"Size of the colliders' files together", "bytes"});
-    visit("gpu_bytes", info.gpu_bytes, {"Bytes that the colliders take on the GPU", "bytes"});
-    visit("colliders", info.colliders, {"Each different shape once"});
-}
+void fields(FieldVisitor& visit, const WorldInfo& info);
 
 /// Reads the world and all its colliders. Errors: those of loadWorld.
 [[nodiscard]] Result<WorldInfo> readWorldInfo(const std::string& file, const ContainerLimits& limits);

@@ -17,66 +17,6 @@ struct MeshCheckReport {
     std::optional<float> max_error = {};  ///< percent
 };
 
-template <class Visitor, FieldsOf<MeshCheckReport> R>
-void fields(Visitor& visit, R& report) {
-    const MeshCheck& run = report.run;
-    const TruthSamples& samples = run.original.samples;
-    const ColliderAccuracy& accuracy = run.original.accuracy;
-    visit("file", report.file, {"Name of the container without its folder, or standard input"});
-    const auto mesh = [&](auto& visit_mesh) {
-        visit_mesh("name", run.mesh->name, {"File name"});
-        visit_mesh("hash", run.mesh->content_hash, {.help = "XXH3-128 of the file", .pattern = kHashPattern});
-        visit_mesh("triangles", run.mesh->sourceTriangles(), {"Its triangles"});
-        visit_mesh("watertight", run.watertight, {"The mesh is closed"});
-        visit_mesh("shape", madeShapes(run.shape),
-                   {"Treatment of the parts of the mesh; null if it was baked with --holes keep"});
-        visit_mesh("baked_from_it", run.same_file, {"The collider was baked from this very file"});
-    };
-    visit("mesh", group(mesh), {"Mesh that the collider is measured against"});
-    visit("unit", run.collider.unit, {"Unit of lengths; may be empty"});
-    const auto verdict = [&](auto& visit_verdict) {
-        visit_verdict(
-            "wrong_percent", run.wrongPercent(),
-            {"Share of the points near the surface that are on the wrong side, of the repaired mesh if there "
-             "is one",
-             "%", kPercentRange});
-        visit_verdict("lost_parts", run.part_accuracy.countOf(PartVerdict::kLost),
-                      {"Parts of the mesh with more than 25 % of their points on the wrong side"});
-        visit_verdict(
-            "grade", gradeOf(run.wrongPercent(), run.part_accuracy),
-            {.help = "good: at most 1 % wrong; fair: at most 5 %; at best fair if a part is coarse, poor if "
-                     "one is lost",
-             .words = kWords<"good", "fair", "poor">});
-    };
-    visit("verdict", group(verdict), {"Summary"});
-    visit("parts", PartsReport{run.part_accuracy, run.parts, run.collider},
-          {"Each part of the mesh judged by its own size"});
-    visit("worst_places", viewsOf<WorstPlaceReport>(run.places, run.collider),
-          {.help = "At most three places, the worst first", .items = {0.0, 3.0}});
-    visit("advice", run.advice, {"Commands to try; empty if the verdict is good and --max-error is kept"});
-    visit("sampling", samples, {"Points of the measurement"});
-    visit("accuracy", ColliderAccuracyReport{accuracy, samples.longest_side},
-          {"Accuracy against the mesh as imported"});
-    const auto repaired = [&](auto& visit_repaired) {
-        const Measured& measured = run.repaired ? *run.repaired : run.original;
-        visit_repaired("repair", run.recorded.request.repair.method, {"--repair of the bake"});
-        visit_repaired("triangles", run.baked->triangles.size(), {"Triangles of the repaired mesh"});
-        visit_repaired("accuracy", ColliderAccuracyReport{measured.accuracy, measured.samples.longest_side},
-                       {"Accuracy against it"});
-    };
-    visit("repaired", groupIf(run.repaired.has_value(), repaired),
-          {"Comparison with the mesh that --repair made; null without a repair"});
-    visit("max_error_percent", report.max_error, {"--max-error; null without it", "%", kFromZero});
-    visit("passed", run.passes(report.max_error),
-          {"--max-error is kept, and no part is lost; true without --max-error"});
-    visit("warnings", run.warnings, {"Warnings, one line each"});
-    const auto times = [&](auto& visit_time) {
-        visit_time("truth", 1000.0 * samples.seconds,
-                   {"Evaluation of the mesh at the points", "ms", kFromZero});
-        visit_time("field", 1000.0 * accuracy.field.seconds,
-                   {"Evaluation of the collider at the points", "ms", kFromZero});
-    };
-    visit("times_ms", group(times), {"Wall-clock times"});
-}
+void fields(FieldVisitor& visit, const MeshCheckReport& report);
 
 }  // namespace relief

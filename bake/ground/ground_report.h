@@ -15,20 +15,7 @@ namespace relief {
 /// One line. \param output  the file or the folder, for messages.
 [[nodiscard]] std::string groundText(const GroundResult& result, const std::string& output, double ms);
 
-template <class Visitor, FieldsOf<GroundTile> T>
-void fields(Visitor& visit, T& tile) {
-    visit("file", tile.file, {"Its container, in the folder of the world; empty without --world"});
-    visit("hash", tile.hash, {.help = "XXH3-128 of the container", .pattern = kHashPattern});
-    visit("bytes", tile.bytes, {"Size of the container", "bytes"});
-    visit("gpu_bytes", tile.gpu_bytes, {"Bytes that it takes on the GPU", "bytes"});
-    visit("coarse", tile.coarse,
-          {"Container that stands in for it while it is not on the GPU; null where that would save little"});
-    visit("squares", tile.squares, {"Squares with ground", {}, kFromOne});
-    visit("steep_squares", tile.steep, {"Those of them that are steeper than 71 degrees"});
-    visit("error_max", tile.error_max,
-          {"Largest distance of the surface from its place, along y, but of steep squares", "m", kFromZero});
-    fields(visit, tile.box);
-}
+void fields(FieldVisitor& visit, const GroundTile& tile);
 
 /// `relief bake --heights --json`
 struct GroundJson {
@@ -38,23 +25,6 @@ struct GroundJson {
     double ms = 0.0;
 };
 
-template <class Visitor, FieldsOf<GroundJson> R>
-void fields(Visitor& visit, R& report) {
-    const GroundResult& r = report.result;
-    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
-    visit("output", report.output, {"--output or --world as given"});
-    visit("heights", report.heights, {"Effective settings, as --heights takes them"});
-    visit("unit", std::string("m"), {.help = "Unit of lengths", .words = kWords<"m">});
-    visit("columns", r.columns, {"Samples in a row, along +x", {}, {2.0}});
-    visit("rows", r.rows, {"Rows of samples, along +z", {}, {2.0}});
-    visit("gpu_bytes", r.gpuBytes(), {"Bytes that all tiles take on the GPU", "bytes"});
-    visit("error_max", r.errorMax(), {"The largest error_max of the tiles", "m", kFromZero});
-    visit("tiles", r.tiles,
-          {.help = "Tiles with ground, row by row; without --world the only one", .items = kFromOne});
-    visit("removed", r.removed, {"Containers that only the world from before named, and that are gone now"});
-    visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
-    visit("inputs", r.inputs, {.help = "All files that it was made from", .items = kFromOne});
-    visit("warnings", r.warnings, {"Warnings, one line each"});
-}
+void fields(FieldVisitor& visit, const GroundJson& report);
 
 }  // namespace relief

@@ -14,11 +14,10 @@ namespace {
 constexpr std::uint32_t kTileStep = 4;
 
 /// Reads one key, and collects the names of all.
-class KeySetter {
+class KeySetter : public FieldVisitor {
   public:
     KeySetter(std::string_view key, std::string_view value) : key_(key), value_(value) {}
-    template <class T>
-    void operator()(std::string_view name, T& target, const FieldInfo& info) {
+    void operator()(std::string_view name, FieldRef target, const FieldInfo& info) override {
         names_.push_back(name);
         if (name == key_) {
             const std::string wrong = readWord(value_, info, target);
@@ -26,6 +25,7 @@ class KeySetter {
             fault_ = wrong.empty() ? "" : std::string(name) + " " + wrong;
         }
     }
+    [[nodiscard]] bool fills() const override { return true; }
     /// Empty: the value was taken.
     [[nodiscard]] std::string fault() const {
         if (known_) {
@@ -113,6 +113,27 @@ std::string toString(const HeightsSpec& spec) {
         }
     }
     return text;
+}
+
+void fields(FieldVisitor& visit, HeightsSpec& spec) {
+    const auto number = [](std::string_view help) {
+        return FieldInfo{.help = help, .range = within(kHeightMax), .must = "a number from -1e9 to 1e9"};
+    };
+    visit("spacing", spec.spacing,
+          {.help = "Between samples, metres",
+           .range = {1e-6, 1e6},
+           .must = "a length from 0.000001 to 1000000"});
+    visit("low", spec.low, number("Height of sample 0, of images of whole numbers"));
+    visit("high", spec.high, number("Height of the largest sample, 65535 or 255"));
+    visit("hole", spec.hole,
+          {.help = "Sample that is none, as the file has it",
+           .range = within(kHoleMax),
+           .must = "a finite number"});
+    visit("width", spec.width,
+          {.help = "Samples in a row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
+    visit("offset", spec.offset,
+          {.help = "Place of the first sample at height 0", .must = "three numbers x/y/z from -1e9 to 1e9"});
+    visit("tile", spec.tile, {.help = "Squares along a tile's side, with --world", .range = {64.0, 8192.0}});
 }
 
 }  // namespace relief

@@ -41,27 +41,7 @@ inline constexpr double kHeightMax = 1e9;         ///< of low, high, offset and 
 inline constexpr double kHoleMax = 3.4028235e38;  ///< the largest float, as it is written
 inline constexpr std::uint32_t kHeightsSideMax = 1U << 24;  ///< samples in a row
 
-template <class Visitor, FieldsOf<HeightsSpec> S>
-void fields(Visitor& visit, S& spec) {
-    const auto number = [](std::string_view help) {
-        return FieldInfo{.help = help, .range = within(kHeightMax), .must = "a number from -1e9 to 1e9"};
-    };
-    visit("spacing", spec.spacing,
-          {.help = "Between samples, metres",
-           .range = {1e-6, 1e6},
-           .must = "a length from 0.000001 to 1000000"});
-    visit("low", spec.low, number("Height of sample 0, of images of whole numbers"));
-    visit("high", spec.high, number("Height of the largest sample, 65535 or 255"));
-    visit("hole", spec.hole,
-          {.help = "Sample that is none, as the file has it",
-           .range = within(kHoleMax),
-           .must = "a finite number"});
-    visit("width", spec.width,
-          {.help = "Samples in a row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
-    visit("offset", spec.offset,
-          {.help = "Place of the first sample at height 0", .must = "three numbers x/y/z from -1e9 to 1e9"});
-    visit("tile", spec.tile, {.help = "Squares along a tile's side, with --world", .range = {64.0, 8192.0}});
-}
+void fields(FieldVisitor& visit, HeightsSpec& spec);
 
 /// Errors: kUsage, naming the key and the cure.
 [[nodiscard]] Result<HeightsSpec> parseHeightsSpec(std::string_view text);

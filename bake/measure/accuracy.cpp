@@ -149,4 +149,13 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
     return accuracy;
 }
 
+void fields(FieldVisitor& visit, const WrongShare& share) {
+    visit("wrong_percent", share.total(),
+          {"Share of the points that are on the wrong side", "%", kPercentRange});
+    visit("false_inside_percent", share.false_inside,
+          {"Share of the points that are outside but classified as inside", "%", kPercentRange});
+    visit("false_outside_percent", share.false_outside,
+          {"Share of the points that are inside but classified as outside", "%", kPercentRange});
+}
+
 }  // namespace relief

@@ -36,15 +36,7 @@ struct WrongShare {
     [[nodiscard]] double total() const { return false_inside + false_outside; }
 };
 
-template <class Visitor, FieldsOf<WrongShare> W>
-void fields(Visitor& visit, W& share) {
-    visit("wrong_percent", share.total(),
-          {"Share of the points that are on the wrong side", "%", kPercentRange});
-    visit("false_inside_percent", share.false_inside,
-          {"Share of the points that are outside but classified as inside", "%", kPercentRange});
-    visit("false_outside_percent", share.false_outside,
-          {"Share of the points that are inside but classified as outside", "%", kPercentRange});
-}
+void fields(FieldVisitor& visit, const WrongShare& share);
 
 struct FieldAccuracy {
     WrongShare near;     ///< points near the surface

@@ -179,4 +179,11 @@ Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery&
     return Search(query, truth, std::move(views), options).run();
 }
 
+void fields(FieldVisitor& visit, const BudgetTry& made) {
+    visit("budget", made.budget, {"Bytes of texels planned for"});
+    visit("bytes", made.bytes, {"Bytes of texels planned"});
+    visit("wrong_percent", made.wrong_percent,
+          {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
+}
+
 }  // namespace relief

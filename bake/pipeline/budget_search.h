@@ -40,13 +40,7 @@ struct BudgetTry {
     double wrong_percent = 0.0;  ///< of the points near the surface (FieldAccuracy::near)
 };
 
-template <class Visitor, FieldsOf<BudgetTry> T>
-void fields(Visitor& visit, T& made) {
-    visit("budget", made.budget, {"Bytes of texels planned for"});
-    visit("bytes", made.bytes, {"Bytes of texels planned"});
-    visit("wrong_percent", made.wrong_percent,
-          {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
-}
+void fields(FieldVisitor& visit, const BudgetTry& made);
 
 struct BudgetSearchOptions {
     double max_error_percent = 1.0;

@@ -18,27 +18,6 @@ struct PlanMaps {
     ErrorCode& code;  // of a mistake in one
 };
 
-struct PlanTop {
-    int version = kVersion;
-    PlanFile plan;
-    ErrorCode code = ErrorCode::kInvalidInput;
-};
-
-template <class Visitor, FieldsOf<PlanTop> T>
-void fields(Visitor& visit, T& top) {
-    visit("version", top.version, {"Version of the format, 1", {}, {kVersion, kVersion}, {}, kRequired});
-    visit("quality", top.plan.quality, {"Work on the texels of planes"});
-    visit("prefer", top.plan.prefer, {"The worse of two errors"});
-    visit("budget", top.plan.budget, {"Bytes on the GPU that the maps were planned for", {}, kFromOne});
-    visit("thickness", top.plan.thickness, {"Default of shells", {}, {0.0, 1e15, false}});
-    visit("map", PlanMaps{top.plan.maps, top.code},
-          {"A map of the bake",
-           {},
-           {},
-           {},
-           {.most = static_cast<std::size_t>(ContainerLimits{}.maps), .required = true}});
-}
-
 /// The message of a builder, with the place in the file. Wrong usage of an option is invalid input in a file.
 [[noreturn]] void refuse(const Error& error, const TomlFile& file, const toml::source_position& at,
                          ErrorCode& code) {
@@ -86,7 +65,8 @@ MapSpec readSpec(const TomlValue& map, ErrorCode& code) {
     return *spec;
 }
 
-void readField(const TomlValue& from, const PlanMaps& into, const FieldInfo& info) {
+void readMaps(const TomlValue& from, void* value, const FieldInfo& info) {
+    const PlanMaps& into = *static_cast<const PlanMaps*>(value);
     if (from.array() != nullptr && from.array()->size() > info.rules.most) {
         into.code = ErrorCode::kLimit;
     }
@@ -96,6 +76,35 @@ void readField(const TomlValue& from, const PlanMaps& into, const FieldInfo& inf
     if (into.maps.empty()) {
         from.fail("a plan needs at least one [[map]]");
     }
+}
+
+const FieldCustom kPlanMapsField{.read = readMaps};
+
+}  // namespace
+
+template <>
+inline constexpr const FieldCustom* kFieldCustom<PlanMaps> = &kPlanMapsField;
+
+namespace {
+
+struct PlanTop {
+    int version = kVersion;
+    PlanFile plan;
+    ErrorCode code = ErrorCode::kInvalidInput;
+};
+
+void fields(FieldVisitor& visit, PlanTop& top) {
+    visit("version", top.version, {"Version of the format, 1", {}, {kVersion, kVersion}, {}, kRequired});
+    visit("quality", top.plan.quality, {"Work on the texels of planes"});
+    visit("prefer", top.plan.prefer, {"The worse of two errors"});
+    visit("budget", top.plan.budget, {"Bytes on the GPU that the maps were planned for", {}, kFromOne});
+    visit("thickness", top.plan.thickness, {"Default of shells", {}, {0.0, 1e15, false}});
+    visit("map", PlanMaps{top.plan.maps, top.code},
+          {"A map of the bake",
+           {},
+           {},
+           {},
+           {.most = static_cast<std::size_t>(ContainerLimits{}.maps), .required = true}});
 }
 
 }  // namespace

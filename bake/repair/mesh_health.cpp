@@ -196,4 +196,31 @@ Result<void> requireSolid(const MeshHealth& health, const std::string& mesh_name
                                               "; repair the mesh, try --repair, or leave out --strict");
 }
 
+void fields(FieldVisitor& visit, const MeshFault& fault) {
+    visit("what", fault.what, {"Description"});
+    visit("at", fault.at, {"Middle of the edge or triangle, or the vertex", "object units"});
+}
+
+void fields(FieldVisitor& visit, const MeshHealth& health) {
+    visit("solid", health.isSolid(),
+          {"The mesh is closed, manifold, wound outwards, and free of duplicates"});
+    visit("closed", health.closed, {"No edge belongs to an odd number of triangles"});
+    visit("inside_out", health.inside_out, {"The mesh as a whole is wound inwards"});
+    visit("triangles", health.triangles, {"Triangles with area"});
+    visit("degenerate_triangles", health.degenerate_triangles,
+          {"Triangles without area, which are left out"});
+    visit("duplicate_triangles", health.duplicate_triangles,
+          {"Triangles with the same three corners as an earlier one"});
+    visit("boundary_edges", health.boundary_edges, {"Edges of one triangle"});
+    visit("nonmanifold_edges", health.nonmanifold_edges, {"Edges of three or more triangles"});
+    visit("nonmanifold_vertices", health.nonmanifold_vertices,
+          {"Vertices whose triangles form several groups that share no edge there"});
+    visit("inconsistent_edges", health.inconsistent_edges,
+          {"Edges of two triangles that run along them in the same direction"});
+    visit("components", health.components, {"Groups of triangles connected by edges"});
+    visit("closed_components", health.closed_components, {"Components that are closed"});
+    visit("first_fault", health.first_fault,
+          {"First fault of the most serious kind; null if the mesh is solid"});
+}
+
 }  // namespace relief

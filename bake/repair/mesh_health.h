@@ -19,11 +19,7 @@ struct MeshFault {
     glm::vec3 at{0.0F};  ///< object space: the middle of the edge or triangle, or the vertex
 };
 
-template <class Visitor, FieldsOf<MeshFault> F>
-void fields(Visitor& visit, F& fault) {
-    visit("what", fault.what, {"Description"});
-    visit("at", fault.at, {"Middle of the edge or triangle, or the vertex", "object units"});
-}
+void fields(FieldVisitor& visit, const MeshFault& fault);
 
 struct MeshHealth {
     std::uint64_t triangles = 0;
@@ -43,28 +39,7 @@ struct MeshHealth {
     [[nodiscard]] bool isSolid() const { return !first_fault.has_value(); }
 };
 
-template <class Visitor, FieldsOf<MeshHealth> H>
-void fields(Visitor& visit, H& health) {
-    visit("solid", health.isSolid(),
-          {"The mesh is closed, manifold, wound outwards, and free of duplicates"});
-    visit("closed", health.closed, {"No edge belongs to an odd number of triangles"});
-    visit("inside_out", health.inside_out, {"The mesh as a whole is wound inwards"});
-    visit("triangles", health.triangles, {"Triangles with area"});
-    visit("degenerate_triangles", health.degenerate_triangles,
-          {"Triangles without area, which are left out"});
-    visit("duplicate_triangles", health.duplicate_triangles,
-          {"Triangles with the same three corners as an earlier one"});
-    visit("boundary_edges", health.boundary_edges, {"Edges of one triangle"});
-    visit("nonmanifold_edges", health.nonmanifold_edges, {"Edges of three or more triangles"});
-    visit("nonmanifold_vertices", health.nonmanifold_vertices,
-          {"Vertices whose triangles form several groups that share no edge there"});
-    visit("inconsistent_edges", health.inconsistent_edges,
-          {"Edges of two triangles that run along them in the same direction"});
-    visit("components", health.components, {"Groups of triangles connected by edges"});
-    visit("closed_components", health.closed_components, {"Components that are closed"});
-    visit("first_fault", health.first_fault,
-          {"First fault of the most serious kind; null if the mesh is solid"});
-}
+void fields(FieldVisitor& visit, const MeshHealth& health);
 
 /// The result does not depend on the number of threads.
 [[nodiscard]] MeshHealth inspectMesh(const PreparedMesh& mesh);

@@ -66,4 +66,16 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
     return RepairedMesh{std::move(mesh), std::move(report)};
 }
 
+void fields(FieldVisitor& visit, RepairOptions& options) {
+    visit(
+        "strict", options.strict,
+        {.help = "Refuse a mesh that is not a closed solid wound outwards, with exit code 3; with --repair, "
+                 "a repaired one that is still open"});
+    visit("repair", options.method,
+          {.help = "Bake another surface: wrap[=ALPHA], a closed one shrunk round the mesh, spanning gaps of "
+                   "ALPHA longest sides, 0.01 by default",
+           .value = "WORD",
+           .recorded = true});
+}
+
 }  // namespace relief

@@ -18,18 +18,7 @@ struct RepairOptions {
     bool examine = true;  ///< count faults even where no other option needs that
 };
 
-template <class Visitor, FieldsOf<RepairOptions> Options>
-void fields(Visitor& visit, Options& options) {
-    visit(
-        "strict", options.strict,
-        {.help = "Refuse a mesh that is not a closed solid wound outwards, with exit code 3; with --repair, "
-                 "a repaired one that is still open"});
-    visit("repair", options.method,
-          {.help = "Bake another surface: wrap[=ALPHA], a closed one shrunk round the mesh, spanning gaps of "
-                   "ALPHA longest sides, 0.01 by default",
-           .value = "WORD",
-           .recorded = true});
-}
+void fields(FieldVisitor& visit, RepairOptions& options);
 
 /// The ALPHA of a repair method, in units of the longest side; 0 for an empty one. Errors: kUsage.
 [[nodiscard]] Result<double> wrapAlpha(const std::string& method);

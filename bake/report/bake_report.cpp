@@ -13,30 +13,28 @@ namespace relief {
 namespace {
 
 /// Writes each field with a value as a line "  boundary edges: 12".
-class LineWriter {
+class LineWriter : public FieldVisitor {
   public:
-    template <class T>
-    void operator()(std::string_view name, const T& value, const FieldInfo&) {
-        add(name, value);
+    void operator()(std::string_view name, FieldRef value, const FieldInfo& /*info*/) override {
+        if (value.form() == FieldForm::kOptional) {
+            if (value.count() > 0) {
+                add(name, value[0].as<const MeshFault>());
+            }
+        } else {
+            add(name, value.form() == FieldForm::kBool ? value.as<bool>() ? "yes" : "no"
+                                                       : std::to_string(value.whole()));
+        }
     }
     [[nodiscard]] std::string take() { return std::move(text_); }
 
   private:
+    void add(std::string_view name, const MeshFault& fault) {
+        add(name, fault.what + " at " + shortest(fault.at));
+    }
     void add(std::string_view name, const std::string& value) {
         std::string words(name);
         std::replace(words.begin(), words.end(), '_', ' ');
         text_ += "  " + words + ": " + value + "\n";
-    }
-    void add(std::string_view name, bool value) { add(name, std::string(value ? "yes" : "no")); }
-    void add(std::string_view name, std::uint64_t value) { add(name, std::to_string(value)); }
-    void add(std::string_view name, const MeshFault& fault) {
-        add(name, fault.what + " at " + shortest(fault.at));
-    }
-    template <class T>
-    void add(std::string_view name, const std::optional<T>& value) {
-        if (value) {
-            add(name, *value);
-        }
     }
 
     std::string text_;
@@ -189,6 +187,57 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     }
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";
+}
+
+void fields(FieldVisitor& visit, const BakedMapReport& report) {
+    fields(visit, report.map);
+    visit("coverage", report.coverage(), {"Share of the texels that hold a surface", {}, kShareRange});
+}
+
+void fields(FieldVisitor& visit, const PlannedMap& map) {
+    visit("reason", map.reason, {"Reason for the map"});
+    visit("serves", map.serves, {"Share of the plan's aim that the map adds"});
+}
+
+void fields(FieldVisitor& visit, const PlanReport& report) {
+    const Plan& plan = report.plan;
+    visit("budget", report.budget, {"Budget of the plan; null of --texel alone", "bytes of texels"});
+    visit("bytes", plan.bytes, {"Size of the plan", "bytes of texels"});
+    visit("texel", plan.texel,
+          {"Side of a texel; of patches, the least distance of two heights", "object units", kFromZero});
+    visit("unseen_percent", plan.unseen_percent,
+          {"Share of the surface that no map sees", "%", kPercentRange});
+    visit("next_map_serves", plan.next_gain,
+          {"Share of the points that one more map would have served", {}, kShareRange});
+    visit("maps", plan.maps, {"One for each map"});
+    const auto search = [&](FieldVisitor& visit_search) {
+        visit_search("max_error_percent", static_cast<float>(report.max_error.value_or(0.0)),
+                     {"--max-error", "%", kFromZero});
+        visit_search("wrong_percent", report.wrong_percent,
+                     {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
+        visit_search("tries", report.tries, {"Trials, in their order"});
+    };
+    visit("search", groupIf(report.max_error.has_value(), search),
+          {"Search for the least budget; null without --max-error"});
+}
+
+void fields(FieldVisitor& visit, const RepairReport& care) {
+    visit("mesh_health", care.health, {"Health of the mesh as imported"});
+    const auto repair = [&](FieldVisitor& visit_repair) {
+        visit_repair("method", care.repair, {"Value of --repair: wrap=ALPHA"});
+        visit_repair("mesh_health", care.repaired, {"Health of the repaired mesh"});
+    };
+    visit("repair", groupIf(!care.repair.empty(), repair), {"Results of --repair; null without it"});
+    visit("turned_triangles", care.turned, {"Triangles turned to face outwards"});
+}
+
+void fields(FieldVisitor& visit, const InputFile& input) {
+    visit("file", input.path, {"File as it was opened"});
+    visit("hash", input.hash, {.help = "XXH3-128 of its contents", .pattern = kHashPattern});
+}
+
+void fields(FieldVisitor& visit, const ColliderReport<BakedMapReport>& report) {
+    colliderFields(visit, report.collider, report.info, report.maps, report.animated);
 }
 
 }  // namespace relief

@@ -67,56 +67,15 @@ struct BakedMapReport {
     }
 };
 
-template <class Visitor, FieldsOf<BakedMapReport> R>
-void fields(Visitor& visit, R& report) {
-    fields(visit, report.map);
-    visit("coverage", report.coverage(), {"Share of the texels that hold a surface", {}, kShareRange});
-}
+void fields(FieldVisitor& visit, const BakedMapReport& report);
+void fields(FieldVisitor& visit, const ColliderReport<BakedMapReport>& report);
 
-template <class Visitor, FieldsOf<PlannedMap> M>
-void fields(Visitor& visit, M& map) {
-    visit("reason", map.reason, {"Reason for the map"});
-    visit("serves", map.serves, {"Share of the plan's aim that the map adds"});
-}
+void fields(FieldVisitor& visit, const PlannedMap& map);
 
-template <class Visitor, FieldsOf<PlanReport> R>
-void fields(Visitor& visit, R& report) {
-    const Plan& plan = report.plan;
-    visit("budget", report.budget, {"Budget of the plan; null of --texel alone", "bytes of texels"});
-    visit("bytes", plan.bytes, {"Size of the plan", "bytes of texels"});
-    visit("texel", plan.texel,
-          {"Side of a texel; of patches, the least distance of two heights", "object units", kFromZero});
-    visit("unseen_percent", plan.unseen_percent,
-          {"Share of the surface that no map sees", "%", kPercentRange});
-    visit("next_map_serves", plan.next_gain,
-          {"Share of the points that one more map would have served", {}, kShareRange});
-    visit("maps", plan.maps, {"One for each map"});
-    const auto search = [&](auto& visit_search) {
-        visit_search("max_error_percent", static_cast<float>(report.max_error.value_or(0.0)),
-                     {"--max-error", "%", kFromZero});
-        visit_search("wrong_percent", report.wrong_percent,
-                     {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
-        visit_search("tries", report.tries, {"Trials, in their order"});
-    };
-    visit("search", groupIf(report.max_error.has_value(), search),
-          {"Search for the least budget; null without --max-error"});
-}
+void fields(FieldVisitor& visit, const PlanReport& report);
 
-template <class Visitor, FieldsOf<RepairReport> C>
-void fields(Visitor& visit, C& care) {
-    visit("mesh_health", care.health, {"Health of the mesh as imported"});
-    const auto repair = [&](auto& visit_repair) {
-        visit_repair("method", care.repair, {"Value of --repair: wrap=ALPHA"});
-        visit_repair("mesh_health", care.repaired, {"Health of the repaired mesh"});
-    };
-    visit("repair", groupIf(!care.repair.empty(), repair), {"Results of --repair; null without it"});
-    visit("turned_triangles", care.turned, {"Triangles turned to face outwards"});
-}
+void fields(FieldVisitor& visit, const RepairReport& care);
 
-template <class Visitor, FieldsOf<InputFile> I>
-void fields(Visitor& visit, I& input) {
-    visit("file", input.path, {"File as it was opened"});
-    visit("hash", input.hash, {.help = "XXH3-128 of its contents", .pattern = kHashPattern});
-}
+void fields(FieldVisitor& visit, const InputFile& input);
 
 }  // namespace relief

@@ -34,4 +34,97 @@ std::string animationText(const AnimatedMesh& mesh) {
     return text + table(rows);
 }
 
+void fields(FieldVisitor& visit, const Bounds& bounds) {
+    visit("min", bounds.min, {"Smallest x, y and z", "object units"});
+    visit("max", bounds.max, {"Largest x, y and z", "object units"});
+}
+
+void fields(FieldVisitor& visit, const Provenance& from) {
+    visit("mesh_name", from.mesh_name, {"File name of the mesh, without its folder"});
+    visit("mesh_hash", from.mesh_hash,
+          {.help = "XXH3-128 of the mesh file, hexadecimal; empty if unknown", .pattern = kHashPattern});
+    visit("triangles", from.triangles, {"Triangles of the mesh"});
+    visit("tool_version", from.tool_version, {"Program that made the container"});
+    visit("options", from.optionsText(), {"Options of the bake, as words of a shell"});
+}
+
+void fields(FieldVisitor& visit, const ColliderMapReport& report) {
+    const auto& [index, map, payload] = report;
+    std::array<std::array<float, 4>, 3> rows{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec4& row = map.object_to_map.row[i];
+        rows[i] = {row.x, row.y, row.z, row.w};
+    }
+    visit("index", index, {"Position in the container, from 0"});
+    visit("format", mapFormatName(map.format), {.help = "Format of the texels", .words = kMapFormatWords});
+    visit("projection", projectionName(map.projection()),
+          {.help = "Projection of the map", .words = kWords<"orthographic", "cube", "local">});
+    visit("compare", compareName(map.compare),
+          {.help = "Surface kept along each ray: the nearest, the farthest, both, or the two ends of a gap",
+           .words = kWords<"less", "greater", "both", "gap">});
+    visit("width", map.width, {"Width", "texels", kFromOne});
+    visit("height", map.height, {"Height", "texels", kFromOne});
+    visit("faces", map.faceCount(), {.help = "Images: 6 of a cube", .words = kWords<"1", "6">});
+    visit("bytes", payload.raw_size, {"Size of all texels in memory", "bytes"});
+    visit("stored_bytes", payload.stored_size, {"Size in the file", "bytes"});
+    visit("compression", packingName(payload.packing),
+          {.help = "Encoding in the file: plain, a zstd frame, or rows without their empty ends",
+           .words = kWords<"none", "zstd", "rows">});
+    visit("offset", payload.offset, {"First byte in the file"});
+    visit("object_to_map", rows, {"Rows of the affine map from object space to map space"});
+    visit("object_per_map", map.object_per_map,
+          {"Length of one unit along each axis of the map", "object units"});
+    visit("encloses", map.encloses, {"The volume of the map contains the whole collider"});
+    visit("empty_is_outside", map.empty_is_outside, {"A point on a ray that meets no surface is outside"});
+}
+
+void fields(FieldVisitor& visit, const MeshClip& clip) {
+    visit("name", clip.name, {"Name, which no other clip has"});
+    visit("seconds", clip.seconds, {"Length", "s", kFromZero});
+}
+
+void fields(FieldVisitor& visit, const AnimatedMesh& mesh) {
+    visit("vertices", mesh.positions.size(), {"Vertices, instances counted one by one"});
+    visit("triangles", mesh.triangles.size(), {"Triangles"});
+    visit("nodes", mesh.nodes.size(), {"Nodes, those of the skeleton included"});
+    visit("joints", mesh.joints.size(), {"Joints: nodes that move vertices"});
+    visit("morph_targets", mesh.weights.size(), {"Morph targets"});
+    visit("clips", mesh.clips, {"Clips, those of the mesh file first"});
+    visit("groups", groupNames(mesh),
+          {"Names of joints and nodes with vertices of their own: emitter.group"});
+    visit("materials", mesh.materials, {"Names of materials, \"\" for none: emitter.material"});
+}
+
+void fields(FieldVisitor& visit, const Material& material) {
+    visit("name", material.name,
+          {"Name, which no other material of the collider has; empty of surfaces without one"});
+    visit("restitution", material.restitution, {"Factor of the particles' own restitution", {}, kShareRange});
+    visit("friction", material.friction,
+          {"1 − friction is a factor of the particles' own 1 − friction", {}, kShareRange});
+    visit("lifetime_loss", material.lifetime_loss,
+          {"Lifetime that each step in contact costs", "s", {0.0, double{kMaterialLossMax}}});
+    visit("area_percent", 100.0 * double{material.area_share},
+          {"Share of the mesh's surface", "%", kPercentRange});
+}
+
+void colliderFields(FieldVisitor& visit, const Collider& collider, const ContainerInfo& info, FieldRef maps,
+                    const AnimatedMesh* animated) {
+    visit("version", std::to_string(info.major) + "." + std::to_string(info.minor),
+          {.help = "Version of the container format", .pattern = "^[0-9]+\\.[0-9]+$"});
+    visit("file_size", info.file_size, {"Size of the file", "bytes"});
+    visit("bounds", collider.bounds, {"Box of the mesh"});
+    visit("unit", collider.unit, {"Unit of lengths: m, or empty if the source names none"});
+    visit("texel_bytes", collider.gpuBytes(), {"Size of all maps on the GPU", "bytes"});
+    visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
+    visit("materials", collider.materials.list,
+          {"Materials of its surface, by their ids; none: its surface is all the same"});
+    visit("material_bytes", collider.materials.bytes(), {"Size of the materials", "bytes"});
+    visit("animation", animated == nullptr ? std::nullopt : std::optional(*animated),
+          {"How it moves; null if it does not"});
+    visit("provenance", collider.provenance, {"Origin of the collider"});
+}
+void fields(FieldVisitor& visit, const ColliderReport<ColliderMapReport>& report) {
+    colliderFields(visit, report.collider, report.info, report.maps, report.animated);
+}
+
 }  // namespace relief

@@ -49,47 +49,9 @@ struct PartReport {
     const Collider& collider = kNone<Collider>;
 };
 
-template <class Visitor, FieldsOf<PartReport> R>
-void fields(Visitor& visit, R& report) {
-    const auto& [accuracy, part, collider] = report;
-    const bool wants = accuracy.state == PartVerdict::kLost || accuracy.state == PartVerdict::kCoarse;
-    visit("part", accuracy.part + 1,
-          {"Number, from 1, in the order of the parts' first triangles", {}, kFromOne});
-    visit("node", part.node, {"Node of the file; empty without a name"});
-    visit("material", part.material, {"Material of the file; empty without a name"});
-    visit("kind", part.kind, {"Shape that it is treated as; a surface is baked as it is"});
-    visit("state", accuracy.state,
-          {"held: at most 10 % of its points are wrong; coarse: at most 25 %; lost: more; hidden: inside "
-           "other parts; "
-           "small: below the detail; rest: not measured because there are too many parts"});
-    visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
-    visit("position", part.bounds.center(), {"Middle of its box", "object units"});
-    visit("triangles", part.triangles, {"Its triangles"});
-    visit("thickness", onlyIf(part.thickness > 0.0, part.thickness),
-          {"Thickness of the shell that replaces it; null without one", "object units", kFromZero});
-    visit("points", accuracy.points, {"Points near it that were measured"});
-    visit("sigma", accuracy.sigma,
-          {"Standard deviation of their distance from it", "object units", kFromZero});
-    fields(visit, accuracy.wrong);
-    visit("texel", partTexel(part, collider),
-          {"Side of the finest texels at its middle, or of the finest patches' in its box", "object units",
-           kFromZero});
-    visit("cure", wants ? std::optional(partCure(part, collider)) : std::nullopt,
-          {"A way to keep it; null unless coarse or lost"});
-}
+void fields(FieldVisitor& visit, const PartReport& report);
 
-template <class Visitor, FieldsOf<GroupAccuracy> G>
-void fields(Visitor& visit, G& group) {
-    visit("name", group.name, {"Name in the file"});
-    visit("of", group.is_material ? "material" : "node",
-          {.help = "Owner of the name", .words = kWords<"node", "material">});
-    visit("parts", group.parts, {"Measured parts"});
-    visit("lost", group.lost, {"Lost parts"});
-    visit("size", double{group.bounds.longestSide()},
-          {"Longest side of the box of its parts", "object units", kFromZero});
-    visit("position", group.bounds.center(), {"Middle of that box", "object units"});
-    fields(visit, group.wrong);
-}
+void fields(FieldVisitor& visit, const GroupAccuracy& group);
 
 struct PartsReport {
     const PartsAccuracy& accuracy = kNone<PartsAccuracy>;
@@ -102,27 +64,6 @@ struct PartsReport {
     [[nodiscard]] std::vector<GroupAccuracy> groups() const;
 };
 
-template <class Visitor, FieldsOf<PartsReport> R>
-void fields(Visitor& visit, R& report) {
-    constexpr std::array<std::string_view, kPartVerdicts> kCounts = {"Parts with at most 10 % wrong points",
-                                                                     "Parts with at most 25 % wrong points",
-                                                                     "Parts with more wrong points",
-                                                                     "Parts inside other parts",
-                                                                     "Parts below the detail",
-                                                                     "Parts not measured"};
-    const PartsAccuracy& accuracy = report.accuracy;
-    visit("detail", accuracy.detail,
-          {"Parts with a smaller longest side are not judged", "object units", kFromZero});
-    visit("count", accuracy.parts.size(), {"Parts of the mesh"});
-    for (std::size_t i = 0; i < kPartVerdicts; ++i) {
-        visit(kWordsOf<PartVerdict>[i], accuracy.count[i], {kCounts[i]});
-    }
-    visit("worst", report.worst(),
-          {"At most 100 parts, the lost ones first; a part is connected, and of one node and "
-           "one material"});
-    visit("groups", report.groups(),
-          {"The worst 100 named nodes, then the worst 100 materials, where there are "
-           "several; their parts are weighted by area"});
-}
+void fields(FieldVisitor& visit, const PartsReport& report);
 
 }  // namespace relief

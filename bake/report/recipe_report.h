@@ -40,57 +40,9 @@ struct AssetReport {
     [[nodiscard]] static std::vector<AssetReport> kinds();
 };
 
-template <class Visitor, FieldsOf<AssetReport> R>
-void fields(Visitor& visit, R& report) {
-    const AssetResult& asset = report.asset;
-    const AssetState state = asset.state;
-    const bool made = state == AssetState::kBaked || state == AssetState::kUpToDate;
-    const bool failed = state == AssetState::kFailed;
-    const bool tried = state == AssetState::kBaked || failed;
-    visit("asset", asset.job.output, {"Output, relative to the output folder: a collider, or a world"});
-    visit("mesh", asset.job.mesh, {"Its mesh, level or height map, relative to the folder of the recipe"});
-    visit("state", wordOf(state),
-          {.help = "State of the asset", .words = {&kWordsOf<AssetState>[std::size_t(state)], 1}});
-    if (state != AssetState::kUpToDate) {
-        visit("reason", asset.reason, {"Reason why it is not up to date"});
-    }
-    if (tried) {
-        visit("ms", asset.ms, {"Time", "ms", kFromZero});
-    }
-    if (made) {
-        visit("bytes", asset.bytes, {"Size of the output, with its containers", "bytes"});
-        visit("hash", asset.hash,
-              {.help = "XXH3-128 of the output; that of a world has those of its containers",
-               .pattern = kHashPattern});
-        visit("containers", asset.containers,
-              {.help = "Containers of a world, relative to the output folder", .left_out = true});
-        visit("inputs", asset.inputs, {.help = "All files that it was made from", .items = kFromOne});
-    }
-    if (made || !report.event) {
-        visit("key", asset.key,
-              {.help = "XXH3-128 of the program, the options and the inputs: equal keys mean equal outputs",
-               .pattern = "^[0-9a-f]{32}$",
-               .left_out = !made});
-    }
-    if (failed) {
-        visit("code", static_cast<int>(asset.error.code), {"Exit code", {}, {1.0, 7.0}});
-        visit("error", asset.error.message, {"One line for people"});
-    }
-    if (tried) {
-        visit("warnings", asset.warnings, {.help = "Warnings, one line each", .left_out = true});
-    }
-}
+void fields(FieldVisitor& visit, const AssetReport& report);
 
-template <class Visitor, FieldsOf<RecipeCounts> C>
-void fields(Visitor& visit, C& counts) {
-    visit("assets", counts.all(), {"All assets"});
-    visit("stale", counts.of(AssetState::kStale), {"Assets to be baked, in a dry run"});
-    visit("baked", counts.of(AssetState::kBaked), {"Assets baked"});
-    visit("up_to_date", counts.of(AssetState::kUpToDate), {"Assets not baked because nothing changed"});
-    visit("failed", counts.of(AssetState::kFailed), {"Assets that failed"});
-    visit("cancelled", counts.of(AssetState::kCancelled), {"Assets not baked because the run ended before"});
-    visit("bytes", counts.bytes, {"Size of all outputs that are up to date now", "bytes"});
-}
+void fields(FieldVisitor& visit, const RecipeCounts& counts);
 
 /// "2/4"; null without --shard.
 [[nodiscard]] std::optional<std::string> shardText(const std::optional<Shard>& shard);
@@ -106,15 +58,7 @@ struct RecipeJson {
     std::vector<AssetReport> assets = {};
 };
 
-template <class Visitor, FieldsOf<RecipeJson> R>
-void fields(Visitor& visit, R& report) {
-    visit("recipe", report.recipe, {"Recipe as given"});
-    visit("output", report.output, {"Output folder"});
-    visit("shard", shardText(report.shard), kShardField);
-    visit("counts", report.counts, {"Numbers of assets"});
-    visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
-    visit("assets", report.assets, {"Assets, in the order of the recipe"});
-}
+void fields(FieldVisitor& visit, const RecipeJson& report);
 
 // --- Events
 
@@ -125,15 +69,7 @@ struct RecipeStart {
     unsigned at_once = 1;
 };
 
-template <class Visitor, FieldsOf<RecipeStart> S>
-void fields(Visitor& visit, S& start) {
-    visit("event", "start", {.help = "The first line", .words = kWords<"start">});
-    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
-    visit("recipe", start.recipe, {"Recipe as given"});
-    visit("assets", start.assets, {"All assets"});
-    visit("shard", shardText(start.shard), kShardField);
-    visit("at_once", start.at_once, {"Assets baked at the same time", {}, kFromOne});
-}
+void fields(FieldVisitor& visit, const RecipeStart& start);
 
 struct AssetEvent {
     AssetReport asset = {};
@@ -141,14 +77,7 @@ struct AssetEvent {
     [[nodiscard]] static std::vector<AssetEvent> kinds();
 };
 
-template <class Visitor, FieldsOf<AssetEvent> E>
-void fields(Visitor& visit, E& event) {
-    static constexpr auto kEvents =
-        kWords<"started", "skipped", "done", "failed", "cancelled">;  // as in AssetState
-    const auto& word = kEvents[static_cast<std::size_t>(event.asset.asset.state)];
-    visit("event", word, {.help = "Kind of event", .words = {&word, 1}});
-    fields(visit, event.asset);
-}
+void fields(FieldVisitor& visit, const AssetEvent& event);
 
 struct RecipeEnd {
     RecipeCounts counts = {};
@@ -156,14 +85,7 @@ struct RecipeEnd {
     int signal = 0;  ///< 0: none
 };
 
-template <class Visitor, FieldsOf<RecipeEnd> E>
-void fields(Visitor& visit, E& end) {
-    visit("event", "summary", {.help = "The last line", .words = kWords<"summary">});
-    fields(visit, end.counts);
-    visit("ms", end.ms, {"Time of the whole run", "ms", kFromZero});
-    visit("signal", onlyIf(end.signal != 0, end.signal),
-          {"Signal that ended the run; null if none did", {}, kFromOne});
-}
+void fields(FieldVisitor& visit, const RecipeEnd& end);
 
 using RecipeEvent = std::variant<RecipeStart, AssetEvent, RecipeEnd>;
 

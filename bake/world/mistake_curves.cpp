@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "formats/base/file_io.h"
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 #include "formats/fields/strict_json.h"
 
 namespace relief {

@@ -6,31 +6,40 @@
 //         float radius = 0.0F;
 //     };
 //
-//     template <class Visitor, FieldsOf<Attractor> A>
-//     void fields(Visitor& visit, A& a) {
+//     void fields(FieldVisitor& visit, Attractor& a);
+//
+// and in a source file
+//
+//     void fields(FieldVisitor& visit, Attractor& a) {
 //         visit("position", a.position, {"Centre of attraction", "[x, y, z]", within(kLengthMax)});
 //         visit("radius", a.radius, {"Softens the force near the centre", {}, {0.0, kLengthMax, false}});
 //     }
 //
-// A visitor is an object with a template operator()(std::string_view name, T& value, const FieldInfo& info). It decides by T:
-// numbers, bool, text, paths, glm::vec3, enumerations that have words, structs with fields() of their own, and optionals,
-// vectors and maps of these. Where the file joins what the struct keeps apart, fields() visits a FieldSpan, a FieldPair or
-// another of the joints below. Rules between fields that FieldInfo cannot hold are a second function of the struct's own,
-// check(). Of a report, which is only written, fields() may visit expressions as well as members.
+// A visitor gets each field as a FieldRef, which has its type (formats/base/field_type.h): numbers, bool, text, paths,
+// glm::vec3, enumerations with words, structs with fields() of their own, and optionals, vectors and arrays of these. If the
+// file joins members that the struct keeps apart, fields() visits a FieldSpan, a FieldPair or another of the joints below.
+// Rules between fields that FieldInfo cannot hold are in a second function of the struct, check(). A report is only written:
+// its fields() takes a const reference, and may visit expressions as well as members.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <glm/fwd.hpp>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
+
+#include "formats/base/field_type.h"
 
 namespace relief {
 
@@ -107,60 +116,37 @@ struct FieldInfo {
     return info;
 }
 
-/// Two members for one value of the file: a number, or [least, most].
-template <class A, class B = A>
+/// Two members for one value of the file: a number, or [least, most]. Optionals of numbers too.
 struct FieldSpan {
-    A& least;
-    B& most;
+    FieldRef least;
+    FieldRef most;
 };
-template <class A, class B>
-FieldSpan(A&, B&) -> FieldSpan<A, B>;
 
 /// Two members for one value: always a pair, whose parts the unit names: "[width, height]".
-template <class T>
 struct FieldPair {
-    T& first;
-    T& second;
+    FieldRef first;
+    FieldRef second;
 };
-template <class T>
-FieldPair(T&, T&) -> FieldPair<T>;
 
-/// A member whose default depends on other things, and whether it was given.
-template <class T, class Flag = bool>
+/// A member whose default depends on other things, and whether the file contains it.
 struct FieldMaybe {
-    T& value;
-    Flag& given;
+    FieldRef value;
+    bool& given;
 };
-template <class T, class Flag>
-FieldMaybe(T&, Flag&) -> FieldMaybe<T, Flag>;
 
-/// A file that a file names, and where it does: "scene.toml:3:8", for messages.
-template <class Path, class Text = std::string>
+/// A file that a file names, and the place of its name: "scene.toml:3:8", for messages.
 struct FieldFile {
-    Path& path;
-    Text& place;
-};
-template <class Path, class Text>
-FieldFile(Path&, Text&) -> FieldFile<Path, Text>;
-
-/// Fields that a file gives, by their path from the struct on: "key[1].time".
-using GivenFields = std::function<bool(const std::string& path)>;
-
-/// A mistake found by a struct's check().
-struct FieldFault {
-    std::string path;  ///< of the field at fault, as GivenFields has it; empty: the struct itself
-    std::string text;  ///< goes on after the field's name: "does nothing without a name; give one"
+    std::filesystem::path& path;
+    std::string& place;
 };
 
-/// S is T or const T: what the second parameter of fields() is.
-template <class S, class T>
-concept FieldsOf = std::same_as<std::remove_const_t<S>, T>;
-
-/// The part of a struct that is its base, for the fields() of that.
-template <class Base, class T>
-[[nodiscard]] auto& baseOf(T& value) {
-    return static_cast<std::conditional_t<std::is_const_v<T>, const Base, Base>&>(value);
-}
+/// An object of a report that has no struct of its own (formats/fields/field.h).
+struct FieldGroup {
+    const void* of;
+    void (*visit)(const void* of, FieldVisitor& visit);
+    bool nullable = false;
+    bool present = true;  ///< else it is null
+};
 
 /// The words of an enumeration in the order of its values, which count from 0. Specialized beside the enumeration.
 template <class Enum>
@@ -190,27 +176,188 @@ inline constexpr bool kIsForm = false;
 template <template <class...> class Form, class... Parts>
 inline constexpr bool kIsForm<Form, Form<Parts...>> = true;
 
-/// The type that an optional holds, or T itself.
+/// A type with a form of its own has readForm(word, value), false for another form, and formText(value) beside it.
 template <class T>
-struct HeldType {
-    using Type = T;
-};
-template <class T>
-struct HeldType<std::optional<T>> {
-    using Type = T;
-};
-template <class T>
-using Held = typename HeldType<T>::Type;
-
-/// Takes anything: for the concept below.
-struct AnyVisitor {
-    template <class T>
-    void operator()(std::string_view, T&&, const FieldInfo&) {}
+concept WithForm = requires(std::string_view word, T& value) {
+    { readForm(word, value) } -> std::same_as<bool>;
+    { formText(value) } -> std::same_as<std::string>;
 };
 
+/// Functions of a type with a format of its own. Specialized beside the type.
 template <class T>
-concept WithFields = requires(AnyVisitor& visit, T& value) {
+inline constexpr const FieldCustom* kFieldCustom = nullptr;
+
+namespace fields_detail {
+
+/// Converts to T& only, and to no base of it.
+template <class T>
+struct Exactly {
+    template <class U>
+    requires std::same_as<std::remove_const_t<U>, T>
+    operator U&() const;  // NOLINT: implicit
+};
+
+template <class T>
+concept Text = std::convertible_to<const T&, std::string_view>;
+template <class T>
+concept Items = requires(T& value) {
+    std::data(value);
+    std::size(value);
+};
+template <class T>
+inline constexpr bool kIsArray = false;
+template <class T, std::size_t kSize>
+inline constexpr bool kIsArray<std::array<T, kSize>> = true;
+/// A struct that comes in kinds of different fields: `static std::vector<T> kinds()` returns one of each.
+template <class T>
+concept WithKinds = requires {
+    T::kinds();
+};
+
+}  // namespace fields_detail
+
+template <class T>
+concept WithFields = requires(FieldVisitor& visit, fields_detail::Exactly<T> value) {
     fields(visit, value);
 };
+
+namespace fields_detail {
+
+template <class T>
+struct Described {
+    static const FieldType type;
+};
+
+template <class T>
+constexpr void describeStruct(FieldType& type) {
+    type.fields = [](FieldVisitor& visit, void* value) { fields(visit, *static_cast<T*>(value)); };
+    if constexpr (requires(T & value, const GivenFields& given) { check(value, given); }) {
+        type.check = [](void* value, const GivenFields& given) {
+            return check(*static_cast<T*>(value), given);
+        };
+    }
+    if constexpr (requires(T & value, std::string place) { value.place = place; }) {
+        type.set_place = [](void* value, std::string place) {
+            static_cast<T*>(value)->place = std::move(place);
+        };
+    }
+    if constexpr (WithKinds<T>) {
+        type.kinds = [](const std::function<void(FieldRef)>& each) {
+            for (const T& one : T::kinds()) {
+                each(one);
+            }
+        };
+    }
+}
+
+template <class... Types>
+inline constexpr std::array<const FieldType*, sizeof...(Types)> kTypes{&Described<const Types>::type...};
+
+template <class... Types>
+constexpr void describeVariant(FieldType& type, const std::variant<Types...>* /*unused*/) {
+    type.alternatives = kTypes<Types...>;
+    type.chosen = [](void* value) {
+        return std::visit([](auto& one) { return FieldRef(std::as_const(one)); },
+                          *static_cast<std::variant<Types...>*>(value));
+    };
+}
+
+/// \tparam Given  T, or const T of a value that is only written
+template <class Given>
+constexpr FieldType describe() {
+    using T = std::remove_const_t<Given>;
+    constexpr bool kWritten = std::is_const_v<Given>;
+    FieldType type{.size = sizeof(T), .custom = kFieldCustom<T>};
+    if constexpr (std::is_default_constructible_v<T> && !std::is_array_v<T>) {
+        type.blank = []() -> void* {
+            static T value{};
+            return &value;
+        };
+    }
+    if constexpr (WithForm<T>) {
+        type.read_form = [](std::string_view word, void* value) {
+            return readForm(word, *static_cast<T*>(value));
+        };
+        type.form_text = [](const void* value) { return formText(*static_cast<const T*>(value)); };
+    } else if constexpr (std::same_as<T, bool>) {
+        type.form = FieldForm::kBool;
+    } else if constexpr (std::is_floating_point_v<T>) {
+        type.form = FieldForm::kReal;
+    } else if constexpr (std::is_integral_v<T>) {
+        type.form = std::is_unsigned_v<T> ? FieldForm::kUnsigned : FieldForm::kSigned;
+    } else if constexpr (WithWords<T>) {
+        type.form = FieldForm::kWord;
+        type.words = kWordsOf<T>;
+    } else if constexpr (std::same_as<T, std::string>) {
+        type.form = FieldForm::kString;
+    } else if constexpr (std::same_as<T, std::filesystem::path>) {
+        type.form = FieldForm::kPath;
+    } else if constexpr (Text<T>) {
+        type.form = FieldForm::kText;
+        type.text = [](const void* value) { return std::string_view(*static_cast<const T*>(value)); };
+    } else if constexpr (std::same_as<T, glm::vec3>) {
+        type.form = FieldForm::kVector;
+        type.held = &Described<float>::type;
+        type.count = 3;
+    } else if constexpr (kIsForm<std::optional, T>) {
+        using Held = typename T::value_type;
+        type.form = FieldForm::kOptional;
+        type.held = &Described<std::conditional_t<kWritten, const Held, Held>>::type;
+        type.items = [](void* value) {
+            T& held = *static_cast<T*>(value);
+            return held ? FieldItems{const_cast<std::remove_const_t<Held>*>(&*held), 1} : FieldItems{};
+        };
+        if constexpr (!kWritten) {
+            type.add = [](void* value) -> void* { return &static_cast<T*>(value)->emplace(); };
+        }
+    } else if constexpr (std::same_as<T, FieldSpan>) {
+        type.form = FieldForm::kSpan;
+    } else if constexpr (std::same_as<T, FieldPair>) {
+        type.form = FieldForm::kPair;
+    } else if constexpr (std::same_as<T, FieldMaybe>) {
+        type.form = FieldForm::kMaybe;
+    } else if constexpr (std::same_as<T, FieldFile>) {
+        type.form = FieldForm::kFile;
+    } else if constexpr (std::same_as<T, FieldGroup>) {
+        type.form = FieldForm::kGroup;
+    } else if constexpr (kIsForm<std::variant, T>) {
+        type.form = FieldForm::kVariant;
+        describeVariant(type, static_cast<const T*>(nullptr));
+    } else if constexpr (WithFields<T>) {
+        type.form = FieldForm::kStruct;
+        describeStruct<T>(type);
+    } else if constexpr (kIsArray<T>) {
+        using Held = typename T::value_type;
+        type.form = FieldForm::kArray;
+        type.held = &Described<std::conditional_t<kWritten, const Held, Held>>::type;
+        type.count = std::tuple_size_v<T>;
+    } else if constexpr (Items<T>) {
+        using Held = std::remove_const_t<typename T::value_type>;
+        type.form = FieldForm::kList;
+        type.held = &Described<std::conditional_t<kWritten, const Held, Held>>::type;
+        type.items = [](void* value) {
+            T& list = *static_cast<T*>(value);
+            return FieldItems{const_cast<Held*>(std::data(list)), std::size(list)};
+        };
+        if constexpr (!kWritten && requires(T & list) { list.emplace_back(); }) {
+            type.add = [](void* value) -> void* { return &static_cast<T*>(value)->emplace_back(); };
+            type.clear = [](void* value) { static_cast<T*>(value)->clear(); };
+        }
+    } else {
+        static_assert(kFieldCustom<T> != nullptr,
+                      "neither fields() nor a form of its own is declared before");
+    }
+    return type;
+}
+
+template <class T>
+constinit const FieldType Described<T>::type = describe<T>();
+
+}  // namespace fields_detail
+
+template <class T>
+const FieldType& fieldType() {
+    return fields_detail::Described<T>::type;
+}
 
 }  // namespace relief

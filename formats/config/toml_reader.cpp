@@ -1,7 +1,11 @@
 #include "formats/config/toml_reader.h"
 
+#include <cmath>
 #include <cstdio>
 #include <exception>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
@@ -235,6 +239,34 @@ std::vector<TomlValue> TomlValue::tables(const FieldInfo& info) const {
     return tables;
 }
 
+namespace {
+
+/// The fields of a struct: what a table may hold.
+class TableRules : public FieldVisitor {
+  public:
+    void operator()(std::string_view name, FieldRef /*value*/, const FieldInfo& info) override {
+        fields_.push_back({name, info});
+    }
+
+    /// Fails at the first key of the file that is no field.
+    void refuseUnknown(const TomlValue& table) const;
+    /// The word that the keys of a table without the selecting field choose; empty: none.
+    [[nodiscard]] std::string_view chosen(const TomlValue& table) const;
+    /// Fails where a key is missing, or has no effect beside the others or without them.
+    /// \param selected  word of the selecting field; empty if there is no such field.
+    void checkTable(const TomlValue& table, std::string_view selected) const;
+
+  private:
+    struct Field {
+        std::string_view name;
+        FieldInfo info;
+    };
+    void checkUse(const TomlValue& table, const Field& field, std::string_view selected) const;
+    [[nodiscard]] std::string_view selector() const;
+
+    std::vector<Field> fields_;
+};
+
 void TableRules::refuseUnknown(const TomlValue& table) const {
     std::vector<std::string_view> known;
     for (const Field& field : fields_) {
@@ -316,6 +348,207 @@ void TableRules::checkUse(const TomlValue& table, const Field& field, std::strin
             names += (names.empty() ? "" : " or ") + table.full(other);
         }
         at.fail(at.name() + " does nothing without " + names + "; give that too, or remove this");
+    }
+}
+
+/// Reads the fields that a table gives.
+class TableReader : public FieldVisitor {
+  public:
+    TableReader(const TomlValue& table, std::string_view chosen) : table_(table), selected_(chosen) {}
+    void operator()(std::string_view name, FieldRef value, const FieldInfo& info) override {
+        const auto from = table_.find(name);
+        if (from) {
+            readValue(*from, value, info);
+        }
+        if (value.form() == FieldForm::kWord && info.rules.selects) {
+            if (!from) {
+                static_cast<void>(value.setWord(selected_));
+            }
+            selected_ = value.word();
+        }
+    }
+    [[nodiscard]] bool fills() const override { return true; }
+    [[nodiscard]] std::string_view selected() const { return selected_; }
+
+  private:
+    const TomlValue& table_;
+    std::string_view selected_;
+};
+
+bool isWhole(const FieldType& type) {
+    return type.form == FieldForm::kUnsigned || type.form == FieldForm::kSigned;
+}
+
+/// The least and the largest value of a type of whole numbers.
+FieldRange rangeOf(const FieldType& type) {
+    const int bits = static_cast<int>(8 * type.size);
+    return type.form == FieldForm::kUnsigned
+               ? FieldRange{0.0, std::ldexp(1.0, bits) - 1.0}
+               : FieldRange{-std::ldexp(1.0, bits - 1), std::ldexp(1.0, bits - 1) - 1.0};
+}
+
+/// Above zero in the file, above zero in the struct.
+template <class T>
+T narrowed(double value, const FieldRange& range) {
+    const T result = static_cast<T>(value);
+    return range.low == 0.0 && !range.low_included && result == T{} ? std::numeric_limits<T>::min() : result;
+}
+
+void readNumber(const TomlValue& from, FieldRef value, const FieldInfo& info) {
+    if (isWhole(value.type())) {
+        const FieldRange limits = rangeOf(value.type());
+        FieldRange range = info.range;
+        range.low = std::max(range.low, limits.low);
+        range.high = std::min(range.high, limits.high);
+        value.setWhole(static_cast<std::uint64_t>(
+            info.rules.index_of.empty() ? from.whole(range) : from.indexOf(info.rules.index_of, range)));
+        return;
+    }
+    const double number = from.number(info.range);
+    value.setReal(value.type().size == sizeof(float) ? double{narrowed<float>(number, info.range)}
+                                                     : narrowed<double>(number, info.range));
+    if (info.rules.not_zero && value.number() == 0.0) {
+        from.fail(from.name() + " does nothing as 0; raise it or remove it");
+    }
+}
+
+/// A vector or an array.
+void readNumbers(const TomlValue& from, FieldRef value, const FieldInfo& info) {
+    const bool is_vector = value.form() == FieldForm::kVector;
+    static_cast<void>(from.list(value.count(), isWhole(*value.type().held),
+                                is_vector ? std::string_view("[x, y, z]") : info.unit));
+    FieldInfo part = info;
+    part.rules.not_zero = false;
+    for (std::size_t i = 0; i < value.count(); ++i) {
+        readNumber(from[i], value[i], part);
+    }
+    if (!is_vector) {
+        return;
+    }
+    // Scaled first: the square of a short vector would vanish.
+    auto& vector = value.as<glm::vec3>();
+    const float longest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
+    if ((info.rules.not_zero || info.rules.unit_length) && !(longest >= 1e-30F)) {
+        from.fail(from.name() + " has no direction; give one, as [0, 1, 0]");
+    }
+    if (info.rules.unit_length) {
+        vector = glm::normalize(vector / longest);
+    }
+}
+
+/// A number of the type of a part of a FieldSpan or FieldPair, before it becomes that part.
+class PartNumber {
+  public:
+    explicit PartNumber(FieldRef part)
+        : number_(bytes_, part.form() == FieldForm::kOptional ? *part.type().held : part.type()) {}
+    PartNumber(const PartNumber&) = delete;
+    PartNumber& operator=(const PartNumber&) = delete;
+
+    [[nodiscard]] FieldRef ref() const { return number_; }
+    void give(FieldRef part) const {
+        const FieldRef to = part.form() == FieldForm::kOptional ? part.add() : part;
+        isWhole(to.type()) ? to.setWhole(number_.whole()) : to.setReal(number_.number());
+    }
+
+  private:
+    alignas(8) std::byte bytes_[8]{};
+    FieldRef number_;
+};
+
+void readSpan(const TomlValue& from, const FieldSpan& span, const FieldInfo& info) {
+    const PartNumber least(span.least);
+    const PartNumber most(span.least);
+    const toml::array* both = from.array();
+    if (both == nullptr ? !from.node().is_number() : both->size() != 2) {
+        from.wrongType(isWhole(least.ref().type()) ? "a whole number, or two [least, most]"
+                                                   : "a number, or two [least, most]");
+    }
+    readNumber(both == nullptr ? from : from[0], least.ref(), info);
+    readNumber(both == nullptr ? from : from[1], most.ref(), info);
+    if (least.ref().number() > most.ref().number()) {
+        from.fail(from.name() + " has its least above its most; swap them");
+    }
+    least.give(span.least);
+    most.give(span.most);
+}
+
+void readPair(const TomlValue& from, const FieldPair& pair, const FieldInfo& info) {
+    const PartNumber first(pair.first);
+    const PartNumber second(pair.first);
+    static_cast<void>(from.list(2, isWhole(first.ref().type()), info.unit));
+    readNumber(from[0], first.ref(), info);
+    readNumber(from[1], second.ref(), info);
+    first.give(pair.first);
+    second.give(pair.second);
+}
+
+}  // namespace
+
+void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info) {
+    if (const FieldCustom* custom = value.type().custom; custom != nullptr && custom->read != nullptr) {
+        custom->read(from, value.value(), info);
+        return;
+    }
+    switch (value.form()) {
+        case FieldForm::kSpan:
+            return readSpan(from, value.as<FieldSpan>(), info);
+        case FieldForm::kPair:
+            return readPair(from, value.as<FieldPair>(), info);
+        case FieldForm::kMaybe:
+            readValue(from, value.as<FieldMaybe>().value, info);
+            value.as<FieldMaybe>().given = true;
+            return;
+        case FieldForm::kFile:
+            value.as<FieldFile>().path = from.path();
+            value.as<FieldFile>().place = from.place();
+            return;
+        case FieldForm::kOptional:
+            return readValue(from, value.add(), info);
+        case FieldForm::kBool:
+            value.as<bool>() = from.boolean();
+            return;
+        case FieldForm::kUnsigned:
+        case FieldForm::kSigned:
+        case FieldForm::kReal:
+            return readNumber(from, value, info);
+        case FieldForm::kWord:
+            value.setWhole(from.word(value.type().words));
+            return;
+        case FieldForm::kString:
+            value.as<std::string>() = from.text();
+            return;
+        case FieldForm::kVector:
+        case FieldForm::kArray:
+            return readNumbers(from, value, info);
+        case FieldForm::kList:
+            value.type().clear(value.value());
+            for (const TomlValue& table : from.tables(info)) {
+                readToml(table, value.add());
+            }
+            return;
+        default:
+            from.needTable();
+            readToml(from, value);
+    }
+}
+
+void readToml(const TomlValue& from, FieldRef value) {
+    TableRules rules;
+    value.visit(rules);
+    rules.refuseUnknown(from);
+    TableReader reader(from, rules.chosen(from));
+    value.visit(reader);
+    rules.checkTable(from, reader.selected());
+    const FieldType& type = value.type();
+    if (type.set_place != nullptr) {
+        type.set_place(value.value(), from.place());
+    }
+    if (type.check != nullptr) {
+        const auto given = [&](const std::string& path) { return from.find(path).has_value(); };
+        if (const std::optional<FieldFault> fault = type.check(value.value(), given)) {
+            const TomlValue at = from.find(fault->path).value_or(from);
+            at.fail(at.name().empty() ? fault->text : at.name() + " " + fault->text);
+        }
     }
 }
 

@@ -12,26 +12,20 @@
 
 namespace relief {
 
-/// An object of a report that has no struct of its own, made by the next two.
+/// visit("bounds", group([&](FieldVisitor& visit) { visit("min", …); }), {…})
+/// \param visit_fields  borrowed
 template <class Visit>
-struct FieldGroup {
-    Visit visit_fields;
-    bool nullable = false;
-    bool present = true;  ///< else it is null
-};
-/// visit("bounds", group([&](auto& visit) { visit("min", …); }), {…})
-template <class Visit>
-[[nodiscard]] FieldGroup<Visit> group(Visit visit_fields) {
-    return {std::move(visit_fields)};
+[[nodiscard]] FieldGroup group(const Visit& visit_fields) {
+    return {&visit_fields,
+            [](const void* of, FieldVisitor& visit) { (*static_cast<const Visit*>(of))(visit); }};
 }
 /// The same or null. For its schema the fields are visited although it is not present.
 template <class Visit>
-[[nodiscard]] FieldGroup<Visit> groupIf(bool present, Visit visit_fields) {
-    return {std::move(visit_fields), true, present};
-}
-template <class Visitor, class Visit>
-void fields(Visitor& visit, const FieldGroup<Visit>& all) {
-    all.visit_fields(visit);
+[[nodiscard]] FieldGroup groupIf(bool present, const Visit& visit_fields) {
+    FieldGroup made = group(visit_fields);
+    made.nullable = true;
+    made.present = present;
+    return made;
 }
 
 /// Null where the condition is false.

@@ -1,6 +1,14 @@
 #include "formats/fields/json_reader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "formats/base/text.h"
 
@@ -21,7 +29,39 @@ std::string rangeText(const FieldRange& range) {
                                      : "choose " + low + " or more";
 }
 
-}  // namespace
+/// Thrown by everything below where a value is wrong; readJson() turns it into an Error.
+struct JsonMistake {
+    std::string message;
+};
+
+/// A value of a document with its place: "bodies[3].rotation"; empty for the document itself.
+class JsonValue {
+  public:
+    JsonValue(const nlohmann::json& json, std::string place) : json_(&json), place_(std::move(place)) {}
+
+    [[nodiscard]] const nlohmann::json& json() const { return *json_; }
+    [[nodiscard]] const std::string& place() const { return place_; }
+
+    [[nodiscard]] std::optional<JsonValue> find(std::string_view key) const;
+    [[nodiscard]] JsonValue operator[](std::size_t i) const;
+
+    [[nodiscard]] double number(const FieldRange& range) const;
+    [[nodiscard]] std::uint64_t whole(const FieldRange& range) const;
+    [[nodiscard]] bool boolean() const;
+    [[nodiscard]] std::string text() const;
+    void needObject() const;
+    /// \param count  of elements.
+    void needArray(const FieldRange& count) const;
+
+    /// "PLACE WHAT", with a cure if that has none.
+    [[noreturn]] void fail(const std::string& what) const;
+    /// Fails at the first key that none of the fields has.
+    void refuseUnknown(const std::vector<std::string_view>& fields) const;
+
+  private:
+    const nlohmann::json* json_;
+    std::string place_;
+};
 
 void JsonValue::fail(const std::string& what) const {
     throw JsonMistake{(place_.empty() ? "the document" : place_) + " " + what +
@@ -101,6 +141,97 @@ void JsonValue::refuseUnknown(const std::vector<std::string_view>& fields) const
             fail("has an unknown key '" + cleanUtf8(key, kShownMax) + "'" +
                  (hint.empty() ? "; known are " + listed(fields) : hint));
         }
+    }
+}
+
+void readObject(const JsonValue& from, FieldRef value);
+
+void readNumbers(const JsonValue& from, FieldRef values, const FieldInfo& info) {
+    const auto count = static_cast<double>(values.count());
+    from.needArray({count, count});
+    for (std::size_t i = 0; i < values.count(); ++i) {
+        values[i].setReal(from[i].number(info.range));
+    }
+}
+
+void readValue(const JsonValue& from, FieldRef value, const FieldInfo& info) {
+    switch (value.form()) {
+        case FieldForm::kBool:
+            value.as<bool>() = from.boolean();
+            return;
+        case FieldForm::kUnsigned: {
+            FieldRange range = info.range;
+            const double most = std::ldexp(1.0, static_cast<int>(8 * value.type().size)) - 1.0;
+            range.high = std::min(range.high, most);
+            value.setWhole(from.whole(range));
+            return;
+        }
+        case FieldForm::kReal:
+            value.setReal(from.number(info.range));
+            return;
+        case FieldForm::kString:
+            value.as<std::string>() = from.text();
+            return;
+        case FieldForm::kVector:
+        case FieldForm::kArray:
+            readNumbers(from, value, info);
+            return;
+        case FieldForm::kOptional:
+            readValue(from, value.add(), info);
+            return;
+        case FieldForm::kList:
+            from.needArray(info.items);
+            value.type().clear(value.value());
+            for (std::size_t i = 0; i < from.json().size(); ++i) {
+                readObject(from[i], value.add());
+            }
+            return;
+        default:
+            readObject(from, value);
+    }
+}
+
+/// Reads the members of an object.
+class JsonReader : public FieldVisitor {
+  public:
+    explicit JsonReader(const JsonValue& from) : from_(from) { from.needObject(); }
+
+    void operator()(std::string_view name, FieldRef value, const FieldInfo& info) override {
+        fields_.push_back(name);
+        if (const std::optional<JsonValue> given = from_.find(name)) {
+            readValue(*given, value, info);
+        } else if (info.rules.required) {
+            from_.fail("has no " + std::string(name) + "; give it: " + std::string(info.help));
+        }
+    }
+    [[nodiscard]] bool fills() const override { return true; }
+    void refuseUnknown() const { from_.refuseUnknown(fields_); }
+
+  private:
+    const JsonValue& from_;
+    std::vector<std::string_view> fields_;
+};
+
+void readObject(const JsonValue& from, FieldRef value) {
+    JsonReader reader(from);
+    value.visit(reader);
+    reader.refuseUnknown();
+    if (value.type().check != nullptr) {
+        const auto given = [&](const std::string& key) { return from.find(key).has_value(); };
+        if (const std::optional<FieldFault> fault = value.type().check(value.value(), given)) {
+            from.find(fault->path).value_or(from).fail(fault->text);
+        }
+    }
+}
+
+}  // namespace
+
+Result<void> readJson(const nlohmann::json& json, FieldRef value) {
+    try {
+        readObject(JsonValue(json, ""), value);
+        return {};
+    } catch (const JsonMistake& mistake) {
+        return invalidInput(mistake.message);
     }
 }
 

@@ -99,17 +99,108 @@ void addWords(const std::vector<FieldReference>& fields, std::set<std::string>& 
 
 }  // namespace
 
-FieldType numbersType(std::size_t count, bool whole, const FieldInfo& info) {
-    return {{{"type", "array"},
-             {"items", numberSchema(whole, false, info)},
-             {"minItems", count},
-             {"maxItems", count}},
-            {}};
+namespace {
+
+/// A list of so many numbers.
+Json numbersSchema(std::size_t count, bool whole, const FieldInfo& info) {
+    return {{"type", "array"},
+            {"items", numberSchema(whole, false, info)},
+            {"minItems", count},
+            {"maxItems", count}};
 }
 
-FieldType spanType(const FieldInfo& info, bool whole) {
-    const Json number = numberSchema(whole, false, info);
-    return {{{"oneOf", {number, numbersType(2, whole, info).schema}}}, {}};
+bool isWhole(FieldRef value) {
+    return value.form() == FieldForm::kUnsigned || value.form() == FieldForm::kSigned;
+}
+
+FieldSchema schemaInFile(FieldRef value, const FieldInfo& info, const CustomSchemas& custom) {
+    const FieldType& type = value.type();
+    if (const auto found = custom.find(type.custom); found != custom.end()) {
+        return found->second;
+    }
+    switch (value.form()) {
+        case FieldForm::kMaybe:
+            return schemaInFile(value.as<FieldMaybe>().value, info, custom);
+        case FieldForm::kOptional:
+            return schemaInFile(FieldRef(type.held->blank(), *type.held), info, custom);
+        case FieldForm::kSpan: {
+            const bool whole = isWhole(value.as<FieldSpan>().most);
+            return {{{"oneOf", {numberSchema(whole, false, info), numbersSchema(2, whole, info)}}}, {}};
+        }
+        case FieldForm::kPair:
+            return {numbersSchema(2, isWhole(value.as<FieldPair>().first), info), {}};
+        case FieldForm::kFile:
+        case FieldForm::kString:
+            return {{{"type", "string"}}, {}};
+        case FieldForm::kBool:
+            return {{{"type", "boolean"}}, {}};
+        case FieldForm::kWord: {
+            const std::vector<std::string_view> words(type.words.begin(), type.words.end());
+            return {{{"enum", words}}, words};
+        }
+        case FieldForm::kUnsigned:
+        case FieldForm::kSigned:
+        case FieldForm::kReal: {
+            const Json schema = numberSchema(isWhole(value), value.form() == FieldForm::kUnsigned, info);
+            return info.rules.index_of.empty() ? FieldSchema{schema, {}}
+                                               : FieldSchema{{{"oneOf", {schema, {{"type", "string"}}}}}, {}};
+        }
+        default:
+            return {numbersSchema(value.count(), isWhole(value[0]), info), {}};
+    }
+}
+
+/// Collects the fields of a struct.
+class ReferenceMaker : public FieldVisitor {
+  public:
+    explicit ReferenceMaker(const CustomSchemas& custom) : custom_(custom) {}
+    void operator()(std::string_view name, FieldRef value, const FieldInfo& info) override {
+        FieldReference& made = fields_.emplace_back();
+        made.name = name;
+        made.info = info;
+        describe(made, value);
+    }
+    std::vector<FieldReference> take() { return std::move(fields_); }
+
+  private:
+    void describe(FieldReference& made, FieldRef value) {
+        const FieldType& type = value.type();
+        if (const auto found = custom_.find(type.custom); found != custom_.end()) {
+            made.type = found->second;
+            return;
+        }
+        switch (value.form()) {
+            case FieldForm::kList:
+                made.several = true;
+                made.fields = referenceOf(FieldRef(type.held->blank(), *type.held), custom_);
+                return;
+            case FieldForm::kOptional:
+                describe(made, FieldRef(type.held->blank(), *type.held));
+                made.fallback.clear();
+                return;
+            case FieldForm::kStruct:
+                made.fields = referenceOf(value, custom_);
+                return;
+            default:
+                break;
+        }
+        made.type = schemaInFile(value, made.info, custom_);
+        if (value.form() != FieldForm::kFile) {
+            made.fallback =
+                made.info.fallback.empty() && !made.info.rules.required ? jsonOf(value).dump() : "";
+        }
+    }
+
+    const CustomSchemas& custom_;
+    std::vector<FieldReference> fields_;
+};
+
+}  // namespace
+
+std::vector<FieldReference> referenceOf(FieldRef value, const CustomSchemas& custom) {
+    ReferenceMaker maker(custom);
+    value.visit(maker);
+    return maker.take();
 }
 
 std::string markdownTable(const std::vector<FieldReference>& fields) {
@@ -151,7 +242,7 @@ Json fileSchema(const std::vector<FieldReference>& fields) {
     Json properties = Json::object();
     Json required = Json::array();
     for (const FieldReference& field : fields) {
-        Json schema = {{"description", SchemaWriter::description(field.info)}};
+        Json schema = {{"description", fieldDescription(field.info)}};
         if (field.fields.empty()) {
             schema.update(field.type.schema);
         } else {

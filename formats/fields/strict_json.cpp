@@ -1,5 +1,6 @@
 #include "formats/fields/strict_json.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>

@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "formats/base/text.h"
@@ -65,7 +67,7 @@ std::string numberWord(double value) {
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-namespace fields_detail {
+namespace {
 
 std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint64_t most,
                          std::uint64_t& value) {
@@ -130,13 +132,139 @@ std::string readText(std::string_view word, const FieldInfo& info, std::string& 
     return {};
 }
 
-}  // namespace fields_detail
+FieldKind kindOf(FieldForm form) {
+    return form == FieldForm::kBool   ? FieldKind::kFlag
+           : form == FieldForm::kList ? FieldKind::kList
+                                      : FieldKind::kValue;
+}
 
-Result<void> FieldSetter::result() const {
-    if (!wrong_) {
-        return fail(ErrorCode::kUsage, "unknown option " + cleanUtf8(optionName(name_), 80));
+class FieldCollector : public FieldVisitor {
+  public:
+    void operator()(std::string_view name, FieldRef value, const FieldInfo& info) override {
+        fields_.push_back(describeField(name, value, info));
     }
-    return wrong_->empty() ? Result<void>() : fail(ErrorCode::kUsage, optionName(name_) + " " + *wrong_);
+    std::vector<FieldWords> take() { return std::move(fields_); }
+
+  private:
+    std::vector<FieldWords> fields_;
+};
+
+class FieldSetter : public FieldVisitor {
+  public:
+    FieldSetter(std::string_view name, std::string_view word) : name_(name), word_(word) {}
+    void operator()(std::string_view name, FieldRef value, const FieldInfo& info) override {
+        if (name == name_) {
+            wrong_ = readWord(word_, info, value);
+        }
+    }
+    [[nodiscard]] bool fills() const override { return true; }
+    [[nodiscard]] const std::optional<std::string>& wrong() const { return wrong_; }
+
+  private:
+    std::string_view name_;
+    std::string_view word_;
+    std::optional<std::string> wrong_;
+};
+
+}  // namespace
+
+std::string readWord(std::string_view word, const FieldInfo& info, FieldRef value) {
+    const FieldType& type = value.type();
+    if (type.read_form != nullptr) {
+        return type.read_form(word, value.value()) ? "" : butMustBe(word, info.must);
+    }
+    switch (value.form()) {
+        case FieldForm::kOptional:
+        case FieldForm::kList:
+            return readWord(word, info, value.add());
+        case FieldForm::kBool:
+            value.as<bool>() = word == "true";
+            return value.as<bool>() || word == "false" ? "" : butMustBe(word, "true or false");
+        case FieldForm::kUnsigned: {
+            std::uint64_t number = 0;
+            std::string wrong = readUnsigned(
+                word, info, std::numeric_limits<std::uint64_t>::max() >> (64 - 8 * type.size), number);
+            value.setWhole(number);
+            return wrong;
+        }
+        case FieldForm::kReal:
+            return type.size == sizeof(float) ? readFloat(word, info, value.as<float>())
+                                              : readDouble(word, info, value.as<double>());
+        case FieldForm::kWord:
+            return value.setWord(word) ? "" : butMustBeOneOf(word, type.words);
+        default:
+            return readText(word, info, value.as<std::string>());
+    }
+}
+
+std::vector<std::string> wordsOf(FieldRef value) {
+    const FieldType& type = value.type();
+    if (type.form_text != nullptr) {
+        return {type.form_text(value.value())};
+    }
+    switch (value.form()) {
+        case FieldForm::kOptional:
+            return value.count() == 0 ? std::vector<std::string>() : wordsOf(value[0]);
+        case FieldForm::kList: {
+            std::vector<std::string> words;
+            for (std::size_t i = 0; i < value.count(); ++i) {
+                words.push_back(wordsOf(value[i]).front());
+            }
+            return words;
+        }
+        case FieldForm::kBool:
+            return {value.as<bool>() ? "true" : "false"};
+        case FieldForm::kUnsigned:
+            return {std::to_string(value.whole())};
+        case FieldForm::kReal:
+            return {type.size == sizeof(float) ? numberWord(value.as<float>())
+                                               : numberWord(value.as<double>())};
+        case FieldForm::kWord:
+            return {std::string(value.word())};
+        default:
+            return {std::string(value.text())};
+    }
+}
+
+FieldWords describeField(std::string_view name, FieldRef value, const FieldInfo& info) {
+    FieldWords field{std::string(name), info, kindOf(value.form()), wordsOf(value)};
+    const FieldType* type = &value.type();
+    if (type->form == FieldForm::kOptional) {
+        field.optional = true;
+        type = type->held;
+    }
+    field.choices.assign(type->words.begin(), type->words.end());
+    field.number = type->form == FieldForm::kUnsigned || type->form == FieldForm::kSigned ||
+                   type->form == FieldForm::kReal;
+    return field;
+}
+
+std::vector<FieldWords> fieldsOf(FieldRef value) {
+    FieldCollector collector;
+    value.visit(collector);
+    return collector.take();
+}
+
+std::vector<FieldWords> changedFields(FieldRef value) {
+    std::vector<FieldWords> changed;
+    const std::vector<FieldWords> defaults = fieldsOf(value.blank());
+    std::vector<FieldWords> all = fieldsOf(value);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].words != defaults[i].words) {
+            changed.push_back(std::move(all[i]));
+        }
+    }
+    return changed;
+}
+
+Result<void> setField(FieldRef target, std::string_view name, std::string_view word) {
+    FieldSetter setter(name, word);
+    target.visit(setter);
+    if (!setter.wrong()) {
+        return fail(ErrorCode::kUsage, "unknown option " + cleanUtf8(optionName(name), 80));
+    }
+    return setter.wrong()->empty() ? Result<void>()
+                                   : fail(ErrorCode::kUsage, optionName(name) + " " + *setter.wrong());
 }
 
 std::string defaultText(const FieldWords& field) {

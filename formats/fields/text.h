@@ -1,14 +1,10 @@
 // Values of fields as words: of a command line, of Python's arguments, of a container's provenance.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
-#include <filesystem>
-#include <limits>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "formats/base/field.h"
@@ -29,88 +25,15 @@ namespace relief {
 [[nodiscard]] std::string numberWord(float value);
 [[nodiscard]] std::string numberWord(double value);
 
-/// A type with a form of its own has readForm(word, value), false for another form, and formText(value) beside it.
-template <class T>
-concept WithForm = requires(std::string_view word, T& value) {
-    { readForm(word, value) } -> std::same_as<bool>;
-    { formText(value) } -> std::same_as<std::string>;
-};
-
-namespace fields_detail {
-
-[[nodiscard]] std::string readUnsigned(std::string_view word, const FieldInfo& info, std::uint64_t most,
-                                       std::uint64_t& value);
-[[nodiscard]] std::string readFloat(std::string_view word, const FieldInfo& info, float& value);
-[[nodiscard]] std::string readDouble(std::string_view word, const FieldInfo& info, double& value);
-[[nodiscard]] std::string readText(std::string_view word, const FieldInfo& info, std::string& value);
-
-}  // namespace fields_detail
-
 /// Reads a word into a value; a list gets one more. \return empty, or the clause that follows the field's name in a message:
 /// "is 'x' but must be …".
-template <class T>
-[[nodiscard]] std::string readWord(std::string_view word, const FieldInfo& info, T& value) {
-    using namespace fields_detail;
-    if constexpr (kIsForm<std::optional, T>) {
-        return readWord(word, info, value.emplace());
-    } else if constexpr (kIsForm<std::vector, T>) {
-        return readWord(word, info, value.emplace_back());
-    } else if constexpr (WithForm<T>) {
-        return readForm(word, value) ? "" : butMustBe(word, info.must);
-    } else if constexpr (std::same_as<T, bool>) {
-        value = word == "true";
-        return value || word == "false" ? "" : butMustBe(word, "true or false");
-    } else if constexpr (std::unsigned_integral<T>) {
-        std::uint64_t number = 0;
-        std::string wrong = readUnsigned(word, info, std::numeric_limits<T>::max(), number);
-        value = static_cast<T>(number);
-        return wrong;
-    } else if constexpr (std::same_as<T, float>) {
-        return readFloat(word, info, value);
-    } else if constexpr (std::same_as<T, double>) {
-        return readDouble(word, info, value);
-    } else if constexpr (WithWords<T>) {
-        const std::optional<T> found = fromWord<T>(word);
-        value = found.value_or(value);
-        return found ? "" : butMustBeOneOf(word, kWordsOf<T>);
-    } else {
-        return readText(word, info, value);
-    }
-}
+[[nodiscard]] std::string readWord(std::string_view word, const FieldInfo& info, FieldRef value);
 
 /// The words that readWord() makes the value of: none of an optional without a value, one for each entry of a list.
-template <class T>
-[[nodiscard]] std::vector<std::string> wordsOf(const T& value) {
-    if constexpr (kIsForm<std::optional, T>) {
-        return value ? wordsOf(*value) : std::vector<std::string>();
-    } else if constexpr (kIsForm<std::vector, T>) {
-        std::vector<std::string> words;
-        for (const auto& one : value) {
-            words.push_back(wordsOf(one).front());
-        }
-        return words;
-    } else if constexpr (WithForm<T>) {
-        return {formText(value)};
-    } else if constexpr (std::same_as<T, bool>) {
-        return {value ? "true" : "false"};
-    } else if constexpr (std::unsigned_integral<T>) {
-        return {std::to_string(value)};
-    } else if constexpr (std::floating_point<T>) {
-        return {numberWord(value)};
-    } else if constexpr (WithWords<T>) {
-        return {std::string(wordOf(value))};
-    } else {
-        return {std::string(value)};
-    }
-}
+[[nodiscard]] std::vector<std::string> wordsOf(FieldRef value);
 
 /// How many words a field takes, and of which sort: what its readers need beside the FieldInfo.
 enum class FieldKind : std::uint8_t { kFlag, kValue, kList };
-
-template <class T>
-inline constexpr FieldKind kFieldKind = std::same_as<T, bool>     ? FieldKind::kFlag
-                                        : kIsForm<std::vector, T> ? FieldKind::kList
-                                                                  : FieldKind::kValue;
 
 /// A field of a struct, distinct from its type.
 struct FieldWords {
@@ -123,78 +46,16 @@ struct FieldWords {
     bool number = false;
 };
 
-/// All fields of a value, in their order.
-class FieldCollector {
-  public:
-    template <class T>
-    void operator()(std::string_view name, const T& value, const FieldInfo& info) {
-        FieldWords field{std::string(name), info, kFieldKind<T>, wordsOf(value)};
-        describe<T>(field);
-        fields_.push_back(std::move(field));
-    }
-    [[nodiscard]] std::vector<FieldWords> take() { return std::move(fields_); }
+[[nodiscard]] FieldWords describeField(std::string_view name, FieldRef value, const FieldInfo& info);
 
-  private:
-    template <class T>
-    static void describe(FieldWords& field) {
-        if constexpr (kIsForm<std::optional, T>) {
-            field.optional = true;
-            describe<typename T::value_type>(field);
-        } else if constexpr (WithWords<T>) {
-            field.choices.assign(kWordsOf<T>.begin(), kWordsOf<T>.end());
-        } else if constexpr (std::integral<T> || std::floating_point<T>) {
-            field.number = !std::same_as<T, bool>;
-        }
-    }
-    std::vector<FieldWords> fields_;
-};
-
-template <class S>
-[[nodiscard]] std::vector<FieldWords> fieldsOf(const S& value) {
-    FieldCollector collector;
-    fields(collector, value);
-    return collector.take();
-}
-
+/// All fields of a struct, in their order.
+[[nodiscard]] std::vector<FieldWords> fieldsOf(FieldRef value);
 /// The fields that differ from those of a new struct.
-template <class S>
-[[nodiscard]] std::vector<FieldWords> changedFields(const S& value) {
-    std::vector<FieldWords> changed;
-    const std::vector<FieldWords> defaults = fieldsOf(S());
-    std::vector<FieldWords> all = fieldsOf(value);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (all[i].words != defaults[i].words) {
-            changed.push_back(std::move(all[i]));
-        }
-    }
-    return changed;
-}
+[[nodiscard]] std::vector<FieldWords> changedFields(FieldRef value);
 
 /// Reads a word into the field of that name.
-class FieldSetter {
-  public:
-    FieldSetter(std::string_view name, std::string_view word) : name_(name), word_(word) {}
-    template <class T>
-    void operator()(std::string_view name, T& value, const FieldInfo& info) {
-        if (name == name_) {
-            wrong_ = readWord(word_, info, value);
-        }
-    }
-    /// Errors: kUsage: no field has the name, or its value is wrong; names the option.
-    [[nodiscard]] Result<void> result() const;
-
-  private:
-    std::string_view name_;
-    std::string_view word_;
-    std::optional<std::string> wrong_;
-};
-
-template <class S>
-[[nodiscard]] Result<void> setField(S& target, std::string_view name, std::string_view word) {
-    FieldSetter setter(name, word);
-    fields(setter, target);
-    return setter.result();
-}
+/// Errors: kUsage: no field has the name, or its value is wrong; names the option.
+[[nodiscard]] Result<void> setField(FieldRef target, std::string_view name, std::string_view word);
 
 /// "1MB", "60", "normal, or the plan's"; empty: there is no default.
 [[nodiscard]] std::string defaultText(const FieldWords& field);

@@ -12,6 +12,7 @@
 #include "formats/container_reader.h"
 #include "formats/fields/json.h"
 #include "formats/fields/json_reader.h"
+#include "formats/fields/json_value.h"
 #include "formats/fields/strict_json.h"
 
 namespace relief {
@@ -122,7 +123,7 @@ template <class T>
 void appendLines(std::string& text, const char* name, const std::vector<T>& all) {
     text += std::string("  \"") + name + "\": [";
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const std::string line = jsonLine(jsonOf(all[i]));
+        const std::string line = jsonLineOf(all[i]);
         text += (i == 0 ? "\n    " : ",\n    ") + line.substr(0, line.size() - 1);
     }
     text += "\n  ]";
@@ -146,9 +147,9 @@ bool looksLikeWorld(std::string_view bytes) {
 }
 
 std::string worldText(const World& world) {
-    const auto line = [](const char* name, const Json& value) {
-        return std::string("  \"") + name +
-               "\": " + value.dump(-1, ' ', false, Json::error_handler_t::replace) + ",\n";
+    const auto line = [](const char* name, FieldRef value) {
+        const std::string json = jsonLineOf(value);
+        return std::string("  \"") + name + "\": " + json.substr(0, json.size() - 1) + ",\n";
     };
     std::string text =
         "{\n" + line("format", world.format) + line("version", world.version) + line("unit", world.unit);
@@ -240,6 +241,80 @@ Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limit
         }
     }
     return loaded;
+}
+
+void fields(FieldVisitor& visit, WorldFile& file) {
+    visit("file", file.file,
+          {.help = "Its container, relative to the folder of the world and inside it", .rules = kRequired});
+    visit("hash", file.hash,
+          {.help = "XXH3-128 of that file's bytes, in hexadecimal",
+           .rules = kRequired,
+           .pattern = "^[0-9a-f]{32}$"});
+    visit("gpu_bytes", file.gpu_bytes,
+          {.help = "Bytes that its maps take on the GPU",
+           .range = {1.0, kWorldFileBytesMax},
+           .rules = kRequired});
+}
+
+void fields(FieldVisitor& visit, WorldCollider& collider) {
+    fields(visit, static_cast<WorldFile&>(collider));
+    visit("mesh", collider.mesh, {.help = "Name of its mesh in the level; may be empty", .rules = kRequired});
+    visit("min", collider.box.min,
+          {.help = "Lower corner of its box",
+           .unit = "object units",
+           .range = within(kWorldCoordinateMax),
+           .rules = kRequired});
+    visit("max", collider.box.max,
+          {.help = "Upper corner of its box",
+           .unit = "object units",
+           .range = within(kWorldCoordinateMax),
+           .rules = kRequired});
+    visit("coarse", collider.coarse,
+          leftOut({.help = "The same shape in fewer bytes, for as long as the other is not on the GPU; "
+                           "without one that always "
+                           "is"}));
+}
+
+void fields(FieldVisitor& visit, WorldBody& body) {
+    visit("collider", body.collider, {.help = "Index of its collider, from 0", .rules = kRequired});
+    visit("node", body.node, {.help = "Name of its node in the level; may be empty", .rules = kRequired});
+    visit("position", body.position,
+          {.help = "Of the collider's origin",
+           .unit = "world units",
+           .range = within(kWorldCoordinateMax),
+           .rules = kRequired});
+    visit("rotation", body.rotation,
+          {.help = "A unit quaternion [x, y, z, w]", .range = within(1.001), .rules = kRequired});
+    visit("scale", body.scale,
+          {.help = "World units of an object unit", .range = {1e-9, 1e9}, .rules = kRequired});
+    visit("restitution", body.restitution,
+          {.help = "Factor of the particles' own restitution", .range = kShareRange, .rules = kRequired});
+    visit("friction", body.friction,
+          {.help = "1 − friction is a factor of the particles' own 1 − friction",
+           .range = kShareRange,
+           .rules = kRequired});
+}
+
+void fields(FieldVisitor& visit, World& world) {
+    visit("format", world.format,
+          {.help = "Tells it from other files", .rules = kRequired, .words = kWords<"relief-world">});
+    visit("version", world.version,
+          {.help = "Of the format", .range = {1.0, double{kWorldVersion}}, .rules = kRequired});
+    visit("unit", world.unit,
+          {.help = "Of lengths, of the colliders' too: m, or empty where the level does not say",
+           .rules = kRequired,
+           .words = kWorldUnits});
+    visit("colliders", world.colliders,
+          {.help = "Each different shape once",
+           .rules = kRequired,
+           .items = {1.0, double{kWorldCollidersMax}}});
+    visit("bodies", world.bodies,
+          {.help = "Placed colliders; of two that are equally deep at a point the first counts",
+           .rules = kRequired,
+           .items = {1.0, double{kWorldBodiesMax}}});
+    visit("materials", world.materials,
+          leftOut({.help = "Responses of the colliders' materials, by their names",
+                   .items = {0.0, double{kWorldMaterialsMax}}}));
 }
 
 }  // namespace relief

@@ -47,19 +47,7 @@ struct WorldFile {
     std::uint64_t gpu_bytes = 0;
 };
 
-template <class Visitor, FieldsOf<WorldFile> F>
-void fields(Visitor& visit, F& file) {
-    visit("file", file.file,
-          {.help = "Its container, relative to the folder of the world and inside it", .rules = kRequired});
-    visit("hash", file.hash,
-          {.help = "XXH3-128 of that file's bytes, in hexadecimal",
-           .rules = kRequired,
-           .pattern = "^[0-9a-f]{32}$"});
-    visit("gpu_bytes", file.gpu_bytes,
-          {.help = "Bytes that its maps take on the GPU",
-           .range = {1.0, kWorldFileBytesMax},
-           .rules = kRequired});
-}
+void fields(FieldVisitor& visit, WorldFile& file);
 
 struct WorldCollider : WorldFile {
     std::string mesh;
@@ -67,25 +55,7 @@ struct WorldCollider : WorldFile {
     std::optional<WorldFile> coarse;
 };
 
-template <class Visitor, FieldsOf<WorldCollider> C>
-void fields(Visitor& visit, C& collider) {
-    fields(visit, static_cast<std::conditional_t<std::is_const_v<C>, const WorldFile, WorldFile>&>(collider));
-    visit("mesh", collider.mesh, {.help = "Name of its mesh in the level; may be empty", .rules = kRequired});
-    visit("min", collider.box.min,
-          {.help = "Lower corner of its box",
-           .unit = "object units",
-           .range = within(kWorldCoordinateMax),
-           .rules = kRequired});
-    visit("max", collider.box.max,
-          {.help = "Upper corner of its box",
-           .unit = "object units",
-           .range = within(kWorldCoordinateMax),
-           .rules = kRequired});
-    visit("coarse", collider.coarse,
-          leftOut({.help = "The same shape in fewer bytes, for as long as the other is not on the GPU; "
-                           "without one that always "
-                           "is"}));
-}
+void fields(FieldVisitor& visit, WorldCollider& collider);
 
 /// Of a collider its own container, or its coarse one where it has that.
 enum class WorldDetail : std::uint8_t { kFine, kCoarse };
@@ -102,26 +72,7 @@ struct WorldBody {
     float friction = 0.0F;
 };
 
-template <class Visitor, FieldsOf<WorldBody> B>
-void fields(Visitor& visit, B& body) {
-    visit("collider", body.collider, {.help = "Index of its collider, from 0", .rules = kRequired});
-    visit("node", body.node, {.help = "Name of its node in the level; may be empty", .rules = kRequired});
-    visit("position", body.position,
-          {.help = "Of the collider's origin",
-           .unit = "world units",
-           .range = within(kWorldCoordinateMax),
-           .rules = kRequired});
-    visit("rotation", body.rotation,
-          {.help = "A unit quaternion [x, y, z, w]", .range = within(1.001), .rules = kRequired});
-    visit("scale", body.scale,
-          {.help = "World units of an object unit", .range = {1e-9, 1e9}, .rules = kRequired});
-    visit("restitution", body.restitution,
-          {.help = "Factor of the particles' own restitution", .range = kShareRange, .rules = kRequired});
-    visit("friction", body.friction,
-          {.help = "1 − friction is a factor of the particles' own 1 − friction",
-           .range = kShareRange,
-           .rules = kRequired});
-}
+void fields(FieldVisitor& visit, WorldBody& body);
 
 struct World {
     std::string format{kWorldFormat};
@@ -134,28 +85,7 @@ struct World {
 
 inline constexpr std::array<std::string_view, 2> kWorldUnits{"m", ""};
 
-template <class Visitor, FieldsOf<World> W>
-void fields(Visitor& visit, W& world) {
-    visit("format", world.format,
-          {.help = "Tells it from other files", .rules = kRequired, .words = kWords<"relief-world">});
-    visit("version", world.version,
-          {.help = "Of the format", .range = {1.0, double{kWorldVersion}}, .rules = kRequired});
-    visit("unit", world.unit,
-          {.help = "Of lengths, of the colliders' too: m, or empty where the level does not say",
-           .rules = kRequired,
-           .words = kWorldUnits});
-    visit("colliders", world.colliders,
-          {.help = "Each different shape once",
-           .rules = kRequired,
-           .items = {1.0, double{kWorldCollidersMax}}});
-    visit("bodies", world.bodies,
-          {.help = "Placed colliders; of two that are equally deep at a point the first counts",
-           .rules = kRequired,
-           .items = {1.0, double{kWorldBodiesMax}}});
-    visit("materials", world.materials,
-          leftOut({.help = "Responses of the colliders' materials, by their names",
-                   .items = {0.0, double{kWorldMaterialsMax}}}));
-}
+void fields(FieldVisitor& visit, World& world);
 
 /// The numbers of the bodies of a node, in the world's order: several in one place where its mesh was cut into tiles, which move
 /// as one; those of all nodes that share the name. Empty: there is none.

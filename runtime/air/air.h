@@ -27,24 +27,7 @@ struct Attractor {
     friend bool operator==(const Attractor&, const Attractor&) = default;
 };
 
-template <class Visitor, FieldsOf<Attractor> A>
-void fields(Visitor& visit, A& a) {
-    visit("position", a.position, {"Centre of attraction", "[x, y, z]", kPointRange, {}, kRequired});
-    visit("strength", a.strength,
-          {"Acceleration at the radius; below 0 it repels",
-           "1/s²",
-           within(kAccelerationMax),
-           {},
-           {.required = true, .not_zero = true}});
-    visit("radius", a.radius, {"Distance up to which the strength grows", {}, kSizeRange, {}, kRequired});
-    visit("falloff", a.falloff,
-          {"Beyond the radius the strength falls with this power of the distance", {}, {0.0, 2.0}});
-    visit("reach", a.reach,
-          {.help = "Distance beyond which there is no force",
-           .range = kSizeRange,
-           .fallback = "endless",
-           .left_out = true});
-}
+void fields(FieldVisitor& visit, Attractor& a);
 
 /// Drives round a straight line, right-handed about `axis`; along and across it, it does nothing. The
 /// strength goes with the distance from the line as an attractor's does with that from the point.
@@ -57,22 +40,7 @@ struct Vortex {
     friend bool operator==(const Vortex&, const Vortex&) = default;
 };
 
-template <class Visitor, FieldsOf<Vortex> V>
-void fields(Visitor& visit, V& v) {
-    visit("center", v.center, {"A point of the axis", "[x, y, z]", kPointRange, {}, kRequired});
-    visit("axis", v.axis,
-          {"Direction of the axis, of any length", "[x, y, z]", kPointRange, {}, {.unit_length = true}});
-    visit("strength", v.strength,
-          {"Acceleration at the radius, right-handed about the axis",
-           "1/s²",
-           within(kAccelerationMax),
-           {},
-           {.required = true, .not_zero = true}});
-    visit("radius", v.radius,
-          {"Distance from the axis up to which the strength grows", {}, kSizeRange, {}, kRequired});
-    visit("falloff", v.falloff,
-          {"Beyond the radius the strength falls with this power of the distance", {}, {0.0, 2.0}});
-}
+void fields(FieldVisitor& visit, Vortex& v);
 
 /// The greatest strength over the radius stays a float.
 template <class Field>
@@ -98,18 +66,7 @@ struct AirSettings {
 };
 
 /// The tables of a scene that describe forces; wind and viscosity are in its [forces].
-template <class Visitor, FieldsOf<AirSettings> A>
-void fields(Visitor& visit, A& air) {
-    visit("attractor", air.attractors,
-          {.help = "Points that attract or repel",
-           .rules = {.most = AirSettings::kAttractorsMax},
-           .left_out = true});
-    visit("vortex", air.vortices,
-          {.help = "Axes that particles are driven round",
-           .rules = {.most = AirSettings::kVorticesMax},
-           .left_out = true});
-    visit("curl_noise", air.curl_noise, {.help = "Turbulence; it needs drag", .left_out = true});
-}
+void fields(FieldVisitor& visit, AirSettings& air);
 
 /// Fails as checkFlow does, and with kUsage (a number out of the range given above, too many).
 [[nodiscard]] Result<void> checkAir(const AirSettings& air);

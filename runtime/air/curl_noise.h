@@ -39,17 +39,7 @@ struct CurlNoise {
     friend bool operator==(const CurlNoise&, const CurlNoise&) = default;
 };
 
-template <class Visitor, FieldsOf<CurlNoise> N>
-void fields(Visitor& visit, N& noise) {
-    visit("amplitude", noise.amplitude,
-          {"Mean speed of the turbulence", "1/s", {0.0, kSpeedMax, false}, {}, kRequired});
-    visit("scale", noise.scale, {"Size of the largest eddies", {}, kSizeRange, {}, kRequired});
-    visit("octaves", noise.octaves,
-          {"Sizes of eddies, each half as large as the one before", {}, {1.0, CurlNoise::kOctavesMax}});
-    visit("drift", noise.drift,
-          {"Speed at which eddies give way to others; up to 1000 scales a second", "1/s", kSpeedRange});
-    visit("seed", noise.seed, {"Seed of the pattern"});
-}
+void fields(FieldVisitor& visit, CurlNoise& noise);
 [[nodiscard]] std::optional<FieldFault> check(CurlNoise& noise, const GivenFields& given);
 
 /// Seconds since the start, taken back by whole periods of the noise: a float then holds them finely enough

@@ -1,7 +1,7 @@
 // relief-bench CASE FILE: prints JSON, times of the runtime's parts on this machine. scripts/bench.py reads it.
 #include <CLI/CLI.hpp>
 
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 #include "runtime/bench/bench.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"

@@ -115,7 +115,7 @@ Result<void> checkOnly(const SimCommand& command) {
         showWarnings(checked->warnings, command.quiet);
     }
     if (command.json) {
-        RELIEF_TRY(printOut(jsonText(checked ? jsonOf(*checked) : jsonOf(CheckFailure{checked.error()}))));
+        RELIEF_TRY(printOut(checked ? jsonTextOf(*checked) : jsonTextOf(CheckFailure{checked.error()})));
     } else if (checked && !command.quiet) {
         RELIEF_TRY(printOut(checkText(*checked)));
     }
@@ -146,7 +146,7 @@ Result<void> playScene(SimCommand& command) {
                      played.events_dropped, Simulation::kEventsMax);
     }
     if (command.json) {
-        return printOut(jsonText(jsonOf(played)));
+        return printOut(jsonTextOf(played));
     }
     if (!command.quiet && (player.dump == "-" || player.events == "-")) {
         std::fputs(reportText(played).c_str(), stderr);  // they have standard output to themselves

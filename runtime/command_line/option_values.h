@@ -5,11 +5,12 @@
 // the option in front.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,12 @@
 
 #include "formats/container_limits.h"
 #include "formats/fields/text.h"
+
+namespace CLI {
+class App;
+class Option;
+class Validator;
+}  // namespace CLI
 
 namespace relief {
 
@@ -33,44 +40,38 @@ namespace relief {
 template <class Enum>
 using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
 
-/// An option that takes one of some words; the help shows them as a|b|c.
+/// An option that takes one of some words; the help shows them as a|b|c. \param set  gets the index of the word.
+CLI::Option* addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
+                           std::function<void(std::size_t)> set, const std::string& help);
 template <class Field, class Enum>
 CLI::Option* addWords(CLI::App& app, const std::string& names, Field& field, const WordsFor<Enum>& words,
                       const std::string& help) {
-    std::string shown;
+    std::vector<std::string_view> known;
+    std::vector<Enum> values;
     for (const auto& [word, value] : words) {
-        shown.append(shown.empty() ? "" : "|").append(word);
+        known.push_back(word);
+        values.push_back(value);
     }
-    return app.add_option(names, field, help)
-        ->option_text(shown)
-        ->transform(CLI::Validator(
-            [words](std::string& text) -> std::string {
-                std::vector<std::string_view> known;
-                for (const auto& [word, value] : words) {
-                    if (text == word) {
-                        text = std::to_string(static_cast<unsigned>(value));
-                        return {};
-                    }
-                    known.push_back(word);
-                }
-                return butMustBeOneOf(text, known);
-            },
-            ""));
+    return addWordOption(
+        app, names, std::move(known),
+        [&field, values = std::move(values)](std::size_t i) { field = values[i]; }, help);
 }
 
-/// An option of a form of its own. \param parse  std::string to std::optional<T>; nullopt: not of this form.
+/// An option of a form of its own. \param read  whether the word has that form
+CLI::Option* addFormOption(CLI::App& app, const std::string& names,
+                           std::function<bool(const std::string&)> read, const std::string& must,
+                           const std::string& help);
+/// \param parse  std::string to std::optional<T>; nullopt: not of this form.
 template <class T, class Parse>
 CLI::Option* addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
                        const std::string& must, const std::string& help) {
-    const std::string name = names.substr(names.rfind(',') + 1);
-    const CLI::callback_t read = [&field, parse, must, name](const CLI::results_t& words) {
-        field = parse(words.back());
-        if (!field) {
-            throw CLI::ValidationError(name, butMustBe(words.back(), must));
-        }
-        return true;
-    };
-    return app.add_option(names, read, help);
+    return addFormOption(
+        app, names,
+        [&field, parse](const std::string& word) {
+            field = parse(word);
+            return field.has_value();
+        },
+        must, help);
 }
 
 /// Bytes that the tools unpack of a file that is smaller than a sixteenth of it: a map of 4096x4096 of eight bytes a
@@ -82,38 +83,8 @@ void addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
 // The fields of a struct as options of a command line: "max_error" is --max-error.
 
-/// A visitor of fields() that adds an option for each. The struct must outlive the app. Messages are those of readWord(), with
-/// the name of the option in front (parseCommandLine).
-class FieldOptions {
-  public:
-    explicit FieldOptions(CLI::App& app) : app_(app) {}
-
-    template <class T>
-    void operator()(std::string_view name, T& value, const FieldInfo& info) {
-        if constexpr (std::same_as<T, bool>) {
-            options_.push_back(app_.add_flag(optionName(name), value, std::string(info.help)));
-        } else {
-            FieldCollector described;
-            described(name, value, info);
-            add(described.take().front(),
-                [&value, info](const std::string& word) { return readWord(word, info, value); });
-        }
-    }
-    [[nodiscard]] const std::vector<CLI::Option*>& options() const { return options_; }
-
-  private:
-    void add(const FieldWords& field, const std::function<std::string(const std::string&)>& read);
-
-    CLI::App& app_;
-    std::vector<CLI::Option*> options_;
-};
-
-/// Adds the fields of a struct. \return the options, in that order.
-template <class S>
-std::vector<CLI::Option*> addFields(CLI::App& app, S& target) {
-    FieldOptions visitor(app);
-    fields(visitor, target);
-    return visitor.options();
-}
+/// Adds an option for each field of a struct, or of a group, which must outlive the app. Messages are those of readWord(),
+/// with the name of the option in front (parseCommandLine). \return the options, in that order.
+std::vector<CLI::Option*> addFields(CLI::App& app, FieldRef target);
 
 }  // namespace relief

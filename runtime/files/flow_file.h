@@ -26,21 +26,7 @@ struct FlowFile {
     FlowOutside outside = FlowOutside::kZero;
     float gain = 1.0F;
 };
-template <class Visitor, FieldsOf<FlowFile> F>
-void fields(Visitor& visit, F& flow) {
-    const FieldFile path{flow.path, flow.origin};
-    visit("raw", path, {"Little-endian 32-bit floats, x fastest, then y, then z", {}, {}, {}, kRequired});
-    visit("size", flow.size,
-          {"Nodes along x, y and z, 2²⁴ at most", "[nx, ny, nz]", {1.0, FlowField::kSideMax}, {}, kRequired});
-    visit("components", flow.components, {"Floats a node", {}, {2.0, 3.0}});
-    visit("box_min", flow.box_min,
-          {"Lower corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
-    visit("box_max", flow.box_max,
-          {"Upper corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
-    visit("outside", flow.outside,
-          {"Velocity outside of the box: 0, or that of the nearest point of the box"});
-    visit("gain", flow.gain, {"Factor of every velocity", {}, within(1e6), {}, {.not_zero = true}});
-}
+void fields(FieldVisitor& visit, FlowFile& flow);
 
 /// The largest velocity taken, in either direction: object units a second.
 inline constexpr float kFlowSpeedMax = 1e6F;

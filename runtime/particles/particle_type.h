@@ -35,20 +35,6 @@ template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<OnCollision>{"bounce", "stop", "slide", "die"};
 
 /// All but `collides`, which names bodies.
-template <class Visitor, FieldsOf<ParticleType> T>
-void fields(Visitor& visit, T& type) {
-    visit("gravity", type.gravity, {"Factor of forces.gravity; below 0 it rises", {}, within(kFactorMax)});
-    visit("mass", type.mass, {"Divides the drag", {}, {1e-15, 1e9}});
-    visit("radius", type.radius, {"Radius of collision; size is the picture's", {}, kLengthRange});
-    visit("restitution", type.restitution,
-          {"Share of the normal speed that comes back", {}, {0.0, 1.0}, "that of [collision]"});
-    visit("friction", type.friction,
-          {"Share of the tangential speed that is lost", {}, {0.0, 1.0}, "that of [collision]"});
-    visit("friction_threshold", type.friction_threshold,
-          {"Speed below which there is no friction", "1/s", kSpeedRange, "that of [collision]"});
-    visit("on_collision", type.on_collision,
-          {"Reaction to a collision, by the method's page, section Collision"});
-    visit("lifetime_loss", type.lifetime_loss, {"Life that each step in contact costs", "s", kTimeRange});
-}
+void fields(FieldVisitor& visit, ParticleType& type);
 
 }  // namespace relief

@@ -48,48 +48,7 @@ struct SpawnSettings {
     friend bool operator==(const SpawnSettings&, const SpawnSettings&) = default;
 };
 
-template <class Visitor, FieldsOf<SpawnSettings> S>
-void fields(Visitor& visit, S& s) {
-    visit("on", s.on,
-          {"The event. collision: a body or the ground was hit, and the step before touched nothing; "
-           "death: of age, or of a hit",
-           {},
-           {},
-           {},
-           {.required = true, .selects = true}});
-    visit("of", s.of,
-          {"Number or name of the type that hits or dies",
-           {},
-           {0.0, kParticleTypesMax - 1},
-           "all",
-           {.index_of = "type"}});
-    visit("min_speed", s.min_speed,
-          {"Least speed of a hit along the normal, relative to the surface",
-           "1/s",
-           kSpeedRange,
-           {},
-           {.only = "collision"}});
-    visit("type", s.type,
-          {"Number or name of the type that is born",
-           {},
-           {0.0, kParticleTypesMax - 1},
-           {},
-           {.index_of = "type"}});
-    visit("count", FieldSpan{s.count_min, s.count_max}, {"Births for each event", {}, {1.0, 10'000.0}});
-    visit("most", s.most, {"Births of a step at most", {}, {1.0, 1 << 24}});
-    visit("lifetime", FieldSpan{s.lifetime_min, s.lifetime_max},
-          {"Lifetime of what is born", "s", kLifeRange});
-    visit("inherit", s.inherit,
-          {"Share of the parent's velocity; after a hit of the part along the surface", {}, kFactorRange});
-    visit("speed", FieldSpan{s.speed_min, s.speed_max}, {"Speed about the normal", "1/s", kSpeedRange});
-    visit("kick", s.kick, {"Share of the hit's speed, on top of speed", {}, kFactorRange});
-    visit("cone", s.cone_degrees,
-          {"Half angle about the normal",
-           "degrees",
-           {0.0, 180.0},
-           "60; 180 for \"death\"",
-           {.needs = "speed kick"}});
-}
+void fields(FieldVisitor& visit, SpawnSettings& s);
 
 class Spawner {
   public:

@@ -59,49 +59,6 @@ struct ParticleLook {
     friend bool operator==(const ParticleLook&, const ParticleLook&) = default;
 };
 
-template <class Visitor, FieldsOf<ParticleLook> L>
-void fields(Visitor& visit, L& look) {
-    visit("size", look.size,
-          {.help = "Diameter, over age",
-           .range = kLengthRange,
-           .fallback = "render.point_size",
-           .left_out = true});
-    visit("color", look.color,
-          {.help = "Colour, over age, in linear light",
-           .unit = "[r, g, b]",
-           .range = {0.0, 1.0},
-           .fallback = "render.color",
-           .left_out = true});
-    visit("opacity", look.opacity,
-          {.help = "Opacity, over age", .range = {0.0, 1.0}, .fallback = "render.opacity", .left_out = true});
-    visit("rotation", look.rotation,
-          {.help = "Anticlockwise turn of the sprite, over age",
-           .unit = "radians",
-           .range = within(kAngleMax),
-           .fallback = "0",
-           .left_out = true});
-    visit("turn", look.turn,
-          {"Each particle starts turned by its own angle within ± turn", "radians", {0.0, kAngleMax}});
-    visit("spin", look.spin,
-          {"Each particle turns at its own speed within ± spin", "radians/s", {0.0, kAngleMax}});
-    visit("stretch", look.stretch,
-          {"The sprite reaches back along its path to where it was so long ago, as if exposed so "
-           "long; needs render.sprite = \"quad\", and no rotation, turn or spin",
-           "s", kTimeRange});
-    visit("cell", FieldSpan{look.cell_first, look.cell_last},
-          {.help = "Cell of the atlas, or [first, last] played from birth to death; from the top left, row "
-                   "by row; needs render.atlas",
-           .fallback = "a round dot",
-           .left_out = true});
-    visit("lit", look.lit, {"False: shines in its colour, whatever light falls on it"});
-    visit("fade", FieldPair{look.fade_in, look.fade_out},
-          {.help = "Time in which opacity rises after birth and falls before death",
-           .unit = "[in, out] s",
-           .range = kTimeRange,
-           .fallback = "[0.2, 0.5]; none if opacity has several keys",
-           .left_out = true});
-}
-
 /// Values of the fields that a look leaves open.
 struct LookDefaults {
     float size = 0.01F;

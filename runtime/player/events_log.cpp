@@ -35,7 +35,7 @@ Result<void> EventsLog::write(const StepEvents& step, std::span<const std::strin
     dropped_ += step.dropped;
     for (const ParticleEvent& event : step.events) {
         if (event.hit && !event.lasts && event.speed >= min_speed_ &&
-            std::fputs(jsonLine(jsonOf(HitLine{event, step.tag, materials})).c_str(), file_.get()) < 0) {
+            std::fputs(jsonLineOf(HitLine{event, step.tag, materials}).c_str(), file_.get()) < 0) {
             return writeError();
         }
     }
@@ -44,6 +44,25 @@ Result<void> EventsLog::write(const StepEvents& step, std::span<const std::strin
 
 Result<void> EventsLog::finish() {
     return std::fflush(file_.get()) == 0 ? Result<void>{} : writeError();
+}
+
+void fields(FieldVisitor& visit, const HitLine& line) {
+    const auto& [hit, step, materials] = line;
+    const auto known = static_cast<std::size_t>(hit.material);
+    visit("step", step, {"Number of the step, from 1", {}, kFromOne});
+    visit("time", hit.time, {"Time of the scene", "s", kFromZero});
+    visit("id", hit.id, {"Particle, as in dumps"});
+    visit("type", hit.type, {"Type of the particle, as in dumps"});
+    visit("body", onlyIf(hit.body >= 0, hit.body),
+          {"Collider of the scene, from 0; null: the ground", {}, kFromZero});
+    visit("material", known < materials.size() ? std::optional(materials[known]) : std::nullopt,
+          {"Name of the material there; null: the collider has none, or the ground"});
+    visit("position", hit.position, {"Point where the particle touched the surface", "world units"});
+    visit("normal", hit.normal, {"Normal of the surface, out of the body, of length 1"});
+    visit("velocity", hit.velocity, {"Velocity of the particle before the hit", "world units per second"});
+    visit(
+        "speed", hit.speed,
+        {"Speed of approach along the normal, relative to the surface", "world units per second", kFromZero});
 }
 
 }  // namespace relief

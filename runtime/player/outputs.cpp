@@ -5,6 +5,7 @@
 
 #include "formats/base/file_guard.h"
 #include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watchdog.h"

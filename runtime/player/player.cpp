@@ -168,4 +168,20 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     return report;
 }
 
+void fields(FieldVisitor& visit, GpuOptions& options) {
+    visit("device", options.device,
+          {.help = "Use this GPU, by its number among EGL's devices",
+           .range = {0.0, 4294967295.0},
+           .fallback = "EGL's choice",
+           .value = "N",
+           .must = "the number of a device; 'eglinfo -B' lists them"});
+    visit("gpu_timeout", options.timeout,
+          {.help = "Give up, with exit code 4, when the GPU does not answer for so long; 0: never",
+           .unit = "s",
+           .range = {0.0, 1e6},
+           .fallback = "60, on a software renderer 600",
+           .value = "SECONDS",
+           .must = "a number of seconds from 0 (never) to 1000000"});
+}
+
 }  // namespace relief

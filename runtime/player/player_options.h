@@ -31,22 +31,7 @@ struct GpuOptions {
     }
 };
 
-template <class Visitor, FieldsOf<GpuOptions> Options>
-void fields(Visitor& visit, Options& options) {
-    visit("device", options.device,
-          {.help = "Use this GPU, by its number among EGL's devices",
-           .range = {0.0, 4294967295.0},
-           .fallback = "EGL's choice",
-           .value = "N",
-           .must = "the number of a device; 'eglinfo -B' lists them"});
-    visit("gpu_timeout", options.timeout,
-          {.help = "Give up, with exit code 4, when the GPU does not answer for so long; 0: never",
-           .unit = "s",
-           .range = {0.0, 1e6},
-           .fallback = "60, on a software renderer 600",
-           .value = "SECONDS",
-           .must = "a number of seconds from 0 (never) to 1000000"});
-}
+void fields(FieldVisitor& visit, GpuOptions& options);
 
 /// Format of dumped particles.
 enum class DumpFormat : std::uint8_t { kPly, kVdb };

@@ -21,12 +21,39 @@ std::string reportText(const PlayerReport& report) {
 
 GeneratedTexts playerSchemas() {
     return {
-        schemaFile("sim-report", "relief-sim --json", "A run of a scene.", schemaOf(PlayerReport{})),
+        schemaFile("sim-report", "relief-sim --json", "A run of a scene.", PlayerReport{}),
         schemaFile("sim-check", "relief-sim --check --json", "The check of a scene.",
-                   schemaOf(std::variant<CheckReport, CheckFailure>{})),
-        schemaFile("sim-events", "relief-sim --events", "One line: a hit of one particle.",
-                   schemaOf(HitLine{})),
+                   std::variant<CheckReport, CheckFailure>{}),
+        schemaFile("sim-events", "relief-sim --events", "One line: a hit of one particle.", HitLine{}),
     };
+}
+
+void fields(FieldVisitor& visit, const PlayerReport& report) {
+    visit("settings", report.scene, {"Effective scene, by its own keys"});
+    visit("device", report.device, {"OpenGL version, renderer and platform"});
+    visit("path", stepPathName(report.path),
+          {.help = "Shaders that moved the particles", .words = kWords<"fragment", "compute">});
+    const auto collider = [&](FieldVisitor& visit_collider) {
+        visit_collider("maps", report.collider_maps, {"Maps of all colliders"});
+        visit_collider("gpu_bytes", report.collider_bytes, {"Size on the GPU", "bytes"});
+    };
+    visit("collider", group(collider), {"All colliders"});
+    const auto particles = [&](FieldVisitor& visit_particles) {
+        visit_particles("alive", report.counts.alive, {"Live particles at the end"});
+        visit_particles("born", report.counts.born, {"Particles born"});
+        visit_particles("died", report.counts.died, {"Particles that died"});
+        visit_particles("refused", report.counts.refused, {"Births that found no room"});
+        visit_particles("in_contact", report.in_contact,
+                        {"Particles that touched something in the last step"});
+        visit_particles("collisions", report.collisions, {"Steps in contact of all particles"});
+    };
+    visit("particles", group(particles), {"Numbers of particles"});
+    visit("steps", report.scene.time.steps, {"Steps played"});
+    visit("ms_per_step", report.ms_per_step, {"Mean time of a step", "ms", kFromZero});
+    visit("ms_per_step_median", report.ms_per_step_median, {"Median time of a step", "ms", kFromZero});
+    visit("frames", report.frames_written, {"Pictures written"});
+    visit("dumps", report.dumps_written, {"States written"});
+    visit("warnings", report.warnings, {"Probable mistakes, one line each"});
 }
 
 }  // namespace relief

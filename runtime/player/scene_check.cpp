@@ -97,4 +97,28 @@ std::string checkText(const CheckReport& report) {
     return text + "\n";
 }
 
+void fields(FieldVisitor& visit, const CheckedFile& file) {
+    visit("file", file.path, {"Path"});
+    visit("kind", file.kind,
+          {.help = "Purpose",
+           .words = kWords<"scene", "world", "collider", "flow", "points", "atlas", "mesh">});
+    visit("bytes", file.bytes, {"Size", "bytes"});
+}
+
+void fields(FieldVisitor& visit, const CheckReport& report) {
+    visit("valid", true, {.help = "The scene is valid", .words = kWords<"true">});
+    visit("steps", report.steps, {"Steps to play"});
+    visit("capacity", report.capacity, {"Particles, at most"});
+    visit("bodies", report.world_bodies, {"Bodies of the world"});
+    visit("maps", report.collider_maps, {"Maps of all colliders"});
+    visit("files", report.files, {"The input and the files that it names"});
+    visit("warnings", report.warnings, {"Probable mistakes, one line each"});
+}
+
+void fields(FieldVisitor& visit, const CheckFailure& failure) {
+    visit("valid", false, {.help = "The scene is not valid", .words = kWords<"false">});
+    visit("code", static_cast<int>(failure.error.code), {"Exit code", {}, {1.0, 7.0}});
+    visit("error", failure.error.message, {"One line for people"});
+}
+
 }  // namespace relief

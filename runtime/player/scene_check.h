@@ -38,36 +38,15 @@ struct CheckReport {
 
 // --- `relief-sim --check --json`. Keys: README.md beside this file, "Checking a scene".
 
-template <class Visitor, FieldsOf<CheckedFile> F>
-void fields(Visitor& visit, F& file) {
-    visit("file", file.path, {"Path"});
-    visit("kind", file.kind,
-          {.help = "Purpose",
-           .words = kWords<"scene", "world", "collider", "flow", "points", "atlas", "mesh">});
-    visit("bytes", file.bytes, {"Size", "bytes"});
-}
+void fields(FieldVisitor& visit, const CheckedFile& file);
 
-template <class Visitor, FieldsOf<CheckReport> R>
-void fields(Visitor& visit, R& report) {
-    visit("valid", true, {.help = "The scene is valid", .words = kWords<"true">});
-    visit("steps", report.steps, {"Steps to play"});
-    visit("capacity", report.capacity, {"Particles, at most"});
-    visit("bodies", report.world_bodies, {"Bodies of the world"});
-    visit("maps", report.collider_maps, {"Maps of all colliders"});
-    visit("files", report.files, {"The input and the files that it names"});
-    visit("warnings", report.warnings, {"Probable mistakes, one line each"});
-}
+void fields(FieldVisitor& visit, const CheckReport& report);
 
 /// Of a scene that is not valid.
 struct CheckFailure {
     Error error;
 };
 
-template <class Visitor, FieldsOf<CheckFailure> F>
-void fields(Visitor& visit, F& failure) {
-    visit("valid", false, {.help = "The scene is not valid", .words = kWords<"false">});
-    visit("code", static_cast<int>(failure.error.code), {"Exit code", {}, {1.0, 7.0}});
-    visit("error", failure.error.message, {"One line for people"});
-}
+void fields(FieldVisitor& visit, const CheckFailure& failure);
 
 }  // namespace relief

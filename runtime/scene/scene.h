@@ -29,25 +29,14 @@ struct SceneTime {
     Integrator integrator = Integrator::kEuler;
 };
 
-template <class Visitor, FieldsOf<SceneTime> T>
-void fields(Visitor& visit, T& time) {
-    visit("dt", time.dt, {"Length of a step", "s", {1e-6, 1.0}, "1/60"});
-    visit("steps", time.steps, {"Steps of the run", {}, {0.0, kStepsMax}});
-    visit("prewarm", time.prewarm,
-          {"Time that is played before time 0, in whole steps, at most 10⁷ of them", "s", kTimeRange});
-    visit("integrator", time.integrator, {"Integration of positions: semi-implicit Euler, or Verlet"});
-}
+void fields(FieldVisitor& visit, SceneTime& time);
 [[nodiscard]] std::optional<FieldFault> check(SceneTime& time, const GivenFields& given);
 
 struct SceneParticles {
     std::uint32_t capacity = 65536;
 };
 
-template <class Visitor, FieldsOf<SceneParticles> P>
-void fields(Visitor& visit, P& particles) {
-    visit("capacity", particles.capacity,
-          {"Particles alive at once", {}, {1.0, ParticleSystem::kCapacityMax}});
-}
+void fields(FieldVisitor& visit, SceneParticles& particles);
 
 struct SceneForces {
     std::optional<glm::vec3> gravity;
@@ -57,21 +46,7 @@ struct SceneForces {
     std::optional<float> viscosity;
 };
 
-template <class Visitor, FieldsOf<SceneForces> F>
-void fields(Visitor& visit, F& forces) {
-    visit("gravity", forces.gravity,
-          {"Acceleration of gravity", "[x, y, z]/s²", within(kAccelerationMax), "[0, −3 L, 0]"});
-    visit("wind", forces.wind,
-          {"Velocity of the air everywhere; it needs drag", "[x, y, z]/s", within(kSpeedMax)});
-    visit("drag", FieldMaybe{forces.drag, forces.has_drag},
-          leftOut({"Rate at which the air carries particles along", "1/s", {0.0, kDragMax}}));
-    visit("viscosity", forces.viscosity,
-          leftOut({"Dynamic viscosity: drag by Stokes' law",
-                   "mass/(length·s)",
-                   {0.0, 1e6},
-                   "none",
-                   {.instead_of = "drag"}}));
-}
+void fields(FieldVisitor& visit, SceneForces& forces);
 [[nodiscard]] std::optional<FieldFault> check(SceneForces& forces, const GivenFields& given);
 
 struct SceneCollision : Collision {
@@ -79,15 +54,7 @@ struct SceneCollision : Collision {
     float sweep = 0.0F;  ///< as ParticleSystem::setSweep
 };
 
-template <class Visitor, FieldsOf<SceneCollision> C>
-void fields(Visitor& visit, C& c) {
-    visit("restitution", c.restitution, {"Share of the normal speed that comes back", {}, {0.0, 1.0}});
-    visit("friction", c.friction, {"Share of the tangential speed that is lost", {}, {0.0, 1.0}});
-    visit("friction_threshold", c.friction_threshold,
-          {"Speed below which there is no friction", "1/s", kSpeedRange});
-    visit("sweep", c.sweep,
-          {"Longest distance between two tests of a step; 0: only its ends are tested", {}, kLengthRange});
-}
+void fields(FieldVisitor& visit, SceneCollision& c);
 
 /// A world of which only a part is in full detail.
 struct SceneStream {
@@ -96,29 +63,14 @@ struct SceneStream {
     friend bool operator==(const SceneStream&, const SceneStream&) = default;
 };
 
-template <class Visitor, FieldsOf<SceneStream> T>
-void fields(Visitor& visit, T& stream) {
-    visit("radius", stream.radius,
-          {"Distance from emitters and the camera up to which the world has full detail",
-           {},
-           kSizeRange,
-           {},
-           kRequired});
-    visit("memory", stream.memory,
-          {"Bytes of the GPU that the colliders may take, the coarse ones included", "MB", {0.001, 65536.0}});
-}
+void fields(FieldVisitor& visit, SceneStream& stream);
 
 struct SceneGround {
     bool enabled = true;
     std::optional<float> height;
 };
 
-template <class Visitor, FieldsOf<SceneGround> G>
-void fields(Visitor& visit, G& ground) {
-    visit("enabled", ground.enabled, {"There is a ground"});
-    visit("height", ground.height,
-          leftOut({"Its height; needs enabled", {}, kPointRange, "lower end of the bounds"}));
-}
+void fields(FieldVisitor& visit, SceneGround& ground);
 
 /// A [[camera.key]]; what it leaves open is [camera]'s.
 struct SceneCameraKey {
@@ -128,14 +80,7 @@ struct SceneCameraKey {
     std::optional<float> fov;  ///< degrees
 };
 
-template <class Visitor, FieldsOf<SceneCameraKey> K>
-void fields(Visitor& visit, K& key) {
-    visit("time", key.time, {"Time since the beginning, rising", "s", {0.0, kKeySecondsMax}, {}, kRequired});
-    visit("eye", key.eye,
-          {"Place of the camera, instead of camera.eye", "[x, y, z]", kPointRange, {}, kRequired});
-    visit("target", key.target, {"Point that it looks at", "[x, y, z]", kPointRange, "camera.target"});
-    visit("fov", key.fov, {"Vertical field of view", "degrees", kFovRange, "camera.fov"});
-}
+void fields(FieldVisitor& visit, SceneCameraKey& key);
 
 struct SceneCamera {
     std::optional<glm::vec3> eye;
@@ -144,20 +89,7 @@ struct SceneCamera {
     std::vector<SceneCameraKey> keys;  ///< times rising; empty: the camera stands still
 };
 
-template <class Visitor, FieldsOf<SceneCamera> C>
-void fields(Visitor& visit, C& camera) {
-    visit("eye", camera.eye,
-          leftOut({"Place of the camera",
-                   "[x, y, z]",
-                   kPointRange,
-                   "in front and above, framing the bounds",
-                   {.instead_of = "key"}}));
-    visit("target", camera.target,
-          {"Point that it looks at, not straight above or below the eye", "[x, y, z]", kPointRange,
-           "middle of the bounds"});
-    visit("fov", camera.fov, {"Vertical field of view", "degrees", kFovRange});
-    visit("key", camera.keys, leftOut({"Places of the camera at times", {}, {}, {}, {.most = 10'000}}));
-}
+void fields(FieldVisitor& visit, SceneCamera& camera);
 [[nodiscard]] std::optional<FieldFault> check(SceneCamera& camera, const GivenFields& given);
 
 /// A [[render.weather]].
@@ -168,13 +100,7 @@ struct SceneWeather {
     float snow = 0.0F;
 };
 
-template <class Visitor, FieldsOf<SceneWeather> W>
-void fields(Visitor& visit, W& weather) {
-    visit("time", weather.time, {"Time since the beginning, rising", "s", {0.0, kKeySecondsMax}});
-    visit("sun", weather.sun, {"Light of the sun; 0: clouds hide it", {}, {0.0, 1.0}});
-    visit("wet", weather.wet, {"How wet is what rain reaches", {}, {0.0, 1.0}});
-    visit("snow", weather.snow, {"How much snow lies where it reaches level ground", {}, {0.0, 1.0}});
-}
+void fields(FieldVisitor& visit, SceneWeather& weather);
 
 struct SceneRender {
     std::uint32_t width = 960;
@@ -204,87 +130,31 @@ struct SceneRender {
     std::vector<SceneWeather> weather;  ///< times rising
 };
 
-template <class Visitor, FieldsOf<SceneRender> R>
-void fields(Visitor& visit, R& r) {
-    visit("size", FieldPair{r.width, r.height},
-          {"Size of the pictures, 2²⁶ pixels at most", "[width, height] pixels", {1.0, 65535.0}});
-    visit("point_size", r.point_size, {"Diameter of particles", {}, kSizeRange, "0.0065 L"});
-    visit("color", r.color, {"Colour of particles", "[r, g, b]", {0.0, 1.0}});
-    visit("opacity", r.opacity, {"Opacity of particles", {}, {0.0, 1.0, false}});
-    visit("background", r.background, {"Colour of the background", "[r, g, b]", {0.0, 1.0}});
-    visit("every", r.every, {"Steps from frame to frame", {}, {1.0, kStepsMax}});
-    visit("first", r.first,
-          {"Step of the first frame; 0: before the first step", {}, {0.0, kStepsMax}, "every"});
-    visit("last", r.last, {"Step of the last frame", {}, {0.0, kStepsMax}, "the last step"});
-    visit("sort_frames", r.sort_frames,
-          {"Frames that a whole depth sort is spread over, 2 or more; 0: no sort. On the compute "
-           "path each frame has a whole one",
-           {},
-           {0.0, 200.0}});
-    visit("sprite", r.sprite, {"Form of particles; a quad may be of any size and turns with its corners"});
-    visit("blend", r.blend, {"Blending of particles"});
-    visit("soft", r.soft,
-          {"Distance before the collider and the floor over which sprites fade", {}, kLengthRange});
-    visit("atlas", FieldFile{r.atlas, r.atlas_origin},
-          leftOut({"PNG with alpha, sides up to 8192; needs a type with cell", {}, {}, "none"}));
-    visit("atlas_cells", FieldPair{r.atlas_columns, r.atlas_rows},
-          leftOut({"Cells of the atlas, dividing its sides",
-                   "[columns, rows]",
-                   {1.0, 4096.0},
-                   {},
-                   {.needs = "atlas"}}));
-    visit("mesh", FieldFile{r.mesh, r.mesh_origin},
-          leftOut({"The .obj or .ply that the collider was baked from: it is drawn, the maps still cast the "
-                   "shadows",
-                   {},
-                   {},
-                   "none: the maps are drawn"}));
-    visit(
-        "meshes", FieldFile{r.meshes, r.meshes_origin},
-        leftOut(
-            {"Folder of .ply and .obj files, which may have colours at their vertices: a world's mesh NAME "
-             "is drawn as "
-             "NAME.ply, the container NAME.relief too, with shadows of their own. What plays a clip is drawn "
-             "from its container",
-             {},
-             {},
-             "none: the maps are drawn",
-             {.instead_of = "mesh"}}));
-    visit("fog", r.fog,
-          {"Distance over which 63 % is lost in the background's colour; 0: no fog",
-           {},
-           kLengthRange,
-           {},
-           {.needs = "meshes"}});
-    visit("metre", r.metre,
-          {"World units of a metre: of the meshes' grain, snow drifts and shaded corners",
-           {},
-           kSizeRange,
-           {},
-           {.needs = "meshes"}});
-    visit("shadows", r.shadows,
-          leftOut(
-              {"Distance from camera.target, along x and z, up to which the meshes have shadows and shelter",
-               {},
-               kSizeRange,
-               "the whole scene",
-               {.needs = "meshes"}}));
-    visit("weather", r.weather,
-          leftOut({"Weather of the meshes at times; between them it changes evenly",
-                   {},
-                   {},
-                   "sun, and nothing wet",
-                   {.needs = "meshes", .most = 10'000}}));
-}
+void fields(FieldVisitor& visit, SceneRender& r);
 [[nodiscard]] std::optional<FieldFault> check(SceneRender& render, const GivenFields& given);
 
 /// ParticleType::collides as a list of bodies.
-template <class Bits>
 struct CollidesList {
-    Bits& bits;
+    std::uint32_t& bits;
 };
-template <class Bits>
-CollidesList(Bits&) -> CollidesList<Bits>;
+extern const FieldCustom kCollidesListField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<CollidesList> = &kCollidesListField;
+
+// The tracks of a look: one value, or keys [age, value…].
+extern const FieldCustom kNumberTrackField;
+extern const FieldCustom kColorTrackField;
+extern const FieldCustom kNumberKeyField;
+extern const FieldCustom kColorKeyField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<AgeTrack<float>> = &kNumberTrackField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<AgeTrack<glm::vec3>> = &kColorTrackField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<AgeKey<float>> = &kNumberKeyField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<AgeKey<glm::vec3>> = &kColorKeyField;
+void fields(FieldVisitor& visit, ParticleLook& look);
 
 /// A [[type]]: how its particles move, collide and look.
 struct SceneType : ParticleType {
@@ -293,18 +163,7 @@ struct SceneType : ParticleType {
     std::string place;  ///< "file:line:column" of the table
 };
 
-template <class Visitor, FieldsOf<SceneType> T>
-void fields(Visitor& visit, T& type) {
-    visit("name", type.name, leftOut({"Name for emitter.type and spawn, not taken twice", {}, {}, "none"}));
-    fields(visit, baseOf<ParticleType>(type));
-    visit("collides", CollidesList{type.collides},
-          {"The colliders it meets, by number from 0, 7 standing for all beyond 7 too, and \"ground\", as in "
-           "[0, \"ground\"]; it passes through all others",
-           {},
-           {},
-           "everything"});
-    fields(visit, type.look);
-}
+void fields(FieldVisitor& visit, SceneType& type);
 [[nodiscard]] std::optional<FieldFault> check(SceneType& type, const GivenFields& given);
 
 inline constexpr std::size_t kSceneMaterialsMax = 4096;
@@ -333,33 +192,7 @@ struct Scene {
     SceneRender render;
 };
 
-template <class Visitor, FieldsOf<Scene> S>
-void fields(Visitor& visit, S& scene) {
-    visit("world", FieldFile{scene.world, scene.world_origin},
-          leftOut({"The world.json whose bodies particles collide with, beside the colliders",
-                   {},
-                   {},
-                   "none, and then a collider is required"}));
-    visit(
-        "collider", scene.colliders,
-        {"What particles collide with", {}, {}, {}, {.most = ColliderTextures::kBodiesMax, .single = true}});
-    visit("material", scene.materials,
-          leftOut({"Responses of the colliders' materials", {}, {}, {}, {.most = kSceneMaterialsMax}}));
-    visit("stream", scene.stream, leftOut({"Colliders of the world that are there when they are needed"}));
-    visit("time", scene.time, {"Steps"});
-    visit("particles", scene.particles, {"Room for particles"});
-    visit("emitter", scene.emitters, {"Births", {}, {}, {}, {.most = kEmittersMax, .single = true}});
-    visit("spawn", scene.spawns, leftOut({"Births by hits and deaths", {}, {}, {}, {.most = kSpawnsMax}}));
-    visit("forces", scene.forces, {"Gravity, wind and drag"});
-    fields(visit, scene.air);
-    visit("flow", scene.flow, leftOut({"Velocities of the air on a grid; it needs drag"}));
-    visit("collision", scene.collision, {"Collisions of particles without a type"});
-    visit("type", scene.types,
-          leftOut({"Types of particles; the first is type 0", {}, {}, {}, {.most = kLooksMax}}));
-    visit("ground", scene.ground, {"The floor"});
-    visit("camera", scene.camera, {"The camera"});
-    visit("render", scene.render, {"Pictures"});
-}
+void fields(FieldVisitor& visit, Scene& scene);
 [[nodiscard]] std::optional<FieldFault> check(Scene& scene, const GivenFields& given);
 
 /// The types as a particle system, and their looks as a renderer takes them.

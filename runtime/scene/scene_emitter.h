@@ -27,26 +27,14 @@ struct SceneTouching {
 };
 
 /// A name, or several.
-template <class Names>
 struct NameList {
-    Names& names;
+    std::vector<std::string>& names;
 };
-template <class Names>
-NameList(Names&) -> NameList<Names>;
+extern const FieldCustom kNameListField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<NameList> = &kNameListField;
 
-template <class Visitor, FieldsOf<SceneTouching> T>
-void fields(Visitor& visit, T& touching) {
-    const NameList names{touching.materials};
-    bool named = !touching.materials.empty();
-    visit(
-        "within", touching.within,
-        {"Distance from the nearest other surface up to which it is touched", {}, kSizeRange, {}, kRequired});
-    visit(
-        "material", FieldMaybe{names, named},
-        leftOut({"Name of the material that is touched, or a list of names", {}, {}, "any, and the ground"}));
-    visit("min_speed", touching.min_speed,
-          {"Least speed of the emitter's surface relative to the one that it touches", "1/s", kSpeedRange});
-}
+void fields(FieldVisitor& visit, SceneTouching& touching);
 
 /// An emitter as its table gives it. completeEmitters() fills what depends on the collider and on the run.
 struct SceneEmitter : EmitterSettings {
@@ -79,142 +67,20 @@ struct SceneEmitter : EmitterSettings {
 };
 
 /// emitter.speed: a number, [least, most], or { mean, deviation }.
-template <class Aim>
 struct EmitterSpeed {
-    Aim& aim;
+    EmitterAim& aim;
 };
-template <class Aim>
-EmitterSpeed(Aim&) -> EmitterSpeed<Aim>;
+extern const FieldCustom kEmitterSpeedField;
+template <>
+inline constexpr const FieldCustom* kFieldCustom<EmitterSpeed> = &kEmitterSpeedField;
 struct NormalSpeed {
     float mean = 0.0F;
     float deviation = 0.0F;
 };
-template <class Visitor, FieldsOf<NormalSpeed> S>
-void fields(Visitor& visit, S& speed) {
-    visit("mean", speed.mean, {"Mean of a normal distribution", "1/s", kSpeedRange, {}, kRequired});
-    visit("deviation", speed.deviation, {"Its standard deviation", "1/s", kSpeedRange});
-}
+void fields(FieldVisitor& visit, NormalSpeed& speed);
 
-/// The aim of an emitter, made where there is none yet; check() removes one that no key has set.
-[[nodiscard]] inline EmitterAim& aimOf(SceneEmitter& emitter) {
-    return emitter.aim ? *emitter.aim : emitter.aim.emplace();
-}
-[[nodiscard]] inline const EmitterAim& aimOf(const SceneEmitter& emitter) {
-    static const EmitterAim none;
-    return emitter.aim ? *emitter.aim : none;
-}
-
-template <class Visitor, FieldsOf<SceneEmitter> E>
-void fields(Visitor& visit, E& e) {
-    auto& aim = aimOf(e);
-    const EmitterSpeed speed{aim};
-    visit(
-        "shape", e.shape,
-        {"Place of birth; a sphere is its volume, a shell its surface, a surface that of a collider or mesh",
-         {},
-         {},
-         "\"point\" with point, \"points\" with points, else \"box\"",
-         {.selects = true}});
-    visit("box_min", FieldMaybe{e.box_min, e.has_box},
-          {"Lower corner",
-           "[x, y, z]",
-           kPointRange,
-           "1.45 L about the centre on x and z, 0.15 L above the top",
-           {.needs = "box_max", .only = "box"}});
-    visit("box_max", FieldMaybe{e.box_max, e.has_box},
-          {"Upper corner",
-           "[x, y, z]",
-           kPointRange,
-           "as box_min, 0.75 L above the top",
-           {.needs = "box_min", .only = "box"}});
-    visit("point", e.box_min,
-          {"Place of a point",
-           "[x, y, z]",
-           kPointRange,
-           {},
-           {.instead_of = "box_min", .only = "point", .required = true, .chooses = true}});
-    visit("center", e.center,
-          {"Centre", "[x, y, z]", kPointRange, {}, {.only = "sphere shell disc", .required = true}});
-    visit("radius", e.radius,
-          {"Radius", {}, kLengthRange, {}, {.only = "sphere shell disc", .required = true}});
-    visit("normal", e.normal,
-          {"Normal of the disc", "[x, y, z]", kPointRange, {}, {.only = "disc", .not_zero = true}});
-    visit("points", FieldFile{e.points_file, e.points_origin},
-          {"File of 1 to 2²² points, below",
-           {},
-           {},
-           {},
-           {.only = "points", .required = true, .chooses = true}});
-    visit("mesh", FieldFile{e.mesh_file, e.mesh_origin},
-          leftOut({"The .obj or .ply whose surface it is, in the emitter's space",
-                   {},
-                   {},
-                   "that of the collider it is attached to, as it moves and bends",
-                   {.only = "surface"}}));
-    visit(
-        "group", e.group,
-        leftOut({"Joint or node whose weights are the density of the births; of an .obj its group or object",
-                 {},
-                 {},
-                 "all",
-                 {.only = "surface"}}));
-    visit("material", e.material, leftOut({"Material that gives birth", {}, {}, "all", {.only = "surface"}}));
-    visit("touching", e.touching,
-          leftOut(
-              {"Births only where the surface touches another", {}, {}, "everywhere", {.only = "surface"}}));
-    visit("start", e.start, {"Time before anything is born", "s", kTimeRange});
-    visit("rate", FieldMaybe{e.rate, e.has_rate},
-          {"Births a second; several emitters without a rate share what the others leave of the capacity",
-           "1/s",
-           {0.0, kRateMax},
-           "the capacity by the end of the births"});
-    visit("duration", e.duration,
-          {"Time from the start to the last birth", "s", kLifeRange, "the whole run"});
-    visit("burst", e.burst, {"Births at the start, at most the capacity", {}, {0.0, 1 << 24}});
-    visit("burst_every", e.burst_every,
-          leftOut(
-              {"Time from burst to burst", "s", {1e-4, kSecondsMax}, "a single burst", {.needs = "burst"}}));
-    visit("spread", e.spread, {"Births by rate are spread over their step"});
-    visit("velocity", FieldMaybe{e.velocity, e.has_velocity},
-          leftOut({"Velocity of every birth",
-                   "[x, y, z]/s",
-                   within(kSpeedMax),
-                   "[0, −0.8 L, 0]; none with direction, cone or speed",
-                   {.instead_of = "direction cone speed"}}));
-    visit("velocity_spread", FieldMaybe{e.velocity_spread, e.has_velocity_spread},
-          {"Largest uniform deviation from the velocity, either way", "[x, y, z]/s", kSpeedRange,
-           "[0.12, 0.1, 0.12] L; none with direction, cone or speed"});
-    visit("direction", FieldMaybe{aim.direction, e.has_aim},
-          leftOut({"Direction of births; required for a box or point",
-                   "[x, y, z]",
-                   kPointRange,
-                   "the normal: outwards, the disc's, the point's own, the surface's",
-                   {.not_zero = true}}));
-    visit("cone", FieldMaybe{aim.cone_degrees, e.has_aim},
-          leftOut({"Half angle about the direction, uniform over its solid angle", "degrees", {0.0, 180.0}}));
-    visit("speed", FieldMaybe{speed, e.has_speed},
-          leftOut({"Speed along the direction: a number, [least, most], or { mean, deviation }, which is "
-                   "normal and never below 0",
-                   "1/s", kSpeedRange, "0.8 L"}));
-    visit("lifetime", FieldSpan{e.lifetime_min, e.lifetime_max}, {"Lifetime", "s", kLifeRange});
-    visit("type", e.type,
-          {"Number or name of the type", {}, {0.0, kParticleTypesMax - 1}, {}, {.index_of = "type"}});
-    visit("seed", e.seed, {"Seed; emitter i draws from the i-th stream of its seed", {}, {0.0, kSeedMax}});
-    visit("attach", e.attach,
-          leftOut({"Number, from 0, of the collider in whose space the emitter is; needs a place, or the "
-                   "shape surface",
-                   {},
-                   {0.0, ColliderTextures::kBodiesMax - 1},
-                   "the world",
-                   {.index_of = "collider"}}));
-    visit("key", e.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
-    visit("inherit", e.inherit,
-          leftOut({"Share of its own velocity that births take on",
-                   {},
-                   kFactorRange,
-                   {},
-                   {.needs = "attach key"}}));
-}
+/// Makes an aim if there is none and the visitor fills it; check() removes one that no key has set.
+void fields(FieldVisitor& visit, SceneEmitter& e);
 [[nodiscard]] std::optional<FieldFault> check(SceneEmitter& emitter, const GivenFields& given);
 
 inline constexpr std::size_t kEmittersMax = 64;
@@ -227,13 +93,7 @@ struct SceneSpawn : SpawnSettings {
     friend bool operator==(const SceneSpawn&, const SceneSpawn&) = default;
 };
 
-template <class Visitor, FieldsOf<SceneSpawn> S>
-void fields(Visitor& visit, S& spawn) {
-    fields(visit, baseOf<SpawnSettings>(spawn));
-    visit("material", spawn.on_material,
-          leftOut({"Name of the material that was hit", {}, {}, "any", {.only = "collision"}}));
-    visit("seed", spawn.seed, {"Seed; spawn i draws from a stream of its own", {}, {0.0, kSeedMax}});
-}
+void fields(FieldVisitor& visit, SceneSpawn& spawn);
 [[nodiscard]] std::optional<FieldFault> check(SceneSpawn& spawn, const GivenFields& given);
 
 /// Sets what no key has set: boxes above the collider, from which snow falls.

@@ -1,7 +1,10 @@
 #include "runtime/scene/scene_reference.h"
 
+#include <algorithm>
+#include <array>
+
 #include "formats/fields/reference.h"
-#include "runtime/scene/scene_json.h"
+#include "runtime/scene/scene.h"
 
 namespace relief {
 namespace {
@@ -12,6 +15,20 @@ Json listOf(const Json& items, std::size_t least, std::size_t most) {
     return {{"type", "array"}, {"items", items}, {"minItems", least}, {"maxItems", most}};
 }
 
+CustomSchemas customSchemas() {
+    const Json name = {{"type", "string"}, {"minLength", 1}};
+    return {
+        {&kNumberTrackField, {{{"oneOf", {kNumber, listOf(listOf(kNumber, 2, 2), 1, kLookKeysMax)}}}, {}}},
+        {&kColorTrackField,
+         {{{"oneOf", {listOf(kNumber, 3, 3), listOf(listOf(kNumber, 4, 4), 1, kLookKeysMax)}}}, {}}},
+        {&kEmitterSpeedField,
+         {{{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf<NormalSpeed>())}}}, {}}},
+        {&kNameListField, {{{"oneOf", {name, {{"type", "array"}, {"items", name}, {"minItems", 1}}}}}, {}}},
+        {&kCollidesListField,
+         {{{"type", "array"}, {"items", {{"oneOf", {{{"type", "integer"}}, {{"const", "ground"}}}}}}},
+          {"ground"}}}};
+}
+
 const FieldReference& tableOf(const std::vector<FieldReference>& fields, std::string_view name) {
     return *std::find_if(fields.begin(), fields.end(),
                          [&](const FieldReference& f) { return f.name == name; });
@@ -19,33 +36,8 @@ const FieldReference& tableOf(const std::vector<FieldReference>& fields, std::st
 
 }  // namespace
 
-FieldType fieldType(const AgeTrack<float>& /*track*/) {
-    return {{{"oneOf", {kNumber, listOf(listOf(kNumber, 2, 2), 1, kLookKeysMax)}}}, {}};
-}
-
-FieldType fieldType(const AgeTrack<glm::vec3>& /*track*/) {
-    return {{{"oneOf", {listOf(kNumber, 3, 3), listOf(listOf(kNumber, 4, 4), 1, kLookKeysMax)}}}, {}};
-}
-
-template <class Aim>
-FieldType fieldType(const EmitterSpeed<Aim>& /*speed*/) {
-    return {{{"oneOf", {kNumber, listOf(kNumber, 2, 2), fileSchema(referenceOf(NormalSpeed{}))}}}, {}};
-}
-
-template <class Names>
-FieldType fieldType(const NameList<Names>& /*list*/) {
-    const Json text = {{"type", "string"}, {"minLength", 1}};
-    return {{{"oneOf", {text, {{"type", "array"}, {"items", text}, {"minItems", 1}}}}}, {}};
-}
-
-template <class Bits>
-FieldType fieldType(const CollidesList<Bits>& /*list*/) {
-    return {{{"type", "array"}, {"items", {{"oneOf", {{{"type", "integer"}}, {{"const", "ground"}}}}}}},
-            {"ground"}};
-}
-
 GeneratedTexts sceneReference() {
-    const std::vector<FieldReference> fields = referenceOf(Scene{});
+    const std::vector<FieldReference> fields = referenceOf(Scene{}, customSchemas());
     const std::string readme = "runtime/scene/README.md";
     static constexpr std::array<std::string_view, 12> kTables = {
         "stream", "time",       "particles", "forces", "attractor", "vortex",

@@ -16,7 +16,7 @@
 #include "bake/report/check_report.h"
 #include "bake/report/report_text.h"
 #include "formats/base/text.h"
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {

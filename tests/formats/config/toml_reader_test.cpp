@@ -20,8 +20,7 @@ namespace {
 struct Part {
     float weight = 1.0F;
 };
-template <class Visitor, FieldsOf<Part> P>
-void fields(Visitor& visit, P& part) {
+void fields(FieldVisitor& visit, Part& part) {
     visit("weight", part.weight, {"Weight", "kg", {0.0, 10.0, false}, {}, {.required = true}});
 }
 
@@ -41,8 +40,7 @@ struct Thing {
     std::filesystem::path file;
     std::string origin;
 };
-template <class Visitor, FieldsOf<Thing> T>
-void fields(Visitor& visit, T& t) {
+void fields(FieldVisitor& visit, Thing& t) {
     visit("form", t.form, {"Form", {}, {}, {}, {.selects = true}});
     visit("radius", t.radius, {"Radius", {}, {0.0, 5.0}, {}, {.only = "ball"}});
     visit("side", t.side, {"Sides", {}, {0.0, 5.0}, {}, {.only = "box", .required = true, .chooses = true}});

@@ -1,5 +1,5 @@
 // JSON and its schema from one description of a struct.
-#include "formats/fields/json.h"
+#include "formats/fields/json_value.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,7 @@ struct Leaf {
     std::optional<std::uint32_t> count;
 };
 
-template <class Visitor, FieldsOf<Leaf> L>
-void fields(Visitor& visit, L& leaf) {
+void fields(FieldVisitor& visit, const Leaf& leaf) {
     visit("size", leaf.size, {.help = "Longest side", .unit = "m", .range = {0.0, 10.0, false}});
     visit("count", leaf.count, {.help = "Neighbours"});
 }
@@ -29,8 +28,7 @@ struct Tree {
     std::vector<Leaf> leaves{Leaf{}};
 };
 
-template <class Visitor, FieldsOf<Tree> T>
-void fields(Visitor& visit, T& tree) {
+void fields(FieldVisitor& visit, const Tree& tree) {
     visit("name", tree.name, {.help = "Species"});
     visit("mood", tree.mood, {.help = "Of its keeper"});
     visit("at", tree.at, {.help = "Foot", .range = within(100.0)});
@@ -68,12 +66,11 @@ struct Search {
     [[nodiscard]] static std::vector<Search> kinds() { return {{true, ""}, {false, "dry"}}; }
 };
 
-template <class Visitor, FieldsOf<Search> S>
-void fields(Visitor& visit, S& search) {
+void fields(FieldVisitor& visit, const Search& search) {
     visit("found", search.found,
           {.help = "Success", .words = search.found ? kWords<"true"> : kWords<"false">});
     if (search.found) {
-        const auto leaf = [&](auto& visit_leaf) {
+        const auto leaf = [&](FieldVisitor& visit_leaf) {
             visit_leaf("size", 2.0, {"Longest side", "m", kFromZero});
         };
         visit("leaf", groupIf(true, leaf), {"The leaf; null if it fell"});

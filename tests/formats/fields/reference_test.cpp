@@ -9,8 +9,7 @@ namespace {
 struct Place {
     glm::vec3 at{0.0F};
 };
-template <class Visitor, FieldsOf<Place> P>
-void fields(Visitor& visit, P& place) {
+void fields(FieldVisitor& visit, Place& place) {
     visit("at", place.at, {"Point", "[x, y, z]", within(1e9), {}, {.required = true}});
 }
 
@@ -20,8 +19,7 @@ struct Thing {
     std::uint32_t most = 2;
     std::vector<Place> places;
 };
-template <class Visitor, FieldsOf<Thing> T>
-void fields(Visitor& visit, T& thing) {
+void fields(FieldVisitor& visit, Thing& thing) {
     visit("size", thing.size, {"Diameter", "m", {0.0, 1e6, false}, {}, {.needs = "count"}});
     visit("count", FieldSpan{thing.least, thing.most}, {"Number"});
     visit("place", thing.places, {"Places", {}, {}, {}, {.most = 3}});

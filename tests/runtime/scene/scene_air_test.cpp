@@ -169,7 +169,7 @@ TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
         EXPECT_TRUE(scene);
         PlayerReport result;
         result.scene = scene.value_or(Scene{});
-        std::string json = jsonText(jsonOf(result));
+        std::string json = jsonTextOf(result);
         std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
         return json;
     };

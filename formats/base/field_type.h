@@ -1,0 +1,159 @@
+// The types of fields without templates: a visitor of fields (formats/base/field.h) gets each value as a FieldRef, a pointer
+// and a description of its type. The description is static data and a few function pointers, which formats/base/field.h makes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace relief {
+
+struct FieldInfo;
+struct FieldType;
+class FieldRef;
+class FieldVisitor;
+
+/// Paths of the fields that a file contains, from the struct on: "key[1].time".
+using GivenFields = std::function<bool(const std::string& path)>;
+
+/// An error found by a struct's check().
+struct FieldFault {
+    std::string path;  ///< of the field, as in GivenFields; empty: the struct itself
+    std::string text;  ///< continues the field's name: "does nothing without a name; give one"
+};
+
+enum class FieldForm : std::uint8_t {
+    kBool,
+    kUnsigned,
+    kSigned,
+    kReal,
+    kWord,    ///< an enumeration
+    kString,  ///< std::string
+    kText,    ///< another type that converts to std::string_view; write-only
+    kPath,    ///< std::filesystem::path
+    kVector,  ///< glm::vec3
+    kArray,   ///< std::array
+    kList,    ///< std::vector; write-only: any contiguous range
+    kOptional,
+    kVariant,  ///< write-only
+    kSpan,     ///< FieldSpan, and so on
+    kPair,
+    kMaybe,
+    kFile,
+    kGroup,
+    kStruct,
+    kCustom,  ///< nothing but FieldType::custom, or read_form and form_text
+};
+
+class TomlValue;   // formats/config/toml_reader.h
+struct FieldJson;  // formats/fields/json_value.h
+
+/// Functions of a type with a format of its own; each may be null, and FieldForm then decides.
+struct FieldCustom {
+    void (*read)(const TomlValue& from, void* value, const FieldInfo& info) = nullptr;
+    void (*json)(const void* value, FieldJson& json) = nullptr;
+    void (*schema)(FieldJson& schema) = nullptr;  ///< of what `json` writes
+};
+
+/// Elements, one behind the other.
+struct FieldItems {
+    void* first = nullptr;
+    std::size_t count = 0;
+};
+
+struct FieldType {
+    FieldForm form = FieldForm::kCustom;
+    std::uint32_t size = 0;                        ///< bytes of a value
+    std::size_t count = 0;                         ///< elements of an array
+    std::span<const std::string_view> words = {};  ///< of an enumeration
+    const FieldType* held = nullptr;               ///< of elements, or the value of an optional
+    std::span<const FieldType* const> alternatives = {};
+    const FieldCustom* custom = nullptr;
+
+    void* (*blank)() = nullptr;                  ///< a default value, never to be changed
+    FieldItems (*items)(void* value) = nullptr;  ///< of a list or an optional
+    void* (*add)(void* value) = nullptr;         ///< makes an element of a list or the value of an optional
+    void (*clear)(void* value) = nullptr;        ///< of a list
+    FieldRef (*chosen)(void* value) = nullptr;   ///< of a variant
+    std::string_view (*text)(const void* value) = nullptr;
+
+    // Of a struct:
+    void (*fields)(FieldVisitor& visit, void* value) = nullptr;
+    std::optional<FieldFault> (*check)(void* value, const GivenFields& given) = nullptr;
+    void (*set_place)(void* value, std::string place) = nullptr;
+    void (*kinds)(const std::function<void(FieldRef)>& each) = nullptr;
+
+    // Of a type whose values are words of a form of its own:
+    bool (*read_form)(std::string_view word, void* value) = nullptr;
+    std::string (*form_text)(const void* value) = nullptr;
+};
+
+/// The description of T; const T: of one that is only written.
+template <class T>
+[[nodiscard]] const FieldType& fieldType();
+
+/// A value of any type that has a FieldType. Borrows it, temporaries until the end of the full expression.
+class FieldRef {
+  public:
+    template <class T>
+    requires(!std::same_as<std::remove_cvref_t<T>, FieldRef>) FieldRef(T&& value)  // NOLINT: implicit
+        : FieldRef(const_cast<void*>(static_cast<const void*>(std::addressof(value))),
+                   fieldType<std::conditional_t<std::is_lvalue_reference_v<T>, std::remove_reference_t<T>,
+                                                const std::remove_reference_t<T>>>()) {}
+    FieldRef(void* value, const FieldType& type) : value_(value), type_(&type) {}
+
+    [[nodiscard]] const FieldType& type() const { return *type_; }
+    [[nodiscard]] FieldForm form() const { return type_->form; }
+    [[nodiscard]] void* value() const { return value_; }
+    template <class T>
+    [[nodiscard]] T& as() const {
+        return *static_cast<T*>(value_);
+    }
+
+    /// The value of an optional or a blank one, or the value itself.
+    [[nodiscard]] FieldRef heldOrBlank() const;
+    /// A default value of the type. The type has one.
+    [[nodiscard]] FieldRef blank() const { return {type_->blank(), *type_}; }
+    /// An element of a vector, an array, a list or an optional.
+    [[nodiscard]] std::size_t count() const;
+    [[nodiscard]] FieldRef operator[](std::size_t i) const;
+    /// Makes a list one longer, or gives an optional a value.
+    [[nodiscard]] FieldRef add() const { return {type_->add(value_), *type_->held}; }
+    /// Visits the fields of a struct or a group.
+    void visit(FieldVisitor& visitor) const;
+
+    // Numbers, and an enumeration as the index of its word.
+    [[nodiscard]] bool isNumber() const;  ///< bool is none
+    [[nodiscard]] std::uint64_t whole() const;
+    [[nodiscard]] std::int64_t integer() const;
+    [[nodiscard]] double number() const;       ///< of any number
+    void setWhole(std::uint64_t value) const;  ///< cut to the size of the type
+    void setReal(double value) const;          ///< rounded to it
+
+    /// Of a string, a text or a path.
+    [[nodiscard]] bool isText() const;
+    [[nodiscard]] std::string_view text() const;
+    [[nodiscard]] std::string_view word() const { return type_->words[whole()]; }
+    [[nodiscard]] bool setWord(std::string_view word) const;  ///< false: there is no such word
+
+  private:
+    void* value_;
+    const FieldType* type_;
+};
+
+/// What fields() calls for each field.
+class FieldVisitor {
+  public:
+    virtual ~FieldVisitor();
+    virtual void operator()(std::string_view name, FieldRef value, const FieldInfo& info) = 0;
+    /// Whether it changes values: fields() may then make room for them.
+    [[nodiscard]] virtual bool fills() const { return false; }
+};
+
+}  // namespace relief
