@@ -36,4 +36,5 @@ stage tests ctest --preset $tier -j "$(nproc)"
 [ $tier = default ] || exit 0
 stage 'web setup' scripts/setup.sh web
 stage 'web build' scripts/build.sh web
-stage 'browser test' env RELIEF_BIN="$PWD/build/test/bin" node --test tests/web/page_test.mjs
+export RELIEF_BIN=$PWD/build/test/bin LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
+stage 'browser test' node --test --test-name-pattern='^each feature of the page shows$' tests/web/view_test.mjs
