@@ -168,7 +168,7 @@ cmake --build recipe/out >log 2>&1
 grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
 cmake --build recipe/out | matches 'no work to do' || die "the recipe is baked twice"
 
-# Without the baker. What both builds compile alike is copied, not compiled again (tests/long/soak.sh package does that).
+# Without the baker. What both builds compile alike is copied, not compiled again (scripts/nightly.sh runtime does that).
 cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_OPENVDB=OFF \
     -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
 for file in formats/librelief_formats.a runtime/librelief_runtime.a runtime/librelief_c.a lib/librelief.so.1.2 lib/librelief.so.1 lib/librelief.so bin/relief-sim \

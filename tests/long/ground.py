@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Hills for tests/long/soak.sh ground: heights that are a sum of one over x and one over z, so that any is known at once.
+"""Hills for scripts/nightly.sh ground: heights that are a sum of one over x and one over z, so that any is known at once.
 
 ground.py write OUT.r16 SIDE [--high 300]             samples of 16 bits
 ground.py points OUT.csv SIDE COUNT [--aside 256]     a metre above all seams of tiles of 512, or so many metres beside them

@@ -306,7 +306,7 @@ TEST(ImportWorker, LeavesNoDescriptorsAndNoChildren) {
 }
 
 TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
-    // Every seventh, and all invalid ones; tests/long/soak.sh import takes all. Nothing may crash the worker.
+    // Every seventh, and all invalid ones; scripts/nightly.sh import takes all. Nothing may crash the worker.
     const bool all = std::getenv("RELIEF_SOAK") != nullptr;
     std::vector<fs::path> files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator("/usr/share/assimp/models")) {
