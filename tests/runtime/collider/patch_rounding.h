@@ -145,9 +145,8 @@ inline std::vector<RoundedVote> patchVotes(const DepthMap& map, const glm::vec3&
         vote.distance = scaled(cell, vote.distance) * root;
         RoundedVec normal{0.0, 0.0, 0.0};
         for (int k = 0; k < 3; ++k) {
-            const auto axis = [&](int i) {  // by way of the inverse's columns, divided by the root's size
-                return rounded(double{rows[i][k]} * root, 0.0, 4.0);
-            };
+            // Two roundings for a column of the inverse, five for 1 / root (GLSL: 2.5 units in the last place), one for both.
+            const auto axis = [&](int i) { return rounded(double{rows[i][k]} * root, 0.0, 8.0); };
             normal[static_cast<std::size_t>(k)] = dot({axis(0), axis(1), axis(2)}, vote.normal);
         }
         votes.push_back({vote.distance, normal});
