@@ -214,6 +214,11 @@ job_runtime() {
     # shellcheck disable=SC2046
     g++ -std=c++20 samples/glfw/glfw.cpp -o "$work/glfw" $(pkg-config --cflags --libs relief-runtime glfw3)
     "$work/prefix/bin/relief-sim" --version
+    [ ! -e "$work/prefix/bin/relief" ]
+    printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(p LANGUAGES CXX)' \
+        'find_package(Relief REQUIRED COMPONENTS runtime bake)' >"$work/CMakeLists.txt"
+    CMAKE_PREFIX_PATH=$work/prefix cmake -G Ninja -S "$work" -B "$work/out" >"$work/cmake.log" 2>&1 && return 1
+    grep 'no component bake' "$work/cmake.log"
 }
 
 job nightly 10 packages
