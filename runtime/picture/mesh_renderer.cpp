@@ -77,7 +77,8 @@ Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
     forgetGlErrors();
     MeshRenderer renderer;
     for (const PictureMesh& mesh : meshes) {
-        renderer.meshes_.push_back({mesh, RELIEF_TRY(MeshBuffers::create(mesh))});
+        MeshBuffers buffers = RELIEF_TRY(MeshBuffers::create(mesh));
+        renderer.meshes_.push_back({mesh, std::move(buffers)});
     }
     renderer.surface_program_ =
         RELIEF_TRY(makeProgram("picture/mesh_surface.vert", "picture/mesh_surface.frag"));
