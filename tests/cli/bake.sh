@@ -70,3 +70,11 @@ cmp t1.relief elsewhere/x.relief || die "another folder gives other bytes"
 # An older output is replaced; no temporary file stays.
 expect 0 "$relief" bake box.obj -o elsewhere/x.relief --paper --resolution 32 -q
 [ "$(ls -A elsewhere)" = x.relief ] || die "files left behind: $(ls -A elsewhere)"
+
+# Random numbers of the library, functions whose last bits vary, and clocks must not reach outputs: formats/base/portable_math.h
+# replaces the functions. Benchmarks are no outputs; VertexBlocks gives the same results for any number of cells.
+found=$(cd "$RELIEF_SOURCE" && grep -rnE --include=*.cpp --include=*.h --include=CMakeLists.txt \
+    'std::(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|exp|exp2|expm1|log|log2|log10|log1p|pow|hypot|cbrt|tgamma|lgamma|erf|erfc)\(|(uniform_(int|real)|normal|bernoulli|poisson|discrete)_distribution|random_device|random_shuffle|std::(shuffle|sample)\(|unordered_(map|set)|std::hash|__DATE__|__TIME__|std::time\(|system_clock|setlocale|-ffast-math|-march=|rtcNewDevice\(nullptr' \
+    bake formats CMakeLists.txt | grep -vE '^bake/(bench/|mesh/vertex_blocks.cpp:.*cbrt)' || true)
+[ -z "$found" ] || die "bits that vary from machine to machine may reach outputs:"$'\n'"$found"
+grep -q -- '-ffp-contract=off' "$RELIEF_SOURCE/CMakeLists.txt" || die "contraction is not off"
