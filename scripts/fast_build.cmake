@@ -43,7 +43,7 @@ function(relief_precompile target from)
     target_precompile_headers(${target} REUSE_FROM ${from})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         # GCC 12 forgets that a precompiled header is the system's, and warns of copies inside std::string that never
-        # happen. tests/long/soak.sh builds without precompiled headers, and with these warnings.
+        # happen. scripts/nightly.sh headers builds without precompiled headers, and with these warnings.
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
                                                  -Wno-stringop-overread)
     endif()

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 #include "runtime/gl/compute_units.h"
+#include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 
 namespace relief {
@@ -37,11 +39,13 @@ Result<VertexFeedback> VertexFeedback::create(const char* shader, std::size_t ve
                                                    normals ? "#define RELIEF_NORMALS 1\n" : ""));
     made.output_ = makeBuffer();
     made.array_ = makeVertexArray();
+    forgetGlErrors();
     made.pixel_ = makeTexture2D(GL_RGBA8, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    made.target_ = RELIEF_TRY(makeFramebuffer({made.pixel_.name()}));
     glBindVertexArray(made.array_.name());
     glBindBuffer(GL_ARRAY_BUFFER, made.output_.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(made.bytes_), nullptr, GL_DYNAMIC_COPY);
+    RELIEF_TRY(checkAllocated(std::to_string(vertices) + " vertices that move", "simplify the mesh"));
+    made.target_ = RELIEF_TRY(makeFramebuffer({made.pixel_.name()}));
     return made;
 }
 

@@ -21,7 +21,7 @@ class VertexFeedback {
     /// \param shader    its file, which has v_normal only where RELIEF_NORMALS is defined.
     /// \param vertices  1 to 2³¹ − 1
     /// Leaves the array that run() draws from bound, for its attributes.
-    /// Errors: kFailure (the driver's compiler).
+    /// Errors: kLimit (no room), kFailure (the driver's compiler).
     [[nodiscard]] static Result<VertexFeedback> create(const char* shader, std::size_t vertices,
                                                        VertexOutput output);
 

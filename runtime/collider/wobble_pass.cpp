@@ -98,6 +98,7 @@ Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm:
         glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(RestVertex),
                               reinterpret_cast<const void*>(offset));
     }
+    RELIEF_TRY(checkAllocated("the vertices of the wobbling mesh", "simplify it"));
     return pass;
 }
 

@@ -35,8 +35,8 @@ class WobblePass {
     /// Needs a current context, as run() does.
     /// \param positions  at rest, object units, finite; at least one.
     /// \param normals    as many, of length 1 or zero.
-    /// Errors: kUsage (a number that is not finite or out of its range; no vertex, or not as many normals), kFailure (the
-    /// driver's compiler).
+    /// Errors: kUsage (a number that is not finite or out of its range; no vertex, or not as many normals), kLimit (no
+    /// room), kFailure (the driver's compiler).
     [[nodiscard]] static Result<WobblePass> create(const Wobble& wobble, std::span<const glm::vec3> positions,
                                                    std::span<const glm::vec3> normals,
                                                    VertexOutput output = VertexOutput::kPositions);

@@ -155,6 +155,10 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     }
     vertex_shift_ = shiftFor(vertex_count_);
     triangle_shift_ = shiftFor(triangle_count_);
+    const auto allocated = [&] {
+        return checkAllocated("a mesh of " + std::to_string(triangle_count_) + " triangles", "simplify it");
+    };
+    forgetGlErrors();
     for (GlTexture& positions : positions_) {
         positions = makeTexture2D(GL_RGB32F, 1 << vertex_shift_, rowsFor(vertex_count_, vertex_shift_),
                                   GL_RGB, GL_FLOAT);
@@ -167,6 +171,7 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     corners_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
                              texels.data());
     planes_ = makeTexture2D(GL_RGBA32UI, 1 << triangle_shift_, rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT);
+    RELIEF_TRY(allocated());
     planes_target_ = RELIEF_TRY(makeFramebuffer({planes_.name()}));
     planes_program_ = RELIEF_TRY(makeScreenProgram("depth_maps/triangle_plane.frag"));
     planes_program_.use();
@@ -187,7 +192,7 @@ Result<void> GpuMesh::createTextures(std::span<const glm::uvec3> triangles) {
     glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                  static_cast<GLsizeiptr>(slots.indices.size() * sizeof(std::uint32_t)), slots.indices.data(),
                  GL_STATIC_DRAW);
-    return {};
+    return allocated();
 }
 
 /// Fills the texture of the present positions.

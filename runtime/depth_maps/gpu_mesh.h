@@ -29,7 +29,7 @@ class GpuMesh {
     /// \param positions  finite, object space, at least one.
     /// \param triangles  at least one; anticlockwise seen from outside.
     /// Errors: kInvalidInput (an index beyond the positions, a position that is not finite, no triangle),
-    /// kLimit (more than this GL's textures or indices hold), kUnsupported, kFailure (the driver's compiler).
+    /// kLimit (more than this GL's textures or indices hold, no room), kUnsupported, kFailure (the driver's compiler).
     [[nodiscard]] static Result<GpuMesh> create(std::span<const glm::vec3> positions,
                                                 std::span<const glm::uvec3> triangles);
 

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
+#include <utility>
 
 #include "formats/base/finite.h"
 #include "runtime/gl/gl_fault.h"
@@ -76,7 +77,8 @@ Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
     forgetGlErrors();
     MeshRenderer renderer;
     for (const PictureMesh& mesh : meshes) {
-        renderer.meshes_.push_back({mesh, RELIEF_TRY(MeshBuffers::create(mesh))});
+        MeshBuffers buffers = RELIEF_TRY(MeshBuffers::create(mesh));
+        renderer.meshes_.push_back({mesh, std::move(buffers)});
     }
     renderer.surface_program_ =
         RELIEF_TRY(makeProgram("picture/mesh_surface.vert", "picture/mesh_surface.frag"));
@@ -85,11 +87,13 @@ Result<MeshRenderer> MeshRenderer::create(std::span<const PictureMesh> meshes) {
     renderer.shade_program_ = RELIEF_TRY(makeScreenProgram("picture/mesh_shade.frag"));
     for (ParallelMap* map : {&renderer.sun_, &renderer.zenith_}) {
         map->depth = makeTexture2D(GL_DEPTH_COMPONENT32F, kMapSide, kMapSide, GL_DEPTH_COMPONENT, GL_FLOAT);
-        map->framebuffer = RELIEF_TRY(makeFramebuffer({}, map->depth.name()));
     }
     renderer.prints_ = makeTexture2D(GL_R8, kPrintSide, kPrintSide, GL_RED, GL_UNSIGNED_BYTE);
-    renderer.prints_target_ = RELIEF_TRY(makeFramebuffer({renderer.prints_.name()}));
     RELIEF_TRY(checkAllocated("the meshes of a picture", "choose smaller ones"));
+    for (ParallelMap* map : {&renderer.sun_, &renderer.zenith_}) {
+        map->framebuffer = RELIEF_TRY(makeFramebuffer({}, map->depth.name()));
+    }
+    renderer.prints_target_ = RELIEF_TRY(makeFramebuffer({renderer.prints_.name()}));
     return renderer;
 }
 
@@ -108,10 +112,14 @@ Result<void> MeshRenderer::setPositions(std::size_t mesh, std::span<const glm::v
         to.buffers.setVertices(to.moving->mesh());
         return {};
     }
-    to.moving.emplace(to.shape);
-    to.moving->setPositions(positions);
-    to.buffers = RELIEF_TRY(MeshBuffers::create(to.moving->mesh()));
-    return checkAllocated("the meshes of a picture", "choose smaller ones");
+    MovingMesh moving(to.shape);
+    moving.setPositions(positions);
+    forgetGlErrors();
+    MeshBuffers buffers = RELIEF_TRY(MeshBuffers::create(moving.mesh()));
+    RELIEF_TRY(checkAllocated("the meshes of a picture", "choose smaller ones"));
+    to.moving = std::move(moving);
+    to.buffers = std::move(buffers);
+    return {};
 }
 
 void MeshRenderer::setVertices(std::size_t mesh, const GlBuffer& buffer) {

@@ -48,7 +48,8 @@ class MeshRenderer {
     [[nodiscard]] static Result<MeshRenderer> create(std::span<const PictureMesh> meshes);
 
     /// Other vertices for a mesh, of as many positions; its normals are made anew (MovingMesh).
-    /// Errors: kUsage (no such mesh, another number), kInvalidInput (a position that is not finite).
+    /// Errors: kUsage (no such mesh, another number), kInvalidInput (a position that is not finite), kLimit (no room); the mesh
+    /// then stays as it was.
     [[nodiscard]] Result<void> setPositions(std::size_t mesh, std::span<const glm::vec3> positions);
     /// As MeshBuffers::setVertices(). \param mesh  created with normals.
     void setVertices(std::size_t mesh, const GlBuffer& buffer);

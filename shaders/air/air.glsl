@@ -1,5 +1,5 @@
-// Forces on a particle besides collision and gravity. tests/runtime/air/air_reference.cpp is the same in C++;
-// runtime/air/air_block.h lists the defines. In a scene without any, none of it is compiled and the functions return 0.
+// Forces on a particle besides collision and gravity. runtime/air/air_block.h lists the defines. In a scene without any,
+// none of it is compiled and the functions return 0.
 //
 //     airVelocity        wind + flow + curl noise: acts through drag     object units a second
 //     fieldAcceleration  attractors and vortices                         object units a second squared

@@ -1,6 +1,5 @@
-// Turbulence without divergence; runtime/air/curl_noise.h explains it, and tests/runtime/air/air_reference.cpp is the same
-// in C++. Casts between int and uint keep
-// the bits; uint arithmetic wraps at 2^32.
+// Turbulence without divergence, by runtime/air/curl_noise.h. Casts between int and uint keep the bits; uint arithmetic wraps
+// at 2^32.
 
 uint curlHash(uint x) {
     x ^= x >> 16u;

@@ -45,6 +45,29 @@ inline constexpr float kHillsHalf = 100.0F;  ///< of the sides of hills, along x
 /// All of them as one mesh.
 [[nodiscard]] TriangleMesh joined(const std::vector<TriangleMesh>& meshes);
 
+/// Each vertex at to(vertex).
+template <class To>
+[[nodiscard]] TriangleMesh moved(TriangleMesh mesh, const To& to) {
+    for (glm::vec3& p : mesh.positions) {
+        p = glm::vec3(to(glm::dvec3(p)));
+    }
+    return finished(mesh.positions, mesh.triangles);
+}
+
+/// Without the triangles whose middle `gone` is true of.
+template <class Gone>
+[[nodiscard]] TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
+    std::vector<glm::uvec3> kept;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 sum = glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
+                               glm::dvec3(mesh.positions[t.z]);
+        if (!gone(sum / 3.0)) {
+            kept.push_back(t);
+        }
+    }
+    return finished(mesh.positions, kept);
+}
+
 /// Of a mesh that must be right.
 [[nodiscard]] MeshQuery queryOf(PreparedMesh mesh);
 

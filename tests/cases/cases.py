@@ -1,4 +1,4 @@
-"""Random cases, as tests/long/soak.sh cases runs them: the frame that the generators beside this file share.
+"""Random cases, as scripts/nightly.sh cases runs them: the frame that the generators beside this file share.
 
 A generator is a program, NAME_cases.py BIN [--seed N] [--cases N]. It draws its cases from Cases.random alone, so that
 a seed repeats them, runs the tools in BIN, and calls fail() for each answer that is wrong.

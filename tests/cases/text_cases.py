@@ -13,7 +13,7 @@ import subprocess
 
 import cases
 
-FORMATS = ["obj", "off", "ply", "stl"]
+FORMATS = ["obj", "off", "stl"]
 
 
 # --- the tool ---
@@ -125,18 +125,6 @@ def read_off(text):
     return polygons
 
 
-def read_ply(text):
-    head, body = re.split(r"end_header[ \t]*(?:\r\n?|\n)", text, maxsplit=1)
-    counts = {name: int(count) for name, count in re.findall(r"element (\w+) (\d+)", head)}
-    names = re.findall(r"property float (\w+)", head)
-    numbers = iter(body.split())
-    vertices = []
-    for _ in range(counts["vertex"]):
-        row = {name: float(next(numbers)) for name in names}
-        vertices.append([row["x"], row["y"], row["z"]])
-    return [[vertices[int(next(numbers))] for _ in range(int(next(numbers)))] for _ in range(counts["face"])]
-
-
 def read_stl(text):
     text = re.sub(r"(?im)^[ \t]*(end)?solid\b.*$", "", re.sub(r"\r\n?", "\n", text))
     numbers = re.findall(r"(?i)\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
@@ -144,7 +132,7 @@ def read_stl(text):
     return [vertices[i : i + 3] for i in range(0, len(vertices), 3)]
 
 
-READERS = {"obj": read_obj, "off": read_off, "ply": read_ply, "stl": read_stl}
+READERS = {"obj": read_obj, "off": read_off, "stl": read_stl}
 
 
 # --- files at random ---
@@ -263,24 +251,6 @@ def write_off(w, vertices, polygons):
         w.newline("#")
 
 
-def write_ply(w, vertices, polygons):
-    more = w.random.choice([[], ["nx", "ny", "nz"], ["quality"]])
-    names = ["x", "y", "z"] + more
-    for line in ["ply", "format ascii 1.0", "comment by hand", f"element vertex {len(vertices)}",
-                 *[f"property float {name}" for name in names], f"element face {len(polygons)}",
-                 "property list uchar int vertex_indices", "end_header"]:
-        w.put(line + (w.end or "\n"))
-    for vertex in vertices:
-        w.numbers(vertex + [0.25] * len(more))
-        w.newline()
-    for polygon in polygons:
-        w.put(str(len(polygon)))
-        for corner in polygon:
-            w.put(w.blank())
-            w.word(str(corner))
-        w.newline()
-
-
 def write_stl(w, vertices, polygons):
     case = w.random.choice([str, str, str.upper, str.capitalize])
     loose = w.random.random() < 0.3
@@ -317,7 +287,7 @@ def write_stl(w, vertices, polygons):
     w.newline()
 
 
-WRITERS = {"obj": write_obj, "off": write_off, "ply": write_ply, "stl": write_stl}
+WRITERS = {"obj": write_obj, "off": write_off, "stl": write_stl}
 
 
 # --- the comparison ---

@@ -1,132 +1,111 @@
-# Every mistake gets one clear line that names the file and the cure, and the right exit code; an older output stays as
-# it was.
+# Wrong calls and hostile files: one line that names the option or the file, the exit code that the manual gives, and an older
+# output that stays as it was. Unit tests show which values and files are refused; here every code, verb and kind of file
+# appears once.
 . "$(dirname "$0")/lib.sh"
 
-cat >good.obj <<'O'
-v 0 0 0
-v 1 0 0
-v 0 1 0
-v 0 0 1
-f 1 3 2
-f 1 2 4
-f 2 3 4
-f 3 1 4
-O
+tetrahedron good.obj
 "$relief" bake good.obj -o good.relief --paper --resolution 16 -q
-echo "precious" >old.relief
+echo precious >old.relief
+echo '0,0,0' >points.csv
 
-bake_fails() {
-    local code=$1 pattern=$2
-    shift 2
-    expect_error "$code" "$pattern" "$relief" bake "$@"
-    [ "$(cat old.relief)" = precious ] || die "an older output was touched: $*"
+bake_fails() { # CODE PATTERN ARGUMENT…
+    expect_error "$1" "$2" "$relief" bake "${@:3}"
+    [ "$(cat old.relief)" = precious ] || die "an older output was touched: ${*:3}"
 }
 
 # Meshes.
 bake_fails 2 'missing\.obj' missing.obj -o old.relief
-bake_fails 2 'a folder|is a directory' . -o old.relief
+bake_fails 2 'folder|directory' . -o old.relief
 echo hello >mesh.xyzzy
-bake_fails 5 'mesh\.xyzzy' mesh.xyzzy -o old.relief
+printf 'PK\3\4' >box.3mf
 : >empty.obj
-bake_fails 3 'empty\.obj' empty.obj -o old.relief
 printf 'v 0 0 0\nv 1 0 0\nl 1 2\n' >lines.obj
-bake_fails 3 'lines\.obj' lines.obj -o old.relief
-printf 'v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >nan.obj
-bake_fails 3 'nan\.obj' nan.obj -o old.relief
 printf 'v 0 0 1e999\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >inf.obj
-bake_fails 3 'inf\.obj' inf.obj -o old.relief
-head -c 4096 /dev/urandom >garbage.ply
-bake_fails 3 'garbage\.ply' garbage.ply -o old.relief
-head -c 4096 /dev/urandom >garbage.glb
-bake_fails 3 'garbage\.glb' garbage.glb -o old.relief
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' >flat.obj
-bake_fails 3 'flat\.obj' flat.obj -o old.relief
+head -c 4096 /dev/urandom >garbage.ply
+head -c 4096 /dev/urandom >garbage.glb
+for mesh in mesh.xyzzy box.3mf; do bake_fails 5 "$mesh" $mesh -o old.relief; done
+for mesh in empty.obj lines.obj inf.obj flat.obj garbage.ply garbage.glb; do bake_fails 3 "$mesh" $mesh -o old.relief; done
 
 # Outputs.
-bake_fails 2 'nowhere' good.obj -o nowhere/out.relief
-bake_fails 2 'out_dir' good.obj -o out_dir/ 2>/dev/null || true
 mkdir out_dir
-bake_fails 2 'out_dir' good.obj -o out_dir
-bake_fails 2 '/dev/full.*space' good.obj -o /dev/full
-bake_fails 1 'output' good.obj
+bake_fails 2 nowhere good.obj -o nowhere/out.relief
+bake_fails 2 out_dir good.obj -o out_dir
+bake_fails 2 /dev/full good.obj -o /dev/full
+bake_fails 1 output good.obj
+expect_error 2 /dev/full "$relief" query good.relief --points points.csv -o /dev/full
+expect_error 2 nowhere "$relief" slice good.relief --axis x --at 0 -o nowhere/out.png
+expect_error 2 'good\.obj' "$relief" export good.relief -o good.obj
+expect_error 2 'good\.obj' "$relief_sim" good.relief --steps 1 --frames good.obj
+expect_error 2 /dev/full "$relief_sim" good.relief --steps 1 --dump /dev/full
 
-# Sizes, keys, options.
-bake_fails 1 'size|resolution' good.obj -o old.relief --paper --resolution 0
-bake_fails 6 '16384' good.obj -o old.relief --paper --resolution 16385
-bake_fails 6 '16384' good.obj -o old.relief --map fixed8:size=20000
-bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=0
-bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=-4
-bake_fails 1 "fixed8" good.obj -o old.relief --map fixd8
-bake_fails 1 "compare" good.obj -o old.relief --map fixed8:comare=less
-bake_fails 1 'less.*greater|greater.*less' good.obj -o old.relief --map fixed8:compare=lesser
-bake_fails 1 'dir' good.obj -o old.relief --map fixed8:dir=0/0/0
-bake_fails 1 'dir' good.obj -o old.relief --map fixed8:dir=up
-bake_fails 1 'dir' good.obj -o old.relief --map cube:dir=+x
-bake_fails 1 'compare' good.obj -o old.relief --map front-back:compare=less
-bake_fails 1 'center' good.obj -o old.relief --map fixed8:center=0/0/0
-bake_fails 1 'size' good.obj -o old.relief --map fixed8:size=4,size=8
-bake_fails 1 'parallel' good.obj -o old.relief --map fixed8:dir=+x,up=-x
-bake_fails 1 'decode.*plane' good.obj -o old.relief --map fixed8 --decode plain
-bake_fails 1 'depth.*unorm16' good.obj -o old.relief --map front-back --depth 16
-bake_fails 1 'resolution' good.obj -o old.relief --resolutoin 16
-expect_error 1 'bake' "$relief" bkae good.obj
+# Options.
+while read -r code pattern options; do
+    # shellcheck disable=SC2086
+    bake_fails "$code" "$pattern" good.obj -o old.relief $options
+done <<'O'
+1 resolution --paper --resolution 0
+6 16384 --paper --resolution 16385
+6 16384 --map fixed8:size=20000
+1 fixed8 --map fixd8
+1 compare --map fixed8:comare=less
+1 decode --map fixed8 --decode plain
+1 resolution --resolutoin 16
+1 thickness --thickness -1
+1 holes --holes fill
+O
+expect_error 1 bake "$relief" bkae good.obj
 expect_error 1 '' "$relief"
+expect_error 1 'png|exr' "$relief" slice good.relief --axis x --at 0 -o out.bmp
+expect_error 1 axis "$relief" slice good.relief --axis w --at 0 -o out.png
+expect_error 1 steps "$relief_sim" good.relief --steps -1
+expect_error 6 99999 "$relief_sim" good.relief --steps 1 --frames frames --size 99999x99999
 
 # Containers: every verb that reads one.
 head -c 1000 good.relief >truncated.relief
 cp good.relief altered.relief
 printf '\x55' | dd of=altered.relief bs=1 seek=700 conv=notrunc status=none
 : >empty.relief
-echo points >points.csv
-echo "0,0,0" >points.csv
 for file in truncated altered empty; do
     expect_error 3 "$file\.relief" "$relief" info $file.relief
     expect_error 3 "$file\.relief" "$relief" query $file.relief --points points.csv -o out.csv
     expect_error 3 "$file\.relief" "$relief" slice $file.relief --axis x --at 0 -o out.png
     expect_error 3 "$file\.relief" "$relief" export $file.relief -o out
-    expect_error 3 "$file\.relief" "$relief_sim" $file.relief --steps 1
+    expect_error 3 "$file\.relief" "$relief_sim" $file.relief --check
 done
 expect_error 2 'missing\.relief' "$relief" info missing.relief
 expect_error 2 'missing\.relief' "$relief_sim" missing.relief
-expect_error 3 'good\.obj' "$relief" info good.obj
 
-# Points.
+# A mesh in place of a collider: each verb names the bake that makes one. Contents count more than the name.
+bake_first="'good\.obj' is a mesh.*relief bake 'good\.obj' -o 'good\.relief'"
+expect_error 3 "$bake_first" "$relief" info good.obj
+expect 3 "$relief" check good.obj
+grep -q '^RLF-1002 fatal' stdout && grep -qE "$bake_first" stderr || die "check of a mesh: $(cat stdout stderr)"
+expect_error 3 "$bake_first" "$relief" check good.obj --mesh good.obj
+expect_error 3 "$bake_first" "$relief" slice good.obj -o s.png
+expect_error 3 "$bake_first" "$relief" export good.obj -o maps
+expect_error 3 "$bake_first" "$relief" query good.obj --points points.csv -o out.csv
+expect_error 3 "$bake_first" "$relief" view good.obj -o page.html
+expect_error 3 "$bake_first" "$relief_sim" good.obj --check
+cp good.relief collider.ply
+expect 0 "$relief" info collider.ply
+
+# Points and scenes.
 printf '0,0,0\n1,2\n' >short.csv
 expect_error 3 'short\.csv:2' "$relief" query good.relief --points short.csv -o out.csv
-printf '0,0,0\n1,2,x\n' >word.csv
-expect_error 3 'word\.csv:2' "$relief" query good.relief --points word.csv -o out.csv
-printf '0,nan,0\n' >nan.csv
-expect_error 3 'nan\.csv:1' "$relief" query good.relief --points nan.csv -o out.csv
 expect_error 2 'missing\.csv' "$relief" query good.relief --points missing.csv -o out.csv
-expect_error 2 '/dev/full' "$relief" query good.relief --points points.csv -o /dev/full
-
-# Slices and exports.
-expect_error 1 'w' "$relief" slice good.relief --axis w --at 0 -o out.png
-expect_error 1 'size' "$relief" slice good.relief --axis x --at 0 --size 0 -o out.png
-expect_error 1 'png|exr' "$relief" slice good.relief --axis x --at 0 -o out.bmp
-expect_error 2 'nowhere' "$relief" slice good.relief --axis x --at 0 -o nowhere/out.png
-expect_error 2 'good\.obj' "$relief" export good.relief -o good.obj
-
-# Scenes.
-scene_fails() {
-    local code=$1 pattern=$2
+scene_fails() { # CODE PATTERN TEXT
     printf '%s\n' "$3" >scene.toml
-    expect_error "$code" "$pattern" "$relief_sim" scene.toml --steps 1
+    expect_error "$1" "scene\.toml:$2" "$relief_sim" scene.toml --steps 1
 }
-scene_fails 2 'scene\.toml.*missing\.relief|missing\.relief.*scene\.toml' $'[collider]\nfile = "missing.relief"'
-scene_fails 3 'scene\.toml:3:1.*gravty' $'[collider]\nfile = "good.relief"\ngravty = 1'
-scene_fails 3 'scene\.toml:4:' $'[collider]\nfile = "good.relief"\n[collision]\nrestitution = 7'
-scene_fails 3 'scene\.toml:4:' $'[collider]\nfile = "good.relief"\n[collision]\nrestitution = "much"'
-scene_fails 3 'scene\.toml:2:' $'[collider]\nfile = '
+scene_fails 2 '2:8.*missing\.relief' $'[collider]\nfile = "missing.relief"'
+scene_fails 3 '2:8.*good\.obj' $'[collider]\nfile = "good.obj"'
+scene_fails 3 '3:1.*gravty' $'[collider]\nfile = "good.relief"\ngravty = 1'
+scene_fails 3 '4:.*restitution' $'[collider]\nfile = "good.relief"\n[collision]\nrestitution = 7'
+scene_fails 3 '2:' $'[collider]\nfile = '
 expect_error 2 'missing\.toml' "$relief_sim" missing.toml
-expect_error 1 'steps' "$relief_sim" good.relief --steps -1
-expect_error 1 'size' "$relief_sim" good.relief --steps 1 --frames frames --size 0x10
-expect_error 6 '[0-9]{4,}' "$relief_sim" good.relief --steps 1 --frames frames --size 99999x99999
-expect_error 2 'good\.obj' "$relief_sim" good.relief --steps 1 --frames good.obj
-expect_error 2 '/dev/full' "$relief_sim" good.relief --steps 1 --dump /dev/full
 
-# --- inputs that would wait for ever, and inputs that an output would destroy ---
-
+# Files that would wait for ever.
 mkfifo waits.obj waits.relief waits.toml
 for command in "bake waits.obj -o w.relief" "info waits.relief" "check waits.relief" "query waits.relief --points 0/0/0" \
     "bake --recipe waits.toml"; do
@@ -137,19 +116,14 @@ for command in "bake waits.obj -o w.relief" "info waits.relief" "check waits.rel
 done
 code=0
 timeout 20 "$relief_sim" waits.toml >/dev/null 2>stderr || code=$?
-[ "$code" -eq 2 ] && grep -q "waits.toml.*it is a pipe" stderr || die "a scene that is a pipe: $code, $(cat stderr)"
+[ "$code" -eq 2 ] && grep -q waits.toml stderr || die "a scene that is a pipe: $code, $(cat stderr)"
 
-mkdir refers && cd refers
-cp /usr/share/assimp/models/glTF2/BoxTextured-glTF/BoxTextured* .
-printf 'newmtl m\n' >m.mtl
-printf 'mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >m.obj
-sha256sum ./* >before
-for outputs in "-o BoxTextured0.bin" "-o x.relief --plan-out BoxTextured0.bin" "-o x.relief --depfile BoxTextured0.bin"; do
+# Help leads with an example and is no wider than 120 columns, for every verb.
+for command in "$relief" "$relief_sim" "$relief bake" "$relief info" "$relief check" "$relief query" "$relief slice" "$relief view" "$relief export"; do
     # shellcheck disable=SC2086
-    expect 1 "$relief" bake BoxTextured.gltf $outputs -q
-    grep -q "'BoxTextured0.bin' is the input" ../stderr || die "a buffer as an output: $(cat ../stderr)"
+    expect 0 $command --help
+    head -8 stdout | matches "${command#"$RELIEF_BIN"/} " || die "help of $command does not lead with an example"
+    ! awk 'length > 120 && !/^  relief/' stdout | grep . || die "too wide: $command --help"
 done
-expect 1 "$relief" bake m.obj -o m.mtl -q
-sha256sum --quiet -c before || die "an input was destroyed"
-[ ! -e x.relief ] || die "half of a bake was written"
-cd ..
+expect 0 "$relief" --version
+grep -qE '[0-9]+\.[0-9]+\.[0-9]+' stdout || die "no version"

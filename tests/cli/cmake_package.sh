@@ -1,6 +1,5 @@
 # The installed tree from outside: the links of its pages work; Python imports its package; the CMake project of scripts/install/README.md builds, runs,
-# and bakes again exactly what changed; the sample in a window builds by pkg-config alone; a build without the baker installs
-# the runtime.
+# and bakes again exactly what changed; the sample in a window builds by pkg-config alone.
 . "$(dirname "$0")/lib.sh"
 build="$RELIEF_BIN/.."
 prefix="$work/a prefix"
@@ -167,21 +166,3 @@ echo '# touched' >>recipe/box.mtl
 cmake --build recipe/out >log 2>&1
 grep -q 'Baking the colliders' log || die "a material of a recipe is not watched"
 cmake --build recipe/out | matches 'no work to do' || die "the recipe is baked twice"
-
-# Without the baker. What both builds compile alike is copied, not compiled again (tests/long/soak.sh package does that).
-cmake -G Ninja -S "$RELIEF_SOURCE" -B runtime_only -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_OPENVDB=OFF \
-    -DRELIEF_BUILD_BENCHMARKS=OFF >log 2>&1 || die "does not configure without the baker: $(tail -20 log)"
-for file in formats/librelief_formats.a runtime/librelief_runtime.a runtime/librelief_c.a lib/librelief.so.1.2 lib/librelief.so.1 lib/librelief.so bin/relief-sim \
-    install/pages/relief-sim.1; do
-    mkdir -p "runtime_only/$(dirname $file)"
-    cp -rP "$build/$file" runtime_only/$file
-done
-cmake --install runtime_only --prefix "$work/runtime" >log || die "cannot install without the baker: $(tail log)"
-[ -x runtime/bin/relief-sim ] && [ ! -e runtime/bin/relief ] && [ -f runtime/share/man/man1/relief-sim.1 ] ||
-    die "installed without the baker: $(ls runtime/*)"
-export CMAKE_PREFIX_PATH=$work/runtime
-refused 'no component bake' 'find_package(Relief REQUIRED COMPONENTS runtime bake)'
-refused 'tool .relief. is not installed' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c RECIPE a.toml)'
-sed -i -e 's/ COMPONENTS.*)/ COMPONENTS runtime sim)/' -e '/^relief_add_colliders/,$d' consumer/CMakeLists.txt
-cmake -G Ninja -S consumer -B out2 >log 2>&1 && cmake --build out2 >>log 2>&1 || die "no runtime alone: $(tail log)"
-expect 0 out2/snowfall out/bunny.relief

@@ -1,5 +1,5 @@
 # The choice of Embree: what calls it compiles as of Embree 4 (tests/bake/mesh/embree4), and another number is refused.
-# tests/long/soak.sh embree4 builds all of it so, and compares bytes.
+# scripts/nightly.sh embree4 builds all of it so, and compares bytes.
 . "$(dirname "$0")/lib.sh"
 
 mapfile -t files < <(cd "$RELIEF_SOURCE" && grep -lE '\brtc[A-Z]|\bRTC|RayQuery' bake/*/*.cpp)

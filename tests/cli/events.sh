@@ -1,4 +1,5 @@
-# relief-sim --events: the hits of a run, as closed forms and the particles' own counts say.
+# relief-sim --events and [[spawn]]: the hits of a run and the births that they cause, as closed forms and the particles' own
+# counts give them, for each API and path.
 . "$(dirname "$0")/lib.sh"
 
 "$relief" bake "$bunny" -o bunny.relief --paper --resolution 64 -q
@@ -28,8 +29,8 @@ height = 0.75
 on_collision = "stop"
 S
 "$relief_sim" drop.toml --events hits.jsonl -q
-cat >check.py <<'P'
-import json, math
+python3 - <<'P'
+import json
 hits = [json.loads(line) for line in open('hits.jsonl')]
 assert len(hits) == 4, hits
 dt = 1 / 128
@@ -42,49 +43,30 @@ inside = (1.25 - before) / (fall - before)
 for i, hit in enumerate(hits):
     # A drop is born at the start of the step that ends at its moment.
     born = i + 1 - dt
-    assert hit['id'] == i and hit['type'] == 0 and hit['body'] is None, hit
+    assert hit['id'] == i and hit['type'] == 0 and hit['body'] is None and hit['normal'] == [0, 1, 0], hit
     assert hit['step'] == round(born / dt) + n, hit
     assert abs(hit['time'] - (born + dt * (n - 1 + inside))) < 1e-4, hit
-    assert hit['normal'] == [0, 1, 0]
     assert all(abs(a - b) < 1e-4 for a, b in zip(hit['position'], [7 + 0.25 * (hit['time'] - born), 0.75, 0.5])), hit
     assert abs(hit['speed'] - 9.8 * dt * n) < 1e-4, hit
     assert abs(hit['velocity'][0] - 0.25) < 1e-6 and hit['velocity'][1] == -hit['speed'], hit
 P
-python3 check.py
 expect 0 "$relief_sim" drop.toml --events none.jsonl --events-min-speed 5 -q
 [ ! -s none.jsonl ] || die "--events-min-speed leaves slower hits in"
 expect 0 "$relief_sim" drop.toml --events all.jsonl --events-min-speed 4.5 -q
 cmp all.jsonl hits.jsonl
 
-# Snow on the bunny: hits lie on it, the same for each API and path, and nothing else changes.
-cat >snow.toml <<'S'
-[collider]
-file = "bunny.relief"
-[time]
-steps = 80
-[particles]
-capacity = 3000
-[emitter]
-burst = 2000
-lifetime = [0.1, 3.0]
-[ground]
-enabled = false
-S
+# Snow on the bunny: hits lie on it, and a log of them changes nothing.
+printf '%s\n' '[collider]' 'file = "bunny.relief"' '[time]' 'steps = 80' '[particles]' 'capacity = 3000' '[emitter]' 'burst = 2000' \
+    'lifetime = [0.1, 3.0]' '[ground]' 'enabled = false' >snow.toml
 "$relief_sim" snow.toml --dump without.ply -q
-for path in fragment compute; do
-    for api in gl gles; do
-        expect 0 "$relief_sim" snow.toml --dump with.ply --events $path.$api --path $path --api $api -q
-        [ $path.$api = fragment.gl ] && cmp with.ply without.ply
-        cmp $path.$api fragment.gl || die "the $path path of $api has other hits"
-    done
-done
+"$relief_sim" snow.toml --dump with.ply --events snow.jsonl -q
+cmp with.ply without.ply || die "--events changes the particles"
 python3 - <<'P'
 import json
-hits = [json.loads(line) for line in open('fragment.gl')]
-assert len(hits) > 200, len(hits)
-assert all(hit['body'] == 0 for hit in hits)
-key = [(hit['step'], hit['time']) for hit in hits]
-assert [k[0] for k in key] == sorted(k[0] for k in key)
+hits = [json.loads(line) for line in open('snow.jsonl')]
+assert len(hits) > 200 and all(hit['body'] == 0 for hit in hits), len(hits)
+steps = [hit['step'] for hit in hits]
+assert steps == sorted(steps)
 with open('points.csv', 'w') as out:
     for hit in hits:
         out.write(','.join(repr(c) for c in hit['position']) + '\n')
@@ -92,17 +74,82 @@ P
 "$relief" query bunny.relief --points points.csv -o field.csv -q
 python3 - <<'P'
 import csv
-fields = [float(line['f']) for line in csv.DictReader(open('field.csv'))]
-off = sorted(abs(field) for field in fields)
+off = sorted(abs(float(line['f'])) for line in csv.DictReader(open('field.csv')))
 assert off[len(off) // 2] < 0.004 and off[-1] < 0.1, off  # a texel is 0.03
 P
-"$relief_sim" snow.toml --events - 2>text | cmp - fragment.gl || die "--events - differs"
+"$relief_sim" snow.toml --events - 2>text | cmp - snow.jsonl || die "--events - differs"
 grep -q '80 steps' text || die "the summary is not on stderr beside --events -"
-
 expect_error 1 '--events-min-speed' "$relief_sim" snow.toml --events-min-speed 1
-expect_error 1 '--events-min-speed' "$relief_sim" snow.toml --events e --events-min-speed -1
 expect_error 1 '--events' "$relief_sim" snow.toml --events - --json
-expect_error 1 '--events' "$relief_sim" snow.toml --events - --dump -
 expect_error 1 '--check' "$relief_sim" snow.toml --check --events e
 expect_error 2 'nowhere.*--events' "$relief_sim" snow.toml --events nowhere/e.jsonl
 expect_error 2 '/dev/full.*--events' "$relief_sim" snow.toml --events /dev/full
+
+# [[spawn]]: 300 drops die where they hit, with five births each and two for each death, up to the limits.
+cat >splash.toml <<'S'
+[collider]
+file = "bunny.relief"
+[time]
+dt = 0.0078125
+steps = 200
+[particles]
+capacity = 5000
+[emitter]
+box_min = [6.0, 1.0, -1.0]
+box_max = [8.0, 3.0, 1.0]
+burst = 300
+rate = 0.0
+lifetime = 50.0
+[forces]
+gravity = [0.0, -9.8, 0.0]
+drag = 0.0
+[ground]
+height = 0.0
+[[type]]
+name = "drop"
+on_collision = "die"
+[[type]]
+name = "splash"
+on_collision = "stop"
+[render]
+size = [64, 48]
+[[spawn]]
+on = "death"
+of = "drop"
+type = "splash"
+count = 2
+lifetime = 40
+[[spawn]]
+on = "collision"
+of = "drop"
+type = "splash"
+count = 5
+speed = [0.5, 1.0]
+kick = 0.1
+lifetime = 40
+S
+born() { # SED_SCRIPT EXPRESSION: births and those refused after a change of the scene
+    sed "$1" splash.toml >changed.toml
+    expect 0 "$relief_sim" changed.toml --events hits.jsonl --json
+    python3 -c "import json; p = json.load(open('stdout'))['particles']; born, refused = p['born'], p['refused']; assert $2, p"
+}
+born '' '(born, refused) == (2400, 0)'
+python3 - <<'P'
+import json
+hits = [json.loads(line) for line in open('hits.jsonl')]
+drops = [hit for hit in hits if hit['type'] == 0]
+assert len(drops) == 300 == len({hit['id'] for hit in drops}), len(drops)
+assert all(hit['id'] >= 300 for hit in hits if hit['type'] == 1) and len(hits) > 1000
+P
+born 's/5000/700/' '(born, refused) == (700, 1700)'
+born '$amost = 7' 'born + refused == 2400 and 300 < born < 2100'
+born 's/^lifetime = 50.0/lifetime = [0.05, 0.05]/' '(born, refused) == (900, 0)'
+"$relief_sim" splash.toml --dump wanted.ply -q
+for path in fragment compute; do
+    for api in gl gles; do
+        "$relief_sim" splash.toml --dump other.ply --path $path --api $api --events e.jsonl --frames frames -q
+        cmp other.ply wanted.ply || die "the $path path of $api has other particles, or logs and pictures change them"
+    done
+done
+sed 's/"death"/"birth"/' splash.toml >wrong.toml
+expect_error 3 'wrong\.toml:28:6:' "$relief_sim" wrong.toml

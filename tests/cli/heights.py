@@ -1,18 +1,19 @@
-"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, flat, step (before sample 20), step65 or rgb; by the name of FILE a PNG or raw samples.
+"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, step65 (at sample 65) or rgb; by the name of FILE a PNG or raw samples.
 
-heights.py --below DUMP.ply HIGH: how far any particle lies below such hills at 1 m, whose sample 65535 is HIGH; and the highest y.
+heights.py --below DUMP.ply HIGH MOST: fails if one of more than 3,000 particles lies MOST below such hills at 1 m, whose sample
+65535 is HIGH.
 """
 import math
 import struct
 import sys
 import zlib
 
+import ply
+
 
 def sample(kind, x, z):
-    if kind == 'flat':
-        return 1234
-    if kind in ('step', 'step65'):
-        return 1000 if x < (65 if kind == 'step65' else 20) else 3000
+    if kind == 'step65':
+        return 1000 if x < 65 else 3000
     return round(20000 + 9000 * math.sin(x / 11) + 6000 * math.cos(z / 7))
 
 
@@ -24,19 +25,11 @@ def surface(x, z):
             t * ((1 - s) * sample('hills', i, j + 1) + s * sample('hills', i + 1, j + 1)))
 
 
-def below(dump, high):
-    with open(dump, 'rb') as file:
-        head, body = file.read().split(b'end_header\n', 1)
-    words = [line.split() for line in head.decode().splitlines()]
-    count = next(int(line[2]) for line in words if line[:2] == ['element', 'vertex'])
-    form = '<' + ''.join({'float': 'f', 'int': 'i', 'uint': 'I', 'uchar': 'B'}[line[1]] for line in words if line[0] == 'property')
-    names = [line[2] for line in words if line[0] == 'property']
-    deepest = highest = -math.inf
-    for values in struct.iter_unpack(form, body[:count * struct.calcsize(form)]):
-        at = dict(zip(names, values))
-        deepest = max(deepest, surface(at['x'], at['z']) * float(high) / 65535 - at['y'])
-        highest = max(highest, at['y'])
-    print(count, deepest, highest)
+def below(dump, high, most):
+    particles = ply.read(dump)
+    deepest = max(surface(at['x'], at['z']) * float(high) / 65535 - at['y'] for at in particles)
+    if len(particles) <= 3000 or deepest >= float(most):
+        sys.exit(f'{len(particles)} particles, the deepest {deepest} below the hills')
 
 
 def chunk(name, data):

@@ -6,7 +6,7 @@ relief_sim="$RELIEF_BIN/relief-sim"
 bunny=/usr/share/glmark2/models/bunny.obj
 models=/usr/share/assimp/models
 work=$(mktemp -d)
-export PYTHONPATH=$RELIEF_SOURCE/tests/cli PYTHONDONTWRITEBYTECODE=1 # processes.py
+export PYTHONPATH=$RELIEF_SOURCE/tests/cli PYTHONDONTWRITEBYTECODE=1 # ply.py, processes.py
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 
@@ -49,6 +49,20 @@ gone() {
 # COMMAND | matches PATTERN…: as grep -q, but reads to the end, so that COMMAND never fails by SIGPIPE.
 matches() {
     grep "$@" >/dev/null
+}
+
+# tetrahedron FILE [SIZE]: at the origin, as OBJ.
+tetrahedron() {
+    printf 'v 0 0 0\nv %s 0 0\nv 0 %s 0\nv 0 0 %s\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' "${2:-1}" "${2:-1}" "${2:-1}" >"$1"
+}
+
+# box FILE X Y Z: from (-X, -Y, -Z) to (X, Y, Z), as OBJ of six squares; the first is the side of -Z.
+box() {
+    {
+        printf "v %s %s %s\n" "-$2" "-$3" "-$4" "$2" "-$3" "-$4" "$2" "$3" "-$4" "-$2" "$3" "-$4" \
+            "-$2" "-$3" "$4" "$2" "-$3" "$4" "$2" "$3" "$4" "-$2" "$3" "$4"
+        printf 'f %s\n' '4 3 2 1' '5 6 7 8' '1 2 6 5' '3 4 8 7' '2 3 7 6' '1 5 8 4'
+    } >"$1"
 }
 
 # json FILE EXPRESSION: evaluates a Python expression over the document `d`; must be true.

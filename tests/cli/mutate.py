@@ -5,7 +5,6 @@
 """
 import copy
 import json
-import math
 import os
 import random
 import re
@@ -13,85 +12,12 @@ import struct
 import sys
 
 MODELS = '/usr/share/assimp/models/'
-PACKAGED = ['OBJ/box.obj', 'PLY/cube.ply', 'PLY/cube_binary.ply', 'glTF2/BoxTextured-glTF-Binary/BoxTextured.glb',
-            'glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf']
-
-# --- seed meshes: five of assimp's, six of our own ---
-
-
-def sphere():
-    """Positions and triangles of a ball of 26 corners."""
-    rings, around = 4, 8
-    points = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
-    for i in range(1, rings):
-        for k in range(around):
-            a, b = math.pi * i / rings, 2 * math.pi * k / around
-            points.append((round(math.sin(a) * math.cos(b), 4), round(math.sin(a) * math.sin(b), 4),
-                           round(math.cos(a), 4)))
-    def at(ring, k):
-        return 2 + (ring - 1) * around + k % around
-    triangles = []
-    for k in range(around):
-        triangles.append((0, at(1, k), at(1, k + 1)))
-        triangles.append((1, at(rings - 1, k + 1), at(rings - 1, k)))
-        for ring in range(1, rings - 1):
-            triangles.append((at(ring, k), at(ring + 1, k), at(ring + 1, k + 1)))
-            triangles.append((at(ring, k), at(ring + 1, k + 1), at(ring, k + 1)))
-    return points, triangles
-
-
-def sphere_obj(points, triangles):
-    lines = ['# a ball', 'mtllib ball.mtl', 'o ball']
-    lines += ['v %g %g %g' % p for p in points] + ['vt 0 0', 'vt 1 0.5'] + ['vn %g %g %g' % p for p in points]
-    lines += ['g upper', 'usemtl red', 's 1']
-    for i, t in enumerate(triangles):
-        if i % 3 == 0:
-            lines.append('f ' + ' '.join('%d' % (k - len(points)) for k in t))  # counted from the last
-        else:
-            lines.append('f ' + ' '.join('%d/%d/%d' % (k + 1, 1 + k % 2, k + 1) for k in t))
-    return ('\n'.join(lines) + '\n').encode()
-
-
-def sphere_stl_text(points, triangles):
-    text = 'solid ball\n'
-    for t in triangles:
-        text += ' facet normal 0 0 0\n  outer loop\n'
-        text += ''.join('   vertex %g %g %g\n' % points[k] for k in t) + '  endloop\n endfacet\n'
-    return (text + 'endsolid ball\n').encode()
-
-
-def sphere_stl_binary(points, triangles):
-    data = b'a ball'.ljust(80) + struct.pack('<I', len(triangles))
-    for t in triangles:
-        data += struct.pack('<3f', 0, 0, 0) + b''.join(struct.pack('<3f', *points[k]) for k in t) + b'\0\0'
-    return data
-
-
-def sphere_ply(points, triangles):
-    head = ('ply\nformat binary_big_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\n'
-            'property float z\nproperty uchar red\nelement face %d\nproperty list uchar int vertex_indices\n'
-            'end_header\n' % (len(points), len(triangles)))
-    return (head.encode() + b''.join(struct.pack('>3fB', *p, 9) for p in points) +
-            b''.join(struct.pack('>B3i', 3, *t) for t in triangles))
-
-
-def sphere_gltf(points, triangles):
-    """A document of three nodes, and its buffer."""
-    positions = b''.join(struct.pack('<3f', *p) for p in points)
-    indices = b''.join(struct.pack('<3H', *t) for t in triangles)
-    low, high = ([f(p[k] for p in points) for k in range(3)] for f in (min, max))
-    document = {
-        'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}],
-        'nodes': [{'children': [1, 2], 'scale': [2, 1, 1]}, {'mesh': 0, 'translation': [1, 0, 0]},
-                  {'mesh': 0, 'rotation': [0, 0.6, 0, 0.8]}],
-        'meshes': [{'primitives': [{'attributes': {'POSITION': 0}, 'indices': 1, 'mode': 4}]}],
-        'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': len(points), 'type': 'VEC3', 'min': low,
-                       'max': high},
-                      {'bufferView': 1, 'componentType': 5123, 'count': 3 * len(triangles), 'type': 'SCALAR'}],
-        'bufferViews': [{'buffer': 0, 'byteLength': len(positions)},
-                        {'buffer': 0, 'byteOffset': len(positions), 'byteLength': len(indices)}],
-        'buffers': [{'byteLength': len(positions) + len(indices)}]}
-    return document, positions + indices
+# Path below MODELS, what a table calls it, and the file beside it.
+PACKAGED = [('OBJ/box.obj', 'OBJ', None), ('PLY/cube.ply', 'PLY, text', None),
+            ('PLY/cube_binary.ply', 'PLY, binary', None), ('STL/Spider_ascii.stl', 'STL, text', None),
+            ('STL/Spider_binary.stl', 'STL, binary', None), ('glTF2/BoxTextured-glTF-Binary/BoxTextured.glb', 'glb', None),
+            ('glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf', 'glTF', None),
+            ('glTF2/BoxTextured-glTF/BoxTextured.gltf', 'glTF', 'BoxTextured0.bin')]
 
 
 def glb(text, rest):
@@ -102,21 +28,12 @@ def glb(text, rest):
 
 def seeds():
     """Each a name, what a table calls it, bytes, and the files beside it by name."""
-    ball = sphere()
-    document, buffer = sphere_gltf(*ball)
-    rest = struct.pack('<II', len(buffer), 0x004E4942) + buffer
-    binary = glb(json.dumps(document).encode(), rest)
-    document['buffers'][0]['uri'] = 'ball.bin'
-    text = json.dumps(document, indent=1).encode()
-    made = [('ball.obj', 'OBJ', sphere_obj(*ball), {}), ('ball.stl', 'STL, text', sphere_stl_text(*ball), {}),
-            ('ball_binary.stl', 'STL, binary', sphere_stl_binary(*ball), {}),
-            ('ball_binary.ply', 'PLY, binary', sphere_ply(*ball), {}),
-            ('ball.gltf', 'glTF', text, {'ball.bin': buffer}), ('ball.glb', 'glb', binary, {})]
-    kinds = ['OBJ', 'PLY, text', 'PLY, binary', 'glb', 'glTF']
-    for path, kind in zip(PACKAGED, kinds):
+    def read(path):
         with open(MODELS + path, 'rb') as file:
-            made.append((os.path.basename(path), kind, file.read(), {}))
-    return made
+            return file.read()
+
+    return [(os.path.basename(path), kind, read(path), {beside: read(os.path.join(os.path.dirname(path), beside))} if beside else {})
+            for path, kind, beside in PACKAGED]
 
 
 # --- mutations ---

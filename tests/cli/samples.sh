@@ -1,5 +1,5 @@
-# The samples' scenes with a fortieth of their particles: every scene is valid, pictures show something, and particles are
-# outside the bodies, by the formulas that the bodies were made from.
+# The samples' scenes with a fortieth of their particles: every scene is valid and plays, pictures show something, and particles
+# are outside the bodies that rest, by the formulas that these were made from. Unit tests show those that move.
 . "$(dirname "$0")/lib.sh"
 
 samples=$RELIEF_SOURCE/samples
@@ -22,18 +22,14 @@ python3 "$samples/village.py" .
 "$relief" bake village.glb --world world --budget 2MB --quality fast -q
 "$relief" bake kitchen.gltf -o kitchen.relief --quality fast -q
 
-# Meshes have the same bytes each time, and wrong arguments are refused.
-mesh torus.obj
-python3 "$samples/meshes.py" torus again.obj
-cmp torus.obj again.obj || die "meshes.py makes another torus each time"
-python3 "$samples/walker.py" again.gltf
-cmp walker.gltf again.gltf || die "walker.py makes another figure each time"
+# Meshes have the same bytes each time.
+mkdir again
+python3 "$samples/meshes.py" torus again/torus.obj
+for name in walker kitchen; do python3 "$samples/$name.py" again/$name.gltf; done
 python3 "$samples/village.py" again
-cmp village.glb again/village.glb || die "village.py makes another village each time"
-diff -r meshes again/meshes || die "village.py makes other meshes each time"
-python3 "$samples/kitchen.py" again.gltf
-cmp kitchen.gltf again.gltf || die "kitchen.py makes another corner each time"
-! python3 "$samples/meshes.py" cube cube.obj 2>/dev/null || die "meshes.py makes what it does not know"
+for name in torus.obj walker.gltf kitchen.gltf village.glb meshes; do
+    diff -r $name again/$name || die "$name is another each time"
+done
 
 # Every scene in the folder passes --check, so that none is forgotten.
 for scene in "$samples"/*.toml; do
@@ -82,18 +78,14 @@ expect 0 "$relief_sim" kitchen.toml --events hits.ndjson -q
 play kitchen 480
 
 cat >particles.py <<'P'
-import struct
+import ply
 
 def read(name):
     """Of each particle: x y z, velocity, type."""
-    head, body = open('end_' + name, 'rb').read().split(b'end_header\n', 1)
-    names = [l.split()[2] for l in head.decode().splitlines() if l.startswith('property')]
-    record = struct.Struct('<' + ''.join('I' if n in ('id', 'type') else 'f' for n in names))
-    for values in record.iter_unpack(body):
-        p = dict(zip(names, values))
+    for p in ply.read('end_' + name):
         yield (p['x'], p['y'], p['z']), (p['vx'], p['vy'], p['vz']), p['type']
 P
-export PYTHONPATH=$work:$samples
+export PYTHONPATH=$PYTHONPATH:$work:$samples
 
 # Snow: born for 4 of 5 seconds, none dies; most lies still, on the bunny too, and none below the floor.
 json bunny_in_the_snow.json "d['particles']['died'] == 0"
@@ -178,34 +170,7 @@ plates = sum(over(p, kitchen.PLATE_TOP) and any(math.hypot(p[0] - x, p[2] - z) <
 assert plates == 0, plates
 P
 
-# Walkers, at 60/120 s: outside all their capsules, which walker.py places, wherever these were driven to.
-python3 - <<'P'
-import math, particles, walker
-time = 60 / 120
-bodies = [((-0.55, -1.6 + 4.727 * time / 4), 0, time), ((0.55, -2.3 + 4.727 * time / 4), 0, 0.4 + time),
-          ((1.5 - 3.686 * time / 4, 1.4 + 2.128 * time / 4), -60, 0.75 + 0.9 * time)]
-drops = [p for p, _, _ in particles.read('walker.ply')]
-assert len(drops) > 1000, len(drops)
-
-def distance(p, a, b, radius):
-    way = [y - x for x, y in zip(a, b)]
-    t = sum((x - y) * w for x, y, w in zip(p, a, way)) / sum(w * w for w in way)
-    return math.dist(p, [x + min(max(t, 0), 1) * w for x, w in zip(a, way)]) - radius
-
-depths = []
-for (x, z), degrees, seconds in bodies:
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    solids = walker.capsules(seconds / walker.SECONDS % 1)
-    for p in drops:
-        dx, dz = p[0] - x, p[2] - z
-        depths.append(min(distance((c * dx - s * dz, p[1], s * dx + c * dz), *solid) for solid in solids))
-# A texel is 7 mm; a hand swings as far in a step.
-assert sum(depth < 0.1 for depth in depths) > 10, sorted(depths)[:20]
-assert min(depths) > -0.02, min(depths)
-assert sum(depth < -0.008 for depth in depths) <= 3, sorted(depths)[:9]
-P
-
-# Its feet press prints into snow all the way, not only where a picture is drawn of it.
+# A walker's feet press prints into snow all the way, not only where a picture is drawn of it.
 cat >prints.toml <<'T'
 [[collider]]
 file = "walker.relief"
@@ -261,49 +226,6 @@ inside = [p for p, _, _ in drops if abs(p[0] - x) < 2.0 and abs(p[2] - z) < 2.0 
 assert not inside, inside[:3]
 mud = [p for p, _, t in drops if t == 3]
 assert mud and all(p[1] < 1.0 for p in mud), mud  # from under feet
-P
-
-# Tori, at 3 s, where the second one turns round: outside both, by the distance to a torus.
-python3 - <<'P'
-import math, particles
-
-def distance(p, center, degrees):
-    x, y, z = (a - b for a, b in zip(p, center))
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    y, z = c * y + s * z, c * z - s * y  # turned back about x
-    return math.hypot(math.hypot(x, z) - 1.0, y) - 0.26
-
-smoke = [p for p, _, _ in particles.read('linked_tori.ply')]
-assert len(smoke) > 2000, len(smoke)
-away = [min(distance(p, (-0.5, 0, 0), 90), distance(p, (0.62, 0, 0), 30)) for p in smoke]
-print('tori: deepest', min(away), 'inside', sum(d < 0 for d in away), 'touching', sum(abs(d) < 0.04 for d in away))
-assert min(away) > -0.02, min(away)
-assert sum(abs(d) < 0.04 for d in away) > 20
-P
-
-# The wobbling torus, after 180 steps of 1/120 s: nothing is inside by more than a texel and a step of the surface. Its
-# tube's radius is 0.26 and the wave at the nearest point of the torus at rest; the wave's steepness is at most 0.7.
-python3 - <<'P'
-import math, particles
-
-def depth(p, t):
-    x, y, z = p
-    ring = math.hypot(x, z)
-    if ring == 0:
-        return -1.0
-    away = math.hypot(ring - 1.0, y)
-    n = ((ring - 1.0) / away * x / ring, y / away, (ring - 1.0) / away * z / ring)
-    at = (x / ring + 0.26 * n[0], 0.26 * n[1], z / ring + 0.26 * n[2])
-    wave = sum(math.sin(2 * math.pi * (c / 0.9 - rate * 0.9 * t) + k)
-               for k, (c, rate) in enumerate(zip(at, (1, 1.25, 0.8))))
-    return 0.26 + 0.1 / 3 * wave - away
-
-drops = [p for p, _, _ in particles.read('wobbling_torus.ply')]
-assert len(drops) > 2000, len(drops)
-deep = [depth(p, 180 / 120) for p in drops]
-print('wobbling torus: deepest', max(deep), 'touching', sum(abs(d) < 0.03 for d in deep))
-assert max(deep) < 0.03, max(deep)
-assert sum(abs(d) < 0.03 for d in deep) >= 5
 P
 
 # Rain: nothing is below the terrain by more than half a texel's diagonal (0.022) on a slope of 2; long drops die there,

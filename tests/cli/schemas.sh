@@ -72,172 +72,81 @@ missing = set(schemas) - used - ({'diff'} if 'diff:diff.json' not in sys.argv el
 assert not missing, f'no output is held against {missing}'
 P
 
-"$relief" bake "$models/OBJ/box.obj" -o b.relief --budget 20kB --json --plan-out plan.toml >bake.json 2>stderr
-"$relief" bake "$models/OBJ/box.obj" -o c.relief --max-error 20 --budget 60kB --json >search.json 2>stderr
-"$relief" bake "$models/OBJ/box.obj" -o c.relief --plan plan.toml --json >plan.json 2>stderr
-"$relief" bake "$models/OBJ/box.obj" -o p.relief --paper --resolution 16 --compress 3 --json >paper.json 2>stderr
+outputs=()
+# made SCHEMA CODE COMMAND…: a document of this schema, from standard output.
+made() {
+    local file=out${#outputs[@]}.json
+    expect "$2" "${@:3}"
+    cp stdout "$file"
+    outputs+=("$1:$file")
+}
+cp "$models/OBJ/box.obj" .
+made bake 0 "$relief" bake box.obj -o b.relief --budget 20kB --json --plan-out plan.toml
+made bake 0 "$relief" bake box.obj -o c.relief --max-error 20 --budget 60kB --json
+made bake 0 "$relief" bake box.obj -o p.relief --paper --resolution 16 --compress 3 --json
+made info 0 "$relief" info p.relief --json
+made check 0 "$relief" check b.relief --mesh box.obj --samples 500 --json
+made check 7 "$relief" check p.relief --mesh box.obj --samples 500 --max-error 0 --json
+"$relief" bake box.obj -o r.relief --budget 20kB --repair wrap=0.3 -q
+made check 0 "$relief" check r.relief --mesh box.obj --samples 500 --json
+made check-file 0 "$relief" check b.relief --json
+printf 'DAMAGE' | dd of=p.relief bs=1 seek=1000 conv=notrunc status=none
+made check-file 3 "$relief" check p.relief --json
+made check-file 3 "$relief" check plan.toml --json
+
 mkdir recipe
-cp "$models/OBJ/box.obj" recipe/
+cp box.obj recipe/
 echo nonsense >recipe/zbad.obj
 printf 'version = 1\n[[asset]]\nmesh = "*.obj"\noutput = "{stem}.relief"\npaper = true\nresolution = 8\n' >recipe/recipe.toml
-expect 3 "$relief" bake --recipe recipe/recipe.toml --events events.jsonl --json
-cp stdout recipe.json
-expect 3 "$relief" bake --recipe recipe/recipe.toml --events again.jsonl -j 1 --json
-cp stdout again.json
-touch -d '+1 day' recipe/box.obj
+made recipe 3 "$relief" bake --recipe recipe/recipe.toml --events events.jsonl --json
 echo '# changed' >>recipe/box.obj
-expect 0 "$relief" bake --recipe recipe/recipe.toml --dry-run --json
-cp stdout dry.json
-outputs=(recipe-events:events.jsonl recipe-events:again.jsonl recipe:recipe.json recipe:again.json recipe:dry.json)
-outputs+=(bake:bake.json bake:search.json bake:plan.json bake:paper.json)
-"$relief" info b.relief --json >info.json
-"$relief" info p.relief --json >paper_info.json
-outputs+=(info:info.json info:paper_info.json)
-"$relief" check b.relief --mesh "$models/OBJ/box.obj" --samples 500 --json >check.json
-expect 7 "$relief" check p.relief --mesh "$models/OBJ/box.obj" --samples 500 --max-error 0 --json
-cp stdout failed.json
-"$relief" bake "$models/OBJ/box.obj" -o r.relief --budget 20kB --repair wrap=0.3 -q
-"$relief" check r.relief --mesh "$models/OBJ/box.obj" --samples 500 --json >repaired.json
-outputs+=(check:check.json check:failed.json check:repaired.json)
-"$relief" check b.relief --json >sound.json
-cp p.relief damaged.relief
-printf 'DAMAGE' | dd of=damaged.relief bs=1 seek=1000 conv=notrunc status=none
-head -c 100 b.relief >short.relief
-expect 3 "$relief" check damaged.relief --json
-cp stdout damaged.json
-expect 3 "$relief" check short.relief --json
-cp stdout short.json
-expect 3 "$relief" check plan.toml --json
-cp stdout none.json
-outputs+=(check-file:sound.json check-file:damaged.json check-file:short.json check-file:none.json)
+made recipe 0 "$relief" bake --recipe recipe/recipe.toml --dry-run --json
 
 python3 "$RELIEF_SOURCE/tests/cli/level.py" level.gltf
-"$relief" bake level.gltf --world w --budget 100kB --json >world_bake.json
-"$relief" bake level.gltf --world w --budget 100kB --json >world_again.json
-"$relief" check w/world.json --json >world_file.json
-"$relief" check w/world.json --mesh level.gltf --samples 500 --json >world_check.json
-"$relief" info w/world.json --json >world_info.json
-outputs+=(world:w/world.json world-bake:world_bake.json world-bake:world_again.json)
-outputs+=(world-check:world_file.json world-check:world_check.json world-info:world_info.json)
-
+made world-bake 0 "$relief" bake level.gltf --world w --budget 100kB --json
+made world-check 0 "$relief" check w/world.json --json
+made world-check 0 "$relief" check w/world.json --mesh level.gltf --samples 500 --json
+made world-info 0 "$relief" info w/world.json --json
 python3 "$RELIEF_SOURCE/tests/cli/heights.py" heights.png 70
-"$relief" bake heights.png --heights low=0,high=9 -o ground.relief --json >ground.json
-"$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json >ground_tiles.json
-"$relief" check ground.relief --mesh heights.png --samples 500 --json >ground_check.json
-"$relief" check g/world.json --mesh heights.png --heights low=0,high=99,tile=64 --samples 500 --max-error 100 --json >ground_far.json
-outputs+=(ground-bake:ground.json ground-bake:ground_tiles.json ground-check:ground_check.json ground-check:ground_far.json)
+made ground-bake 0 "$relief" bake heights.png --heights low=0,high=9,tile=64 --world g --json
+made ground-check 0 "$relief" check g/world.json --mesh heights.png --heights low=0,high=99,tile=64 --samples 500 --max-error 100 --json
 
 # A scene with everything in it.
 python3 -c "import struct; open('flow.raw', 'wb').write(struct.pack('<24f', *range(24)))"
 echo '0,1,0' >points.csv
 cat >scene.toml <<'T'
-[[collider]]
-file = "b.relief"
-[[collider]]
-file = "p.relief"
-[[collider.key]]
-time = 0
-position = [0, 0, 0]
-[[collider.key]]
-time = 1
-position = [1, 0, 0]
-axis = [0, 1, 0]
-angle = 90
-[particles]
-capacity = 500
-[[emitter]]
-shape = "disc"
-center = [0, 1, 0]
-radius = 0.5
-cone = 10
-speed = [1, 2]
-burst = 10
-rate = 10
-burst_every = 0.1
-[[emitter]]
-shape = "points"
-points = "points.csv"
-type = 1
-rate = 10
-[[emitter]]
-box_min = [-1, 1, -1]
-box_max = [1, 2, 1]
-duration = 2
-rate = 100
-[forces]
-viscosity = 0.1
-[flow]
-raw = "flow.raw"
-size = [2, 2, 2]
-components = 3
-box_min = [-1, -1, -1]
-box_max = [1, 1, 1]
-[curl_noise]
-amplitude = 0.1
-scale = 1
-[[attractor]]
-position = [0, 0, 0]
-strength = 1
-radius = 1
-reach = 5
-[[vortex]]
-center = [0, 0, 0]
-axis = [0, 1, 0]
-strength = 1
-radius = 1
-[[type]]
-name = "flake"
-size = [[0, 0.01], [1, 0.02]]
-color = [[0, 1, 1, 1], [1, 0, 0, 1]]
-opacity = [[0, 1], [1, 0]]
-on_collision = "die"
-[[type]]
-mass = 2
-[camera]
-target = [0, 0, 0]
-[[camera.key]]
-time = 0
-eye = [0, 1, 5]
-[[camera.key]]
-time = 1
-eye = [5, 1, 0]
-[[spawn]]
-on = "collision"
-[render]
-size = [32, 24]
-every = 20
-sprite = "quad"
+collider = [
+    { file = "b.relief" },
+    { file = "c.relief", key = [{ time = 0, position = [0, 0, 0] }, { time = 1, position = [1, 0, 0], axis = [0, 1, 0], angle = 90 }] },
+    { mesh = "box.obj", resolution = 32, deform = { amplitude = 0.1, frequency = 1.0 } },
+]
+particles = { capacity = 500 }
+emitter = [
+    { shape = "disc", center = [0, 1, 0], radius = 0.5, cone = 10, speed = [1, 2], burst = 10, rate = 10, burst_every = 0.1 },
+    { shape = "points", points = "points.csv", type = 1, rate = 10 },
+    { box_min = [-1, 1, -1], box_max = [1, 2, 1], duration = 2, rate = 100 },
+    { point = [0, 2, 0], attach = 0, inherit = 1, key = [{ time = 0 }, { time = 1, angle = 90 }] },
+]
+forces = { viscosity = 0.1 }
+flow = { raw = "flow.raw", size = [2, 2, 2], components = 3, box_min = [-1, -1, -1], box_max = [1, 1, 1] }
+curl_noise = { amplitude = 0.1, scale = 1 }
+attractor = [{ position = [0, 0, 0], strength = 1, radius = 1, reach = 5 }]
+vortex = [{ center = [0, 0, 0], axis = [0, 1, 0], strength = 1, radius = 1 }]
+type = [
+    { name = "flake", size = [[0, 0.01], [1, 0.02]], color = [[0, 1, 1, 1], [1, 0, 0, 1]], opacity = [[0, 1], [1, 0]], on_collision = "die" },
+    { mass = 2, gravity = 0.5, collides = [0] },
+]
+camera = { target = [0, 0, 0], key = [{ time = 0, eye = [0, 1, 5] }, { time = 1, eye = [5, 1, 0] }] }
+spawn = [{ on = "collision" }]
+render = { size = [32, 24], every = 20, sprite = "quad" }
 T
-"$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json >sim.json
+made sim-report 0 "$relief_sim" scene.toml --steps 40 --frames frames --events hits.jsonl --json
 [ -s hits.jsonl ] || die "nothing was hit"
-"$relief_sim" b.relief --steps 2 --json >alone.json
-cat >live.toml <<'T'
-[collider]
-mesh = "box.obj"
-resolution = 32
-deform = { amplitude = 0.1, frequency = 1.0 }
-[time]
-prewarm = 0.1
-[emitter]
-point = [0, 2, 0]
-attach = 0
-inherit = 1
-[[emitter.key]]
-time = 0
-[[emitter.key]]
-time = 1
-angle = 90
-[[type]]
-gravity = 0.5
-collides = [0]
-T
-cp "$models/OBJ/box.obj" .
-"$relief_sim" live.toml --steps 2 --json >live.json
-"$relief_sim" scene.toml --check --json >valid.json
+made sim-report 0 "$relief_sim" b.relief --steps 2 --json
+made sim-check 0 "$relief_sim" scene.toml --check --json
 echo nonsense >bad.toml
-expect 3 "$relief_sim" bad.toml --check --json
-cp stdout invalid.json
-outputs+=(sim-report:sim.json sim-report:alone.json sim-report:live.json sim-events:hits.jsonl sim-check:valid.json sim-check:invalid.json)
+made sim-check 3 "$relief_sim" bad.toml --check --json
+outputs+=(sim-events:hits.jsonl recipe-events:events.jsonl world:w/world.json)
 
 python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Hills for tests/long/soak.sh ground: heights that are a sum of one over x and one over z, so that any is known at once.
+"""Hills for scripts/nightly.sh ground: heights that are a sum of one over x and one over z, so that any is known at once.
 
 ground.py write OUT.r16 SIDE [--high 300]             samples of 16 bits
 ground.py points OUT.csv SIDE COUNT [--aside 256]     a metre above all seams of tiles of 512, or so many metres beside them
@@ -10,9 +10,12 @@ ground.py kicks BEFORE.ply AFTER.ply                  the energy, J/kg, that 999
 import argparse
 import array
 import math
+import os
 import random
-import struct
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '../cli'))
+import ply  # noqa: E402
 
 HIGHEST = 62_000
 TILE = 512
@@ -51,15 +54,8 @@ class Surface:
 
 
 def particles(dump):
-    with open(dump, 'rb') as file:
-        head, body = file.read().split(b'end_header\n', 1)
-    words = [line.split() for line in head.decode().splitlines()]
-    count = next(int(line[2]) for line in words if line[:2] == ['element', 'vertex'])
-    names = [line[2] for line in words if line[0] == 'property']
-    form = '<' + ''.join({'float': 'f', 'int': 'i', 'uint': 'I', 'uchar': 'B'}[line[1]] for line in words if line[0] == 'property')
-    wanted = [names.index(name) for name in ('x', 'y', 'z', 'vx', 'vy', 'vz', 'id')]
-    for values in struct.iter_unpack(form, body[:count * struct.calcsize(form)]):
-        yield [values[i] for i in wanted]
+    for row in ply.read(dump):
+        yield [row[name] for name in ('x', 'y', 'z', 'vx', 'vy', 'vz', 'id')]
 
 
 def points(out, side, count, aside):

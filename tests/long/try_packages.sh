@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Tries installed packages as their users would: try_packages.sh MESH PART…, in an empty folder, on a system that has
-# nothing else of Relief. `tests/long/soak.sh packages` runs it in a bare Debian. Parts:
+# nothing else of Relief. `scripts/nightly.sh packages` runs it in a bare Debian. Parts:
 #
 #   tools        the commands of README.md, "Use"; the manual
 #   python       the program of bake/python/README.md

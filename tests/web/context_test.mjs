@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { bakeCube } from "./lib/cube.mjs";
+import { bakeCube } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { scratch } from "./lib/native.mjs";
 

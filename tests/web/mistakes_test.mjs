@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
-import { bakeCube } from "./lib/cube.mjs";
+import { bakeCube } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
 

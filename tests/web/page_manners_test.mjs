@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
-import { bakeCube } from "./lib/cube.mjs";
+import { bakeCube } from "./lib/boxes.mjs";
 import { Quality } from "../../runtime/web/view/quality.js";
 import { scratch } from "./lib/native.mjs";
 import { pageData, viewer } from "./lib/view.mjs";

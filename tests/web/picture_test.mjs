@@ -6,6 +6,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
+import { boxes } from "./lib/boxes.mjs";
 import { root, spoken } from "./lib/browser.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
@@ -63,17 +64,10 @@ sun = 0.5
 snow = 1.0
 `;
 
-/** A box as OBJ, each vertex in one colour. */
-function box(low, high, color) {
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [0, 1, 2].map((k) => ((i >> k) & 1 ? high[k] : low[k])));
-    const sides = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
-    return corners.map((p) => `v ${[...p, ...color].join(" ")}\n`).join("") + sides.map((side) => `f ${side.join(" ")}\n`).join("");
-}
-
 function makeScene(folder) {
     mkdirSync(path.join(folder, "meshes"));
-    writeFileSync(path.join(folder, "meshes/ground.obj"), box([-4, -0.5, -4], [4, 0, 4], [0.3, 0.5, 0.2]));
-    writeFileSync(path.join(folder, "meshes/block.obj"), box([-2, 0, -1], [-1, 1, 0], [0.8, 0.05, 0.05]));
+    writeFileSync(path.join(folder, "meshes/ground.obj"), boxes([{ low: [-4, -0.5, -4], high: [4, 0, 4], color: [0.3, 0.5, 0.2] }]));
+    writeFileSync(path.join(folder, "meshes/block.obj"), boxes([{ low: [-2, 0, -1], high: [-1, 1, 0], color: [0.8, 0.05, 0.05] }]));
     for (const name of ["ground", "block"]) {
         run("relief", "bake", path.join(folder, `meshes/${name}.obj`), "-q", "-o", path.join(folder, `${name}.relief`), "--budget", "20kB");
     }

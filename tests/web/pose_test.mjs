@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { bakeCube } from "./lib/cube.mjs";
+import { bakeCube } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { scratch } from "./lib/native.mjs";
 import { assertPushedAlike, pushedNatively, pushedTables } from "./lib/pushed.mjs";
@@ -38,20 +38,12 @@ position = [0.0, 1.0, 0.0]
         });
         two.set({ collider: [{}, { position: [5, 0, 0] }] });
         const still = new relief.ParticleSystem(gl, { collider, scene: rest });
-        const error = (f) => {
-            try {
-                f();
-                return "no error";
-            } catch (one) {
-                return one.message;
-            }
-        };
         return {
             rows, matrix: system.info.bodies[0].matrix, several: two.info.bodies.map((body) => body.matrix[12]),
-            errors: [error(() => still.set({ collider: { position: [0, 1, 0] } })),
-                     error(() => system.set({ collider: { file: "other.relief" } })),
-                     error(() => system.set({ collider: { scale: 2 } })),
-                     error(() => still.set({ forces: { gravity: [0, -1, 0] } }))],
+            errors: await errorsOf(() => still.set({ collider: { position: [0, 1, 0] } }),
+                                   () => system.set({ collider: { file: "other.relief" } }),
+                                   () => system.set({ collider: { scale: 2 } }),
+                                   () => still.set({ forces: { gravity: [0, -1, 0] } })),
             gl: gl.getError(),
         };
     }, [kSteps, pushedTables(kSteps)]);

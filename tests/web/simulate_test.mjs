@@ -4,12 +4,11 @@
 // square roots, and a particle that slides along an edge may fall on either side of it; so most particles must be where
 // they are natively, and all of them as a whole: how many lie on the body, and how high they lie.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
 import { libraryPage } from "./lib/library.mjs";
-import { bunny, run, scratch } from "./lib/native.mjs";
+import { bunny, play, run, scratch } from "./lib/native.mjs";
 
 const kScene = `[time]
 steps = 300
@@ -21,26 +20,10 @@ file = "bunny.relief"
 capacity = 20000
 `;
 
-/** The particles of a dump of relief-sim, by id. */
-function readDump(file) {
-    const bytes = readFileSync(file);
-    const begin = bytes.indexOf("end_header\n") + "end_header\n".length;
-    const count = Number(/element vertex (\d+)/.exec(bytes.toString("latin1", 0, begin))[1]);
-    const size = (bytes.length - begin) / count;
-    assert.equal(size, 40);
-    return new Map(Array.from({ length: count }, (_, i) => {
-        const at = begin + size * i;
-        const number = (k) => bytes.readFloatLE(at + 4 * k);
-        return [bytes.readUInt32LE(at + 32), { position: [number(0), number(1), number(2)], age: number(6) }];
-    }));
-}
-
 async function compare(t, ...options) {
     const folder = scratch(t);
     run("relief", "bake", bunny, "-q", "-o", path.join(folder, "bunny.relief"), ...options);
-    writeFileSync(path.join(folder, "scene.toml"), kScene);
-    run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"));
-    const native = readDump(path.join(folder, "final.ply"));
+    const native = play(folder, kScene);
 
     const { page, said } = await libraryPage(t, folder);
     const [rows, info, error] = await page.evaluate(async (scene) => {
@@ -56,7 +39,7 @@ async function compare(t, ...options) {
 
     const web = new Map();
     for (let i = 0; i < rows.length; i += 12) {
-        web.set(rows[i + 11], { position: rows.slice(i, i + 3), age: rows[i + 3], collisions: rows[i + 9] });
+        web.set(rows[i + 11], { place: rows.slice(i, i + 3), age: rows[i + 3], collisions: rows[i + 9] });
     }
     assert.ok([...web.values()].filter((one) => one.collisions > 0).length > 5_000, "most have met the body");
     assert.equal(info.time.toFixed(3), "5.000");
@@ -67,10 +50,10 @@ async function compare(t, ...options) {
     const away = [...native].map(([id, one]) => {
         const other = web.get(id);
         assert.ok(Math.abs(one.age - other.age) < 1e-4);
-        return Math.hypot(...one.position.map((value, i) => value - other.position[i])) / side;
+        return Math.hypot(...one.place.map((value, i) => value - other.place[i])) / side;
     });
     const beyond = (limit) => away.filter((distance) => distance > limit).length / away.length;
-    const height = (all) => all.reduce((sum, one) => sum + one.position[1], 0) / all.length / side;
+    const height = (all) => all.reduce((sum, one) => sum + one.place[1], 0) / all.length / side;
     const lower = height([...web.values()]) - height([...native.values()]);
     t.diagnostic(`${native.size} particles; the farthest is ${Math.max(...away)} of the side away; ${100 * beyond(1e-4)} % are more than 1e-4 of the side away, ` +
                  `${100 * beyond(1e-2)} % more than 1e-2; the mean height differs by ${lower}`);

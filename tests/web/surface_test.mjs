@@ -5,6 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
+import { boxes } from "./lib/boxes.mjs";
 import { bunny, run, scratch } from "./lib/native.mjs";
 import { pageData, viewer } from "./lib/view.mjs";
 
@@ -15,19 +16,8 @@ function turned([x, y, z], turn) {
     return [u, c * v - s * z, s * v + c * z];
 }
 
-/** Boxes as an OBJ file: [x0, y0, z0, x1, y1, z1] each. */
-function boxes(list, turn = 0) {
-    const lines = [];
-    list.forEach((box, n) => {
-        for (let i = 0; i < 8; ++i) {
-            lines.push(`v ${turned([0, 1, 2].map((k) => box[k + 3 * ((i >> k) & 1)]), turn).join(" ")}`);
-        }
-        for (const face of [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]) {
-            lines.push(`f ${face.map((i) => 8 * n + i + 1).join(" ")}`);
-        }
-    });
-    return `${lines.join("\n")}\n`;
-}
+/** Boxes [x0, y0, z0, x1, y1, z1] as an OBJ file, turned. */
+const obj = (list, turn) => boxes(list.map((box) => ({ low: box.slice(0, 3), high: box.slice(3) })), (corner) => turned(corner, turn));
 
 // A table of plates 0.4 % thick, and a tower of struts: legs 0.8 % wide, seven floors.
 const plates = [[-1, 0, -1, 1, 0.008, 1], [-1, 0.5, -0.2, 1, 0.508, 1], [-0.004, 0, -1, 0.004, 0.5, 1]];
@@ -137,10 +127,10 @@ async function compare([columns, rows, steps, places]) {
 test("every sheet and strut of a collider is drawn, and nothing else", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
-    writeFileSync(at("plates.obj"), boxes(plates, 17));
-    writeFileSync(at("struts.obj"), boxes(struts, 8));
-    writeFileSync(at("plate.obj"), boxes(plate, 25));
-    writeFileSync(at("gap.obj"), boxes(gap, 25));
+    writeFileSync(at("plates.obj"), obj(plates, 17));
+    writeFileSync(at("struts.obj"), obj(struts, 8));
+    writeFileSync(at("plate.obj"), obj(plate, 25));
+    writeFileSync(at("gap.obj"), obj(gap, 25));
     writeFileSync(at("square.obj"), square);
     const cases = {
         "plates, planned": ["plates.obj", "--layout", "views", "--budget", "200kB", "--as", "solid"],

@@ -4,36 +4,36 @@ import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
-import { pathToFileURL } from "node:url";
 
-import { built, launch, openPage, root } from "./lib/browser.mjs";
+import { boxes } from "./lib/boxes.mjs";
+import { built, root } from "./lib/browser.mjs";
 import { bunny, run, scratch } from "./lib/native.mjs";
+import { openFile } from "./lib/view.mjs";
 
 process.env.RELIEF_VIEW_PAGE = path.join(built, "bin/view.html");
 const kViewport = { viewport: { width: 700, height: 400 }, reducedMotion: "reduce" };
 
-async function opened(t, address) {
-    const browser = await launch();
-    t.after(() => browser.close());
-    const one = await openPage(browser, address, kViewport);
-    await one.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
-    return one;
+const opened = (t, file, more = {}) => openFile(t, file, { ...kViewport, ...more });
+
+/** A sheet of the folder's own, and the page of it. */
+function viewSheet(folder, ...words) {
+    const [mesh, sheet, page] = ["sheet.obj", "sheet.relief", "sheet.html"].map((name) => path.join(folder, name));
+    writeFileSync(mesh, square);
+    run("relief", "bake", mesh, "-q", "-o", sheet, "--budget", "60kB", "--as", "shell");
+    run("relief", "view", sheet, "-o", page, ...words);
+    return [mesh, sheet, page];
 }
 
 const square = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n";
 
 test("a check says what relief check says; a sheet is right in the middle of its thickness", { timeout: 300_000 }, async (t) => {
-    const at = (name) => path.join(scratch.folder, name);
-    scratch.folder = scratch(t);
-    writeFileSync(at("sheet.obj"), square);
-    run("relief", "bake", at("sheet.obj"), "-q", "-o", at("sheet.relief"), "--budget", "60kB", "--as", "shell");
-    run("relief", "view", at("sheet.relief"), "--mesh", at("sheet.obj"), "-q", "--samples", "5000", "-o", at("sheet.html"));
-    const said = JSON.parse(run("relief", "check", at("sheet.relief"), "--mesh", at("sheet.obj"), "--samples", "5000", "--json"));
-    const { page, said: console } = await opened(t, pathToFileURL(at("sheet.html")).href);
+    const folder = scratch(t);
+    const [mesh, sheet, made] = viewSheet(folder, "--mesh", path.join(folder, "sheet.obj"), "-q", "--samples", "5000");
+    const check = (...words) => run("relief", "check", sheet, "--mesh", mesh, "--samples", "5000", ...words);
+    const said = JSON.parse(check("--json"));
+    const { page, said: console } = await opened(t, made);
     await page.click("#tab-errors");
-    assert.equal(await page.locator("#verdict").textContent(),
-                 run("relief", "check", at("sheet.relief"), "--mesh", at("sheet.obj"), "--samples", "5000").split("\n")[0]
-                     .replace(/^[^:]+: /, ""));
+    assert.equal(await page.locator("#verdict").textContent(), check().split("\n")[0].replace(/^[^:]+: /, ""));
     assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
     assert.match(await page.locator("#sheets-note").textContent(), /Sheets have a thickness of [0-9.]+ /);
     const depth = await page.evaluate("reliefView.look.depth");
@@ -54,22 +54,14 @@ test("the page of a check holds its findings: numbers, places to fly to, parts, 
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     // A slab under a ledge that no map of the two sees, with a pillar too thin for their texels, whose name is markup.
-    const lines = [];
-    [["slab", [0, 0, 0], [45, 1, 45]], ["ledge", [0, 12, 0], [40, 1, 40]], ["<b>pillar</b>", [44, 4, 0], [0.25, 3, 0.25]]].forEach(([name, middle, half], n) => {
-        lines.push(`o ${name}`);
-        for (let i = 0; i < 8; ++i) {
-            lines.push(`v ${middle.map((v, k) => v + ((i >> k) & 1 ? half[k] : -half[k])).join(" ")}`);
-        }
-        for (const face of [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]) {
-            lines.push(`f ${face.map((i) => 8 * n + i + 1).join(" ")}`);
-        }
-    });
-    writeFileSync(at("slab.obj"), `${lines.join("\n")}\n`);
+    writeFileSync(at("slab.obj"), boxes([{ name: "slab", low: [-45, -1, -45], high: [45, 1, 45] },
+                                         { name: "ledge", low: [-40, 11, -40], high: [40, 13, 40] },
+                                         { name: "<b>pillar</b>", low: [43.75, 1, -0.25], high: [44.25, 7, 0.25] }]));
     run("relief", "bake", at("slab.obj"), "-q", "-o", at("slab.relief"), "--map", "fixed8:dir=-y,size=32");
     const said = JSON.parse(run("relief", "check", at("slab.relief"), "--mesh", at("slab.obj"), "-q", "--samples", "5000", "--json",
                                 "--html", at("slab.html")));
     assert.ok(said.advice.length > 0 && said.verdict.lost_parts === 1, JSON.stringify(said.verdict));
-    const { page, said: console } = await opened(t, pathToFileURL(at("slab.html")).href);
+    const { page, said: console } = await opened(t, at("slab.html"));
     await page.click("#tab-errors");
     assert.equal(await page.locator("#verdict").getAttribute("class"), said.verdict.grade);
     assert.deepEqual(await page.locator("#advice li code").allTextContents(),
@@ -109,7 +101,7 @@ speed = 1.0
 rate = 500.0
 `);
     run("relief", "view", at("s.toml"), "-o", at("s.html"));
-    const { page, said } = await opened(t, pathToFileURL(at("s.html")).href);
+    const { page, said } = await opened(t, at("s.html"));
     await page.waitForFunction("reliefView.view.bodies.length === 2",
                                undefined, { timeout: 120_000 });
     const places = () => page.evaluate(() => reliefView.view.bodies.map((body) => [...body.model].slice(12, 15)));
@@ -133,7 +125,7 @@ test("a world's bodies are drawn where they stand, each collider once on the GPU
     execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("level.gltf"), "floor=6"]);
     run("relief", "bake", at("level.gltf"), "--world", at("w"), "--budget", "200kB", "-q");
     run("relief", "view", at("w/world.json"), "-o", at("w.html"));
-    const { page, said } = await opened(t, pathToFileURL(at("w.html")).href);
+    const { page, said } = await opened(t, at("w.html"));
     await page.waitForFunction("reliefView.view.bodies.length === 5", undefined, { timeout: 120_000 });
     const { places, colliders, error } = await page.evaluate(() => {
         reliefView.particles.paused = true;
@@ -156,7 +148,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     execFileSync("python3", [path.join(root, "tests/cli/level.py"), at("moved.gltf"), "floor=6", "x=1"]);
     run("relief", "bake", at("level.gltf"), "--world", at("w"), "--budget", "200kB", "-q");
     run("relief", "view", at("w/world.json"), "--mesh", at("moved.gltf"), "-q", "--samples", "5000", "-o", at("w.html"));
-    const { page, said } = await opened(t, pathToFileURL(at("w.html")).href);
+    const { page, said } = await opened(t, at("w.html"));
     await page.waitForFunction("reliefView.bodies?.placed.length === 5", undefined, { timeout: 120_000 });
     await page.setViewportSize({ width: 900, height: 500 }); // the panel is at its side
     await page.evaluate(() => {
@@ -241,8 +233,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
 test("a body that deforms is drawn as it is at each step", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
-    writeFileSync(at("box.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n" +
-                  "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+    writeFileSync(at("box.obj"), boxes([{ low: [0, 0, 0], high: [1, 1, 1] }]));
     writeFileSync(at("s.toml"), `
 [collider]
 mesh = "box.obj"
@@ -252,7 +243,7 @@ resolution = 32
 capacity = 1024
 `);
     run("relief", "view", at("s.toml"), "-o", at("s.html"));
-    const { page } = await opened(t, pathToFileURL(at("s.html")).href);
+    const { page } = await opened(t, at("s.html"));
     await page.evaluate(() => (reliefView.particles.paused = true));
     const covered = () => page.evaluate(() => {
         const { data, error } = reliefView.pixelsNow();
@@ -275,15 +266,8 @@ capacity = 1024
 });
 
 test("fingers turn and pinch", { timeout: 300_000 }, async (t) => {
-    const folder = scratch(t);
-    const at = (name) => path.join(folder, name);
-    writeFileSync(at("sheet.obj"), square);
-    run("relief", "bake", at("sheet.obj"), "-q", "-o", at("sheet.relief"), "--budget", "60kB", "--as", "shell");
-    run("relief", "view", at("sheet.relief"), "-o", at("sheet.html"));
-    const browser = await launch();
-    t.after(() => browser.close());
-    const { page, said } = await openPage(browser, pathToFileURL(at("sheet.html")).href, { ...kViewport, hasTouch: true });
-    await page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
+    const [, , made] = viewSheet(scratch(t));
+    const { page, said } = await opened(t, made, { hasTouch: true });
     const camera = () => page.evaluate(() => ({ distance: reliefView.camera.distance, ...reliefView.camera.matrices(4, 3) }));
     const session = await page.context().newCDPSession(page);
     const touch = (type, ...points) => session.send("Input.dispatchTouchEvent",

@@ -7,7 +7,7 @@ import path from "node:path";
 import test from "node:test";
 
 import { launch, openPage, root, serve } from "./lib/browser.mjs";
-import { bakeCube } from "./lib/cube.mjs";
+import { bakeCube } from "./lib/boxes.mjs";
 import { scratch } from "./lib/native.mjs";
 
 const kMain = `import { Relief, ParticleSystem } from "relief-particles";

@@ -7,9 +7,6 @@
 #include <map>
 #include <random>
 
-#include "formats/base/file_io.h"
-#include "formats/container.h"
-#include "formats/world/world_field.h"
 #include "tests/bake/ground/height_grids.h"
 #include "tests/runtime/particles/reference_step.h"
 #include "tests/seeds.h"
@@ -17,64 +14,23 @@
 namespace relief::test {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr double kLow = -20.0;
-constexpr double kHigh = 44.0;
-
-class GroundBakes : public testing::Test {
+class GroundBakes : public RawHeights {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::temp_directory_path() /
-            ("relief-ground-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    /// Writes hills as samples of 16 bits. \return the heights that these stand for.
-    HeightGrid writeHills(std::uint32_t columns, std::uint32_t rows) {
-        std::vector<std::uint16_t> samples;
-        HeightGrid grid = gridOf(columns, rows, [&](double x, double z) {
-            const auto code =
-                static_cast<std::uint16_t>(std::lround((hills(x, z) - kLow) / (kHigh - kLow) * 65535.0));
-            samples.push_back(code);
-            return kLow + (kHigh - kLow) / 65535.0 * code;
-        });
-        EXPECT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
-        return grid;
-    }
-
-    GroundResult bake(const std::string& settings, const fs::path& into) {
-        GroundOptions options;
-        options.heights = *parseHeightsSpec("low=-20,high=44," + settings);
-        options.folder = into;
-        Result<HeightMap> map = HeightMap::open(folder_ / "hills.raw", options.heights);
-        EXPECT_TRUE(map) << map.error().message;
-        Result<GroundResult> result = bakeGroundOf(*map, options);
-        EXPECT_TRUE(result) << result.error().message;
-        return std::move(*result);
+    HeightGrid writeHills(std::uint32_t columns, std::uint32_t rows) const {
+        return write("hills.raw", columns, rows, hills);
     }
     WorldField bakeWorld(const std::string& settings) {
-        fs::create_directories(folder_ / "world");
-        tiles_ = bake(settings, folder_ / "world");
-        return load(WorldDetail::kFine);
+        tiles_ = bake("hills.raw", spec(settings), world());
+        return load();
     }
-    [[nodiscard]] WorldField load(WorldDetail detail) const {
-        Result<LoadedWorld> loaded = loadWorld(folder_ / "world" / kWorldFileName, {}, detail);
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        return WorldField(std::move(*loaded));
-    }
-    static std::map<std::string, std::vector<std::byte>> filesOf(const fs::path& folder) {
+    [[nodiscard]] std::map<std::string, std::vector<std::byte>> worldFiles() const {
         std::map<std::string, std::vector<std::byte>> files;
-        for (const auto& entry : fs::directory_iterator(folder)) {
+        for (const auto& entry : std::filesystem::directory_iterator(world())) {
             files[entry.path().filename().string()] = *readFile(entry.path());
         }
         return files;
     }
 
-    fs::path folder_;
     GroundResult tiles_;
 };
 
@@ -130,7 +86,7 @@ TEST_F(GroundBakes, NoPointNearASeamIsWrongBeyondTheBound) {
 
 TEST_F(GroundBakes, TilesAreTheSameGroundAsOneCollider) {
     writeHills(200, 200);
-    const Result<Collider> whole = readContainer(bake("spacing=0.5", {}).container);
+    const Result<Collider> whole = readContainer(bake("hills.raw", spec("spacing=0.5")).container);
     ASSERT_TRUE(whole);
     const WorldField field = bakeWorld("spacing=0.5,tile=64");
     std::mt19937 random(seedFrom(32));
@@ -187,15 +143,13 @@ TEST_F(GroundBakes, CoarseTilesAreTheGroundOfFewerSamples) {
 }
 
 TEST_F(GroundBakes, CoarseTilesHoldSmallHolesAndFineOnesDoNot) {
-    std::vector<std::uint16_t> samples(257 * 257, 30'000);
-    samples[100 * 257 + 100] = 0;  // at a coarse sample
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        samples[i] = i % 257 >= 200 && i / 257 >= 200 ? 0 : samples[i];
-    }
-    ASSERT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
+    write("hills.raw", 257, 257, [](double x, double z) {
+        const bool small = x == 100 && z == 100;  // at a coarse sample
+        return small || (x >= 200 && z >= 200) ? double{kHole} : 9.0;
+    });
     const WorldField fine = bakeWorld("tile=256,hole=0");
     const WorldField coarse = load(WorldDetail::kCoarse);
-    const float below = -20.0F + 64.0F / 65535.0F * 30'000.0F - 1.0F;
+    const float below = 8.0F;
     EXPECT_FALSE(fine.evaluate({100.2F, below, 100.2F}).inside());
     EXPECT_TRUE(coarse.evaluate({100.2F, below, 100.2F}).inside());
     for (const WorldField* field : {&fine, &coarse}) {
@@ -251,45 +205,36 @@ TEST_F(GroundBakes, DropsThatFallOnSeamsNeitherFallThroughNorJump) {
 TEST_F(GroundBakes, ThreadsDoNotChangeAByteAndAnotherBakeLeavesNothingBehind) {
     writeHills(150, 150);
     static_cast<void>(bakeWorld("tile=64"));
-    const auto first = filesOf(folder_ / "world");
+    const auto first = worldFiles();
     EXPECT_EQ(first.size(), 10U);
     {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
         static_cast<void>(bakeWorld("tile=64"));
     }
-    EXPECT_EQ(filesOf(folder_ / "world"), first);
+    EXPECT_EQ(worldFiles(), first);
     EXPECT_TRUE(tiles_.removed.empty());
     static_cast<void>(bakeWorld("tile=128"));
     EXPECT_EQ(tiles_.removed.size(), 9U);
-    EXPECT_EQ(filesOf(folder_ / "world").size(), 5U);
+    EXPECT_EQ(worldFiles().size(), 5U);
 }
 
 TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
-    std::vector<std::uint16_t> samples(129 * 129, 7);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        samples[i] = i % 129 > 40 ? 0 : samples[i];
-    }
-    ASSERT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
+    write("hills.raw", 129, 129, [](double x, double) { return x > 40 ? double{kHole} : 0.0; });
     const WorldField field = bakeWorld("tile=64,hole=0");
     EXPECT_EQ(field.world().bodies.size(), 2U);
     EXPECT_EQ(tiles_.tiles[0].squares, 40U * 68U);
-    GroundOptions options;
-    options.heights = *parseHeightsSpec("low=0,high=1,hole=7");
-    std::ranges::fill(samples, std::uint16_t{7});
-    ASSERT_TRUE(writeFile(folder_ / "hills.raw", std::as_bytes(std::span(samples))));
-    for (const fs::path& into : {fs::path(), folder_ / "world"}) {
-        Result<HeightMap> map = HeightMap::open(folder_ / "hills.raw", options.heights);
-        options.folder = into;
-        const Result<GroundResult> none = bakeGroundOf(*map, options);
+    write("none.raw", 129, 129, [](double, double) { return double{kHole}; });
+    for (const std::filesystem::path& into : {std::filesystem::path(), world()}) {
+        const Result<GroundResult> none = tryBake("none.raw", spec("hole=0"), into);
         ASSERT_FALSE(none);
         EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
-        EXPECT_EQ(none.error().message.find("hills.raw: no square has ground"), 0U) << none.error().message;
+        EXPECT_EQ(none.error().message.find("none.raw: "), 0U) << none.error().message;
     }
 }
 
 TEST_F(GroundBakes, TheContainerRecordsItsSettingsAndNoPath) {
     writeHills(33, 33);
-    const Result<Collider> whole = readContainer(bake("spacing=2,tile=64", {}).container);
+    const Result<Collider> whole = readContainer(bake("hills.raw", spec("spacing=2,tile=64")).container);
     ASSERT_TRUE(whole);
     EXPECT_EQ(whole->unit, "m");
     EXPECT_EQ(whole->provenance.mesh_name, "hills.raw");

@@ -1,12 +1,19 @@
 // Height maps in closed form, and the exact surface of any.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "bake/ground/ground_bake.h"
 #include "bake/ground/ground_tree.h"
+#include "formats/base/file_io.h"
+#include "formats/container.h"
+#include "formats/world/world_field.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 
@@ -26,6 +33,60 @@ HeightGrid gridOf(std::uint32_t columns, std::uint32_t rows, const Height& heigh
 inline double hills(double x, double z) {
     return 8.0 * std::sin(x / 11.0) + 5.0 * std::cos(z / 7.0) + 0.7 * std::sin(x / 2.3 + z / 3.1);
 }
+
+/// Of samples of 16 bits.
+constexpr double kLow = -20.0;
+constexpr double kHigh = 44.0;
+
+/// A folder with height maps of 16 bits as raw samples.
+class RawHeights : public testing::Test {
+  protected:
+    /// \param height  of (column, row); NaN: a hole, sample 0. \return the heights that the samples stand for.
+    template <class Height>
+    HeightGrid write(const char* name, std::uint32_t columns, std::uint32_t rows,
+                     const Height& height) const {
+        std::vector<std::uint16_t> samples;
+        HeightGrid grid = gridOf(columns, rows, [&](double x, double z) {
+            const double h = height(x, z);
+            samples.push_back(std::isnan(h) ? std::uint16_t{0}
+                                            : static_cast<std::uint16_t>(
+                                                  std::lround((h - kLow) / (kHigh - kLow) * 65535.0)));
+            return kLow + (kHigh - kLow) / 65535.0 * samples.back();
+        });
+        EXPECT_TRUE(writeFile(folder_.path() / name, std::as_bytes(std::span(samples))));
+        return grid;
+    }
+    static HeightsSpec spec(const std::string& more) {
+        return parseHeightsSpec("low=-20,high=44" + (more.empty() ? "" : "," + more)).value();
+    }
+    [[nodiscard]] Result<GroundResult> tryBake(const char* name, const HeightsSpec& heights,
+                                               const std::filesystem::path& into) const {
+        Result<HeightMap> map = HeightMap::open(folder_.path() / name, heights);
+        EXPECT_TRUE(map) << map.error().message;
+        GroundOptions options;
+        options.heights = heights;
+        options.folder = into;
+        return bakeGroundOf(*map, options);
+    }
+    /// \param into  empty: one container.
+    [[nodiscard]] GroundResult bake(const char* name, const HeightsSpec& heights,
+                                    const std::filesystem::path& into = {}) const {
+        Result<GroundResult> result = tryBake(name, heights, into);
+        EXPECT_TRUE(result) << result.error().message;
+        return std::move(*result);
+    }
+    [[nodiscard]] std::filesystem::path world() const {
+        std::filesystem::create_directories(folder_.path() / "world");
+        return folder_.path() / "world";
+    }
+    [[nodiscard]] WorldField load(WorldDetail detail = WorldDetail::kFine) const {
+        Result<LoadedWorld> loaded = loadWorld(world() / kWorldFileName, {}, detail);
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        return WorldField(std::move(*loaded));
+    }
+
+    TemporaryFolder folder_;
+};
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 

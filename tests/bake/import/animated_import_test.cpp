@@ -7,14 +7,15 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <limits>
-#include <numbers>
+#include <numeric>
 
 #include "bake/import/import_source.h"
 #include "bake/import/mesh_import.h"
 #include "formats/animation/mesh_pose.h"
 #include "formats/base/file_io.h"
 #include "tests/bake/import/animated_cases.h"
-#include "tests/bake/import/animated_oracle.h"
+#include "tests/bake/import/gltf_oracle.h"
+#include "tests/bake/import/import_meshes.h"
 #include "tests/bake/meshes.h"
 #include "tests/seeds.h"
 
@@ -24,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr double kPi = std::numbers::pi;
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Result<AnimatedImport> load(const GltfScribe& scribe, const ImportOptions& options = {}) {
@@ -61,31 +61,19 @@ double volumeOf(const AnimatedMesh& mesh, const std::vector<glm::vec3>& position
     return sum;
 }
 
-// --- closed forms ---
-
-TEST(AnimatedImport, ABarBendsAtItsJoint) {
-    const AnimatedMesh mesh = loaded(bendingBar()).mesh;
-    ASSERT_EQ(mesh.positions.size(), 12U);
-    EXPECT_EQ(mesh.joints.size(), 2U);
-    EXPECT_EQ(mesh.influences.size(), 4U + 8U + 4U) << "weights of 0 are dropped";
-    // Quantised to 16 bits.
-    constexpr double kTolerance = 1e-4;
-    for (const double seconds : {0.0, 0.25, 0.5, 1.0, 2.0}) {
-        SCOPED_TRACE(seconds);
-        const std::vector<glm::vec3> posed = at(mesh, "bend", seconds);
-        const double angle = std::min(seconds, 1.0) * kPi / 2;
-        for (std::size_t i = 0; i < posed.size(); ++i) {
-            const glm::dvec3 p(mesh.positions[i]);
-            const double y = p.y - 1.0;
-            const glm::dvec3 turned(std::cos(angle) * p.x - std::sin(angle) * y,
-                                    1.0 + std::sin(angle) * p.x + std::cos(angle) * y, p.z);
-            expectNear(posed[i], i < 4 ? p : i < 8 ? 0.5 * (p + turned) : turned, kTolerance);
-        }
+TEST(AnimatedImport, KeepsWhatMoves) {
+    const AnimatedMesh bar = loaded(bendingBar()).mesh;
+    ASSERT_EQ(bar.positions.size(), 12U);
+    EXPECT_EQ(bar.joints.size(), 2U);
+    EXPECT_EQ(bar.influences.size(), 4U + 8U + 4U) << "weights of 0 are dropped";
+    EXPECT_GT(volumeOf(bar, posed(bar, restPose(bar)), 0, bar.triangles.size()), 0.0);
+    // A quarter turn of the bar's upper half, in steps of 16 bits.
+    const std::vector<glm::vec3> bent = at(bar, "bend", 2.0);
+    for (std::size_t i = 0; i < bent.size(); ++i) {
+        const glm::dvec3 p(bar.positions[i]);
+        const glm::dvec3 turned(1.0 - p.y, 1.0 + p.x, p.z);
+        expectNear(bent[i], i < 4 ? p : i < 8 ? 0.5 * (p + turned) : turned, 1e-4);
     }
-    EXPECT_GT(volumeOf(mesh, posed(mesh, restPose(mesh)), 0, mesh.triangles.size()), 0.0);
-}
-
-TEST(AnimatedImport, ARobotOfRigidNodesMoves) {
     const AnimatedImport import = loaded(robot());
     const AnimatedMesh& mesh = import.mesh;
     ASSERT_EQ(mesh.positions.size(), 24U);
@@ -93,18 +81,6 @@ TEST(AnimatedImport, ARobotOfRigidNodesMoves) {
     ASSERT_EQ(mesh.nodes.size(), 4U);
     EXPECT_EQ(mesh.nodes[1].name, "base");
     EXPECT_EQ(mesh.nodes[2].parent, 1);
-    const std::vector<glm::vec3> driven = at(mesh, "drive", 1.0);
-    const std::vector<glm::vec3> turned = at(mesh, "turn", 2.0);
-    for (int i = 0; i < 8; ++i) {
-        const glm::dvec3 corner(boxCorner({0, 0, 0}, {1, 2, 3}, i));
-        const auto index = static_cast<std::size_t>(i);
-        expectNear(driven[index], corner + glm::dvec3(2, 0, 0), 1e-6);
-        expectNear(driven[8 + index], corner + glm::dvec3(3, 2, 0), 1e-6);
-        // A quarter turn about z, in steps of 16 bits.
-        expectNear(turned[8 + index], glm::dvec3(1 - corner.y, 2 + corner.x, corner.z), 1e-4);
-        const glm::dvec3 hand(-corner.x, 2 + corner.y, corner.z);
-        expectNear(turned[16 + index], glm::dvec3(1 - hand.y, 2 + hand.x, hand.z), 3e-4);
-    }
     const std::vector<glm::vec3> rest = posed(mesh, restPose(mesh));
     for (std::size_t part = 0; part < 3; ++part) {
         EXPECT_NEAR(volumeOf(mesh, rest, 12 * part, 12), 36.0, 1e-4) << "also of the mirrored hand: " << part;
@@ -112,17 +88,9 @@ TEST(AnimatedImport, ARobotOfRigidNodesMoves) {
     EXPECT_EQ(mesh.clips[0].seconds, 3.5F);
     EXPECT_EQ(import.rest.positions.size(), 24U);
     EXPECT_EQ(import.rest.bounds.max, glm::vec3(2, 6, 3));
-}
-
-TEST(AnimatedImport, ACubeMorphs) {
-    const AnimatedMesh mesh = loaded(morphingCube()).mesh;
-    ASSERT_EQ(mesh.weights, (std::vector<float>{0.5F, 0.0F})) << "the node's, not the mesh's";
-    EXPECT_EQ(mesh.deltas.size(), 4U) << "those that are 0 are dropped";
-    const auto reach = [&](const std::vector<glm::vec3>& positions) { return positions[1].x; };
-    EXPECT_EQ(reach(posed(mesh, restPose(mesh))), 2.0F);
-    EXPECT_EQ(reach(at(mesh, "stretch", 0.0)), 1.0F);
-    EXPECT_FLOAT_EQ(reach(at(mesh, "stretch", 0.5)), 1.5F);
-    EXPECT_EQ(reach(at(mesh, "stretch", 2.0)), 3.0F);
+    const AnimatedMesh cube = loaded(morphingCube()).mesh;
+    ASSERT_EQ(cube.weights, (std::vector<float>{0.5F, 0.0F})) << "the node's, not the mesh's";
+    EXPECT_EQ(cube.deltas.size(), 4U) << "those that are 0 are dropped";
 }
 
 // One name is one material, whichever of the file has it; what has none is "", and where none has a name, nothing is kept.
@@ -149,21 +117,6 @@ TEST(AnimatedImport, KeepsTheNamesOfMaterials) {
     EXPECT_FALSE(load(scribe)) << "there is none";
 }
 
-TEST(AnimatedImport, CubicKeysAreHermite) {
-    GltfScribe scribe = robot();
-    const std::size_t times = scribe.floats("SCALAR", {1, 3});
-    scribe.animate(2, "translation", times,
-                   scribe.floats("VEC3", {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 2, 0, 4, 0, 0, 9, 9, 9}),
-                   "CUBICSPLINE", "swing");
-    const AnimatedMesh mesh = loaded(scribe).mesh;
-    for (const double seconds : {1.0, 1.5, 2.0, 2.9, 3.0}) {
-        const double t = (seconds - 1.0) / 2.0;
-        const glm::dvec3 moved((3 * t * t - 2 * t * t * t) * 4 + 2 * (t * t * t - 2 * t * t + t),
-                               2 * (t * t * t - t * t) * 2, 0);
-        expectNear(at(mesh, "swing", seconds)[0], moved, 1e-5);
-    }
-}
-
 TEST(AnimatedImport, UnitAndAxisStandAboveAllNodes) {
     ImportOptions options;
     options.unit = "cm";
@@ -186,33 +139,23 @@ TEST(AnimatedImport, ANodeWithAMatrixMovesIfItIsNoShear) {
     expectNear(posed(mesh, restPose(mesh))[7], {5 - 6, 2, 3}, 1e-5);
     expectNear(at(mesh, "drive", 1.5)[7], {4 - 6, 2, 3}, 1e-5);
     scribe.json["nodes"][2]["matrix"] = {1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
-    const Result<AnimatedImport> sheared = load(scribe);
-    ASSERT_FALSE(sheared);
-    EXPECT_NE(sheared.error().message.find("nodes[2], whose matrix is no translation"), std::string::npos)
-        << sheared.error().message;
+    expectRefused(load(scribe), "nodes[2], whose matrix is no translation");
 }
 
-TEST(AnimatedImport, InstancesMoveWithTheirNode) {
+TEST(AnimatedImport, InstancesAndJointsOutsideTheSceneMove) {
     GltfScribe scribe = robot();
     const std::size_t places = scribe.floats("VEC3", {0, 0, 0, 0, 0, 10});
     scribe.json["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
-    const AnimatedMesh mesh = loaded(scribe).mesh;
-    ASSERT_EQ(mesh.positions.size(), 32U);
-    expectNear(at(mesh, "drive", 1.5)[8], {4, 0, 10}, 1e-6);
-}
-
-TEST(AnimatedImport, JointsMayStandOutsideTheScene) {
-    GltfScribe scribe = bendingBar();
-    scribe.json["scenes"][0]["nodes"] = {0};
-    EXPECT_EQ(loaded(scribe).mesh.joints.size(), 2U);
-}
-
-TEST(AnimatedImport, WithoutBindMatricesTheyAreNone) {
-    GltfScribe scribe = bendingBar();
-    scribe.json["skins"][0].erase("inverseBindMatrices");
-    const AnimatedMesh mesh = loaded(scribe).mesh;
-    EXPECT_EQ(mesh.joints[1].bind, Affine{});
-    expectNear(posed(mesh, restPose(mesh))[8], {-0.5, 3, -0.5}, 1e-6);
+    const AnimatedMesh instances = loaded(scribe).mesh;
+    ASSERT_EQ(instances.positions.size(), 32U);
+    expectNear(at(instances, "drive", 1.5)[8], {4, 0, 10}, 1e-6);
+    GltfScribe bar = bendingBar();
+    bar.json["scenes"][0]["nodes"] = {0};
+    EXPECT_EQ(loaded(bar).mesh.joints.size(), 2U);
+    bar.json["skins"][0].erase("inverseBindMatrices");
+    const AnimatedMesh unbound = loaded(bar).mesh;
+    EXPECT_EQ(unbound.joints[1].bind, Affine{});
+    expectNear(posed(unbound, restPose(unbound))[8], {-0.5, 3, -0.5}, 1e-6);
 }
 
 // --- against the book ---
@@ -222,38 +165,38 @@ void compareWithTheBook(const fs::path& file, std::size_t clips) {
     const Result<AnimatedImport> import = importAnimatedFileInWorker(file, ImportKind::kAnimated, {}, {});
     ASSERT_TRUE(import) << import.error().message;
     const AnimatedMesh& mesh = import->mesh;
-    const GltfPoser book(file);
-    ASSERT_EQ(book.animations(), clips);
+    const std::vector<double> lengths = gltfLengthsByTheBook(file);
+    ASSERT_EQ(lengths.size(), clips);
     ASSERT_EQ(mesh.clips.size(), clips);
-    const auto compare = [&](const MeshPose& pose, const std::vector<glm::dvec3>& corners) {
+    const auto compare = [&](const MeshPose& pose, const std::vector<Corners>& triangles) {
         const std::vector<glm::vec3> positions = posed(mesh, pose);
-        ASSERT_EQ(corners.size(), 3 * mesh.triangles.size());
+        ASSERT_EQ(triangles.size(), mesh.triangles.size());
         glm::dvec3 low(1e30);
         glm::dvec3 high(-1e30);
-        for (const glm::dvec3& corner : corners) {
-            low = glm::min(low, corner);
-            high = glm::max(high, corner);
-        }
-        const double tolerance = 1e-5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
         double worst = 0.0;
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
             const glm::uvec3& t = mesh.triangles[i];
             const auto off = [&](std::uint32_t vertex, std::size_t k) {
-                return glm::distance(glm::dvec3(positions[vertex]), corners[3 * i + k]);
+                return glm::distance(glm::dvec3(positions[vertex]), triangles[i].at(k));
             };
+            for (const glm::dvec3& corner : triangles[i]) {
+                low = glm::min(low, corner);
+                high = glm::max(high, corner);
+            }
             // Mirrored parts are turned over.
             worst =
                 std::max({worst, off(t.x, 0),
                           std::min(std::max(off(t.y, 1), off(t.z, 2)), std::max(off(t.y, 2), off(t.z, 1)))});
         }
-        EXPECT_LE(worst, tolerance);
+        EXPECT_LE(worst, 1e-5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z}));
     };
-    compare(restPose(mesh), book.corners(std::nullopt, 0.0));
+    compare(restPose(mesh), readGltfByTheBook(file));
     for (std::size_t clip = 0; clip < clips; ++clip) {
-        EXPECT_NEAR(double{mesh.clips[clip].seconds}, book.seconds(clip), 1e-6);
+        EXPECT_NEAR(double{mesh.clips[clip].seconds}, lengths[clip], 1e-6);
         for (int i = 0; i < 20; ++i) {
-            const double seconds = book.seconds(clip) * (i + 0.37) / 19.5;
-            compare(poseAt(mesh, mesh.clips[clip], seconds), book.corners(clip, seconds));
+            const double seconds = lengths[clip] * (i + 0.37) / 19.5;
+            compare(poseAt(mesh, mesh.clips[clip], seconds),
+                    readGltfByTheBook(file, GltfMoment{clip, seconds}));
         }
     }
 }
@@ -278,9 +221,12 @@ TEST(AnimatedImport, PosesAreThoseOfTheBook) {
         }
     }
     swings.animate(1, "rotation", times, swings.floats("VEC4", spins), "CUBICSPLINE", "spin");
+    swings.animate(2, "translation", times, swings.floats("VEC3", {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 2, 0, 4, 0,
+                                                                   0, 0, 1, 0, 0, 0, 1, 2, 2, 2, 3, 0, 3}),
+                   "CUBICSPLINE", "swing");
     swings.animate(0, "scale", times, swings.floats("VEC3", {1, 1, 1, 2, 1, 0.5F, 1, 3, 1}), "LINEAR",
                    "grow");
-    compareWithTheBook(writeGltf(swings.file(), folder, "swings"), 4);
+    compareWithTheBook(writeGltf(swings.file(), folder, "swings"), 5);
 }
 
 TEST(AnimatedImport, PublishedModelsMoveAsTheBookSays) {
@@ -291,11 +237,6 @@ TEST(AnimatedImport, PublishedModelsMoveAsTheBookSays) {
 }
 
 // --- names and clips of other files ---
-
-bool warns(const TriangleMesh& mesh, const std::string& text) {
-    return std::any_of(mesh.warnings.begin(), mesh.warnings.end(),
-                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
-}
 
 TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
     const TemporaryFolder folder;
@@ -328,13 +269,8 @@ TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
 
     moves.json["nodes"] = {{{"name", "elsewhere"}}, {{"name", "BASE"}}, Json::object()};
     const fs::path strange = writeGltf(moves.file(), folder, "strange");
-    const Result<AnimatedImport> refused = importAnimatedInWorker(file, {strange});
-    ASSERT_FALSE(refused);
-    EXPECT_NE(
-        refused.error().message.find("strange.glb': none of the nodes that it moves is one of the mesh"),
-        std::string::npos)
-        << refused.error().message;
-    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+    expectRefused(importAnimatedInWorker(file, {strange}),
+                  "strange.glb': none of the nodes that it moves is one of the mesh");
     EXPECT_FALSE(importAnimatedInWorker(file, {file})) << "no animation";
 }
 
@@ -379,159 +315,135 @@ TEST(AnimatedImport, WeightsOfAnotherSumAreScaled) {
 }
 
 struct Wrong {
-    const char* says;
-    std::function<GltfScribe()> make;
+    const char* words;
+    GltfScribe (*base)();
+    std::function<void(GltfScribe&)> change;
     ErrorCode code = ErrorCode::kInvalidInput;
 };
 
+Json& firstPrimitive(GltfScribe& scribe) {
+    return scribe.json["meshes"][0]["primitives"][0];
+}
+Json& sampler(GltfScribe& scribe, int animation) {
+    return scribe.json["animations"][animation]["samplers"][0];
+}
+Json& channel(GltfScribe& scribe) {
+    return scribe.json["animations"][0]["channels"][0];
+}
+
+std::function<void(GltfScribe&)> times(const std::vector<float>& values) {
+    return [values](GltfScribe& scribe) { sampler(scribe, 0)["input"] = scribe.floats("SCALAR", values); };
+}
+
 TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
-    const auto times = [](std::vector<float> values) {
-        return [values] {
-            GltfScribe scribe = robot();
-            scribe.json["animations"][0]["samplers"][0]["input"] = scribe.floats("SCALAR", values);
-            return scribe;
-        };
-    };
-    const auto morphed = [](const std::function<void(GltfScribe&, Json&)>& change) {
-        return [change] {
-            GltfScribe scribe = morphingCube();
-            change(scribe, scribe.json["meshes"][0]["primitives"][0]);
-            return scribe;
-        };
-    };
-    const auto of = [](GltfScribe (*base)(), const std::function<void(Json&)>& change) {
-        return [base, change] {
-            GltfScribe scribe = base();
-            change(scribe.json);
-            return scribe;
-        };
-    };
     const std::vector<Wrong> all = {
-        {"skins[0] has no joints", of(bendingBar, [](Json& j) { j["skins"][0]["joints"] = Json::array(); })},
-        {"skins[0] has fewer inverseBindMatrices than joints", of(bendingBar,
-                                                                  [](Json& j) {
-                                                                      j["skins"][0]["joints"] = {2, 1, 0};
-                                                                  })},
-        {"moved by a joint which its skin, skins[0], does not have",
-         of(bendingBar, [](Json& j) { j["skins"][0]["joints"] = {2}; })},
-        {"have weights that are less than 0, no numbers, or 0",
-         [&] {
-             GltfScribe scribe = bendingBar();
-             scribe.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] =
-                 scribe.floats("VEC4", std::vector<float>(48, kNan));
-             return scribe;
+        {"skins[0] has no joints", bendingBar,
+         [](GltfScribe& s) { s.json["skins"][0]["joints"] = Json::array(); }},
+        {"skins[0] has fewer inverseBindMatrices than joints", bendingBar,
+         [](GltfScribe& s) {
+             s.json["skins"][0]["joints"] = {2, 1, 0};
          }},
-        {"has inverseBindMatrices that are no numbers",
-         [&] {
-             GltfScribe scribe = bendingBar();
-             std::vector<float> binds = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, kNan, 0, 0, 1};
-             binds.insert(binds.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-             scribe.json["skins"][0]["inverseBindMatrices"] = scribe.floats("MAT4", binds);
-             return scribe;
+        {"moved by a joint which its skin, skins[0], does not have", bendingBar,
+         [](GltfScribe& s) { s.json["skins"][0]["joints"] = {2}; }},
+        {"have weights that are less than 0, no numbers, or 0", bendingBar,
+         [](GltfScribe& s) {
+             firstPrimitive(s)["attributes"]["WEIGHTS_0"] = s.floats("VEC4", std::vector<float>(48, kNan));
          }},
-        {"has as time 1 0.5; times of keys are 0 or more and rise", times({0.5F, 0.5F, 1})},
-        {"has as time 1 0.25;", times({0.5F, 0.25F, 1})},
-        {"has as time 0 -1;", times({-1, 0, 1})},
-        {"has as time 2 no number;", times({0, 1, kNan})},
-        {"has no keys", times({})},
-        {"has 9 numbers instead of 3 for each of 2 keys", times({0, 1})},
-        {"lasts longer than a day", times({0, 1, 90'000}), ErrorCode::kLimit},
-        {"has values of keys that are no numbers",
-         [&] {
-             GltfScribe scribe = robot();
-             scribe.json["animations"][0]["samplers"][0]["output"] =
-                 scribe.floats("VEC3", std::vector<float>(9, kNan));
-             return scribe;
+        {"has inverseBindMatrices that are no numbers", bendingBar,
+         [](GltfScribe& s) {
+             s.json["skins"][0]["inverseBindMatrices"] =
+                 s.floats("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, kNan, 0, 0, 1,
+                                   1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,    0, 0, 1});
          }},
-        {"has as rotation of key 0 no unit quaternion: its length is 0",
-         [&] {
-             GltfScribe scribe = robot();
-             scribe.json["animations"][1]["samplers"][0]["output"] =
-                 scribe.floats("VEC4", std::vector<float>(12, 0.0F));
-             return scribe;
+        {"skins[0] has inverseBindMatrices whose last row is not 0 0 0 1", bendingBar,
+         [](GltfScribe& s) {
+             s.json["skins"][0]["inverseBindMatrices"] = s.floats("MAT4", std::vector<float>(32, 1.0F));
          }},
-        {"moves the translation of nodes[2], which another one moves too",
-         of(robot,
-            [](Json& j) { j["animations"][0]["channels"].push_back(j["animations"][0]["channels"][0]); })},
-        {"nodes[9], which does not exist",
-         of(robot, [](Json& j) { j["animations"][0]["channels"][0]["target"]["node"] = 9; })},
-        {"samplers[7], which does not exist",
-         of(robot, [](Json& j) { j["animations"][0]["channels"][0]["sampler"] = 7; })},
-        {"accessors[77], which does not exist",
-         of(robot, [](Json& j) { j["animations"][0]["samplers"][0]["output"] = 77; })},
-        {"has the interpolation 'QUADRATIC'",
-         of(robot, [](Json& j) { j["animations"][0]["samplers"][0]["interpolation"] = "QUADRATIC"; })},
-        {"has no target, or one without a path",
-         of(robot, [](Json& j) { j["animations"][0]["channels"][0].erase("target"); })},
-        {"moves the morph targets of nodes[2], which has none",
-         of(robot, [](Json& j) { j["animations"][0]["channels"][0]["target"]["path"] = "weights"; })},
-        {"moves 7 vertices, and the primitive has 8", morphed([](GltfScribe& scribe, Json& primitive) {
-             primitive["targets"][0]["POSITION"] = scribe.floats("VEC3", std::vector<float>(21, 0.0F));
-         })},
-        {"ends behind its buffer view", morphed([](GltfScribe& scribe, Json& primitive) {
-             const std::size_t short_one = scribe.floats("VEC3", std::vector<float>(21, 0.0F));
-             scribe.json["accessors"][short_one]["count"] = 8;
-             primitive["targets"][0]["POSITION"] = short_one;
-         })},
-        {"moves a vertex by what is no number", morphed([](GltfScribe& scribe, Json& primitive) {
-             primitive["targets"][0]["POSITION"] = scribe.floats("VEC3", std::vector<float>(24, kNan));
-         })},
-        {"has 1 morph targets, and one before it 2", morphed([](GltfScribe& scribe, Json& primitive) {
-             Json other = primitive;
+        {"have only one of JOINTS_0 and WEIGHTS_0", bendingBar,
+         [](GltfScribe& s) { firstPrimitive(s)["attributes"].erase("WEIGHTS_0"); }},
+        {"is not normalized", bendingBar,
+         [](GltfScribe& s) {
+             firstPrimitive(s)["attributes"]["WEIGHTS_0"] = s.bytes("VEC4", std::vector<int>(48, 1));
+         }},
+        {"has as time 1 0.5; times of keys are 0 or more and rise", robot, times({0.5F, 0.5F, 1})},
+        {"has as time 1 0.25;", robot, times({0.5F, 0.25F, 1})},
+        {"has as time 0 -1;", robot, times({-1, 0, 1})},
+        {"has as time 2 no number;", robot, times({0, 1, kNan})},
+        {"has no keys", robot, times({})},
+        {"has 9 numbers instead of 3 for each of 2 keys", robot, times({0, 1})},
+        {"lasts longer than a day", robot, times({0, 1, 90'000}), ErrorCode::kLimit},
+        {"has values of keys that are no numbers", robot,
+         [](GltfScribe& s) { sampler(s, 0)["output"] = s.floats("VEC3", std::vector<float>(9, kNan)); }},
+        {"has as rotation of key 0 no unit quaternion: its length is 0", robot,
+         [](GltfScribe& s) { sampler(s, 1)["output"] = s.floats("VEC4", std::vector<float>(12, 0.0F)); }},
+        {"moves the translation of nodes[2], which another one moves too", robot,
+         [](GltfScribe& s) {
+             const Json twice = channel(s);
+             s.json["animations"][0]["channels"].push_back(twice);
+         }},
+        {"nodes[9], which does not exist", robot, [](GltfScribe& s) { channel(s)["target"]["node"] = 9; }},
+        {"samplers[7], which does not exist", robot, [](GltfScribe& s) { channel(s)["sampler"] = 7; }},
+        {"accessors[77], which does not exist", robot, [](GltfScribe& s) { sampler(s, 0)["output"] = 77; }},
+        {"has the interpolation 'QUADRATIC'", robot,
+         [](GltfScribe& s) { sampler(s, 0)["interpolation"] = "QUADRATIC"; }},
+        {"has no target, or one without a path", robot, [](GltfScribe& s) { channel(s).erase("target"); }},
+        {"moves the morph targets of nodes[2], which has none", robot,
+         [](GltfScribe& s) { channel(s)["target"]["path"] = "weights"; }},
+        {"moves 7 vertices, and the primitive has 8", morphingCube,
+         [](GltfScribe& s) {
+             firstPrimitive(s)["targets"][0]["POSITION"] = s.floats("VEC3", std::vector<float>(21, 0.0F));
+         }},
+        {"ends behind its buffer view", morphingCube,
+         [](GltfScribe& s) {
+             const std::size_t short_one = s.floats("VEC3", std::vector<float>(21, 0.0F));
+             s.json["accessors"][short_one]["count"] = 8;
+             firstPrimitive(s)["targets"][0]["POSITION"] = short_one;
+         }},
+        {"moves a vertex by what is no number", morphingCube,
+         [](GltfScribe& s) {
+             firstPrimitive(s)["targets"][0]["POSITION"] = s.floats("VEC3", std::vector<float>(24, kNan));
+         }},
+        {"has 1 morph targets, and one before it 2", morphingCube,
+         [](GltfScribe& s) {
+             Json other = firstPrimitive(s);
              other["targets"].erase(1);
-             scribe.json["meshes"][0]["primitives"].push_back(other);
-         })},
-        {"has 3 weights for 2 morph targets", of(morphingCube,
-                                                 [](Json& j) {
-                                                     j["nodes"][0]["weights"] = {1, 2, 3};
-                                                 })},
-        {"has more morph targets than can be: 1024",
-         of(morphingCube,
-            [](Json& j) {
-                Json& targets = j["meshes"][0]["primitives"][0]["targets"];
-                targets = Json::array();
-                for (int i = 0; i < 1025; ++i) {
-                    targets.push_back(Json::object());
-                }
-            }),
+             s.json["meshes"][0]["primitives"].push_back(other);
+         }},
+        {"has 3 weights for 2 morph targets", morphingCube,
+         [](GltfScribe& s) {
+             s.json["nodes"][0]["weights"] = {1, 2, 3};
+         }},
+        {"has more morph targets than can be: 1024", morphingCube,
+         [](GltfScribe& s) { firstPrimitive(s)["targets"] = std::vector<Json>(1025, Json::object()); },
          ErrorCode::kLimit},
-        {"and at most 8191 can move",
-         of(robot,
-            [](Json& j) {
-                for (int i = 3; i < 8200; ++i) {
-                    j["nodes"].push_back(Json::object());
-                    j["scenes"][0]["nodes"].push_back(i);
-                }
-            }),
-         ErrorCode::kLimit},
-        {"more than 4096 joints, nodes and instances move its vertices",
-         [&] {
-             GltfScribe scribe = robot();
-             std::vector<float> places;
-             for (int i = 0; i < 5000; ++i) {
-                 places.insert(places.end(), {static_cast<float>(i), 0, 0});
+        {"and at most 8191 can move", robot,
+         [](GltfScribe& s) {
+             for (int i = 3; i < 8200; ++i) {
+                 s.json["nodes"].push_back(Json::object());
+                 s.json["scenes"][0]["nodes"].push_back(i);
              }
-             scribe.json["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
-                 scribe.floats("VEC3", places);
-             return scribe;
          },
          ErrorCode::kLimit},
-        {"nothing in it moves: no skin, no morph target and no animation",
-         of(robot, [](Json& j) { j.erase("animations"); })},
-        {"nodes must form trees", of(robot, [](Json& j) { j["nodes"][0]["children"] = {2}; })},
-        {"no triangles, but 36 points",
-         of(robot, [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; })},
+        {"more than 4096 joints, nodes and instances move its vertices", robot,
+         [](GltfScribe& s) {
+             std::vector<float> places(15'000);
+             std::iota(places.begin(), places.end(), 0.0F);
+             s.json["nodes"][2]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+                 s.floats("VEC3", places);
+         },
+         ErrorCode::kLimit},
+        {"nothing in it moves: no skin, no morph target and no animation", robot,
+         [](GltfScribe& s) { s.json.erase("animations"); }},
+        {"nodes must form trees", robot, [](GltfScribe& s) { s.json["nodes"][0]["children"] = {2}; }},
+        {"no triangles, but 36 points", robot, [](GltfScribe& s) { firstPrimitive(s)["mode"] = 0; }},
     };
     for (const Wrong& wrong : all) {
-        SCOPED_TRACE(wrong.says);
-        const Result<AnimatedImport> import = load(wrong.make());
-        ASSERT_FALSE(import);
-        const std::string& text = import.error().message;
-        EXPECT_EQ(import.error().code, wrong.code) << text;
-        EXPECT_NE(text.find(wrong.says), std::string::npos) << text;
-        EXPECT_NE(text.find("a.glb'"), std::string::npos) << text;
-        EXPECT_NE(text.find("; "), std::string::npos) << "no cure: " << text;
-        EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+        SCOPED_TRACE(wrong.words);
+        GltfScribe scribe = wrong.base();
+        wrong.change(scribe);
+        const Result<AnimatedImport> import = load(scribe);
+        expectRefused(import, wrong.words, wrong.code);
+        expectRefused(import, "a.glb'", wrong.code);
     }
 }
 
@@ -540,7 +452,7 @@ TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
     Dice dice(seedFrom(11));
     int read = 0;
     int refused = 0;
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 300; ++i) {
         GltfCase file = (i % 3 == 0 ? bendingBar() : i % 3 == 1 ? robot() : morphingCube()).file();
         const std::string change = mutateGltf(file.document, dice);
         SCOPED_TRACE(change);
@@ -555,24 +467,17 @@ TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
             EXPECT_TRUE(kind == ImportKind::kClips ? readAnimatedClips(raw->animation)
                                                    : readAnimatedMesh(raw->animation));
         } else {
-            const std::string& text = raw.error().message;
-            EXPECT_NE(text.find("; "), std::string::npos) << "no cure: " << text;
-            EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+            expectFault(raw.error(), "", raw.error().code);
         }
     }
-    EXPECT_GT(read, 60);
-    EXPECT_GT(refused, 60);
+    EXPECT_GT(read, 30);
+    EXPECT_GT(refused, 30);
 }
 
 TEST(AnimatedImport, OtherFormatsAreNotRead) {
     const TemporaryFolder folder;
-    const Result<AnimatedImport> import =
-        importAnimatedInWorker(folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), {});
-    ASSERT_FALSE(import);
-    EXPECT_EQ(import.error().code, ErrorCode::kUnsupported);
-    EXPECT_NE(import.error().message.find("animations of a .obj are not read; convert it to glTF"),
-              std::string::npos)
-        << import.error().message;
+    expectRefused(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
+                  "animations of a .obj are not read; convert it to glTF", ErrorCode::kUnsupported);
 }
 
 TEST(AnimatedImport, AnswersOfAWorkerThatLiesAreRefused) {

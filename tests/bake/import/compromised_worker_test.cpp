@@ -427,6 +427,34 @@ TEST(CompromisedWorker, CanDoItsWork) {
     EXPECT_EQ(aborted.signal, SIGABRT);
 }
 
+TEST(CompromisedWorker, HasTheLimitsOfTheKernel) {
+    const Place place;
+    ASSERT_TRUE(place.ready());
+    const auto hard = [](__rlimit_resource resource) {
+        rlimit limit{};
+        ::getrlimit(resource, &limit);
+        return limit.rlim_max;
+    };
+    const auto holds = [&](const std::function<bool()>& what) {
+        return ask(place, true, what).code == kDone;
+    };
+    EXPECT_TRUE(holds([&] { return hard(RLIMIT_CORE) == 0 && hard(RLIMIT_FSIZE) == 0; }));
+    EXPECT_TRUE(holds([&] { return hard(RLIMIT_CPU) <= 6; }));
+    EXPECT_TRUE(holds([] {
+        int number = 0;
+        return ::prctl(PR_GET_DUMPABLE) == 0 && ::prctl(PR_GET_NO_NEW_PRIVS, 0, 0, 0, 0) == 1 &&
+               ::prctl(PR_GET_PDEATHSIG, &number) == 0 && number == SIGKILL;
+    }));
+#ifndef RELIEF_SANITIZED
+    const auto maps = [](std::uint64_t size) {
+        return ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
+               MAP_FAILED;
+    };
+    EXPECT_TRUE(holds([&] { return maps(kMemory / 2); }));
+    EXPECT_EQ(ask(place, true, [&] { return maps(kMemory + 4096); }).code, kRefused);
+#endif
+}
+
 /// Recurses without an end.
 [[gnu::noinline]] std::size_t descend(std::size_t depth, volatile char* above) {
     volatile char here[kPage] = {};

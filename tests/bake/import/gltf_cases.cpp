@@ -5,6 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "tests/bake/import/import_meshes.h"
+
 namespace relief::test {
 namespace {
 
@@ -290,49 +292,23 @@ class Maker {
     bool quantised_ = false;
 };
 
-std::string base64(const std::string& bytes) {
-    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += i + k > bytes.size() ? '=' : kDigits[group >> (18U - 6U * k) & 63U];
-        }
-    }
-    return text;
-}
-
 /// Another value, of any kind.
 Json otherValue(const Json& value, Dice& dice) {
-    switch (dice.roll(12)) {
-        case 0:
-            return nullptr;
-        case 1:
-            return "2";
-        case 2:
-            return -1;
-        case 3:
-            return 0.5;
-        case 4:
-            return 9007199254740993ULL;
-        case 5:
-            return Json::array();
-        case 6:
-            return Json::object();
-        case 7:
-            return true;
-        case 8:
-            return 255;
-        case 9:
-            return value.is_number_integer() ? Json(value.get<int>() - 1) : Json(1e300);
-        case 10:
-            return value.is_number_integer() ? Json(2 * value.get<int>()) : Json("");
-        default:
-            return value.is_number_integer() ? Json(value.get<int>() + 1) : Json(5126);
-    }
+    const bool whole = value.is_number_integer();
+    const auto number = [&] { return value.get<int>(); };
+    const std::array<Json, 12> others = {nullptr,
+                                         "2",
+                                         -1,
+                                         0.5,
+                                         9007199254740993ULL,
+                                         Json::array(),
+                                         Json::object(),
+                                         true,
+                                         255,
+                                         whole ? Json(number() - 1) : Json(1e300),
+                                         whole ? Json(2 * number()) : Json(""),
+                                         whole ? Json(number() + 1) : Json(5126)};
+    return others.at(dice.roll(12));
 }
 
 }  // namespace

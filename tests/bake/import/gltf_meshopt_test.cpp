@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
 
 #include "bake/import/animated_import.h"
 #include "tests/bake/import/animated_cases.h"
@@ -18,12 +19,16 @@ namespace {
 using Json = nlohmann::json;
 using Bytes = std::vector<std::byte>;
 
+Bytes copied(const std::vector<unsigned char>& packed) {
+    const auto bytes = std::as_bytes(std::span(packed));
+    return {bytes.begin(), bytes.end()};
+}
+
 Bytes packAttributes(const void* values, std::size_t count, std::size_t stride) {
     std::vector<unsigned char> packed(meshopt_encodeVertexBufferBound(count, stride));
     meshopt_encodeVertexVersion(0);
     packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), values, count, stride));
-    const auto bytes = std::as_bytes(std::span(packed));
-    return {bytes.begin(), bytes.end()};
+    return copied(packed);
 }
 
 Bytes packIndices(const std::vector<std::uint32_t>& indices, bool triangles) {
@@ -35,8 +40,7 @@ Bytes packIndices(const std::vector<std::uint32_t>& indices, bool triangles) {
         triangles
             ? meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), indices.size())
             : meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), indices.size()));
-    const auto bytes = std::as_bytes(std::span(packed));
-    return {bytes.begin(), bytes.end()};
+    return copied(packed);
 }
 
 Result<Bytes> unpack(const Json& extension, const Bytes& packed, std::uint64_t size) {
@@ -115,15 +119,11 @@ TEST(GltfMeshopt, FiltersAreThoseOfTheExtension) {
     const auto turns = unpacked<std::int16_t>(
         {{"mode", "ATTRIBUTES"}, {"filter", "QUATERNION"}, {"count", 2}, {"byteStride", 8}},
         packAttributes(packed.data(), 2, 8), 8);
-    const double unit = std::sqrt(0.5) / 2047.0;
-    const double x = 1000 * unit;
-    const double y = -500 * unit;
-    const double z = 200 * unit;
-    const double missing = std::sqrt(1 - x * x - y * y - z * z);
-    EXPECT_NEAR(turns[3], 32767 * x, 1.5);
-    EXPECT_NEAR(turns[0], 32767 * y, 1.5);
-    EXPECT_NEAR(turns[1], 32767 * z, 1.5);
-    EXPECT_NEAR(turns[2], 32767 * missing, 1.5);
+    const glm::dvec3 turn = std::sqrt(0.5) / 2047.0 * glm::dvec3(1000, -500, 200);
+    EXPECT_NEAR(turns[3], 32767 * turn.x, 1.5);
+    EXPECT_NEAR(turns[0], 32767 * turn.y, 1.5);
+    EXPECT_NEAR(turns[1], 32767 * turn.z, 1.5);
+    EXPECT_NEAR(turns[2], 32767 * std::sqrt(1 - glm::dot(turn, turn)), 1.5);
     EXPECT_EQ(turns[7], 32767);
 }
 

@@ -6,9 +6,11 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
-#include <glm/geometric.hpp>
+#include <glm/glm.hpp>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -18,6 +20,10 @@ namespace {
 
 using Json = nlohmann::json;
 using Place = std::function<glm::dvec3(glm::dvec3)>;
+using Numbers = std::vector<double>;
+
+/// What an accessor is for: each use allows other types.
+enum class Use { kPositions, kIndices, kJoints, kWeights, kMatrices, kKeys };
 
 void must(bool holds, const char* what) {
     if (!holds) {
@@ -49,7 +55,7 @@ const Json& element(const Json& json, const char* name, std::size_t index) {
     return value;
 }
 
-std::vector<double> numbers(const Json& json, const char* name, std::vector<double> otherwise) {
+Numbers numbers(const Json& json, const char* name, Numbers otherwise) {
     if (!json.contains(name)) {
         return otherwise;
     }
@@ -104,6 +110,53 @@ std::string contentsOf(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// Appendix C of the specification.
+Numbers valueAt(const Numbers& times, const Numbers& values, const std::string& curve, bool rotation,
+                double seconds) {
+    const bool cubic = curve == "CUBICSPLINE";
+    const std::size_t n = values.size() / times.size() / (cubic ? 3 : 1);
+    const auto value = [&](std::size_t key, std::size_t part) {
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>((cubic ? 3 * key + part : key) * n);
+        return Numbers(at, at + static_cast<std::ptrdiff_t>(n));
+    };
+    if (seconds <= times.front() || seconds >= times.back()) {
+        return value(seconds <= times.front() ? 0 : times.size() - 1, 1);
+    }
+    std::size_t key = 0;
+    while (times[key + 1] <= seconds) {
+        ++key;
+    }
+    const double length = times[key + 1] - times[key];
+    const double t = (seconds - times[key]) / length;
+    Numbers a = value(key, 1);
+    Numbers b = value(key + 1, 1);
+    if (curve == "STEP") {
+        return a;
+    }
+    std::array<double, 2> shares = {1 - t, t};
+    if (cubic) {
+        shares = {2 * std::pow(t, 3) - 3 * t * t + 1, -2 * std::pow(t, 3) + 3 * t * t};
+    } else if (rotation) {
+        const glm::dvec4 p = glm::normalize(glm::dvec4(a[0], a[1], a[2], a[3]));
+        const glm::dvec4 q = glm::normalize(glm::dvec4(b[0], b[1], b[2], b[3]));
+        a = {p.x, p.y, p.z, p.w};
+        b = {q.x, q.y, q.z, q.w};
+        const double angle = std::acos(std::min(1.0, std::abs(glm::dot(p, q))));
+        if (angle > 1e-6) {
+            shares = {std::sin((1 - t) * angle) / std::sin(angle), std::sin(t * angle) / std::sin(angle)};
+        }
+        shares[1] *= glm::dot(p, q) < 0 ? -1 : 1;
+    }
+    const Numbers leaves = cubic ? value(key, 2) : Numbers(n);
+    const Numbers arrives = cubic ? value(key + 1, 0) : Numbers(n);
+    Numbers out(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        out[i] = shares[0] * a[i] + shares[1] * b[i] + length * (std::pow(t, 3) - 2 * t * t + t) * leaves[i] +
+                 length * (std::pow(t, 3) - t * t) * arrives[i];
+    }
+    return out;
+}
+
 class Book {
   public:
     explicit Book(const std::filesystem::path& path) : path_(path) {
@@ -139,12 +192,29 @@ class Book {
         must(document_.is_object(), "no document");
     }
 
-    std::vector<Corners> read() {
+    std::vector<Corners> read(const std::optional<GltfMoment>& moment) {
         const Json& asset = document_.at("asset");
         must(asset.at("version").get<std::string>().starts_with("2."), "version");
         must(!asset.contains("minVersion") || asset.at("minVersion") == "2.0", "minVersion");
         for (const Json& name : list(document_, "extensionsRequired")) {
             must(name == "KHR_mesh_quantization", "an extension");
+        }
+        if (moment) {
+            const Json& animation = element(document_, "animations", moment->animation);
+            for (const Json& channel : list(animation, "channels")) {
+                const Json& sampler = element(animation, "samplers", whole(channel.at("sampler")));
+                const Json& target = channel.at("target");
+                const std::string path = target.at("path");
+                const bool rotation = path == "rotation";
+                Numbers value = valueAt(accessor(whole(sampler.at("input")), Use::kKeys),
+                                        accessor(whole(sampler.at("output")), Use::kKeys),
+                                        sampler.value("interpolation", "LINEAR"), rotation, moment->seconds);
+                const double square = std::inner_product(value.begin(), value.end(), value.begin(), 0.0);
+                for (double& part : value) {
+                    part /= rotation ? std::sqrt(square) : 1.0;
+                }
+                document_["nodes"][whole(target.at("node"))][path] = value;
+            }
         }
         countParents();
         const std::size_t scene = whole(document_, "scene", 0);
@@ -155,6 +225,17 @@ class Book {
         }
         must(!triangles_.empty(), "no triangles");
         return std::move(triangles_);
+    }
+
+    Numbers lengths() {
+        Numbers all;
+        for (const Json& animation : list(document_, "animations")) {
+            all.push_back(0.0);
+            for (const Json& sampler : list(animation, "samplers")) {
+                all.back() = std::max(all.back(), accessor(whole(sampler.at("input")), Use::kKeys).back());
+            }
+        }
+        return all;
     }
 
   private:
@@ -168,22 +249,28 @@ class Book {
         }
     }
 
+    /// \param m  16 numbers, column by column.
+    static Place placeOfMatrix(const double* m) {
+        must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5, "the last row");
+        glm::dmat4x3 matrix;
+        for (int i = 0; i < 12; ++i) {
+            matrix[i / 3][i % 3] = m[i / 3 * 4 + i % 3];
+        }
+        return [matrix](const glm::dvec3& p) { return matrix * glm::dvec4(p, 1.0); };
+    }
+
     static Place placeOf(const Json& node) {
-        const std::vector<double> m =
-            numbers(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
-        const std::vector<double> t = numbers(node, "translation", {0, 0, 0});
-        const std::vector<double> q = numbers(node, "rotation", {0, 0, 0, 1});
-        const std::vector<double> s = numbers(node, "scale", {1, 1, 1});
+        const Numbers m = numbers(node, "matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+        const Numbers t = numbers(node, "translation", {0, 0, 0});
+        const Numbers q = numbers(node, "rotation", {0, 0, 0, 1});
+        const Numbers s = numbers(node, "scale", {1, 1, 1});
         const bool parts =
             node.contains("translation") || node.contains("rotation") || node.contains("scale");
         must(!node.contains("matrix") || !parts, "a matrix and more");
-        must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5, "the last row");
+        const Place by = placeOfMatrix(m.data());
         must(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-3, "no unit");
         return [=](const glm::dvec3& p) {
-            const glm::dvec3 by = {m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
-                                   m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
-                                   m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
-            const glm::dvec3 scaled = by * glm::dvec3(s[0], s[1], s[2]);
+            const glm::dvec3 scaled = by(p) * glm::dvec3(s[0], s[1], s[2]);
             const glm::dvec3 axis(q[0], q[1], q[2]);
             const glm::dvec3 across = glm::cross(axis, scaled);
             return scaled + 2.0 * (q[3] * across + glm::cross(axis, across)) + glm::dvec3(t[0], t[1], t[2]);
@@ -200,8 +287,9 @@ class Book {
                 skin = &element(document_, "skins", whole(node.at("skin")));
             }
             const Json& mesh = element(document_, "meshes", whole(node.at("mesh")));
+            const Numbers weights = node.value("weights", mesh.value("weights", Numbers(1000)));
             for (const Json& primitive : list(mesh, "primitives")) {
-                addPrimitive(primitive, place, skin);
+                addPrimitive(primitive, place, skin, weights);
             }
         }
         for (const Json& child : list(node, "children")) {
@@ -228,32 +316,23 @@ class Book {
                                     const Json& skin) {
         const Json& joints = list(skin, "joints");
         must(!joints.empty(), "no joints");
-        std::vector<double> inverse;
+        Numbers inverse;
         if (skin.contains("inverseBindMatrices")) {
-            inverse = accessor(whole(skin.at("inverseBindMatrices")), "MAT4", 16);
+            inverse = accessor(whole(skin.at("inverseBindMatrices")), Use::kMatrices);
             must(inverse.size() >= 16 * joints.size(), "too few matrices");
         }
         std::vector<Place> places;
         for (std::size_t i = 0; i < joints.size(); ++i) {
             const Place place = placeOf(whole(joints[i]));
-            std::vector<double> m = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-            if (!inverse.empty()) {
-                m.assign(inverse.begin() + 16 * static_cast<std::ptrdiff_t>(i),
-                         inverse.begin() + 16 * static_cast<std::ptrdiff_t>(i + 1));
-            }
-            must(std::abs(m[3]) + std::abs(m[7]) + std::abs(m[11]) + std::abs(m[15] - 1) < 3e-5,
-                 "the last row");
-            places.emplace_back([place, m](const glm::dvec3& p) {
-                return place({m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12],
-                              m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
-                              m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]});
-            });
+            const Place bind =
+                inverse.empty() ? [](glm::dvec3 p) { return p; } : placeOfMatrix(&inverse[16 * i]);
+            places.emplace_back([place, bind](const glm::dvec3& p) { return place(bind(p)); });
         }
         if (!attributes.contains("JOINTS_0") && !attributes.contains("WEIGHTS_0")) {
             return points;
         }
-        const std::vector<double> by = accessor(whole(attributes.at("JOINTS_0")), "VEC4", 4);
-        const std::vector<double> weights = accessor(whole(attributes.at("WEIGHTS_0")), "VEC4", -4);
+        const Numbers by = accessor(whole(attributes.at("JOINTS_0")), Use::kJoints);
+        const Numbers weights = accessor(whole(attributes.at("WEIGHTS_0")), Use::kWeights);
         must(by.size() == 4 * points.size() && weights.size() == by.size(), "other counts");
         std::vector<glm::dvec3> posed;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -275,7 +354,7 @@ class Book {
         return posed;
     }
 
-    void addPrimitive(const Json& primitive, const Place& place, const Json* skin) {
+    void addPrimitive(const Json& primitive, const Place& place, const Json* skin, const Numbers& weights) {
         const Json& attributes = primitive.at("attributes");
         must(attributes.is_object(), "no attributes");
         const std::size_t mode = whole(primitive, "mode", 4);
@@ -283,7 +362,17 @@ class Book {
         if (!attributes.contains("POSITION")) {
             return;
         }
-        const std::vector<double> flat = accessor(whole(attributes.at("POSITION")), "VEC3", 3);
+        Numbers flat = accessor(whole(attributes.at("POSITION")), Use::kPositions);
+        const Json& targets = list(primitive, "targets");
+        for (std::size_t i = 0; i < targets.size(); ++i) {
+            if (targets[i].contains("POSITION")) {
+                const Numbers deltas = accessor(whole(targets[i].at("POSITION")), Use::kPositions);
+                must(deltas.size() == flat.size(), "another count");
+                for (std::size_t k = 0; k < flat.size(); ++k) {
+                    flat[k] += weights.at(i) * deltas[k];
+                }
+            }
+        }
         std::vector<glm::dvec3> points;
         for (std::size_t i = 0; i < flat.size(); i += 3) {
             points.push_back({flat[i], flat[i + 1], flat[i + 2]});
@@ -299,7 +388,7 @@ class Book {
         }
         if (primitive.contains("indices")) {
             corners.clear();
-            for (const double index : accessor(whole(primitive.at("indices")), "SCALAR", 1)) {
+            for (const double index : accessor(whole(primitive.at("indices")), Use::kIndices)) {
                 corners.push_back(static_cast<std::size_t>(index));
                 must(corners.back() < points.size(), "an index");
             }
@@ -322,25 +411,32 @@ class Book {
         }
     }
 
-    /// \param kind_of  the components; -4 for weights.
-    std::vector<double> accessor(std::size_t index, const char* type, int kind_of) {
-        const auto components = static_cast<std::size_t>(std::abs(kind_of));
+    Numbers accessor(std::size_t index, Use use) {
         const Json& json = element(document_, "accessors", index);
-        must(json.at("type") == type, "type");
+        const std::string type = json.at("type");
+        const std::map<std::string, std::size_t> counts = {
+            {"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
+        must(use == Use::kKeys || type == (use == Use::kPositions  ? "VEC3"
+                                           : use == Use::kIndices  ? "SCALAR"
+                                           : use == Use::kMatrices ? "MAT4"
+                                                                   : "VEC4"),
+             "type");
+        const std::size_t components = counts.at(type);
         const std::size_t kind = whole(json.at("componentType"));
         const std::size_t count = whole(json.at("count"));
         const bool normalized = json.contains("normalized") && json.at("normalized").get<bool>();
         const bool small = kind == 5121 || kind == 5123;
-        must(kind_of == 3    ? small || kind == 5120 || kind == 5122 || kind == 5126
-             : kind_of == 1  ? small || kind == 5125
-             : kind_of == 4  ? small
-             : kind_of == -4 ? small || kind == 5126
-                             : kind == 5126,
+        const bool number = small || kind == 5120 || kind == 5122 || kind == 5126;
+        must(use == Use::kPositions || use == Use::kKeys ? number
+             : use == Use::kIndices                      ? small || kind == 5125
+             : use == Use::kJoints                       ? small
+             : use == Use::kWeights                      ? small || kind == 5126
+                                                         : kind == 5126,
              "componentType");
-        must(!normalized || (kind_of != 1 && kind_of != 4 && kind != 5126), "normalized");
-        must(kind_of != -4 || normalized == small, "normalized weights");
+        must(!normalized || (use != Use::kIndices && use != Use::kJoints && kind != 5126), "normalized");
+        must(use != Use::kWeights || normalized == small, "normalized weights");
         must(json.contains("bufferView") || json.contains("sparse"), "no data");
-        std::vector<double> values(count < 100000 ? count * components : throw std::runtime_error("count"));
+        Numbers values(count < 100000 ? count * components : throw std::runtime_error("count"));
         if (json.contains("bufferView")) {
             values = elements(json, kind, count, components, components > 1);
         }
@@ -360,7 +456,7 @@ class Book {
             }
         }
         for (double& value : values) {
-            if (components == 1) {
+            if (use == Use::kIndices) {
                 must(value != (kind == 5121 ? 255.0 : kind == 5123 ? 65535.0 : 4294967295.0), "restart");
             } else if (normalized) {
                 value = std::max(value / (kind == 5120   ? 127.0
@@ -373,8 +469,8 @@ class Book {
         return values;
     }
 
-    std::vector<double> elements(const Json& owner, std::size_t kind, std::size_t count,
-                                 std::size_t components, bool strided) {
+    Numbers elements(const Json& owner, std::size_t kind, std::size_t count, std::size_t components,
+                     bool strided) {
         const Json& view = element(document_, "bufferViews", whole(owner.at("bufferView")));
         must(!view.contains("extensions"), "an extension");
         const std::size_t size = kind <= 5121 ? 1 : kind <= 5123 ? 2 : 4;
@@ -387,7 +483,7 @@ class Book {
         const std::size_t offset = whole(owner, "byteOffset", 0);
         must(count < 100000 && (count == 0 || offset + (count - 1) * stride + size * components <= length),
              "an accessor behind its view");
-        std::vector<double> values;
+        Numbers values;
         for (std::size_t i = 0; i < count * components; ++i) {
             const std::size_t at = from + offset + i / components * stride + i % components * size;
             std::uint32_t bits = 0;
@@ -438,8 +534,13 @@ class Book {
 
 }  // namespace
 
-std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path) {
-    return Book(path).read();
+std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path,
+                                       const std::optional<GltfMoment>& moment) {
+    return Book(path).read(moment);
+}
+
+std::vector<double> gltfLengthsByTheBook(const std::filesystem::path& path) {
+    return Book(path).lengths();
 }
 
 }  // namespace relief::test

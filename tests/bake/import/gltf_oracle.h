@@ -2,16 +2,28 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 namespace relief::test {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// All triangles of the file's scene, in the order in which the file has them.
+struct GltfMoment {
+    std::size_t animation = 0;
+    double seconds = 0.0;
+};
+
+/// All triangles of the file's scene, in the order in which the file has them, morphed by its weights.
+/// \param moment  nullopt: the nodes as the file has them.
 /// Throws std::exception for whatever is not as the specification says, as far as triangles hang on it.
-[[nodiscard]] std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path);
+[[nodiscard]] std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path,
+                                                     const std::optional<GltfMoment>& moment = {});
+
+/// Seconds that each animation lasts.
+[[nodiscard]] std::vector<double> gltfLengthsByTheBook(const std::filesystem::path& path);
 
 }  // namespace relief::test

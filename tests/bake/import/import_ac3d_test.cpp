@@ -24,32 +24,15 @@ std::string tetrahedron(const std::string& name, const std::string& keys = "",
            kids + "\n";
 }
 
-class Ac3d : public testing::Test {
-  protected:
-    Result<TriangleMesh> read(const std::string& text) const {
-        return importMeshInWorker(folder_.write("a.ac", text));
-    }
-    Level level(const std::string& text) const {
-        Result<Level> result = importLevel(folder_.write("l.acc", text), {}, {});
-        EXPECT_TRUE(result) << result.error().message;
-        return result ? std::move(*result) : Level();
-    }
-    void expectRefused(const std::string& text, const std::string& words) const {
-        const Result<TriangleMesh> mesh = read(text);
-        ASSERT_FALSE(mesh) << words;
-        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(mesh.error().message.find(words), std::string::npos) << mesh.error().message;
-    }
-
-    TemporaryFolder folder_;
-};
-
-TEST_F(Ac3d, ObjectsAreBodiesPlacedByAllAboveThem) {
+TEST(Ac3d, ObjectsAreBodiesPlacedByAllAboveThem) {
     // The kids of a shifted object move along; x becomes y by 'rot', whose triples are the images of the axes.
-    const Level read =
-        level(kHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
-              tetrahedron("tower", "loc 0 1 0\nrot 0 1 0 -1 0 0 0 0 1\n", "1") +
-              tetrahedron("flag", "loc 5 0 0\n") + tetrahedron("tree"));
+    const TemporaryFolder folder;
+    const Result<Level> imported = importLevel(folder.write(
+        "l.acc", kHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
+                     tetrahedron("tower", "loc 0 1 0\nrot 0 1 0 -1 0 0 0 0 1\n", "1") +
+                     tetrahedron("flag", "loc 5 0 0\n") + tetrahedron("tree")));
+    ASSERT_TRUE(imported) << imported.error().message;
+    const Level& read = *imported;
     ASSERT_EQ(read.bodies.size(), 3U);
     ASSERT_EQ(read.meshes.size(), 1U);
     EXPECT_EQ(read.meshes[0].triangles.size(), 4U);
@@ -66,7 +49,7 @@ TEST_F(Ac3d, ObjectsAreBodiesPlacedByAllAboveThem) {
     }
 }
 
-TEST_F(Ac3d, SurfacesOfEveryKind) {
+TEST(Ac3d, SurfacesOfEveryKind) {
     // A quad as a strip with normals and two textures, joined to another by corners that are there twice; and two lines.
     const std::string strip =
         "OBJECT poly\nname plain\ntexture \"a b.rgb\" base\ntexture empty_texture_no_mapping skids\ndata "
@@ -76,7 +59,7 @@ TEST_F(Ac3d, SurfacesOfEveryKind) {
         "SURF 0x14\nmat 0\nrefs 10\n0 0 0 0 0\n1 0 1 0 1\n2 1 0 1 0\n3 1 1 1 1\n3 1 1\n2 1 0\n2 1 0\n3 1 "
         "1\n4 1 0\n5 1 1\n"
         "SURF 0x1\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nSURF 0x2\nmat 0\nrefs 2\n0 0 0\n1 0 0\nkids 0\n";
-    const Result<TriangleMesh> mesh = read(kHead + "OBJECT world\r\nkids 1\r\n" + strip);
+    const Result<TriangleMesh> mesh = importText("a.ac", kHead + "OBJECT world\r\nkids 1\r\n" + strip);
     ASSERT_TRUE(mesh) << mesh.error().message;
     ASSERT_EQ(mesh->triangles.size(), 4U);
     double area = 0.0;
@@ -87,52 +70,54 @@ TEST_F(Ac3d, SurfacesOfEveryKind) {
         area += 0.5 * normal.y;
     }
     EXPECT_NEAR(area, 3.0, 1e-6);
-    ASSERT_EQ(mesh->warnings.size(), 1U);
-    EXPECT_NE(mesh->warnings[0].find("left out 2 lines"), std::string::npos) << mesh->warnings[0];
+    EXPECT_TRUE(mesh->warnings.size() == 1 && warns(*mesh, "left out 2 lines"));
 }
 
-TEST_F(Ac3d, NamesAndMaterialsCanBeSelected) {
-    const std::string text = kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower");
+TEST(Ac3d, NamesAndMaterialsCanBeSelected) {
     ImportOptions options;
     options.names = {"red paint", "big tower"};
-    const Result<TriangleMesh> mesh = importMeshInWorker(folder_.write("n.ac", text), options);
+    const Result<TriangleMesh> mesh =
+        importText("n.ac", kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower"), options);
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->marks, std::vector<std::uint8_t>(4, 2));
 }
 
-TEST_F(Ac3d, OddFilesAreReadWithAWordOrRefusedWithTheirLine) {
+TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
     const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("t");
     const Result<TriangleMesh> fewer =
-        read(kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
+        importText("a.ac", kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
     ASSERT_TRUE(fewer) << fewer.error().message;
-    ASSERT_EQ(fewer->warnings.size(), 2U);
-    EXPECT_NE(fewer->warnings[0].find("it has 2 objects fewer than its 'kids' announce"), std::string::npos);
-    EXPECT_NE(fewer->warnings[1].find("1 of its objects are shown subdivided"), std::string::npos);
+    EXPECT_EQ(fewer->warnings.size(), 2U);
+    EXPECT_TRUE(warns(*fewer, "it has 2 objects fewer than its 'kids' announce"));
+    EXPECT_TRUE(warns(*fewer, "1 of its objects are shown subdivided"));
     for (std::size_t length = kHead.size(); length + 8 < one.size(); length += 7) {
-        const Result<TriangleMesh> cut = read(one.substr(0, length));
-        ASSERT_FALSE(cut) << "of " << length << " bytes";
+        ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "of " << length << " bytes";
     }
-    const auto with = [&](const std::string& from, const std::string& to) {
-        std::string text = one;
-        return text.replace(text.find(from), from.size(), to);
-    };
-    expectRefused(with("1 0 0\n", "1 zero 0\n"), "line 10: 'zero' is no number");
-    expectRefused(with("2 0 1\n", "4 0 1\n"), "the vertex '4', but its object has 4, from 0");
-    expectRefused(with("SURF 0x0", "SURF green"), "'green' is no number such as 0x20");
-    expectRefused(with("numvert 4", "numvert 5"), "no number");
-    EXPECT_EQ(read(with("numvert 4", "numvert 99999999999")).error().code, ErrorCode::kLimit);
-    expectRefused(with("kids 1", "kids many"), "'many' is no number of kids");
-    expectRefused(with("refs 3", "refs 4000000000"), "line ");
-    expectRefused(with("\nkids 0", "\n"), "no 'kids'");
-    expectRefused(kHead, "no triangles");
-    expectRefused("AC4D\n", "does not begin with AC3D");
     std::string deep = kHead;
     for (int i = 0; i < 1100; ++i) {
         deep += "OBJECT group\nkids 1\n";
     }
-    const Result<TriangleMesh> nested = read(deep + tetrahedron("t"));
-    ASSERT_FALSE(nested);
-    EXPECT_EQ(nested.error().code, ErrorCode::kLimit);
+    const auto with = [&](const std::string& from, const std::string& to) {
+        return std::string(one).replace(one.find(from), from.size(), to);
+    };
+    struct Case {
+        std::string text;
+        const char* words;
+        ErrorCode code = ErrorCode::kInvalidInput;
+    };
+    for (const Case& c :
+         {Case{with("1 0 0\n", "1 zero 0\n"), "line 10: 'zero'"},
+          Case{with("2 0 1\n", "4 0 1\n"), "the vertex '4', but its object has 4, from 0"},
+          Case{with("SURF 0x0", "SURF green"), "'green' is no number such as 0x20"},
+          Case{with("numvert 4", "numvert 5"), "no number"},
+          Case{with("numvert 4", "numvert 99999999999"), "", ErrorCode::kLimit},
+          Case{with("kids 1", "kids many"), "'many' is no number of kids"},
+          Case{with("refs 3", "refs 4000000000"), "line "}, Case{with("\nkids 0", "\n"), "no 'kids'"},
+          Case{kHead, "no triangles"}, Case{"AC4D\n", "does not begin with AC3D"},
+          Case{deep + tetrahedron("t"), "", ErrorCode::kLimit}}) {
+        SCOPED_TRACE(c.words);
+        expectRefused(importText("a.ac", c.text), c.words, c.code);
+    }
 }
 
 }  // namespace

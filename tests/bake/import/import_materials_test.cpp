@@ -30,7 +30,7 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
                                                          "," + node(R"("translation":[9,0,0])"),
                                                 .roots = "0,1,2",
                                                 .more = kPhysics}));
-    const auto mesh = importMeshInWorker(path);
+    const auto mesh = importMesh(path);
     ASSERT_TRUE(mesh) << mesh.error().message;
     ASSERT_EQ(mesh->surface_names.size(), 3U);
     EXPECT_EQ(mesh->surface_names[0], (SurfaceName{0, "", "rubber", 0.75F, 1.0F}));
@@ -53,62 +53,37 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
     EXPECT_EQ(importLevel(path, without)->meshes.size(), 1U);
 }
 
-TEST(ImportMaterials, CombineModesWarnOnceWhereTheyWouldChangeMuch) {
-    const TemporaryFolder folder;
-    const auto warningsOf = [&](const std::string& first, const std::string& second) {
-        const auto mesh = importMeshInWorker(folder.write(
+TEST(ImportMaterials, CombineModesWarnOnceIfTheyWouldChangeMuch) {
+    const auto import = [](const std::string& first, const std::string& second) {
+        return importText(
             "m.gltf",
             tetrahedronGltf({.nodes = node(physics("0")) + "," + node(physics("1")),
                              .roots = "0,1",
                              .more = R"("extensions":{"KHR_physics_rigid_bodies":{"physicsMaterials":[{)" +
-                                     first + "},{" + second + "}]}},"})));
-        EXPECT_TRUE(mesh) << mesh.error().message;
-        return mesh ? mesh->warnings : std::vector<std::string>();
+                                     first + "},{" + second + "}]}},"}));
     };
-    EXPECT_EQ(warningsOf(R"("restitutionCombine":"multiply")", R"("frictionCombine":"average")").size(), 0U);
+    const auto none = import(R"("restitutionCombine":"multiply")", R"("frictionCombine":"average")");
+    ASSERT_TRUE(none);
+    EXPECT_TRUE(none->warnings.empty());
     for (const auto& [first, second] :
          {std::pair(R"("restitutionCombine":"maximum","frictionCombine":"minimum")", R"("restitution":1)"),
           std::pair(R"("frictionCombine":"maximum")", R"("restitutionCombine":"minimum")")}) {
-        const std::vector<std::string> warnings = warningsOf(first, second);
-        ASSERT_EQ(warnings.size(), 1U);
-        EXPECT_NE(warnings[0].find("minimum or maximum, which has no effect"), std::string::npos)
-            << warnings[0];
+        const auto mesh = import(first, second);
+        ASSERT_TRUE(mesh && mesh->warnings.size() == 1U);
+        EXPECT_TRUE(warns(*mesh, "minimum or maximum, which has no effect"));
     }
-    EXPECT_FALSE(importMeshInWorker(folder.write(
-        "m.gltf", tetrahedronGltf({.nodes = node(physics("0")),
-                                   .more = R"("extensions":{"KHR_physics_rigid_bodies":{"physicsMaterials":[)"
-                                           R"({"frictionCombine":2}]}},)"}))));
+    EXPECT_FALSE(import(R"("frictionCombine":2)", ""));
 }
 
 TEST(ImportMaterials, ABrokenPhysicsMaterialHasItsPlace) {
-    const TemporaryFolder folder;
     for (const auto& [material, words] :
-         {std::pair("7",
-                    "nodes[0].extensions.KHR_physics_rigid_bodies.collider has the physicsMaterial 7, and "
-                    "there are 3"),
+         {std::pair("7", "nodes[0].extensions.KHR_physics_rigid_bodies.collider has the physicsMaterial 7"),
           std::pair("2", "physicsMaterials[2] has a restitution or a dynamicFriction below 0"),
           std::pair("\"ice\"", "physicsMaterial")}) {
-        const auto mesh = importMeshInWorker(
-            folder.write("m.gltf", tetrahedronGltf({.nodes = node(physics(material)), .more = kPhysics})));
-        ASSERT_FALSE(mesh) << material;
-        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(mesh.error().message.find(words), std::string::npos) << mesh.error().message;
+        expectRefused(
+            importText("m.gltf", tetrahedronGltf({.nodes = node(physics(material)), .more = kPhysics})),
+            words);
     }
-}
-
-TEST(ImportMaterials, ObjSurfacesHaveTheirNames) {
-    const TemporaryFolder folder;
-    const auto mesh =
-        importMeshInWorker(folder.write("m.obj",
-                                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl oak\nf 1 3 2\nf 1 2 4\n"
-                                        "usemtl felt\nf 1 4 3\nusemtl oak\nf 2 3 4\n"));
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->labels.size(), 4U);
-    std::vector<std::string> names;
-    for (const std::uint32_t label : mesh->labels) {
-        names.push_back(mesh->surface_names[label].material);
-    }
-    EXPECT_EQ(names, (std::vector<std::string>{"oak", "oak", "felt", "oak"}));
 }
 
 }  // namespace

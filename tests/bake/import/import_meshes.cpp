@@ -1,29 +1,14 @@
 #include "tests/bake/import/import_meshes.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 
+#include "bake/mesh/triangle_plane.h"
+#include "tests/temporary_folder.h"
+
 namespace relief::test {
-namespace {
-
-std::string base64(const std::string& bytes) {
-    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) {  // 72 bytes: no remainder
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            group = group << 8U | static_cast<unsigned char>(bytes[i + k]);
-        }
-        for (unsigned k = 0; k < 4; ++k) {
-            text += kDigits[group >> (18U - 6U * k) & 63U];
-        }
-    }
-    return text;
-}
-
-}  // namespace
-
 std::string tetrahedronObj() {
     return "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 }
@@ -122,6 +107,62 @@ std::string tetrahedronGltf(const GltfParts& parts) {
            R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},)"
            R"({"buffer":0,"byteOffset":48,"byteLength":24}],"buffers":[{"byteLength":72,"uri":")" +
            uri + R"("}]})";
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            group = group << 8U | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            text += i + k > bytes.size() ? '=' : kDigits[group >> (18U - 6U * k) & 63U];
+        }
+    }
+    return text;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+    }
+    return text;
+}
+
+Result<TriangleMesh> importText(const std::string& name, std::string_view contents,
+                                const ImportOptions& options) {
+    const TemporaryFolder folder;
+    return importMesh(folder.write(name, contents), options);
+}
+
+Result<TriangleMesh> importTextInWorker(const std::string& name, std::string_view contents,
+                                        const ImportOptions& options) {
+    const TemporaryFolder folder;
+    return importMeshInWorker(folder.write(name, contents), options);
+}
+
+void expectFault(const Error& error, const std::string& words, ErrorCode code) {
+    EXPECT_EQ(error.code, code) << error.message;
+    EXPECT_NE(error.message.find(words), std::string::npos) << error.message << "\ninstead of " << words;
+    EXPECT_NE(error.message.find("; "), std::string::npos) << "no cure: " << error.message;
+    EXPECT_EQ(error.message.find_first_of("\n\r\x1b"), std::string::npos) << error.message;
+}
+
+bool warns(const TriangleMesh& mesh, const std::string& words) {
+    return std::any_of(mesh.warnings.begin(), mesh.warnings.end(),
+                       [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
+}
+
+double signedVolume(const TriangleMesh& mesh) {
+    double volume = 0.0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const TrianglePlane plane = planeOf(mesh, i);
+        volume += dot(plane.point, plane.normal) / 6.0;
+    }
+    return volume;
 }
 
 }  // namespace relief::test

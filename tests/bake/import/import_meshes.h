@@ -1,8 +1,13 @@
 // A tetrahedron with corners at the origin and at 1, 2 and 3 along x, y and z, as text in several mesh
-// formats: no turn, mirroring or scale leaves its bounds as they are.
+// formats: no turn, mirroring or scale leaves its bounds as they are. And what tests of imports share.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
+#include <string_view>
+
+#include "bake/import/mesh_import.h"
 
 namespace relief::test {
 
@@ -30,5 +35,31 @@ struct GltfParts {
 [[nodiscard]] std::string tetrahedronGltf(const GltfParts& parts = {});
 /// The 72 bytes of its buffer.
 [[nodiscard]] std::string tetrahedronBuffer();
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+/// Text with every `from` replaced, of which there must be one.
+[[nodiscard]] std::string replaced(std::string text, const std::string& from, const std::string& to);
+
+/// Imports a file of this name and contents, which is alone in its folder: in this process, or by a worker.
+[[nodiscard]] Result<TriangleMesh> importText(const std::string& name, std::string_view contents,
+                                              const ImportOptions& options = {});
+[[nodiscard]] Result<TriangleMesh> importTextInWorker(const std::string& name, std::string_view contents,
+                                                      const ImportOptions& options = {});
+
+/// Of one line, with a cure, which holds these words.
+void expectFault(const Error& error, const std::string& words, ErrorCode code = ErrorCode::kInvalidInput);
+template <class T>
+void expectRefused(const Result<T>& result, const std::string& words,
+                   ErrorCode code = ErrorCode::kInvalidInput) {
+    if (result) {
+        ADD_FAILURE() << "read: " << words;
+    } else {
+        expectFault(result.error(), words, code);
+    }
+}
+/// Whether one of its warnings holds these words.
+[[nodiscard]] bool warns(const TriangleMesh& mesh, const std::string& words);
+/// Negative where triangles look inwards.
+[[nodiscard]] double signedVolume(const TriangleMesh& mesh);
 
 }  // namespace relief::test

@@ -5,7 +5,6 @@
 
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
-#include "tests/bake/meshes.h"
 
 namespace relief::test {
 namespace {
@@ -19,27 +18,23 @@ ImportOptions asking(const Names& names) {
     return options;
 }
 
-/// Through the worker, and in this process: the same.
-Marks marksOf(const std::filesystem::path& file, const Names& names) {
-    const Result<TriangleMesh> mesh = importMeshInWorker(file, asking(names));
-    const Result<TriangleMesh> here = importMesh(file, asking(names));
-    EXPECT_TRUE(mesh) << mesh.error().message;
-    EXPECT_TRUE(here) << here.error().message;
-    if (!mesh || !here) {
-        return {};
+/// A file's text, and by names the marks of its triangles: through the worker, and in this process, the same.
+void expectMarks(const std::string& name, const std::string& text,
+                 const std::vector<std::pair<Names, Marks>>& cases) {
+    for (const auto& [names, marks] : cases) {
+        const Result<TriangleMesh> mesh = importTextInWorker(name, text, asking(names));
+        const Result<TriangleMesh> here = importText(name, text, asking(names));
+        ASSERT_TRUE(mesh && here) << (mesh ? here : mesh).error().message;
+        EXPECT_EQ(mesh->marks, marks) << (names.empty() ? "" : names[0]);
+        EXPECT_EQ(here->marks, marks);
     }
-    EXPECT_EQ(mesh->marks, here->marks);
-    EXPECT_EQ(mesh->marks.size(), names.empty() ? 0 : mesh->triangles.size());
-    return mesh->marks;
 }
 
-void expectUnknown(const std::filesystem::path& file, const Names& names, const std::string& says) {
-    const Result<TriangleMesh> mesh = importMeshInWorker(file, asking(names));
-    ASSERT_FALSE(mesh);
-    EXPECT_EQ(mesh.error().code, ErrorCode::kUsage) << mesh.error().message;
-    EXPECT_NE(mesh.error().message.find(says), std::string::npos) << mesh.error().message;
-    EXPECT_NE(mesh.error().message.find(file.filename().string()), std::string::npos);
-    EXPECT_EQ(mesh.error().message.find_first_of("\n\r\x1b"), std::string::npos);
+void expectUnknown(const std::string& file, const std::string& text, const Names& names,
+                   const std::string& words) {
+    const Result<TriangleMesh> mesh = importText(file, text, asking(names));
+    expectRefused(mesh, words, ErrorCode::kUsage);
+    expectRefused(mesh, file, ErrorCode::kUsage);
     EXPECT_LT(mesh.error().message.size(), 2500U);
 }
 
@@ -48,157 +43,127 @@ std::string obj(const std::string& faces) {
     return "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + faces;
 }
 
-TEST(ImportNames, OfObjAreGroupsObjectsAndMaterials) {
-    const TemporaryFolder folder;
-    const auto file = folder.write("a.obj", obj("g body\nusemtl paint\nf 1 2 3\nusemtl glass\nf 1 2 4\n"
-                                                "g wheel\nf 2 3 4\no house\nusemtl paint\nf 1 3 4\n"));
-    EXPECT_EQ(marksOf(file, {}), Marks());
-    EXPECT_EQ(marksOf(file, {"body"}), Marks({1, 1, 0, 0}));
-    EXPECT_EQ(marksOf(file, {"glass"}), Marks({0, 1, 1, 0}));
-    EXPECT_EQ(marksOf(file, {"paint", "house"}), Marks({1, 0, 0, 2}));
-    // Where a triangle has several of the names, the last counts.
-    EXPECT_EQ(marksOf(file, {"body", "glass"}), Marks({1, 2, 2, 0}));
-    EXPECT_EQ(marksOf(file, {"glass", "body"}), Marks({2, 2, 1, 0}));
-    expectUnknown(file, {"body", "glas"},
-                  "'glas'; did you mean 'glass'? It has 'body', 'paint', 'glass', 'wheel', 'house'");
-    expectUnknown(file, {"Body"}, "'Body'; did you mean 'body'?");
-}
-
-TEST(ImportNames, AGroupMayHaveSeveralNamesAndGoOnLater) {
-    const TemporaryFolder folder;
-    const auto file =
-        folder.write("g.obj", obj("g left door\nf 1 2 3\ng frame\nf 1 2 4\ng right door\nf 2 3 4\n"
-                                  "g frame\nf 1 3 4\n"));
-    EXPECT_EQ(marksOf(file, {"door", "frame"}), Marks({1, 2, 1, 2}));
-    EXPECT_EQ(marksOf(file, {"left door"}), Marks({1, 0, 0, 0}));
-}
-
-TEST(ImportNames, ANameOfAGroupAndOfAMaterialIsBoth) {
-    const TemporaryFolder folder;
-    const auto file = folder.write(
-        "b.obj",
-        obj("g glass\nusemtl paint\nf 1 2 3\ng body\nusemtl glass\nf 1 2 4\nusemtl paint\nf 2 3 4\n"));
-    EXPECT_EQ(marksOf(file, {"glass"}), Marks({1, 1, 0}));
-}
-
-TEST(ImportNames, TrianglesWithoutAreaTakeTheirNamesWithThem) {
-    const TemporaryFolder folder;
-    const auto file = folder.write("d.obj", obj("g a\nf 1 1 3\nf 1 2 3\ng b\nf 4 4 4\nf 1 2 4\n"));
-    EXPECT_EQ(marksOf(file, {"a", "b"}), Marks({1, 2}));
-}
-
-/// A triangle of the tetrahedron's buffer: the first three indices.
+/// Nodes with a mesh 'door-1' of two primitives: the first triangle of the tetrahedron as paint and as glass.
 std::string gltf(const std::string& nodes, const std::string& roots) {
-    GltfParts parts;
-    parts.nodes = nodes;
-    parts.roots = roots;
-    parts.more = R"("materials":[{"name":"paint"},{"name":"glass"}],)";
-    parts.indices = R"("bufferView":1,"componentType":5123,"count":3,"type":"SCALAR")";
-    parts.primitive = R"("attributes":{"POSITION":0},"indices":1,"material":0},{)"
-                      R"("attributes":{"POSITION":0},"indices":1,"material":1)";
-    std::string text = tetrahedronGltf(parts);
-    const std::string meshes = R"("meshes":[{)";
-    return text.insert(text.find(meshes) + meshes.size(), R"("name":"door-1",)");
+    const std::string text =
+        tetrahedronGltf({.nodes = nodes,
+                         .roots = roots,
+                         .primitive = R"("attributes":{"POSITION":0},"indices":1,"material":0},{)"
+                                      R"("attributes":{"POSITION":0},"indices":1,"material":1)",
+                         .indices = R"("bufferView":1,"componentType":5123,"count":3,"type":"SCALAR")",
+                         .more = R"("materials":[{"name":"paint"},{"name":"glass"}],)"});
+    return replaced(text, R"("meshes":[{)", R"("meshes":[{"name":"door-1",)");
+}
+
+TEST(ImportNames, OfObjAreGroupsObjectsAndMaterials) {
+    const std::string text =
+        obj("g body\nusemtl paint\nf 1 2 3\nusemtl glass\nf 1 2 4\n"
+            "g wheel\nf 2 3 4\no house\nusemtl paint\nf 1 3 4\n");
+    expectMarks("a.obj", text,
+                {{{}, {}},
+                 {{"body"}, {1, 1, 0, 0}},
+                 {{"glass"}, {0, 1, 1, 0}},
+                 {{"paint", "house"}, {1, 0, 0, 2}},
+                 // The last counts if a triangle has several of the names.
+                 {{"body", "glass"}, {1, 2, 2, 0}},
+                 {{"glass", "body"}, {2, 2, 1, 0}}});
+    expectUnknown("a.obj", text, {"body", "glas"},
+                  "'glas'; did you mean 'glass'? It has 'body', 'paint', 'glass', 'wheel', 'house'");
+    expectUnknown("a.obj", text, {"Body"}, "'body'");
+    // A group may have several names and go on later.
+    expectMarks("g.obj",
+                obj("g left door\nf 1 2 3\ng frame\nf 1 2 4\ng right door\nf 2 3 4\ng frame\nf 1 3 4\n"),
+                {{{"door", "frame"}, {1, 2, 1, 2}}, {{"left door"}, {1, 0, 0, 0}}});
+    // A name of a group and of a material is both.
+    expectMarks("b.obj",
+                obj("g glass\nusemtl paint\nf 1 2 3\ng body\nusemtl glass\nf 1 2 4\nusemtl paint\nf 2 3 4\n"),
+                {{{"glass"}, {1, 1, 0}}});
+    // Triangles without area take their names with them.
+    expectMarks("d.obj", obj("g a\nf 1 1 3\nf 1 2 3\ng b\nf 4 4 4\nf 1 2 4\n"), {{{"a", "b"}, {1, 2}}});
 }
 
 TEST(ImportNames, OfGltfAreNodesMeshesAndMaterials) {
-    const TemporaryFolder folder;
-    // Two cars share a mesh of two materials; the second has two of it.
-    const auto file = folder.write(
-        "c.gltf",
+    // Two cars share a mesh of two materials; the second has two of it. A node's name is that of all below it.
+    const std::string text =
         gltf(R"({"name":"first","mesh":0},{"name":"second","children":[2,3]},{"name":"near","mesh":0},)"
              R"({"name":"far","translation":[5,0,0],"mesh":0})",
-             "0,1"));
-    EXPECT_EQ(marksOf(file, {"first"}), Marks({1, 1, 0, 0, 0, 0}));
-    EXPECT_EQ(marksOf(file, {"second"}), Marks({0, 0, 1, 1, 1, 1})) << "a node is all below it";
-    EXPECT_EQ(marksOf(file, {"second", "near"}), Marks({0, 0, 2, 2, 1, 1}));
-    EXPECT_EQ(marksOf(file, {"near", "second"}), Marks({0, 0, 2, 2, 2, 2}));
-    EXPECT_EQ(marksOf(file, {"second", "glass"}), Marks({0, 2, 1, 2, 1, 2}));
-    EXPECT_EQ(marksOf(file, {"door-1"}), Marks({1, 1, 1, 1, 1, 1})) << "as the file writes it";
-    expectUnknown(file, {"door"}, "It has");
-}
-
-TEST(ImportNames, OfOtherFormats) {
-    const TemporaryFolder folder;
-    const auto stl = folder.write("s.stl", tetrahedronStl());
-    expectUnknown(stl, {"nothing"}, "it has");
-    // Nothing in a PLY file has a name.
-    expectUnknown(folder.write("p.ply", tetrahedronPly()), {"nothing"},
-                  "nor anything else; leave the name out");
+             "0,1");
+    expectMarks("c.gltf", text,
+                {{{"first"}, {1, 1, 0, 0, 0, 0}},
+                 {{"second"}, {0, 0, 1, 1, 1, 1}},
+                 {{"second", "near"}, {0, 0, 2, 2, 1, 1}},
+                 {{"near", "second"}, {0, 0, 2, 2, 2, 2}},
+                 {{"second", "glass"}, {0, 2, 1, 2, 1, 2}},
+                 {{"door-1"}, {1, 1, 1, 1, 1, 1}}});
+    expectUnknown("c.gltf", text, {"door"}, "It has");
+    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "it has");
+    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "nor anything else; leave the name out");
 }
 
 TEST(ImportNames, HostileOnesAreMadeClean) {
-    const TemporaryFolder folder;
-    const std::string endless(5000, 'y');
-    const auto file = folder.write("h.gltf", gltf(R"({"name":"a\nb\u001b[31m","mesh":0},{"name":")" +
-                                                      endless + R"(","mesh":0},{"name":"","mesh":0})",
-                                                  "0,1,2"));
-    EXPECT_EQ(marksOf(file, {"a\xef\xbf\xbd"
-                             "b\xef\xbf\xbd[31m"}),
-              Marks({1, 1, 0, 0, 0, 0}));
-    EXPECT_EQ(marksOf(file, {std::string(kAskedNameBytesMax, 'y')}), Marks({0, 0, 1, 1, 0, 0}));
-    expectUnknown(file, {std::string(kAskedNameBytesMax, 'z')}, "it has");
+    const std::string text = gltf(R"({"name":"a\nb\u001b[31m","mesh":0},{"name":")" + std::string(5000, 'y') +
+                                      R"(","mesh":0},{"name":"","mesh":0})",
+                                  "0,1,2");
+    const std::string clean = "a\xef\xbf\xbd" + std::string("b\xef\xbf\xbd[31m");
+    expectMarks(
+        "h.gltf", text,
+        {{{clean}, {1, 1, 0, 0, 0, 0}}, {{std::string(kAskedNameBytesMax, 'y')}, {0, 0, 1, 1, 0, 0}}});
+    expectUnknown("h.gltf", text, {std::string(kAskedNameBytesMax, 'z')}, "it has");
     std::string many;
     for (int i = 0; i < 3000; ++i) {
         many += "g group" + std::to_string(i) + std::string(100, 'n') + "\nf 1 2 3\n";
     }
-    expectUnknown(folder.write("m.obj", obj(many)), {"x"}, " and more");
+    expectUnknown("m.obj", obj(many), {"x"}, " and more");
     const Names crowd(kAskedNamesMax + 1, "paint");
-    EXPECT_EQ(importMeshInWorker(file, asking(crowd)).error().code, ErrorCode::kLimit);
+    EXPECT_EQ(importTextInWorker("h.gltf", text, asking(crowd)).error().code, ErrorCode::kLimit);
 }
 
 TEST(ImportNames, AChainOfNodesIsWalkedOnce) {
     // Each of 20,000 nodes has the next below it, and a mesh.
-    const TemporaryFolder folder;
     constexpr int kNodes = 20'000;
     std::string nodes;
     for (int i = 0; i < kNodes; ++i) {
         nodes += (i == 0 ? "{" : ",{") + std::string(R"("name":"n)") + std::to_string(i) + R"(","mesh":0)" +
                  (i + 1 < kNodes ? R"(,"children":[)" + std::to_string(i + 1) + "]}" : "}");
     }
-    const Marks marks = marksOf(folder.write("deep.gltf", gltf(nodes, "0")), {"n0", "n19999"});
-    ASSERT_EQ(marks.size(), 2U * kNodes);
-    EXPECT_EQ(std::count(marks.begin(), marks.end(), 1), 2 * kNodes - 2);
-    EXPECT_EQ(std::count(marks.begin(), marks.end(), 2), 2);
+    const Result<TriangleMesh> mesh = importText("deep.gltf", gltf(nodes, "0"), asking({"n0", "n19999"}));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    Marks marks(2U * kNodes, 1);
+    std::fill(marks.end() - 2, marks.end(), std::uint8_t{2});
+    EXPECT_EQ(mesh->marks, marks);
 }
 
 /// "node/material" of each triangle, through the worker and in this process: the same.
-std::vector<std::string> surfacesOf(const std::filesystem::path& file) {
-    const Result<TriangleMesh> mesh = importMeshInWorker(file);
-    const Result<TriangleMesh> here = importMesh(file);
+Names surfacesOf(const Result<TriangleMesh>& mesh, const Result<TriangleMesh>& here) {
     EXPECT_TRUE(mesh && here);
-    if (!mesh || !here) {
-        return {};
-    }
-    EXPECT_EQ(mesh->labels, here->labels);
-    EXPECT_EQ(mesh->surface_names, here->surface_names);
-    std::vector<std::string> names;
-    for (const std::uint32_t label : mesh->labels) {
-        const SurfaceName& name = mesh->surface_names[label];
-        names.push_back(name.node + "/" + name.material);
+    Names names;
+    if (mesh && here) {
+        EXPECT_EQ(mesh->labels, here->labels);
+        EXPECT_EQ(mesh->surface_names, here->surface_names);
+        for (const std::uint32_t label : mesh->labels) {
+            names.push_back(mesh->surface_names[label].node + "/" + mesh->surface_names[label].material);
+        }
     }
     return names;
 }
 
-TEST(ImportNames, EveryTriangleKnowsItsNodeAndItsMaterial) {
-    using Surfaces = std::vector<std::string>;
-    const TemporaryFolder folder;
-    EXPECT_EQ(
-        surfacesOf(folder.write("a.obj", obj("g body\nusemtl paint\nf 1 2 3\nusemtl glass\nf 1 1 4\nf 1 2 4\n"
-                                             "g wheel\nf 2 3 4\n"))),
-        Surfaces({"body/paint", "body/glass", "wheel/glass"}));
+TEST(ImportNames, EveryTriangleHasItsNodeAndItsMaterial) {
+    const auto surfaces = [](const char* name, const std::string& text) {
+        return surfacesOf(importTextInWorker(name, text), importText(name, text));
+    };
+    EXPECT_EQ(surfaces("a.obj", obj("g body\nusemtl paint\nf 1 2 3\nusemtl glass\nf 1 1 4\nf 1 2 4\n"
+                                    "g wheel\nf 2 3 4\n")),
+              Names({"body/paint", "body/glass", "wheel/glass"}));
+    EXPECT_EQ(surfaces("m.obj", obj("usemtl oak\nf 1 3 2\nusemtl felt\nf 1 4 3\nusemtl oak\nf 2 3 4\n")),
+              Names({"/oak", "/felt", "/oak"}));
     // One surface needs no names.
-    EXPECT_EQ(surfacesOf(folder.write("one.obj", obj("g body\nf 1 2 3\nf 1 2 4\n"))), Surfaces());
-}
-
-TEST(ImportNames, TwoNodesOfOneNameAreTwo) {
-    const TemporaryFolder folder;
-    const auto file = folder.write(
-        "n.gltf",
-        gltf(R"({"name":"chair","mesh":0},{"name":"chair","translation":[5,0,0],"mesh":0})", "0,1"));
-    EXPECT_EQ(surfacesOf(file),
-              std::vector<std::string>({"chair/paint", "chair/glass", "chair/paint", "chair/glass"}));
-    const Result<TriangleMesh> mesh = importMeshInWorker(file);
+    EXPECT_EQ(surfaces("one.obj", obj("g body\nf 1 2 3\nf 1 2 4\n")), Names());
+    // Two nodes of one name are two.
+    const std::string chairs =
+        gltf(R"({"name":"chair","mesh":0},{"name":"chair","translation":[5,0,0],"mesh":0})", "0,1");
+    EXPECT_EQ(surfaces("n.gltf", chairs),
+              Names({"chair/paint", "chair/glass", "chair/paint", "chair/glass"}));
+    const Result<TriangleMesh> mesh = importText("n.gltf", chairs);
     ASSERT_TRUE(mesh && mesh->surface_names.size() == 4U);
     EXPECT_EQ(mesh->surface_names[0].node_index, mesh->surface_names[1].node_index);
     EXPECT_NE(mesh->surface_names[1].node_index, mesh->surface_names[2].node_index);

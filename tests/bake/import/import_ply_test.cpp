@@ -8,7 +8,6 @@
 #include <cstring>
 #include <limits>
 
-#include "bake/import/import_scene.h"
 #include "bake/import/mesh_import.h"
 #include "bake/mesh/triangle_plane.h"
 #include "tests/bake/import/import_meshes.h"
@@ -102,31 +101,26 @@ std::string boxOfStrips(const std::string& encoding) {
     return ply.text();
 }
 
-double signedVolume(const TriangleMesh& mesh) {
-    double volume = 0.0;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const TrianglePlane plane = planeOf(mesh, i);
-        volume += dot(plane.point, plane.normal) / 6.0;
-    }
-    return volume;
-}
-
 Result<PolygonMesh> read(const std::string& text) {
     return readPly(std::as_bytes(std::span(text)));
 }
 
-void expectError(const Result<PolygonMesh>& mesh, const std::string& says,
-                 ErrorCode code = ErrorCode::kInvalidInput) {
-    ASSERT_FALSE(mesh) << says;
-    const std::string& message = mesh.error().message;
-    EXPECT_EQ(mesh.error().code, code) << message;
-    EXPECT_NE(message.find(says), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+/// Texts that are refused, and words of their errors.
+void expectWrong(const std::vector<std::pair<std::string, std::string>>& cases) {
+    for (const auto& [text, words] : cases) {
+        SCOPED_TRACE(text);
+        const Result<PolygonMesh> mesh = read(text);
+        ASSERT_FALSE(mesh);
+        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
+        EXPECT_NE(mesh.error().message.find(words), std::string::npos) << mesh.error().message;
+        EXPECT_EQ(mesh.error().message.find('\n'), std::string::npos) << mesh.error().message;
+    }
 }
 
 // Three corners in a plane, in text.
 const std::string kHead =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+const std::string kFace = "element face 1\nproperty list uchar int vertex_indices\n";
 const std::string kCorners = "0 0 0\n1 0 0\n0 1 0\n1 1 1\n";
 
 std::string strips(const std::string& element, const std::string& lists,
@@ -156,25 +150,29 @@ TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
 
 TEST(ImportPly, StripsBeginEndAndTurn) {
     using Corners = std::vector<std::uint32_t>;
-    const auto corners = [](const std::string& text) {
-        const Result<PolygonMesh> mesh = read(text);
-        EXPECT_TRUE(mesh) << mesh.error().message;
-        return mesh ? mesh->corners : Corners();
+    struct Case {
+        const char* lists;
+        Corners corners;
+        const char* element = "element tristrips 1";
+        const char* type = "list int int";
     };
-    EXPECT_EQ(corners(strips("element tristrips 1", "4 0 1 2 3\n")), (Corners{0, 1, 2, 2, 1, 3}));
-    // A strip of one triangle, ends without strips, and strips too short for a triangle: each begins unturned.
-    EXPECT_EQ(corners(strips("element tristrips 1", "13 -1 0 1 2 -1 -1 1 3 -1 3 1 2 0\n")),
-              (Corners{0, 1, 2, 3, 1, 2, 2, 1, 0}));
-    // One list each.
-    EXPECT_EQ(corners(strips("element tristrips 3", "3 0 1 2\n0\n4 3 1 2 -1\n")),
-              (Corners{0, 1, 2, 3, 1, 2}));
-    // Repeated corners lead from one part to the next: nothing for each, but the turn goes on.
-    EXPECT_EQ(corners(strips("element tristrips 1", "8 0 1 2 2 3 3 1 0\n")), (Corners{0, 1, 2, 1, 3, 0}));
-    // What -1 is where lists are unsigned, and in text.
-    EXPECT_EQ(corners(strips("element tristrips 1", "7 0 1 2 4294967295 3 1 2\n", "list uint uint")),
-              (Corners{0, 1, 2, 3, 1, 2}));
-    EXPECT_EQ(corners(strips("element tristrips 1", "7 0 1 2 -1 3 1 2\n", "list uint uint")),
-              (Corners{0, 1, 2, 3, 1, 2}));
+    for (
+        const Case& c : std::vector<Case>{
+            {"4 0 1 2 3\n", {0, 1, 2, 2, 1, 3}},
+            // A strip of one triangle, ends without strips, and strips too short for a triangle: each begins unturned.
+            {"13 -1 0 1 2 -1 -1 1 3 -1 3 1 2 0\n", {0, 1, 2, 3, 1, 2, 2, 1, 0}},
+            // One list each.
+            {"3 0 1 2\n0\n4 3 1 2 -1\n", {0, 1, 2, 3, 1, 2}, "element tristrips 3"},
+            // Repeated corners lead from one part to the next: nothing for each, but the turn goes on.
+            {"8 0 1 2 2 3 3 1 0\n", {0, 1, 2, 1, 3, 0}},
+            // What -1 is where lists are unsigned, and in text.
+            {"7 0 1 2 4294967295 3 1 2\n", {0, 1, 2, 3, 1, 2}, "element tristrips 1", "list uint uint"},
+            {"7 0 1 2 -1 3 1 2\n", {0, 1, 2, 3, 1, 2}, "element tristrips 1", "list uint uint"}}) {
+        SCOPED_TRACE(c.lists);
+        const Result<PolygonMesh> strip = read(strips(c.element, c.lists, c.type));
+        ASSERT_TRUE(strip) << strip.error().message;
+        EXPECT_EQ(strip->corners, c.corners);
+    }
     // Faces beside them; a file may name its vertices last.
     const std::string both =
         "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_index\n"
@@ -189,29 +187,23 @@ TEST(ImportPly, StripsBeginEndAndTurn) {
 }
 
 TEST(ImportPly, HostileStripsAreRefused) {
-    for (const char* list :
-         {"3 0 1 4\n", "3 0 1 -2\n", "4 0 1 2 2147483647\n", "3 0 1 0.5\n", "3 0 1 nan\n"}) {
-        SCOPED_TRACE(list);
-        expectError(read(strips("element tristrips 1", list)), "names the vertex");
+    for (const char* list : {"3 0 1 4\n", "3 0 1 -2\n", "4 0 1 2 2147483647\n", "3 0 1 0.5\n", "3 0 1 nan\n",
+                             "3 0 1 4294967295\n"}) {
+        expectWrong({{strips("element tristrips 1", list), "names the vertex"}});
     }
-    expectError(read(strips("element tristrips 1", "3 0 1 4294967295\n")), "names the vertex");
-    expectError(read(strips("element tristrips 1", "-3 0 1 2\n")), "length that cannot be");
-    expectError(read(strips("element tristrips 1", "2147483647 0 1 2\n")), "ends too early");
-    expectError(read(strips("element tristrips 4000000000", "3 0 1 2\n")), "ends too early");
-    expectError(read(strips("element tristrips 18446744073709551615", "3 0 1 2\n")), "ends too early");
-    expectError(read(strips("element tristrips 18446744073709551616", "3 0 1 2\n")), "ends too early");
-    expectError(read(strips("element tristrips -1", "3 0 1 2\n")), "not understood");
-    expectError(read(strips("element tristrips 1", "3 0 one 2\n")),
-                "line 14: 'one' stands among its numbers, and is none");
-    expectError(read(strips("element tristrips 1", "4 0 0 1 1\n")), "no faces");
-    expectError(
-        read("ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
-             "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"),
-        "it has 99999999999 vertices", ErrorCode::kLimit);
-    expectError(
-        read("ply\nformat ascii 1.0\nelement vertex 200000000\nproperty float x\nproperty float y\n"
-             "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"),
-        "ends too early");
+    const auto vertices = [](const std::string& count) {
+        return replaced(strips("element tristrips 1", ""), "vertex 4", "vertex " + count);
+    };
+    expectWrong({{strips("element tristrips 1", "-3 0 1 2\n"), "length that cannot be"},
+                 {strips("element tristrips 1", "2147483647 0 1 2\n"), "ends too early"},
+                 {strips("element tristrips 4000000000", "3 0 1 2\n"), "ends too early"},
+                 {strips("element tristrips 18446744073709551615", "3 0 1 2\n"), "ends too early"},
+                 {strips("element tristrips 18446744073709551616", "3 0 1 2\n"), "ends too early"},
+                 {strips("element tristrips -1", "3 0 1 2\n"), "not understood"},
+                 {strips("element tristrips 1", "3 0 one 2\n"), "line 14: 'one'"},
+                 {strips("element tristrips 1", "4 0 0 1 1\n"), "no faces"},
+                 {vertices("200000000"), "ends too early"}});
+    EXPECT_EQ(read(vertices("99999999999")).error().code, ErrorCode::kLimit);
 }
 
 TEST(ImportPly, EveryTruncationIsRefused) {
@@ -226,10 +218,9 @@ TEST(ImportPly, EveryTruncationIsRefused) {
     }
 }
 
-TEST(ImportPly, WhatComesBehindTheLastElement) {
+TEST(ImportPly, BytesBehindTheLastElement) {
     // A line with a number too many shifts all that follows: four columns for three.
-    expectError(read(strips("element face 1", "3 0 1 2 9\n", "list uchar int")),
-                "does not end with its line");
+    expectWrong({{strips("element face 1", "3 0 1 2 9\n", "list uchar int"), "does not end with its line"}});
     const std::string binary = boxOfStrips("binary_little_endian");
     for (const std::string& padding : {std::string("\n"), std::string("\r\n"), std::string(3, '\0')}) {
         const Result<PolygonMesh> padded = read(binary + padding);
@@ -243,45 +234,32 @@ TEST(ImportPly, WhatComesBehindTheLastElement) {
 }
 
 TEST(ImportPly, HeadersThatNobodyWrites) {
-    expectError(read(""), "header does not end");
-    expectError(read("solid t\nend_header\n"), "no PLY");
-    expectError(read("ply\nelement vertex 1\nend_header\n"), "no format");
-    expectError(read("ply\nformat ascii 1.0\nend_header\n"), "'vertex' once");
-    expectError(read(kHead + "element vertex 1\nproperty float x\nend_header\n"), "'vertex' once");
-    for (const char* z : {"w", "x", "y"}) {
-        expectError(
-            read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                 "property float " +
-                 std::string(z) + "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"),
-            "x, y and z");
+    expectWrong({{"", "header does not end"},
+                 {"solid t\nend_header\n", "no PLY"},
+                 {"ply\nelement vertex 1\nend_header\n", "no format"},
+                 {"ply\nformat ascii 1.0\nend_header\n", "'vertex' once"},
+                 {kHead + "element vertex 1\nproperty float x\nend_header\n", "'vertex' once"}});
+    for (const char* z : {"float w", "float x", "float y", "list uchar float z"}) {
+        expectWrong({{replaced(kHead, "float z", z) + kFace + "end_header\n", "x, y and z"}});
     }
-    expectError(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                     "property list uchar float z\nend_header\n"),
-                "x, y and z");
 }
 
 TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
-    const std::string polygon = "element polygon 1\nproperty list uchar int vertex_indices\n";
-    const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
-    expectError(read(kHead + polygon + "end_header\n" + kCorners + "3 0 1 2\n"), "'polygon' is not read");
-    expectError(read(kHead + "element tri_strips 1\nproperty list int int strip\nend_header\n" + kCorners +
-                     "3 0 1 2\n"),
-                "'tri_strips' is not read");
-    expectError(read(kHead + "element cells 1\nproperty list uchar int vertexIndex\nend_header\n" + kCorners +
-                     "3 0 1 2\n"),
-                "'cells' is not read");
-    expectError(read(kHead + "element face 1\nproperty list uchar int corners\nend_header\n" + kCorners +
-                     "3 0 1 2\n"),
-                "'face' has no list vertex_indices");
-    const Result<PolygonMesh> part =
-        read(kHead + face + polygon + "end_header\n" + kCorners + "3 0 1 2\n3 1 2 3\n");
+    const std::string polygon = replaced(kFace, "face", "polygon");
+    const std::string rest = "end_header\n" + kCorners + "3 0 1 2\n";
+    expectWrong(
+        {{kHead + polygon + rest, "'polygon' is not read"},
+         {kHead + "element tri_strips 1\nproperty list int int strip\n" + rest, "'tri_strips' is not read"},
+         {kHead + "element cells 1\nproperty list uchar int vertexIndex\n" + rest, "'cells' is not read"},
+         {kHead + replaced(kFace, "vertex_indices", "corners") + rest, "'face' has no list vertex_indices"}});
+    const Result<PolygonMesh> part = read(kHead + kFace + polygon + rest + "3 1 2 3\n");
     ASSERT_TRUE(part) << part.error().message;
     EXPECT_EQ(part->sizes.size(), 1U);
     ASSERT_EQ(part->warnings.size(), 1U);
     EXPECT_NE(part->warnings[0].find("'polygon' is not read"), std::string::npos) << part->warnings[0];
     // What programs put beside their faces is no reason to warn.
     const Result<PolygonMesh> whole =
-        read(kHead + face +
+        read(kHead + kFace +
              "property list uchar float texcoord\nproperty int material_index\nelement edge 1\n"
              "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
              "property list uchar int texture_vertex_indices\nelement material 1\nproperty float shininess\n"
@@ -292,25 +270,22 @@ TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
 }
 
 TEST(ImportPly, PointsAndEdgesAreNoSurface) {
-    expectError(read(kHead + "end_header\n" + kCorners), "it has 4 vertices but no faces; if it is a scan");
-    // Said of a cloud that is cut off, too: more points would not help.
-    expectError(read(kHead + "end_header\n0 0 0\n"), "if it is a scan");
-    expectError(
-        read(kHead + "element face 0\nproperty list uchar int vertex_indices\nend_header\n" + kCorners),
-        "if it is a scan");
-    expectError(read(kHead + "element range_grid 4\nproperty list uchar int vertex_indices\nend_header\n" +
-                     kCorners + "1 0\n1 1\n0\n1 2\n"),
-                "if it is a scan");
-    expectError(read(kHead + "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n" +
-                     kCorners + "0 1\n"),
-                "4 vertices and edges but no faces; export");
+    const std::string rest = "end_header\n" + kCorners;
+    expectWrong(
+        {{kHead + rest, "it has 4 vertices but no faces; if it is a scan"},
+         // Also of a cloud that is cut off: more points would not help.
+         {kHead + "end_header\n0 0 0\n", "if it is a scan"},
+         {kHead + replaced(kFace, "face 1", "face 0") + rest, "if it is a scan"},
+         {kHead + replaced(kFace, "face 1", "range_grid 4") + rest + "1 0\n1 1\n0\n1 2\n", "if it is a scan"},
+         {kHead + "element edge 1\nproperty int vertex1\nproperty int vertex2\n" + rest + "0 1\n",
+          "4 vertices and edges but no faces; export"}});
 }
 
 TEST(ImportPly, CoordinatesAreTheNearestFloats) {
-    const Result<PolygonMesh> mesh = read(
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");
+    const Result<PolygonMesh> mesh =
+        read(replaced(kHead, "vertex 4", "vertex 3") + kFace +
+             "end_header\n"
+             "0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_EQ(mesh->positions[0], glm::vec3(0.1F, 7.941797F, -0.927566F));
     EXPECT_EQ(mesh->positions[1], glm::vec3(16777216.0F, 0.001F, std::numeric_limits<float>::max()));
@@ -319,11 +294,10 @@ TEST(ImportPly, CoordinatesAreTheNearestFloats) {
 TEST(ImportPly, ConcavePolygonsStayConcave) {
     // An L of six corners, area 3: a fan round its first corner would have triangles turned over.
     const TemporaryFolder folder;
-    const Result<TriangleMesh> mesh = importMesh(folder.write(
-        "l.ply",
-        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n6 0 1 2 3 4 5\n"));
+    const Result<TriangleMesh> mesh =
+        importMesh(folder.write("l.ply", replaced(kHead, "vertex 4", "vertex 6") + kFace +
+                                             "end_header\n"
+                                             "2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n6 0 1 2 3 4 5\n"));
     ASSERT_TRUE(mesh) << mesh.error().message;
     ASSERT_EQ(mesh->triangles.size(), 4U);
     double area = 0.0;

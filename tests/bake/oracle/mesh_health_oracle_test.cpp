@@ -1,36 +1,16 @@
 // What inspectMesh counts on real meshes against CGAL's halfedges.
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <cstdlib>
 
 #include "bake/import/mesh_import.h"
-#include "bake/mesh/mesh_edges.h"
 #include "bake/repair/mesh_health.h"
-#include "tests/bake/meshes.h"
+#include "tests/bake/oracle/cgal_mesh.h"
 
 namespace relief::test {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 namespace pmp = CGAL::Polygon_mesh_processing;
-
-/// Vertices of equal positions once, as the inspection sees them. Every face must fit: the mesh is manifold.
-SurfaceMesh toCgalWelded(const TriangleMesh& mesh) {
-    SurfaceMesh out;
-    const std::vector<std::uint32_t> welded = weldedVertices(mesh);
-    std::vector<SurfaceMesh::Vertex_index> vertices(welded.size());
-    for (std::size_t i = 0; i < welded.size(); ++i) {
-        const glm::vec3& p = mesh.positions[i];
-        vertices[i] = welded[i] == i ? out.add_vertex(Kernel::Point_3(p.x, p.y, p.z)) : vertices[welded[i]];
-    }
-    for (const glm::uvec3& t : mesh.triangles) {
-        EXPECT_NE(out.add_face(vertices[t.x], vertices[t.y], vertices[t.z]), SurfaceMesh::null_face());
-    }
-    return out;
-}
 
 TEST(MeshHealthOracle, CountsAreCgals) {
     const TemporaryFolder folder;
@@ -43,7 +23,7 @@ TEST(MeshHealthOracle, CountsAreCgals) {
             importMesh(folder.path() / "data/meshes" / (std::string(name) + ".off"));
         ASSERT_TRUE(mesh) << mesh.error().message;
         const MeshHealth health = inspectMesh(*mesh);
-        const SurfaceMesh surface = toCgalWelded(*mesh);
+        const SurfaceMesh surface = toCgal(*mesh);
         std::uint64_t borders = 0;
         for (const SurfaceMesh::Halfedge_index h : surface.halfedges()) {
             borders += surface.is_border(h) ? 1U : 0U;

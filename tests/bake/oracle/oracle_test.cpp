@@ -10,36 +10,21 @@
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Side_of_triangle_mesh.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <cmath>
 #include <random>
 
+#include "bake/import/mesh_import.h"
 #include "bake/mesh/mesh_query.h"
-#include "tests/bake/meshes.h"
+#include "tests/bake/oracle/cgal_mesh.h"
 
 namespace relief::test {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Tree =
     CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<SurfaceMesh>>>;
-
-SurfaceMesh toCgal(const TriangleMesh& mesh) {
-    SurfaceMesh out;
-    std::vector<SurfaceMesh::Vertex_index> vertices;
-    for (const glm::vec3& p : mesh.positions) {
-        vertices.push_back(out.add_vertex(Kernel::Point_3(p.x, p.y, p.z)));
-    }
-    for (const glm::uvec3& t : mesh.triangles) {
-        out.add_face(vertices[t.x], vertices[t.y], vertices[t.z]);
-    }
-    return out;
-}
 
 double boundOf(const Collider& collider) {
     double bound = 0.0;
@@ -117,7 +102,7 @@ TEST(Oracle, ConvexSolidsAreWrongOnlyWithinTheBound) {
             SCOPED_TRACE(specs.front());
             const Collider collider = bakeSpecs(mesh, specs, 96);
             const double bound = boundOf(collider);
-            const Tally tally = compare(mesh, collider, 20000);
+            const Tally tally = compare(mesh, collider, 10000);
             EXPECT_LE(tally.deepest, bound);
             // A ray may also miss a solid that lies beside its texel's centre, or meet one that does not
             // reach it.
@@ -128,7 +113,7 @@ TEST(Oracle, ConvexSolidsAreWrongOnlyWithinTheBound) {
     // A cube alone, centre inside.
     const TriangleMesh sphere = makeIcosphere({0.3, -0.2, 0.1}, 0.8, 4);
     const Collider cube = bakeSpecs(sphere, {"cube"}, 64);
-    const Tally tally = compare(sphere, cube, 20000);
+    const Tally tally = compare(sphere, cube, 10000);
     EXPECT_LE(tally.deepest, boundOf(cube));
     EXPECT_LE(tally.farthest, boundOf(cube));
 }
@@ -142,7 +127,7 @@ TEST(Oracle, ATorusIsNeverPenetratedBeyondTheBound) {
     for (const std::vector<std::string>& specs : sets) {
         SCOPED_TRACE(specs.front());
         const Collider collider = bakeSpecs(mesh, specs, 96);
-        const Tally tally = compare(mesh, collider, 20000);
+        const Tally tally = compare(mesh, collider, 10000);
         EXPECT_LE(tally.deepest, boundOf(collider));
     }
 }
@@ -167,7 +152,7 @@ TEST(Oracle, SubBoxesNeverCallTheSolidFree) {
         std::uniform_real_distribution<float> xy(-1.5F, 1.5F);
         std::uniform_real_distribution<float> z(-0.5F, 0.5F);
         int votes = 0;
-        for (int i = 0; i < 20000; ++i) {
+        for (int i = 0; i < 10000; ++i) {
             const glm::vec3 p(xy(random), xy(random), z(random));
             const FieldSample sample = evaluate(collider, p);
             votes += sample.map >= 0 ? 1 : 0;
@@ -175,22 +160,45 @@ TEST(Oracle, SubBoxesNeverCallTheSolidFree) {
                 EXPECT_LE(std::sqrt(CGAL::to_double(tree.squared_distance({p.x, p.y, p.z}))), bound);
             }
         }
-        EXPECT_GT(votes, 200);
-        EXPECT_LT(votes, 20000) << "outside its volume it abstains";
+        EXPECT_GT(votes, 100);
+        EXPECT_LT(votes, 10000) << "outside its volume it abstains";
     }
 }
 
-TEST(Oracle, ParityAgreesWithCgal) {
-    const TriangleMesh mesh = makeTorusMesh(1.0, 0.35, 30, 15);
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    ASSERT_TRUE(query);
-    const SurfaceMesh surface = toCgal(mesh);
-    const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> at(-1.4F, 1.4F);
-    for (int i = 0; i < 3000; ++i) {
-        const glm::vec3 p(at(random), at(random), 0.3F * at(random));
-        EXPECT_EQ(query->inside(p), side({p.x, p.y, p.z}) == CGAL::ON_BOUNDED_SIDE);
+// The truth that accuracy is measured against: side by exact predicates, distance by another tree. Half of the points are
+// anywhere about the box, half within 1 % of its longest side of a vertex.
+TEST(Oracle, TruthIsCgals) {
+    const Result<TriangleMesh> bunny = importMesh("/usr/share/glmark2/models/bunny.obj");
+    ASSERT_TRUE(bunny) << bunny.error().message << " (Debian package glmark2-data)";
+    for (const TriangleMesh& mesh :
+         {*bunny, makeBoxMesh({1000.0, -2000.0, 500.0}, {1.0, 2.0, 0.5}, rotation({1, 2, 3}, 33.0))}) {
+        const SurfaceMesh surface = toCgal(mesh);
+        ASSERT_TRUE(CGAL::is_closed(surface));
+        const Tree tree(surface.faces().begin(), surface.faces().end(), surface);
+        const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
+        const MeshQuery query = queryOf(mesh);
+        EXPECT_TRUE(query.watertight());
+        std::mt19937 random(7);
+        std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+        const float longest = mesh.bounds.longestSide();
+        int inside = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const glm::vec3 offset{unit(random), unit(random), unit(random)};
+            const glm::vec3 p =
+                i % 2 == 0 ? mesh.bounds.center() + 0.55F * mesh.bounds.size() * offset
+                           : mesh.positions[random() % mesh.positions.size()] + 0.01F * longest * offset;
+            const Kernel::Point_3 point(p.x, p.y, p.z);
+            const double distance = std::sqrt(CGAL::to_double(tree.squared_distance(point)));
+            EXPECT_NEAR(query.closest(p).distance, distance, 1e-9 * static_cast<double>(longest));
+            // Embree's coordinates are floats: within their grain of the surface either side is right.
+            if (distance > 2e-7 * static_cast<double>(longest)) {
+                EXPECT_EQ(query.inside(p), side(point) == CGAL::ON_BOUNDED_SIDE)
+                    << p.x << " " << p.y << " " << p.z << ", " << distance << " from the surface";
+            }
+            inside += query.inside(p) ? 1 : 0;
+        }
+        EXPECT_GT(inside, 200);
+        EXPECT_LT(inside, 3800);
     }
 }
 

@@ -1,6 +1,4 @@
 """Animated colliders in Python: baked with the options of the tool, played by a scene, and nothing falls into them."""
-import base64
-import json
 import os
 import pathlib
 import subprocess
@@ -9,33 +7,9 @@ import numpy as np
 import pytest
 
 import relief
+from lift import lift
 
 BIN = pathlib.Path(os.environ["RELIEF_BIN"])
-
-
-def lift(clips):
-    """A cube of side 2, whose node moves as clips say: name, to where within 1 s."""
-    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], np.float32)
-    faces = np.array([0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6],
-                     np.uint16)
-    parts = [corners, faces, np.array([0, 1], np.float32)] + [np.array([[0, 0, 0], to], np.float32) for to in clips.values()]
-    data = b"".join(part.tobytes() for part in parts)
-    views, begin = [], 0
-    for part in parts:
-        views.append({"buffer": 0, "byteOffset": begin, "byteLength": part.nbytes})
-        begin += part.nbytes
-    vectors = [{"bufferView": 3 + i, "componentType": 5126, "count": 2, "type": "VEC3"} for i in range(len(clips))]
-    return json.dumps({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "lift", "mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "animations": [{"name": name, "samplers": [{"input": 2, "output": 3 + i}],
-                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}
-                       for i, name in enumerate(clips)],
-        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
-        "bufferViews": views,
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [-1] * 3, "max": [1] * 3},
-                      {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
-                      {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]}] + vectors})
 
 
 @pytest.fixture

@@ -42,7 +42,7 @@ def test_indices_do_not_wrap_round(number):
     (VERTICES, TRIANGLES.astype(float), TypeError, "triangles are an array of indices, .* not of float64"),
     (VERTICES, TRIANGLES.astype(bool), TypeError, "not of bool"),
     (VERTICES, [[0, 1, 2**70]], TypeError, "not of object"),
-    (VERTICES, TRIANGLES.ravel(), ValueError, r"triangles are an array of shape \(n, 3\), not \(12,\)"),
+    (VERTICES, TRIANGLES.ravel(), ValueError, "triangles are an array of shape"),
     (VERTICES, [[0, 1, 2], [0, 1]], ValueError, "rows of several lengths"),
     (VERTICES, np.zeros((0, 3), int), relief.InputError, "no triangle has an area"),
     (VERTICES, None, ValueError, "need triangles"),

@@ -3,11 +3,12 @@
 #include "bake/recipe/bake_cache.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
+#include <sys/stat.h>
 
 #include <filesystem>
-#include <fstream>
 #include <thread>
+
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 namespace {
@@ -17,9 +18,6 @@ namespace fs = std::filesystem;
 class BakeCache : public testing::Test {
   protected:
     void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "relief_cache_XXXXXX").string();
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder_ = name;
         for (const char* file : {"m.obj", "m.bin", "m.relief"}) {
             put(file, file);
         }
@@ -34,11 +32,8 @@ class BakeCache : public testing::Test {
                   hash("m.relief"),
                   8};
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
-    void put(const std::string& file, const std::string& text) const {
-        std::ofstream(folder_ / file) << text;
-    }
+    void put(const std::string& file, const std::string& text) const { temporary_.write(file, text); }
     [[nodiscard]] std::string hash(const char* file) const {
         return hashOfFile(folder_ / file).value_or("none");
     }
@@ -46,7 +41,8 @@ class BakeCache : public testing::Test {
         return staleness(job_, &entry_, "relief 1", folder_).value_or("up to date");
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
     RecipeJob job_;
     BakeCacheEntry entry_;
 };
@@ -105,7 +101,7 @@ TEST_F(BakeCache, EveryChangeIsSeen) {
 
 TEST_F(BakeCache, APipeIsNoInput) {
     fs::remove(folder_ / "m.bin");
-    ASSERT_EQ(std::system(("mkfifo " + (folder_ / "m.bin").string()).c_str()), 0);
+    ASSERT_EQ(::mkfifo((folder_ / "m.bin").c_str(), 0600), 0);
     EXPECT_EQ(why(), "'m.bin' changed") << "and nobody waits for its writer";
     EXPECT_FALSE(hashOfFile("/dev/zero"));
 }

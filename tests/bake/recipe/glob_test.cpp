@@ -2,10 +2,10 @@
 #include "bake/recipe/glob.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
-#include <fstream>
+
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 namespace {
@@ -19,32 +19,34 @@ bool matches(const std::string& pattern, const std::string& path) {
 }
 
 TEST(Glob, MatchesPartByPart) {
-    EXPECT_TRUE(matches("a.obj", "a.obj"));
-    EXPECT_TRUE(matches("./a.obj", "a.obj"));
-    EXPECT_FALSE(matches("a.obj", "b/a.obj"));
-    EXPECT_FALSE(matches("a.obj", "A.obj"));
-    EXPECT_TRUE(matches("*.obj", "a.obj"));
-    EXPECT_FALSE(matches("*.obj", "x/a.obj")) << "* crosses no folder";
-    EXPECT_FALSE(matches("*.obj", ".a.obj")) << "hidden";
-    EXPECT_TRUE(matches(".*.obj", ".a.obj"));
-    EXPECT_TRUE(matches("x/?.o*j", "x/a.obj"));
-    EXPECT_TRUE(matches("[a-c].obj", "b.obj"));
-    EXPECT_FALSE(matches("[!a-c].obj", "b.obj"));
-    EXPECT_TRUE(matches("\\[a\\].obj", "[a].obj"));
-    EXPECT_FALSE(matches("[a].obj", "[a].obj"));
-    EXPECT_FALSE(matches("x/*", "x"));
-    EXPECT_FALSE(matches("x", "x/y"));
-}
-
-TEST(Glob, TwoStarsAreAnyNumberOfFolders) {
-    EXPECT_TRUE(matches("**/*.obj", "a.obj"));
-    EXPECT_TRUE(matches("**/*.obj", "x/y/a.obj"));
-    EXPECT_TRUE(matches("x/**/a.obj", "x/a.obj"));
-    EXPECT_TRUE(matches("x/**/y/**/a.obj", "x/1/y/2/3/a.obj"));
-    EXPECT_FALSE(matches("x/**/y/**/a.obj", "x/1/2/3/a.obj"));
-    EXPECT_FALSE(matches("**/a.obj", ".git/a.obj")) << "hidden";
-    EXPECT_FALSE(matches("x**/a.obj", "x/y/a.obj")) << "within a part they are one *";
-    EXPECT_TRUE(matches("**/**/a.obj", "a.obj"));
+    for (const auto& [pattern, path] : {std::pair{"a.obj", "a.obj"},
+                                        {"./a.obj", "a.obj"},
+                                        {"*.obj", "a.obj"},
+                                        {".*.obj", ".a.obj"},
+                                        {"x/?.o*j", "x/a.obj"},
+                                        {"[a-c].obj", "b.obj"},
+                                        {"\\[a\\].obj", "[a].obj"},
+                                        // Two stars are any number of folders.
+                                        {"**/*.obj", "a.obj"},
+                                        {"**/*.obj", "x/y/a.obj"},
+                                        {"x/**/a.obj", "x/a.obj"},
+                                        {"x/**/y/**/a.obj", "x/1/y/2/3/a.obj"},
+                                        {"**/**/a.obj", "a.obj"}}) {
+        EXPECT_TRUE(matches(pattern, path)) << pattern << " " << path;
+    }
+    for (const auto& [pattern, path] : {std::pair{"a.obj", "b/a.obj"},
+                                        {"a.obj", "A.obj"},
+                                        {"*.obj", "x/a.obj"},  // * crosses no folder
+                                        {"*.obj", ".a.obj"},   // hidden
+                                        {"[!a-c].obj", "b.obj"},
+                                        {"[a].obj", "[a].obj"},
+                                        {"x/*", "x"},
+                                        {"x", "x/y"},
+                                        {"x/**/y/**/a.obj", "x/1/2/3/a.obj"},
+                                        {"**/a.obj", ".git/a.obj"},     // hidden
+                                        {"x**/a.obj", "x/y/a.obj"}}) {  // within a part they are one *
+        EXPECT_FALSE(matches(pattern, path)) << pattern << " " << path;
+    }
 }
 
 // 64 times ** against 2,000 folders: by trying one way after the other this would never end.
@@ -86,12 +88,11 @@ TEST(Glob, SaysWhatIsNoPattern) {
 }
 
 TEST(Glob, WalksFoldersOnceAndSorted) {
-    std::string name = (fs::temp_directory_path() / "relief_glob_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    const fs::path folder = name;
+    const TemporaryFolder temporary;
+    const fs::path& folder = temporary.path();
     for (const char* file : {"b.obj", "a.obj", "x/a.obj", "x/y/a.obj", "x.obj/no", ".h/a.obj", "x-/a.obj"}) {
         fs::create_directories((folder / file).parent_path());
-        std::ofstream(folder / file) << "x";
+        temporary.write(file, "x");
     }
     fs::create_symlink("a.obj", folder / "link.obj");
     fs::create_symlink("gone.obj", folder / "dangling.obj");
@@ -109,7 +110,6 @@ TEST(Glob, WalksFoldersOnceAndSorted) {
     EXPECT_EQ(folders->files, (std::vector<std::string>{"x", "x-", "x.obj"})) << "a slash at the end";
     EXPECT_TRUE(globFiles(folder, *GlobPattern::parse("a.obj/"))->files.empty());
     EXPECT_EQ(globFiles(folder / "gone", *GlobPattern::parse("*")).error().code, ErrorCode::kIo);
-    fs::remove_all(folder);
 }
 
 }  // namespace

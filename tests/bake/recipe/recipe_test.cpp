@@ -3,12 +3,12 @@
 #include "bake/recipe/recipe.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "bake/recipe/recipe_jobs.h"
+#include "tests/temporary_folder.h"
 
 namespace relief::test {
 namespace {
@@ -29,88 +29,71 @@ std::string recipe(const std::string& rest) {
     return "version = 1\n" + rest;
 }
 
+using Arguments = std::vector<std::string>;
+
+/// The assets of a recipe that must be right.
+std::vector<RecipeAsset> assetsOf(const std::string& rest) {
+    const auto assets = parseRecipe(recipe(rest), keys(), "r.toml");
+    EXPECT_TRUE(assets) << assets.error().message;
+    return assets ? *assets : std::vector<RecipeAsset>();
+}
+
 TEST(Recipe, MergesDefaultsKeyByKey) {
-    const auto assets =
-        parseRecipe(recipe("[defaults]\noutput = '{stem}.relief'\ncompress = 3\nprefer = 'inside'\n"
-                           "[[asset]]\nmesh = 'a.obj'\n"
-                           "[[asset]]\nmesh = ['b.obj', 'c/*.obj']\nprefer = 'outside'\n"
-                           "max-error = 1.5\noutput = 'x/{stem}.relief'\nexclude = 'c/d.obj'\n"),
-                    keys(), "r.toml");
-    ASSERT_TRUE(assets) << assets.error().message;
-    ASSERT_EQ(assets->size(), 2U);
-    const std::vector<std::string> first = {"--compress=3", "--prefer=inside"};
-    const std::vector<std::string> second = {"--compress=3", "--max-error=1.5", "--prefer=outside"};
-    EXPECT_EQ(recipeArguments((*assets)[0].options), first);
-    EXPECT_EQ(recipeArguments((*assets)[1].options), second);
-    EXPECT_EQ((*assets)[0].output, "{stem}.relief");
-    EXPECT_EQ((*assets)[1].output, "x/{stem}.relief");
-    EXPECT_EQ((*assets)[1].meshes.size(), 2U);
-    EXPECT_EQ((*assets)[1].exclude, std::vector<std::string>{"c/d.obj"});
+    const auto assets = assetsOf(
+        "[defaults]\noutput = '{stem}.relief'\ncompress = 3\nprefer = 'inside'\n[[asset]]\nmesh = 'a.obj'\n"
+        "[[asset]]\nmesh = ['b.obj', 'c/*.obj']\nprefer = 'outside'\n"
+        "max-error = 1.5\noutput = 'x/{stem}.relief'\nexclude = 'c/d.obj'\n");
+    ASSERT_EQ(assets.size(), 2U);
+    EXPECT_EQ(recipeArguments(assets[0].options), (Arguments{"--compress=3", "--prefer=inside"}));
+    EXPECT_EQ(recipeArguments(assets[1].options),
+              (Arguments{"--compress=3", "--max-error=1.5", "--prefer=outside"}));
+    EXPECT_EQ(assets[0].output, "{stem}.relief");
+    EXPECT_EQ(assets[1].output, "x/{stem}.relief");
+    EXPECT_EQ(assets[1].meshes.size(), 2U);
+    EXPECT_EQ(assets[1].exclude, std::vector<std::string>{"c/d.obj"});
 }
 
-// Otherwise an asset could not have planned maps beside defaults that name maps, nor the other way round.
-TEST(Recipe, AnAssetThatChoosesItsMapsTakesNoneOfTheDefaultsChoice) {
-    const auto assets =
-        parseRecipe(recipe("[defaults]\noutput = '{stem}.relief'\nmap = ['cube:size=8', 'float:size=8']\n"
-                           "decode = 'projected'\ncompress = 1\n"
-                           "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '1MB'\n"
-                           "[[asset]]\nmesh = 'c'\npaper = true\n[[asset]]\nmesh = 'd'\npaper = false\n"),
-                    keys(), "r.toml");
-    ASSERT_TRUE(assets) << assets.error().message;
-    using Arguments = std::vector<std::string>;
-    EXPECT_EQ(recipeArguments((*assets)[0].options),
-              (Arguments{"--compress=1", "--decode=projected", "--map=cube:size=8", "--map=float:size=8"}));
-    EXPECT_EQ(recipeArguments((*assets)[1].options), (Arguments{"--budget=1MB", "--compress=1"}));
-    EXPECT_EQ(recipeArguments((*assets)[2].options), (Arguments{"--compress=1", "--paper"}));
-    EXPECT_EQ(recipeArguments((*assets)[3].options), (Arguments{"--compress=1"}));
-}
-
-// Otherwise a recipe that plans views could not name the maps of one asset.
-TEST(Recipe, AnAssetThatNamesItsMapsTakesNothingAboutPlanning) {
-    const auto assets = parseRecipe(
-        recipe("[defaults]\noutput = '{stem}.relief'\nlayout = 'views'\nmax-maps = 4\nbudget = '1MB'\n"
-               "[[asset]]\nmesh = 'a'\nbudget = '2MB'\n[[asset]]\nmesh = 'b'\nlayout = 'patches'\n"
-               "[[asset]]\nmesh = 'c'\nmap = 'cube:size=8'\n[[asset]]\nmesh = 'd'\npaper = true\n"
-               "[[asset]]\nmesh = 'e'\nplan = 'e.toml'\n"),
-        keys(), "r.toml");
-    ASSERT_TRUE(assets) << assets.error().message;
-    using Arguments = std::vector<std::string>;
-    const std::vector<Arguments> wanted = {{"--budget=2MB", "--layout=views", "--max-maps=4"},
-                                           {"--budget=1MB", "--layout=patches", "--max-maps=4"},
-                                           {"--map=cube:size=8"},
-                                           {"--paper"},
-                                           {"--plan=e.toml"}};
-    ASSERT_EQ(assets->size(), wanted.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-        EXPECT_EQ(recipeArguments((*assets)[i].options), wanted[i]);
-    }
-}
-
-// Otherwise defaults for meshes would shrink a level to the bytes of one, or be a mistake beside a height map.
-TEST(Recipe, DefaultsForMeshesAreNoneOfLevelsAndHeightMaps) {
-    const std::string defaults =
-        "[defaults]\noutput = '{stem}/world.json'\nmax-error = 1\nmap = 'float'\n"
-        "prefer = 'inside'\ncompress = 3\n";
-    const auto assets =
-        parseRecipe(recipe(defaults + "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '4MB'\n"
-                                      "[[asset]]\nmesh = 'c'\noutput = 'c.relief'\n"
-                                      "[[asset]]\nmesh = 'd'\nheights = 'low=0'\n"
-                                      "[[asset]]\nmesh = 'e'\nheights = 'low=0'\noutput = 'e.relief'\n"
-                                      "[[asset]]\nmesh = 'f'\noutput = 'fworld.json'\ntexel = '1cm'\n"),
-                    keys(), "r.toml");
-    ASSERT_TRUE(assets) << assets.error().message;
-    using Arguments = std::vector<std::string>;
-    const std::vector<std::pair<bool, Arguments>> wanted = {
-        {true, {"--compress=3", "--prefer=inside"}},
-        {true, {"--budget=4MB", "--compress=3", "--prefer=inside"}},
-        {false, {"--compress=3", "--map=float", "--max-error=1", "--prefer=inside"}},
-        {true, {"--compress=3", "--heights=low=0"}},
-        {false, {"--compress=3", "--heights=low=0"}},
-        {false, {"--compress=3", "--prefer=inside", "--texel=1cm"}}};
-    ASSERT_EQ(assets->size(), wanted.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-        EXPECT_EQ((*assets)[i].isWorld(), wanted[i].first) << i;
-        EXPECT_EQ(recipeArguments((*assets)[i].options), wanted[i].second) << i;
+/// Recipes, and each of their assets: whether it is a world, and its arguments.
+TEST(Recipe, DefaultsThatDoNotGoWithAnAssetAreNoneOfIt) {
+    const std::string defaults = "[defaults]\noutput = '{stem}.relief'\n";
+    const std::vector<std::pair<std::string, std::vector<std::pair<bool, Arguments>>>> recipes = {
+        // Otherwise an asset could not have planned maps beside defaults that name maps, nor the other way round.
+        {defaults + "map = ['cube:size=8', 'float:size=8']\ndecode = 'projected'\ncompress = 1\n"
+                    "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '1MB'\n"
+                    "[[asset]]\nmesh = 'c'\npaper = true\n[[asset]]\nmesh = 'd'\npaper = false\n",
+         {{false, {"--compress=1", "--decode=projected", "--map=cube:size=8", "--map=float:size=8"}},
+          {false, {"--budget=1MB", "--compress=1"}},
+          {false, {"--compress=1", "--paper"}},
+          {false, {"--compress=1"}}}},
+        // Otherwise a recipe that plans views could not name the maps of one asset.
+        {defaults + "layout = 'views'\nmax-maps = 4\nbudget = '1MB'\n"
+                    "[[asset]]\nmesh = 'a'\nbudget = '2MB'\n[[asset]]\nmesh = 'b'\nlayout = 'patches'\n"
+                    "[[asset]]\nmesh = 'c'\nmap = 'cube:size=8'\n[[asset]]\nmesh = 'd'\npaper = true\n"
+                    "[[asset]]\nmesh = 'e'\nplan = 'e.toml'\n",
+         {{false, {"--budget=2MB", "--layout=views", "--max-maps=4"}},
+          {false, {"--budget=1MB", "--layout=patches", "--max-maps=4"}},
+          {false, {"--map=cube:size=8"}},
+          {false, {"--paper"}},
+          {false, {"--plan=e.toml"}}}},
+        // Otherwise defaults for meshes would shrink a level to the bytes of one, or be a mistake beside a height map.
+        {"[defaults]\noutput = '{stem}/world.json'\nmax-error = 1\nmap = 'float'\n"
+         "prefer = 'inside'\ncompress = 3\n[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '4MB'\n"
+         "[[asset]]\nmesh = 'c'\noutput = 'c.relief'\n[[asset]]\nmesh = 'd'\nheights = 'low=0'\n"
+         "[[asset]]\nmesh = 'e'\nheights = 'low=0'\noutput = 'e.relief'\n"
+         "[[asset]]\nmesh = 'f'\noutput = 'fworld.json'\ntexel = '1cm'\n",
+         {{true, {"--compress=3", "--prefer=inside"}},
+          {true, {"--budget=4MB", "--compress=3", "--prefer=inside"}},
+          {false, {"--compress=3", "--map=float", "--max-error=1", "--prefer=inside"}},
+          {true, {"--compress=3", "--heights=low=0"}},
+          {false, {"--compress=3", "--heights=low=0"}},
+          {false, {"--compress=3", "--prefer=inside", "--texel=1cm"}}}},
+    };
+    for (const auto& [text, wanted] : recipes) {
+        std::vector<std::pair<bool, Arguments>> read;
+        for (const RecipeAsset& asset : assetsOf(text)) {
+            read.emplace_back(asset.isWorld(), recipeArguments(asset.options));
+        }
+        EXPECT_EQ(read, wanted);
     }
 }
 
@@ -174,15 +157,11 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
 class RecipeJobsTest : public testing::Test {
   protected:
     void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "relief_recipe_XXXXXX").string();
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder_ = fs::path(name) / "in";
         for (const char* file :
              {"rocks/a.obj", "rocks/b.obj", "rocks/deep/a.obj", "rocks/b.mtl", "hill.off"}) {
             put(file);
         }
     }
-    void TearDown() override { fs::remove_all(folder_.parent_path()); }
 
     void put(const std::string& file) {
         fs::create_directories((folder_ / file).parent_path());
@@ -208,7 +187,8 @@ class RecipeJobsTest : public testing::Test {
         EXPECT_NE(found.error().message.find("r.toml:"), std::string::npos) << found.error().message;
     }
 
-    fs::path folder_;
+    TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path() / "in";
 };
 
 TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
@@ -267,30 +247,21 @@ TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
     const std::string rocks = "[[asset]]\nmesh = '**/a.obj'\n";
     fails(rocks + "output = '{stem}.relief'\n",
           "'rocks/a.obj' and 'rocks/deep/a.obj' would both be baked into 'a.relief'");
-    fails(rocks + "output = 'x/../a.relief'\n", "would both be baked into 'a.relief'");
+    fails(rocks + "output = 'x/../a.relief'\n", "baked into 'a.relief'");
     put("mesh.relief");
     fails("[[asset]]\nmesh = 'mesh.relief'\noutput = '{stem}.relief'\n", "is the input");
     fs::create_symlink("rocks", folder_ / "link");
-    fails(
-        "[[asset]]\nmesh = 'hill.off'\noutput = 'rocks/x.relief'\n"
-        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'link/x.relief'\n",
-        "would both be baked into 'link/x.relief'");
     fs::create_symlink("later", folder_ / "to_later");  // made by the first bake
-    fails(
-        "[[asset]]\nmesh = 'hill.off'\noutput = 'later/x.relief'\n"
-        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'to_later/x.relief'\n",
-        "'hill.off' and 'rocks/a.obj' would both be baked into 'to_later/x.relief'");
     fs::create_symlink("fresh.relief", folder_ / "to_fresh.relief");
-    fails(
-        "[[asset]]\nmesh = 'hill.off'\noutput = 'to_fresh.relief'\n"
-        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'fresh.relief'\n",
-        "would both be baked into 'fresh.relief'");
     put("one.relief");
     fs::create_hard_link(folder_ / "one.relief", folder_ / "two.relief");
-    fails(
-        "[[asset]]\nmesh = 'hill.off'\noutput = 'one.relief'\n"
-        "[[asset]]\nmesh = 'rocks/a.obj'\noutput = 'two.relief'\n",
-        "would both be baked into 'two.relief'");
+    for (const auto& [first, second] :
+         {std::pair{"rocks/x.relief", "link/x.relief"}, std::pair{"later/x.relief", "to_later/x.relief"},
+          std::pair{"to_fresh.relief", "fresh.relief"}, std::pair{"one.relief", "two.relief"}}) {
+        fails("[[asset]]\nmesh = 'hill.off'\noutput = '" + std::string(first) +
+                  "'\n[[asset]]\nmesh = 'rocks/a.obj'\noutput = '" + second + "'\n",
+              "baked into '" + std::string(second) + "'");
+    }
 }
 
 TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
@@ -303,21 +274,23 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
     std::ofstream(folder_.parent_path() / "secret.obj") << "x";
     fs::create_symlink("../secret.obj", folder_ / "secret.obj");
     fs::create_symlink("..", folder_ / "up");
-    fails(mesh("../secret.obj"), "leads upwards");
-    fails(mesh("/etc/passwd"), "is an absolute path");
-    fails(mesh("secret.obj"), "leads out of the recipe's folder");
-    fails(mesh("up/*.obj"), "leads out of the recipe's folder");
-    fails(output("../x.relief"), "leads out of the output folder");
-    fails(output("up/x.relief"), "leads out of the output folder");
-    fails(output("/x.relief"), "must be a relative path");
-    fails(output("hill.off"), "must end in .relief");
-    fails(output("{stem}/.relief"), "must end in .relief");
-    fails(output("{stem}/world.json/"), "must end in .relief");
-    fails(output("{dir}world.json"), "must end in .relief");
-    fails(output("up/world.json"), "leads out of the output folder");
-    fails(output("{sten}.relief"), "{sten}");
-    fails(output("{stem.relief"), "known are");
-    fails(output("stem}.relief"), "} without {");
+    for (const auto& [name, words] :
+         {std::pair{"../secret.obj", "leads upwards"}, std::pair{"/etc/passwd", "is an absolute path"},
+          std::pair{"secret.obj", "leads out of the recipe's folder"},
+          std::pair{"up/*.obj", "leads out of the recipe's folder"}}) {
+        fails(mesh(name), words);
+    }
+    for (const auto& [name, words] :
+         {std::pair{"../x.relief", "leads out of the output folder"},
+          std::pair{"up/x.relief", "leads out of the output folder"},
+          std::pair{"up/world.json", "leads out of the output folder"},
+          std::pair{"/x.relief", "must be a relative path"}, std::pair{"hill.off", "must end in .relief"},
+          std::pair{"{stem}/.relief", "must end in .relief"},
+          std::pair{"{stem}/world.json/", "must end in .relief"},
+          std::pair{"{dir}world.json", "must end in .relief"}, std::pair{"{sten}.relief", "{sten}"},
+          std::pair{"{stem.relief", "known are"}, std::pair{"stem}.relief", "} without {"}}) {
+        fails(output(name), words);
+    }
     fails(output("hill.relief") + "plan = '../p.toml'\n",
           "plan '../p.toml' leads out of the recipe's folder");
 }

@@ -30,21 +30,6 @@ double volume(const TriangleMesh& mesh) {
     return sum;
 }
 
-/// Without the triangles that `gone` says so of.
-template <class Gone>
-TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
-    std::vector<glm::uvec3> kept;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 middle = (glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
-                                   glm::dvec3(mesh.positions[t.z])) /
-                                  3.0;
-        if (!gone(middle)) {
-            kept.push_back(t);
-        }
-    }
-    return finished(mesh.positions, kept);
-}
-
 /// A unit ball whose part above y = `height` is cut away, down to the next edges.
 TriangleMesh makeCutBall(double height, int levels = 4) {
     return without(makeIcosphere(glm::dvec3(0.0), 1.0, levels),
@@ -147,7 +132,7 @@ TEST(HoleCaps, HolesThatMeetInTwoVerticesKeepTheWinding) {
     // holes: a walk may go on from there in either direction.
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 4);
     const auto has = [](const glm::uvec3& t, std::uint32_t v) { return t.x == v || t.y == v || t.z == v; };
-    for (std::size_t i = 0; i < ball.triangles.size(); i += 97) {
+    for (std::size_t i = 0; i < ball.triangles.size(); i += 397) {
         SCOPED_TRACE(i);
         const std::uint32_t a = ball.triangles[i].x;
         const std::uint32_t b = ball.triangles[i].y;
@@ -204,36 +189,25 @@ TEST(HoleCaps, ClosedMeshesStay) {
     expectKept(makeTorusMesh(1.0, 0.3, 24, 12));
 }
 
-TEST(HoleCaps, SheetsStay) {
+TEST(HoleCaps, SheetsTerrainsAndBowlsStay) {
     expectKept(makePlane(0.0F, 8));
     // Turned any way: the box is no longer flat, and of the seven directions of MeshQuery::inside always more
     // go to one side.
     for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 2, 3)}) {
         for (const double degrees : {30.0, 120.0, 210.0, 300.0}) {
-            TriangleMesh mesh = makePlane(0.0F, 8);
-            for (glm::vec3& p : mesh.positions) {
-                p = rotation(axis, degrees) * glm::dvec3(p);
-            }
-            expectKept(finished(mesh.positions, mesh.triangles));
+            expectKept(
+                moved(makePlane(0.0F, 8), [&](const glm::dvec3& p) { return rotation(axis, degrees) * p; }));
         }
     }
-}
-
-TEST(HoleCaps, TerrainsStay) {
-    for (const float steepness : {0.05F, 0.5F}) {
-        TriangleMesh mesh = makePlane(0.0F, 32);
-        for (glm::vec3& p : mesh.positions) {
-            p.y = steepness * (std::sin(5.0F * p.x) * std::cos(4.0F * p.z) + 0.3F * p.x);
-        }
-        const TriangleMesh terrain = finished(mesh.positions, mesh.triangles);
+    for (const double steepness : {0.05, 0.5}) {
+        const TriangleMesh terrain = moved(makePlane(0.0F, 32), [&](const glm::dvec3& p) {
+            const double y = steepness * (std::sin(5.0 * p.x) * std::cos(4.0 * p.z) + 0.3 * p.x);
+            return glm::dvec3(p.x, y, p.z);
+        });
         expectKept(terrain);
         expectKept(reversed(terrain));
     }
-}
-
-TEST(HoleCaps, BowlsStay) {
     for (const double height : {-0.5, 0.0, 0.1}) {
-        SCOPED_TRACE(height);
         expectKept(makeCutBall(height));
     }
 }

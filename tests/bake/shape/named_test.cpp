@@ -1,10 +1,7 @@
 // What has a name in the mesh file is taken for what its name says; and what options and containers say of that.
 #include <gtest/gtest.h>
 
-#include "bake/mesh/mesh_query.h"
-#include "bake/repair/winding.h"
-#include "bake/shape/shape.h"
-#include "tests/bake/meshes.h"
+#include "tests/bake/shaped.h"
 
 namespace relief::test {
 namespace {
@@ -12,26 +9,12 @@ namespace {
 constexpr double kThickness = 0.1;
 using Named = std::vector<NamedShape>;
 
-ShapedMesh shaped(TriangleMesh mesh, const Named& named, ShapeAs as = ShapeAs::kAuto) {
-    Result<Winding> winding = windOutwards(std::move(mesh));
-    EXPECT_TRUE(winding);
-    Result<ShapedMesh> shape = shapeMesh(winding->mesh, {as, kThickness, named});
-    EXPECT_TRUE(shape) << shape.error().message;
-    return std::move(*shape);
-}
-
-void expectKinds(const ShapeReport& report, std::uint64_t solids, std::uint64_t holed, std::uint64_t sheets,
-                 std::uint64_t terrains) {
-    EXPECT_EQ(report.solids, solids);
-    EXPECT_EQ(report.solids_with_holes, holed);
-    EXPECT_EQ(report.sheets, sheets);
-    EXPECT_EQ(report.terrains, terrains);
+ShapedMesh shaped(const TriangleMesh& mesh, const Named& named, ShapeAs as = ShapeAs::kAuto) {
+    return shapedBy(mesh, {as, kThickness, named});
 }
 
 bool inside(const ShapedMesh& shape, const glm::vec3& p) {
-    const Result<MeshQuery> query = MeshQuery::build(shape.mesh);
-    EXPECT_TRUE(query);
-    return query->inside(p);
+    return queryOf(shape.mesh).inside(p);
 }
 
 /// Half sides 1; its lid, at y = 1, has the first name, all else the second.
@@ -46,22 +29,11 @@ TriangleMesh makeBoxWithLid() {
 
 /// A box without a lid, named first, and a closed one at x = 4, named second.
 TriangleMesh makeTwoBoxes() {
-    TriangleMesh mesh = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
-    const TriangleMesh other = makeBoxMesh(glm::dvec3(4.0, 0.0, 0.0), glm::dvec3(1.0));
-    std::vector<glm::uvec3> triangles;
-    for (const glm::uvec3& t : mesh.triangles) {
-        if (std::min({mesh.positions[t.x].y, mesh.positions[t.y].y, mesh.positions[t.z].y}) < 0.9F) {
-            triangles.push_back(t);
-        }
-    }
-    std::vector<std::uint8_t> marks(triangles.size(), 1);
-    for (const glm::uvec3& t : other.triangles) {
-        triangles.push_back(t + static_cast<std::uint32_t>(mesh.positions.size()));
-        marks.push_back(2);
-    }
-    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-    mesh = finished(mesh.positions, triangles);
-    mesh.marks = marks;
+    const TriangleMesh tub =
+        without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), [](const glm::dvec3& p) { return p.y > 0.9; });
+    TriangleMesh mesh = joined({tub, makeBoxMesh(glm::dvec3(4.0, 0.0, 0.0), glm::dvec3(1.0))});
+    mesh.marks.assign(tub.triangles.size(), 1);
+    mesh.marks.resize(mesh.triangles.size(), 2);
     return mesh;
 }
 
@@ -144,17 +116,12 @@ TEST(NamedShape, OpenPartsOfTwoKindsPartAtTheirCommonEdges) {
 
 TEST(NamedShape, WhatStandsInAShellIsJudgedAsIfTheShellWereNotThere) {
     // A ball with a hole, in the dark of a closed box.
-    TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(2.0));
-    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
-    std::vector<glm::uvec3> triangles = box.triangles;
-    std::vector<std::uint8_t> marks(triangles.size(), 1);
-    for (std::size_t i = 1; i < ball.triangles.size(); ++i) {
-        triangles.push_back(ball.triangles[i] + static_cast<std::uint32_t>(box.positions.size()));
-        marks.push_back(0);
-    }
-    box.positions.insert(box.positions.end(), ball.positions.begin(), ball.positions.end());
-    TriangleMesh mesh = finished(box.positions, triangles);
-    mesh.marks = marks;
+    const TriangleMesh box = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(2.0));
+    TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 2);
+    ball.triangles.erase(ball.triangles.begin());
+    TriangleMesh mesh = joined({box, ball});
+    mesh.marks.assign(box.triangles.size(), 1);
+    mesh.marks.resize(mesh.triangles.size(), 0);
     const ShapedMesh shape = shaped(mesh, {{"room", ShapeAs::kShell}});
     expectKinds(shape.report, 0, 1, 1, 0);
     EXPECT_TRUE(inside(shape, glm::vec3(0.0F)));

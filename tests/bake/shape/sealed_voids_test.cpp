@@ -9,9 +9,7 @@
 #include "bake/measure/truth.h"
 #include "bake/mesh/mersenne.h"
 #include "bake/patches/patch_planner.h"
-#include "bake/repair/winding.h"
-#include "bake/shape/shape.h"
-#include "tests/bake/meshes.h"
+#include "tests/bake/shaped.h"
 
 namespace relief::test {
 namespace {
@@ -32,20 +30,13 @@ bool inMiddle(const glm::dvec3& p) {
     return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 0.5;
 }
 
-TriangleMesh turned(TriangleMesh mesh, const glm::dmat3& turn) {
-    for (glm::vec3& p : mesh.positions) {
-        p = turn * glm::dvec3(p);
-    }
-    return finished(mesh.positions, mesh.triangles);
+TriangleMesh turned(const TriangleMesh& mesh, const glm::dmat3& turn) {
+    return moved(mesh, [&](const glm::dvec3& p) { return turn * p; });
 }
 
 ShapedMesh shaped(const TriangleMesh& mesh, ShapeOptions options = {}) {
     options.thickness = kThickness;
-    Result<Winding> winding = windOutwards(mesh);
-    EXPECT_TRUE(winding);
-    Result<ShapedMesh> shape = shapeMesh(winding->mesh, options);
-    EXPECT_TRUE(shape) << shape.error().message;
-    return std::move(*shape);
+    return shapedBy(mesh, options);
 }
 
 /// Whether the middle room is full, by its middle.

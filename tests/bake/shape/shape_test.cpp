@@ -10,9 +10,8 @@
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake.h"
-#include "bake/repair/winding.h"
-#include "tests/bake/meshes.h"
 #include "tests/bake/plan_views.h"
+#include "tests/bake/shaped.h"
 #include "tests/bake/voxels.h"
 #include "tests/seeds.h"
 
@@ -22,29 +21,13 @@ namespace {
 constexpr double kThickness = 0.05;
 
 ShapedMesh shaped(const TriangleMesh& mesh, ShapeAs as = ShapeAs::kAuto, double thickness = kThickness) {
-    Result<Winding> winding = windOutwards(mesh);
-    EXPECT_TRUE(winding);
-    Result<ShapedMesh> shape = shapeMesh(winding->mesh, {as, thickness});
-    EXPECT_TRUE(shape) << shape.error().message;
-    return std::move(*shape);
-}
-
-/// Without the triangles whose middle `gone` says so of.
-template <class Gone>
-TriangleMesh without(const TriangleMesh& mesh, const Gone& gone) {
-    std::vector<glm::uvec3> kept;
-    for (const glm::uvec3& t : mesh.triangles) {
-        if (!gone((mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0F)) {
-            kept.push_back(t);
-        }
-    }
-    return finished(mesh.positions, kept);
+    return shapedBy(mesh, {as, thickness});
 }
 
 /// A box of half sides 1 with a face missing: its lid, at y = 1.
 TriangleMesh makeOpenBox() {
     return without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)),
-                   [](const glm::vec3& p) { return p.y > 0.99F; });
+                   [](const glm::dvec3& p) { return p.y > 0.99; });
 }
 
 /// A tube round the y axis, of radius 0.7 from y = −1 to 1, closed below.
@@ -95,40 +78,23 @@ TriangleMesh makeToadstool() {
     return makeTurned(profile);
 }
 
-TriangleMesh scaled(TriangleMesh mesh, double scale, const glm::dvec3& offset = glm::dvec3(0.0)) {
-    for (glm::vec3& p : mesh.positions) {
-        p = glm::dvec3(p) * scale + offset;
-    }
-    return finished(mesh.positions, mesh.triangles);
+TriangleMesh scaled(const TriangleMesh& mesh, double scale, const glm::dvec3& offset = glm::dvec3(0.0)) {
+    return moved(mesh, [&](const glm::dvec3& p) { return scale * p + offset; });
 }
 
-TriangleMesh turned(TriangleMesh mesh, const glm::dvec3& axis, double degrees) {
-    for (glm::vec3& p : mesh.positions) {
-        p = rotation(axis, degrees) * glm::dvec3(p);
-    }
-    return finished(mesh.positions, mesh.triangles);
+TriangleMesh turned(const TriangleMesh& mesh, const glm::dvec3& axis, double degrees) {
+    return moved(mesh, [&](const glm::dvec3& p) { return rotation(axis, degrees) * p; });
 }
 
 /// y = height(x, z) over [−1, 1]².
 template <class Height>
 TriangleMesh makeHeights(const Height& height) {
-    TriangleMesh mesh = makePlane(0.0F, 24);
-    for (glm::vec3& p : mesh.positions) {
-        p.y = static_cast<float>(height(p.x, p.z));
-    }
-    return finished(mesh.positions, mesh.triangles);
+    return moved(makePlane(0.0F, 24),
+                 [&](const glm::dvec3& p) { return glm::dvec3(p.x, height(p.x, p.z), p.z); });
 }
 
 double hills(double x, double z) {
     return 0.15 * std::sin(3.0 * x) * std::cos(2.0 * z);
-}
-
-void expectKinds(const ShapeReport& report, std::uint64_t solids, std::uint64_t holed, std::uint64_t sheets,
-                 std::uint64_t terrains) {
-    EXPECT_EQ(report.solids, solids);
-    EXPECT_EQ(report.solids_with_holes, holed);
-    EXPECT_EQ(report.sheets, sheets);
-    EXPECT_EQ(report.terrains, terrains);
 }
 
 /// Checks against the distance to the open mesh itself, which knows nothing of shells. Points within `skip` of the
@@ -256,19 +222,14 @@ TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
     EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
 }
 
-TEST(Shape, AShellIsAllThatIsNearItsSheet) {
-    const TriangleMesh box = makeOpenBox();
-    expectShell(box, shaped(box), [](const glm::vec3& p) { return p.y > 0.95F; });
-    const TriangleMesh cup = makeCup();
-    expectShell(cup, shaped(cup), [](const glm::vec3& p) { return p.y > 0.95F; });
-}
-
-TEST(Shape, WindingDoesNotMatterToAShell) {
-    TriangleMesh box = makeOpenBox();
-    for (std::size_t i = 0; i < box.triangles.size(); i += 2) {
-        std::swap(box.triangles[i].y, box.triangles[i].z);
+TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
+    TriangleMesh mixed = makeOpenBox();
+    for (std::size_t i = 0; i < mixed.triangles.size(); i += 2) {
+        std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
     }
-    expectShell(box, shaped(box), [](const glm::vec3& p) { return p.y > 0.95F; });
+    for (const TriangleMesh& sheet : {mixed, makeCup()}) {
+        expectShell(sheet, shaped(sheet), [](const glm::vec3& p) { return p.y > 0.95F; });
+    }
 }
 
 TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
@@ -282,36 +243,45 @@ TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
     EXPECT_FALSE(query.inside({0.1F, 0.03F, 0.2F}));
 }
 
-// The gap between them is thinner than any wall: it is no hollow, and a warning says so.
-TEST(Shape, NearCopiesOfASolidAreOneSolid) {
+// The gap between near copies is thinner than any wall: it is no hollow, and a warning says so.
+TEST(Shape, CopiesOfASolidAndNearOnesAreOneSolid) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
+    const TriangleMesh half = finished(
+        ball.positions, {ball.triangles.begin(), ball.triangles.begin() + ball.triangles.size() / 2});
+    const std::uint64_t all = ball.triangles.size();
     struct Case {
         const char* name;
         TriangleMesh mesh;
-        std::uint64_t copies;
+        std::uint64_t coincident;
+        std::uint64_t near;
     };
     const std::vector<Case> cases = {
-        {"grown by a millionth", joined({ball, scaled(ball, 1.0 + 1e-6)}), 1},
-        {"shrunk, first in the file", joined({scaled(ball, 1.0 - 5e-5), ball}), 1},
-        {"with its back", joined({ball, reversed(scaled(ball, 1.0 + 2e-6))}), 1},
-        {"moved", joined({ball, scaled(ball, 1.0, {1e-5, -2e-5, 0.0})}), 1},
-        {"three", joined({ball, scaled(ball, 1.0 + 3e-6), scaled(ball, 1.0 - 3e-6)}), 2},
-        {"exact ones too", joined({ball, ball, scaled(ball, 1.0 + 1e-6)}), 1}};
+        {"twice", joined({ball, ball}), all, 0},
+        {"with its back", joined({ball, reversed(ball)}), all, 0},
+        {"four times", joined({ball, ball, reversed(ball), ball}), 3 * all, 0},
+        {"half of it twice", joined({ball, half}), half.triangles.size(), 0},
+        {"grown by a millionth", joined({ball, scaled(ball, 1.0 + 1e-6)}), 0, 1},
+        {"shrunk, first in the file", joined({scaled(ball, 1.0 - 5e-5), ball}), 0, 1},
+        {"near its back", joined({ball, reversed(scaled(ball, 1.0 + 2e-6))}), 0, 1},
+        {"moved", joined({ball, scaled(ball, 1.0, {1e-5, -2e-5, 0.0})}), 0, 1},
+        {"three", joined({ball, scaled(ball, 1.0 + 3e-6), scaled(ball, 1.0 - 3e-6)}), 0, 2},
+        {"exact ones too", joined({ball, ball, scaled(ball, 1.0 + 1e-6)}), all, 1}};
     const MeshQuery truth = queryOf(ball);
     for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
         const ShapedMesh shape = shaped(c.mesh);
         expectKinds(shape.report, 1, 0, 0, 0);
-        EXPECT_EQ(shape.report.near_copies, c.copies) << c.name;
-        ASSERT_EQ(shape.mesh->warnings.size(), 1U) << c.name;
-        EXPECT_NE(shape.mesh->warnings[0].find("of another one"), std::string::npos)
-            << shape.mesh->warnings[0];
+        EXPECT_EQ(shape.report.coincident_triangles, c.coincident);
+        EXPECT_EQ(shape.report.near_copies, c.near);
+        EXPECT_EQ(shape.mesh->warnings.size(), c.near > 0 ? 1U : 0U);
         const MeshQuery query = queryOf(shape.mesh);
         MersenneRandom random(3);
-        for (int i = 0; i < 2000; ++i) {
+        for (int i = 0; i < 3000; ++i) {
             const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
             const glm::dvec3 p = 2.4 * share - 1.2;
-            if (truth.inside(0.9998 * p) == truth.inside(1.0002 * p)) {  // not at the surface
-                ASSERT_EQ(query.inside(p), truth.inside(p)) << c.name;
+            // Of near copies not at the surface.
+            if (c.near == 0 || truth.inside(0.9998 * p) == truth.inside(1.0002 * p)) {
+                ASSERT_EQ(query.inside(p), truth.inside(p));
             }
         }
     }
@@ -335,36 +305,6 @@ TEST(Shape, WhatIsNoNearCopyStays) {
         many.push_back(makeBoxMesh({0.0, 0.0, double(i)}, glm::dvec3(0.5)));
     }
     EXPECT_EQ(shaped(joined(many)).report.near_copies, 0U);
-}
-
-TEST(Shape, CopiesOfASolidAreOneSolid) {
-    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
-    TriangleMesh half = ball;
-    half.triangles.resize(half.triangles.size() / 2);
-    const TriangleMesh other_half = finished(half.positions, half.triangles);
-    struct Case {
-        const char* name;
-        TriangleMesh mesh;
-        std::uint64_t copies;
-    };
-    const std::vector<Case> cases = {
-        {"twice", joined({ball, ball}), ball.triangles.size()},
-        {"with its back", joined({ball, reversed(ball)}), ball.triangles.size()},
-        {"four times", joined({ball, ball, reversed(ball), ball}), 3 * ball.triangles.size()},
-        {"half of it twice", joined({ball, other_half}), other_half.triangles.size()}};
-    const MeshQuery truth = queryOf(ball);
-    for (const Case& c : cases) {
-        const ShapedMesh shape = shaped(c.mesh);
-        expectKinds(shape.report, 1, 0, 0, 0);
-        EXPECT_EQ(shape.report.coincident_triangles, c.copies) << c.name;
-        const MeshQuery query = queryOf(shape.mesh);
-        MersenneRandom random(3);
-        for (int i = 0; i < 5000; ++i) {
-            const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
-            const glm::vec3 p = 2.4 * share - 1.2;
-            ASSERT_EQ(query.inside(p), truth.inside(p)) << c.name;
-        }
-    }
 }
 
 TEST(Shape, CopiesOfSolidsOfCubesAreTheseSolids) {
@@ -437,13 +377,9 @@ TEST(Shape, PanelsThatDoNotMeetEncloseTogether) {
 
 TEST(Shape, PartsAreAUnion) {
     // Two boxes that overlap, and a sheet that sticks out of one of them.
-    TriangleMesh sheet = makePlane(0.0F, 2);
-    for (glm::vec3& p : sheet.positions) {
-        p.x += 1.0F;
-    }
-    const ShapedMesh shape =
-        shaped(joined({makeBoxMesh({0, 0, 0}, glm::dvec3(1.0)), makeBoxMesh({0.5, 0.5, 0}, glm::dvec3(1.0)),
-                       finished(sheet.positions, sheet.triangles)}));
+    const TriangleMesh sheet = scaled(makePlane(0.0F, 2), 1.0, {1.0, 0.0, 0.0});
+    const ShapedMesh shape = shaped(joined(
+        {makeBoxMesh({0, 0, 0}, glm::dvec3(1.0)), makeBoxMesh({0.5, 0.5, 0}, glm::dvec3(1.0)), sheet}));
     expectKinds(shape.report, 2, 0, 1, 0);
     const MeshQuery query = queryOf(shape.mesh);
     EXPECT_TRUE(query.inside({0.2F, 0.2F, 0.1F}));   // in both boxes
@@ -487,13 +423,11 @@ TEST(Shape, NoDropFallsThroughATerrain) {
 TEST(Shape, ASmallOrSlantedSheetIsNoTerrain) {
     // An overhang, and a sheet whose outline is a disc.
     const TriangleMesh overhang = makeHeights([](double x, double) { return x < 0.0 ? 0.0 : 0.3; });
-    TriangleMesh folded = overhang;
-    for (glm::vec3& p : folded.positions) {
-        p.x += p.y > 0.1F ? -0.3F : 0.0F;
-    }
-    expectKinds(shaped(finished(folded.positions, folded.triangles)).report, 0, 0, 1, 0);
+    const TriangleMesh folded =
+        moved(overhang, [](const glm::dvec3& p) { return p - glm::dvec3(p.y > 0.1 ? 0.3 : 0.0, 0.0, 0.0); });
+    expectKinds(shaped(folded).report, 0, 0, 1, 0);
     const TriangleMesh disc =
-        without(makeHeights(hills), [](const glm::vec3& p) { return p.x * p.x + p.z * p.z > 0.9F; });
+        without(makeHeights(hills), [](const glm::dvec3& p) { return p.x * p.x + p.z * p.z > 0.9; });
     expectKinds(shaped(disc).report, 0, 0, 1, 0);
 }
 
@@ -512,32 +446,24 @@ TEST(Shape, AsOverrulesWhatRaysSee) {
     EXPECT_FALSE(queryOf(ground.mesh).inside({0.3F, 0.01F, 0.2F}));
 }
 
-TEST(Shape, AContainerTellsHowItWasShaped) {
-    const ShapeReport report = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell).report;
-    EXPECT_EQ(asWords(report), std::vector<std::string>{"shell"});
-    EXPECT_EQ(formText(thicknessOf(report).value()), "0.05");
-}
-
 /// A sheet in the plane of the other two axes, a thin box, and a single triangle.
 class Flat : public testing::TestWithParam<int> {};
 
 TEST_P(Flat, IsBakedFaceOn) {
     const int axis = GetParam();
-    const auto turned = [&](TriangleMesh mesh) {
-        for (glm::vec3& p : mesh.positions) {
-            const glm::vec3 q = p;
-            p[axis] = q.y;
-            p[(axis + 1) % 3] = q.z;
-            p[(axis + 2) % 3] = q.x;
-        }
-        return finished(mesh.positions, mesh.triangles);
+    const auto facing = [&](const glm::dvec3& p) {
+        glm::dvec3 q;
+        q[axis] = p.y;
+        q[(axis + 1) % 3] = p.z;
+        q[(axis + 2) % 3] = p.x;
+        return q;
     };
     TriangleMesh triangle;
     triangle.positions = {{-1, 0, -1}, {1, 0, -0.8F}, {0.2F, 0, 1}};
     triangle.triangles = {{0, 1, 2}};
     for (const TriangleMesh& mesh : {makePlane(0.0F, 1), makePlane(0.0F, 16),
                                      makeBoxMesh(glm::dvec3(0.0), {1.0, 1e-5, 1.0}), triangle}) {
-        const ShapedMesh shape = shaped(turned(mesh), ShapeAs::kAuto, 0.02);
+        const ShapedMesh shape = shaped(moved(mesh, facing), ShapeAs::kAuto, 0.02);
         const Collider collider = plannedBake(shape, 65'536);
         EXPECT_LT(wrongPercent(shape, collider), 1.0) << shape.report.text();
         // No map looks along it.
@@ -554,7 +480,7 @@ INSTANTIATE_TEST_SUITE_P(Axes, Flat, testing::Values(0, 1, 2));
 
 /// What takes at least two steps through a shell does not get through it, from either side.
 TEST(Shape, NothingSlowerThanAHalfOfItsThicknessPassesAShell) {
-    constexpr int kParticles = 250'000;
+    constexpr int kParticles = 80'000;
     constexpr double kSpeed = kThickness / 2.0;
     struct Target {
         const char* name;

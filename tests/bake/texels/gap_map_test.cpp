@@ -230,14 +230,6 @@ TEST(GapMap, APlannedBakeLooksBetweenShelves) {
     EXPECT_LT(wrongOf(true), 0.2 * wrongOf(false));
 }
 
-TEST(GapMap, AnyNumberOfThreadsMakesTheSame) {
-    const TriangleMesh mesh = ballInABall();
-    const std::vector<std::string> specs = {
-        "front-back:dir=-z,size=40,decode=plane,depth=unorm16",
-        "front-back:dir=1/2/3,size=60,decode=plane,depth=unorm16,compare=gap"};
-    EXPECT_EQ(bakeSpecs(mesh, specs, 64, 1).maps, bakeSpecs(mesh, specs, 64, 3).maps);
-}
-
 TEST(GapsAlong, AreWhatALineCrosses) {
     const MeshQuery query = queryOf(plates());
     for (const double scale : {1.0, 0.5, 3.0}) {

@@ -7,14 +7,10 @@
 #include <algorithm>
 #include <map>
 #include <random>
-#include <sstream>
 
 #include "bake/recipe/recipe_jobs.h"
-#include "bake/world/world_bake.h"
 #include "bake/world/world_check.h"
-#include "formats/base/file_io.h"
-#include "tests/bake/meshes.h"
-#include "tests/temporary_folder.h"
+#include "tests/bake/world/level_bakes.h"
 
 namespace relief::test {
 namespace {
@@ -29,50 +25,31 @@ const char* stripeAt(float x) {
     return static_cast<int>(std::floor((x + kHillsHalf) / 25.0F)) % 2 == 0 ? "grass" : "rock";
 }
 
-using Files = std::map<std::string, std::vector<std::byte>>;
-
-class WorldTiles : public testing::Test {
+class WorldTiles : public LevelBakes {
   protected:
-    void SetUp() override { writeLevel(1.0, 60); }
+    void SetUp() override {
+        writeLevel(1.0, 60);
+        request_.bake.budget = kBudget;
+        request_.tile_bytes = kTileBytes;
+    }
 
     /// Hills, and a box beside them.
     /// \param striped  of two materials, by stripeAt().
     void writeLevel(double high, std::uint32_t squares, bool striped = false) const {
-        std::ostringstream text;
-        std::size_t before = 1;
-        const auto add = [&](const char* name, const TriangleMesh& mesh) {
-            text << "o " << name << "\n";
-            for (const glm::vec3& p : mesh.positions) {
-                text << "v " << p.x << " " << p.y << " " << p.z << "\n";
-            }
-            for (const glm::uvec3& t : mesh.triangles) {
-                if (striped) {
-                    const float x =
-                        (mesh.positions[t.x].x + mesh.positions[t.y].x + mesh.positions[t.z].x) / 3.0F;
-                    text << "usemtl " << stripeAt(x) << "\n";
-                }
-                text << "f " << before + t.x << " " << before + t.y << " " << before + t.z << "\n";
-            }
-            before += mesh.positions.size();
+        const auto material = [](const Object& object, std::size_t triangle) {
+            const glm::uvec3& t = object.mesh.triangles[triangle];
+            const std::vector<glm::vec3>& p = object.mesh.positions;
+            return std::string(stripeAt((p[t.x].x + p[t.y].x + p[t.z].x) / 3.0F));
         };
-        add("hills", makeHills(squares));
-        add("box", makeBoxMesh(glm::dvec3(150.0, 0.0, 0.0), glm::dvec3(2.0, high, 3.0)));
-        folder_.write("level.obj", text.str());
+        write({{"hills", makeHills(squares)},
+               {"box", makeBoxMesh(glm::dvec3(150.0, 0.0, 0.0), glm::dvec3(2.0, high, 3.0))}},
+              striped ? std::function(material) : nullptr);
     }
-
-    WorldBakeResult bake(const char* into, std::uint64_t budget = kBudget,
-                         std::optional<unsigned> threads = {}) const {
-        WorldRequest request;
-        request.bake.budget = budget;
-        request.bake.threads = threads;
-        request.bake.mesh = (folder_.path() / "level.obj").string();
-        request.folder = folder_.path() / into;
-        request.tile_bytes = kTileBytes;
-        fs::create_directories(request.folder);
-        Result<WorldBakeResult> result = bakeWorld(request);
-        EXPECT_TRUE(result) << result.error().message;
-        EXPECT_TRUE(result->written);
-        return std::move(*result);
+    /// Without those that are hidden.
+    [[nodiscard]] Files filesOf(const char* folder) const {
+        Files files = LevelBakes::filesOf(folder);
+        std::erase_if(files, [](const auto& file) { return file.first.front() == '.'; });
+        return files;
     }
     [[nodiscard]] WorldField load(const char* from, WorldDetail detail = WorldDetail::kFine) const {
         Result<LoadedWorld> loaded = loadWorld(folder_.path() / from / kWorldFileName, {}, detail);
@@ -84,16 +61,6 @@ class WorldTiles : public testing::Test {
         request.check.mesh = (folder_.path() / "level.obj").string();
         request.check.samples = 20'000;
         return checkWorld(request, field);
-    }
-    [[nodiscard]] Files filesOf(const char* folder) const {
-        Files files;
-        for (const auto& entry : fs::directory_iterator(folder_.path() / folder)) {
-            const std::string name = entry.path().filename().string();
-            if (name.front() != '.') {
-                files[name] = *readFile(entry.path());
-            }
-        }
-        return files;
     }
     static std::vector<std::string> namesOf(const WorldBakeResult& result, WorldColliderState state) {
         std::vector<std::string> names;
@@ -128,63 +95,45 @@ class WorldTiles : public testing::Test {
         }
         return {2.0 * wrong[0] / kPoints, 2.0 * wrong[1] / kPoints};
     }
-
-    TemporaryFolder folder_;
 };
 
-TEST_F(WorldTiles, HillsAreInTheirPlaceAndWithinTheirBytes) {
-    writeLevel(1.0, 200);
-    const WorldBakeResult result = bake("w");
-    const WorldField field = load("w");
-    ASSERT_GE(result.colliders.size(), 4U);
-    EXPECT_LE(result.gpuBytes(), kBudget);
-    ASSERT_EQ(field.world().bodies.size(), result.colliders.size());
-    for (std::size_t i = 0; i < result.colliders.size(); ++i) {
-        const WorldColliderResult& tile = result.colliders[i];
-        EXPECT_EQ(field.world().bodies[i].collider, i);
-        EXPECT_EQ(field.world().bodies[i].node, tile.mesh);
-        EXPECT_EQ(tile.tile.empty(), tile.mesh == "box");
-        EXPECT_EQ(tile.file.find(tile.tile.empty() ? "box-" : "hills-" + tile.tile + "-"), 0U) << tile.file;
-        EXPECT_TRUE(tile.tile.empty() || tile.gpu_bytes <= kTileBytes) << tile.gpu_bytes;
-    }
-    const auto [wrong, at_seams] = wrongAmong(field, result, 1.0F);
-    // The mesh's facets are up to 3 cm off the formula.
-    EXPECT_LT(wrong, 0.02);
-    EXPECT_LT(at_seams, 0.02);
-}
-
-TEST_F(WorldTiles, CoarseOnesAreTheWholeToo) {
-    writeLevel(1.0, 200);
-    const WorldBakeResult result = bake("w");
-    const WorldField field = load("w");
-    const WorldField coarse = load("w", WorldDetail::kCoarse);
-    std::uint64_t bytes = 0;
-    for (std::size_t i = 0; i < result.colliders.size(); ++i) {
-        const WorldColliderResult& tile = result.colliders[i];
-        ASSERT_EQ(tile.coarse.has_value(), tile.gpu_bytes > kCoarseFrom) << tile.file;
-        bytes += tile.coarse ? tile.coarse->gpu_bytes : 0;
-        const Bounds outer = solidBox(coarse.colliderOf(i));
-        const Bounds inner = solidBox(field.colliderOf(i));
-        EXPECT_TRUE(glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
-                    glm::all(glm::greaterThanEqual(outer.max, inner.max)))
-            << tile.file;
-    }
-    EXPECT_GT(bytes, 0U);
-    EXPECT_LT(bytes, result.gpuBytes() / 8);
-    const auto [wrong, at_seams] = wrongAmong(coarse, result, 1.0F);
-    EXPECT_LT(wrong, 0.1);
-    EXPECT_LT(at_seams, 1.3 * wrong + 0.01);
-}
-
-TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
+TEST_F(WorldTiles, HillsAreInTheirPlaceWithTheirMaterialsAndWithinTheirBytes) {
     writeLevel(1.0, 200, true);
     const WorldBakeResult result = bake("w");
+    const WorldField fine = load("w");
+    const WorldField coarse = load("w", WorldDetail::kCoarse);
     ASSERT_GE(result.colliders.size(), 4U);
-    for (const WorldDetail detail : {WorldDetail::kFine, WorldDetail::kCoarse}) {
-        const WorldField field = load("w", detail);
+    EXPECT_LE(result.gpuBytes(), kBudget);
+    ASSERT_EQ(fine.world().bodies.size(), result.colliders.size());
+    std::uint64_t coarse_bytes = 0;
+    for (std::size_t i = 0; i < result.colliders.size(); ++i) {
+        const WorldColliderResult& tile = result.colliders[i];
+        SCOPED_TRACE(tile.file);
+        EXPECT_EQ(fine.world().bodies[i].collider, i);
+        EXPECT_EQ(fine.world().bodies[i].node, tile.mesh);
+        EXPECT_EQ(tile.tile.empty(), tile.mesh == "box");
+        EXPECT_EQ(tile.file.find(tile.tile.empty() ? "box-" : "hills-" + tile.tile + "-"), 0U);
+        EXPECT_TRUE(tile.tile.empty() || tile.gpu_bytes <= kTileBytes) << tile.gpu_bytes;
+        ASSERT_EQ(tile.coarse.has_value(), tile.gpu_bytes > kCoarseFrom);
+        coarse_bytes += tile.coarse ? tile.coarse->gpu_bytes : 0;
+        const Bounds outer = solidBox(coarse.colliderOf(i));
+        const Bounds inner = solidBox(fine.colliderOf(i));
+        EXPECT_TRUE(glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+                    glm::all(glm::greaterThanEqual(outer.max, inner.max)));
+    }
+    EXPECT_GT(coarse_bytes, 0U);
+    EXPECT_LT(coarse_bytes, result.gpuBytes() / 8);
+    // The mesh's facets are up to 3 cm off the formula.
+    const auto [wrong, at_seams] = wrongAmong(fine, result, 1.0F);
+    EXPECT_LT(wrong, 0.02);
+    EXPECT_LT(at_seams, 0.02);
+    const auto [coarse_wrong, coarse_at_seams] = wrongAmong(coarse, result, 1.0F);
+    EXPECT_LT(coarse_wrong, 0.1);
+    EXPECT_LT(coarse_at_seams, 1.3 * coarse_wrong + 0.01);
+    for (const WorldField* const field : {&fine, &coarse}) {
         std::mt19937 random(12);
         std::uniform_real_distribution<float> along(-kHillsHalf + 1.0F, kHillsHalf - 1.0F);
-        int wrong = 0;
+        int other = 0;
         int asked = 0;
         for (int i = 0; i < 20'000; ++i) {
             const float x = along(random);
@@ -194,15 +143,15 @@ TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
             }
             // The place in which a drop from above stops.
             const glm::vec3 p(x, hillsAt(x, z) - 0.05F, z);
-            const WorldSample sample = field.evaluate(p);
+            const WorldSample sample = field->evaluate(p);
             if (!sample.inside()) {
                 continue;  // the coarse ones have their surface below
             }
             const auto body = static_cast<std::size_t>(sample.body);
-            const Materials& materials = field.colliderOf(body).materials;
+            const Materials& materials = field->colliderOf(body).materials;
             ++asked;
-            wrong += materials.empty() || materials
-                                                  .list[materialAt(materials, field.toObject(body, p),
+            other += materials.empty() || materials
+                                                  .list[materialAt(materials, field->toObject(body, p),
                                                                    glm::vec3(0.0F, 1.0F, 0.0F))]
                                                   .name != stripeAt(x)
                          ? 1
@@ -210,12 +159,11 @@ TEST_F(WorldTiles, MaterialsGoOnFromTileToTile) {
         }
         EXPECT_GT(asked, 15'000);
         // A coarse tile decides beyond its own part of the hills, too, whose materials alone it has.
-        const bool fine = detail == WorldDetail::kFine;
-        EXPECT_LE(wrong, fine ? asked / 100 : asked / 20) << (fine ? "fine" : "coarse");
+        EXPECT_LE(other, field == &fine ? asked / 100 : asked / 20) << (field == &fine ? "fine" : "coarse");
     }
 }
 
-TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
+TEST_F(WorldTiles, TilesAreOneMeshToChecksAndMoves) {
     static_cast<void>(bake("w"));
     const WorldField field = load("w");
     const Result<WorldAccuracy> accuracy = check(field);
@@ -237,11 +185,8 @@ TEST_F(WorldTiles, ACheckTakesTilesForOneMesh) {
     const Result<WorldAccuracy> other = check(WorldField(std::move(moved)));
     ASSERT_TRUE(other) << other.error().message;
     EXPECT_EQ(other->warnings.size(), 1U);
-}
-
-TEST_F(WorldTiles, ANodeMovesByAllItsBodies) {
-    static_cast<void>(bake("w"));
-    LoadedWorld hills = load("w").loaded();
+    // A node moves by all its bodies.
+    LoadedWorld hills = field.loaded();
     ASSERT_EQ(findBodies(hills.world, "box").size(), 1U);
     hills.world.bodies.erase(hills.world.bodies.begin() +
                              static_cast<std::ptrdiff_t>(findBodies(hills.world, "box").front()));
@@ -254,34 +199,46 @@ TEST_F(WorldTiles, ANodeMovesByAllItsBodies) {
     for (const std::size_t body : bodies) {
         hills.world.bodies[body].position += shift;
     }
-    const WorldField moved(std::move(hills));
+    const WorldField shifted(std::move(hills));
     const WorldField torn(std::move(by_first));
     std::mt19937 random(5);
     std::uniform_real_distribution<float> share(-1.0F, 1.0F);
-    int other = 0;
+    int changed = 0;
     int torn_apart = 0;
     for (int i = 0; i < 20'000; ++i) {
         glm::vec3 p(share(random) * kHillsHalf, 0.0F, share(random) * kHillsHalf);
         p.y = hillsAt(p.x, p.z) + 4.0F * share(random);
         const bool inside = still.evaluate(p).inside();
-        other += inside != moved.evaluate(p + shift).inside() ? 1 : 0;
+        changed += inside != shifted.evaluate(p + shift).inside() ? 1 : 0;
         torn_apart += inside != torn.evaluate(p + shift).inside() ? 1 : 0;
     }
-    EXPECT_LE(other, 5) << "sums of floats are rounded";
+    EXPECT_LE(changed, 5) << "sums of floats are rounded";
     EXPECT_GT(torn_apart, 2000);
 }
 
-TEST_F(WorldTiles, ThreadsChangeNoByte) {
-    static_cast<void>(bake("w"));
-    static_cast<void>(bake("one", kBudget, 1));
-    EXPECT_TRUE(filesOf("w") == filesOf("one"));
-}
-
-TEST_F(WorldTiles, OnlyWhatHasChangedIsBaked) {
+TEST_F(WorldTiles, OnlyWhatHasChangedIsBakedToTheSameBytesWithAnyNumberOfThreads) {
     const std::size_t all = bake("w").colliders.size();
     const Files before = filesOf("w");
     EXPECT_EQ(bake("w").countOf(WorldColliderState::kUpToDate), all);
     EXPECT_TRUE(filesOf("w") == before);
+    request_.bake.threads = 1;
+    static_cast<void>(bake("one"));
+    request_.bake.threads.reset();
+    EXPECT_TRUE(filesOf("one") == before);
+    // A cache that is made up costs a bake.
+    const fs::path cache = folder_.path() / "w" / kBakeCacheName;
+    const auto bytes = readFile(cache);
+    ASSERT_TRUE(bytes);
+    const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    for (const char* tiles : {"", "../0-0-0", "0-0-0,0-0-0"}) {
+        std::string made = text;
+        for (std::size_t at = 0; (at = made.find("--tiles=", at)) != std::string::npos; at += 8) {
+            made.replace(at + 8, made.find('"', at) - at - 8, tiles);
+        }
+        ASSERT_TRUE(writeFile(cache, std::as_bytes(std::span(made))));
+        EXPECT_EQ(bake("w").countOf(WorldColliderState::kBaked), all - 1) << tiles;
+        EXPECT_TRUE(filesOf("w") == before);
+    }
     // Without one of its tiles, a mesh is baked again, to the same bytes.
     const auto tile = std::find_if(before.begin(), before.end(),
                                    [](const auto& file) { return file.first.starts_with("hills-1-"); });
@@ -295,30 +252,11 @@ TEST_F(WorldTiles, OnlyWhatHasChangedIsBaked) {
     EXPECT_EQ(namesOf(again, WorldColliderState::kBaked), std::vector<std::string>{"box"});
     EXPECT_EQ(again.removed.size(), 1U);
     // Of another budget there are other tiles, and those from before go.
-    again = bake("w", kBudget / 2);
+    request_.bake.budget = kBudget / 2;
+    again = bake("w");
     const auto coarse = std::ranges::count_if(
         again.colliders, [](const WorldColliderResult& collider) { return collider.coarse.has_value(); });
     EXPECT_EQ(filesOf("w").size(), again.colliders.size() + static_cast<std::size_t>(coarse) + 1);
-}
-
-TEST_F(WorldTiles, ACacheThatIsMadeUpCostsABake) {
-    const std::size_t all = bake("w").colliders.size();
-    const Files before = filesOf("w");
-    const fs::path cache = folder_.path() / "w" / kBakeCacheName;
-    ASSERT_TRUE(fs::exists(cache));
-    const auto bytes = readFile(cache);
-    std::string text(bytes->size(), ' ');
-    std::transform(bytes->begin(), bytes->end(), text.begin(),
-                   [](std::byte b) { return static_cast<char>(b); });
-    for (const char* tiles : {"", "../0-0-0", "0-0-0,0-0-0"}) {
-        std::string made = text;
-        for (std::size_t at = 0; (at = made.find("--tiles=", at)) != std::string::npos; at += 8) {
-            made.replace(at + 8, made.find('"', at) - at - 8, tiles);
-        }
-        ASSERT_TRUE(writeFile(cache, std::as_bytes(std::span(made))));
-        EXPECT_EQ(bake("w").countOf(WorldColliderState::kBaked), all - 1) << tiles;
-        EXPECT_TRUE(filesOf("w") == before);
-    }
 }
 
 TEST(TilesMost, KeepsAWorldWithinItsLimits) {

@@ -1,12 +1,12 @@
-// shaders/air/air.glsl in OpenGL 3.3 and OpenGL ES 3.0: against its C++ twin at random points, and against closed
-// forms.
+// shaders/air/air.glsl in OpenGL 3.3 and OpenGL ES 3.0: against closed forms, and what curl noise promises.
 //
-// Tolerance: both sides chain the same float operations, but a GL may fuse them, and takes a few ulp for
-// division and square root. What counts is the noise's place in its patterns: up to 1024 of the fourth
-// octave, whose fraction a fused multiply-add takes with 2^-15 less error; that shifts an octave of speed 0.1
-// by up to 1e-5. All else, of numbers below 4 and forces below 10, stays below that.
+// Tolerance of sums and pinned numbers: a GL may fuse operations, and takes a few ulp for division and square root. What
+// counts is the noise's place in its patterns: up to 1024 of the fourth octave, whose fraction a fused multiply-add takes
+// with 2^-15 less error; that shifts an octave of speed 0.1 by up to 1e-5. All else, of numbers below 4 and forces below 10,
+// stays below that.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -14,8 +14,8 @@
 #include "runtime/air/air_block.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
-#include "runtime/particles/emitter.h"
-#include "tests/runtime/air/air_reference.h"
+#include "runtime/particles/random.h"
+#include "tests/runtime/gl/caller_state.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/runtime/gl/query_program.h"
 
@@ -76,25 +76,18 @@ class AirGlTest : public GlTest {
         const GlTexture velocity = texture(particles.data());
         const GlTexture out_air = texture(nullptr);
         const GlTexture out_field = texture(nullptr);
-        const std::array<GLuint, 2> targets{out_air.name(), out_field.name()};
-        const auto framebuffer = makeFramebuffer(targets);
+        const auto framebuffer = makeFramebuffer({out_air.name(), out_field.name()});
         EXPECT_TRUE(framebuffer);
-        const GlVertexArray no_attributes = makeVertexArray();
         air.attach(*program, {});
-        glUseProgram(program->name());
+        program->use();  // without any air attach() does nothing
         program->set("u_points", 0);
         program->set("u_velocity", 1);
         program->set("u_viscosity", kViscosity);
         program->set("u_mass", kMass);
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, input.name());
-        glActiveTexture(GL_TEXTURE1);
-        glBindTexture(GL_TEXTURE_2D, velocity.name());
+        useTexture(0, input);
+        useTexture(1, velocity);
         air.bind({});
-        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
-        glViewport(0, 0, kWidth, height);
-        glBindVertexArray(no_attributes.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
+        program->drawScreen(framebuffer->name(), kWidth, height);
         const auto airs = readTextureFloats(out_air, kWidth, height);
         const auto fields = readTextureFloats(out_field, kWidth, height);
         EXPECT_TRUE(airs && fields);
@@ -110,6 +103,36 @@ class AirGlTest : public GlTest {
         const auto air = AirBlock::create(settings);
         EXPECT_TRUE(air) << air.error().message;
         return air ? evaluate(*air, points) : std::vector<Sample>{};
+    }
+    /// The noise's velocities at points and times.
+    static std::vector<glm::dvec3> blown(const CurlNoise& noise, const std::vector<glm::vec4>& points) {
+        AirSettings air;
+        air.curl_noise = noise;
+        std::vector<glm::dvec3> velocities;
+        for (const Sample& sample : evaluate(air, points)) {
+            velocities.emplace_back(sample.air);
+        }
+        return velocities;
+    }
+    /// Half the differences of the velocity from `h` before to `h` behind a point, along x, y and z.
+    static std::vector<std::array<glm::dvec3, 3>> differences(const CurlNoise& noise,
+                                                              const std::vector<glm::vec4>& points, float h) {
+        std::vector<glm::vec4> around;
+        for (const glm::vec4& p : points) {
+            for (int axis = 0; axis < 3; ++axis) {
+                glm::vec4 e(0.0F);
+                e[axis] = h;
+                around.push_back(p + e);
+                around.push_back(p - e);
+            }
+        }
+        const std::vector<glm::dvec3> v = blown(noise, around);
+        std::vector<std::array<glm::dvec3, 3>> halves;
+        for (std::size_t i = 0; i < v.size(); i += 6) {
+            halves.push_back(
+                {0.5 * (v[i] - v[i + 1]), 0.5 * (v[i + 2] - v[i + 3]), 0.5 * (v[i + 4] - v[i + 5])});
+        }
+        return halves;
     }
     static float radius(std::size_t i) { return 1e-5F + 1e-7F * static_cast<float>(i % 1000); }
 };
@@ -161,66 +184,11 @@ AirSettings everything() {
     return air;
 }
 
-bool hangsByAHair(const AirSettings& air, const glm::vec3& p) {
-    for (const Attractor& one : air.attractors) {
-        if (std::abs(glm::length(p - one.position) - one.reach) < 1e-6F * one.reach) {
-            return true;  // at the very end of an attractor's reach
-        }
-    }
-    return false;
-}
-
-void expectTwins(const AirSettings& air, const std::vector<glm::vec4>& points,
-                 const std::vector<Sample>& gpu) {
-    ASSERT_EQ(gpu.size(), points.size());
-    std::size_t excused = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const glm::vec3 p(points[i]);
-        const glm::vec3 velocity = airVelocity(air, p, points[i].w);
-        const glm::vec3 field = fieldAcceleration(air, p, glm::vec3(0.0F), points[i].w);
-        ASSERT_NEAR(glm::length(gpu[i].air - velocity), 0.0, kTolerance) << i;
-        if (hangsByAHair(air, p)) {
-            ++excused;
-            continue;
-        }
-        ASSERT_NEAR(glm::length(gpu[i].field - field), 0.0, kTolerance) << i;
-    }
-    EXPECT_LT(excused, points.size() / 1000 + 1);
-}
-
-TEST_P(AirGlTest, EqualsTheCpuAtRandomPointsAndTimes) {
-    const AirSettings air = everything();
-    const float period = 128.0F * 0.6F / 0.9F;
-    const std::vector<glm::vec4> points = randomPoints(30'000, 2.5F, period, 1);
-    expectTwins(air, points, evaluate(air, points));
-}
-
-// Far away floats are coarser than the noise's cells, and a fused multiply-add lands in another one; but no speed
-// is greater there.
-TEST_P(AirGlTest, NoiseIsBoundedFarAway) {
-    AirSettings air;
-    air.curl_noise = CurlNoise{1.0F, 1e-3F, 4, 1e-4F, 5};
-    std::vector<glm::vec4> points = randomPoints(20'000, 1.0F, 100.0F, 4);
-    Pcg32 random(14);
-    for (glm::vec4& p : points) {
-        for (int axis = 0; axis < 3; ++axis) {
-            p[axis] = std::ldexp(p[axis], static_cast<int>(random.between(-10.0F, 24.0F)));
-            p[axis] = random.between(0.0F, 1.0F) < 0.02F ? std::copysign(3e38F, p[axis]) : p[axis];
-        }
-    }
-    const std::vector<Sample> gpu = evaluate(air, points);
-    ASSERT_EQ(gpu.size(), points.size());
-    for (std::size_t i = 0; i < gpu.size(); ++i) {
-        ASSERT_LT(static_cast<double>(glm::length(gpu[i].air)), 4.4 * std::sqrt(2.0) * 15.0 / std::sqrt(85.0))
-            << i;
-    }
-}
-
+// None, each kind alone, all but each, and all: each compiles, and the whole is the sum of its parts.
 TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndWithTheOthers) {
     const AirSettings all = everything();
-    const std::vector<glm::vec4> points = randomPoints(500, 1.5F, 10.0F, 2);
-    for (unsigned kinds = 0; kinds < 32; ++kinds) {
-        SCOPED_TRACE(kinds);
+    const std::vector<glm::vec4> points = randomPoints(2000, 2.0F, 128.0F * 0.6F / 0.9F, 2);
+    const auto some = [&](unsigned kinds) {
         AirSettings air = all;
         air.wind = (kinds & 1U) != 0 ? all.wind : glm::vec3(0.0F);
         if ((kinds & 2U) == 0) {
@@ -229,22 +197,64 @@ TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndWithTheOthers) {
         if ((kinds & 4U) == 0) {
             air.curl_noise.reset();
         }
-        air.attractors.resize((kinds & 8U) != 0 ? 3 : 0);
-        air.vortices.resize((kinds & 16U) != 0 ? 2 : 0);
-        const auto block = AirBlock::create(air);
+        air.attractors.resize((kinds & 8U) != 0 ? all.attractors.size() : 0);
+        air.vortices.resize((kinds & 16U) != 0 ? all.vortices.size() : 0);
+        return air;
+    };
+    std::array<std::vector<Sample>, 5> alone;
+    for (unsigned kind = 0; kind < alone.size(); ++kind) {
+        alone[kind] = evaluate(some(1U << kind), points);
+        ASSERT_EQ(alone[kind].size(), points.size());
+    }
+    for (const unsigned kinds : {0U, 30U, 29U, 27U, 23U, 15U, 31U}) {
+        SCOPED_TRACE(kinds);
+        const auto block = AirBlock::create(some(kinds));
         ASSERT_TRUE(block) << block.error().message;
         EXPECT_EQ(block->defines().empty(), kinds == 0) << "a scene without air must compile none of it";
         EXPECT_EQ(block->defines().find("_CURL") != std::string::npos, (kinds & 4U) != 0);
-        expectTwins(air, points, evaluate(*block, points));
+        const std::vector<Sample> together = evaluate(*block, points);
+        ASSERT_EQ(together.size(), points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            glm::vec3 air(0.0F);
+            glm::vec3 field(0.0F);
+            for (unsigned kind = 0; kind < alone.size(); ++kind) {
+                air += (kinds >> kind & 1U) != 0 ? alone[kind][i].air : glm::vec3(0.0F);
+                field += (kinds >> kind & 1U) != 0 ? alone[kind][i].field : glm::vec3(0.0F);
+            }
+            ASSERT_NEAR(glm::length(together[i].air - air), 0.0, kTolerance) << i;
+            ASSERT_NEAR(glm::length(together[i].field - field), 0.0, kTolerance) << i;
+        }
     }
 }
 
-TEST_P(AirGlTest, FlowIsExactOnLinearFieldsAndConstantOutside) {
+// Each of several attractors and vortices counts, with its own numbers.
+TEST_P(AirGlTest, FieldsOfOneKindAddUp) {
+    const AirSettings all = everything();
+    const std::vector<glm::vec4> points = randomPoints(2000, 2.0F, 0.0F, 3);
+    std::vector<glm::vec3> sum(points.size(), glm::vec3(0.0F));
+    for (std::size_t one = 0; one < all.attractors.size(); ++one) {
+        AirSettings alone;
+        alone.attractors = {all.attractors[one]};
+        alone.vortices = {all.vortices[one]};
+        const std::vector<Sample> samples = evaluate(alone, points);
+        ASSERT_EQ(samples.size(), points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            sum[i] += samples[i].field;
+        }
+    }
+    const std::vector<Sample> together = evaluate(all, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_NEAR(glm::length(together[i].field - sum[i]), 0.0, kTolerance) << i;
+    }
+}
+
+TEST_P(AirGlTest, FlowIsExactOnTrilinearFieldsAndConstantOutside) {
     for (const std::array<std::uint32_t, 3> size :
          {std::array<std::uint32_t, 3>{9, 4, 5}, {2, 2, 2}, {6, 3, 1}, {1, 1, 1}, {1, 7, 1}}) {
         auto flow = randomFlow(size, FlowOutside::kEdge);
         const auto linear = [](const glm::vec3& p) {
-            return glm::vec3(1.0F + p.x - 2.0F * p.y + 0.5F * p.z, 3.0F * p.y, p.z - p.x);
+            return glm::vec3(1.0F + p.x - 2.0F * p.y + 0.5F * p.z, 3.0F * p.y + p.x * p.z,
+                             p.z - p.x + p.x * p.y * p.z);
         };
         const auto nodeAt = [&](glm::vec3 p, bool clamp_only) {
             for (int a = 0; a < 3; ++a) {
@@ -254,7 +264,6 @@ TEST_P(AirGlTest, FlowIsExactOnLinearFieldsAndConstantOutside) {
             }
             return p;
         };
-        flow->gain = 1.0F;
         for (std::uint32_t i = 0; i < flow->nodes.size(); ++i) {
             const std::uint32_t at[3] = {i % size[0], i / size[0] % size[1], i / (size[0] * size[1])};
             glm::vec3 p = flow->box_min;
@@ -268,7 +277,7 @@ TEST_P(AirGlTest, FlowIsExactOnLinearFieldsAndConstantOutside) {
         }
         AirSettings air;
         air.flow = flow;
-        std::vector<glm::vec4> points = randomPoints(3000, 1.6F, 0.0F, 5);
+        std::vector<glm::vec4> points = randomPoints(1000, 1.6F, 0.0F, 5);
         points.emplace_back(flow->box_min, 0.0F);
         points.emplace_back(flow->box_max, 0.0F);
         points.emplace_back(0.0F, -1e30F, 0.0F, 0.0F);  // where the dead are
@@ -279,14 +288,14 @@ TEST_P(AirGlTest, FlowIsExactOnLinearFieldsAndConstantOutside) {
         std::size_t outside = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const glm::vec3 p(points[i]);
-            const glm::vec3 expected = linear(nodeAt(p, false));
-            ASSERT_NEAR(glm::length(edge[i].air - expected), 0.0, 4e-6) << i;
+            const glm::vec3 expected = flow->gain * linear(nodeAt(p, false));
+            ASSERT_NEAR(glm::length(edge[i].air - expected), 0.0, 8e-6) << i;
             const bool within = nodeAt(p, true) == p;
             outside += within ? 0 : 1;
             ASSERT_EQ(zero[i].air, within ? edge[i].air : glm::vec3(0.0F)) << i;
         }
-        EXPECT_GT(outside, 1000U);
-        EXPECT_LT(outside, 2800U);
+        EXPECT_GT(outside, 300U);
+        EXPECT_LT(outside, 930U);
     }
 }
 
@@ -373,7 +382,13 @@ TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
     without_flow.flow = nullptr;  // an update leaves the flow as it is
     ASSERT_TRUE(block->update(without_flow));
     EXPECT_EQ(block->defines(), defines);
-    expectTwins(air, points, evaluate(*block, points));
+    const std::vector<Sample> updated = evaluate(*block, points);
+    const std::vector<Sample> made = evaluate(air, points);
+    ASSERT_EQ(updated.size(), made.size());
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        ASSERT_NEAR(glm::length(updated[i].air - made[i].air), 0.0, kTolerance) << i;
+        ASSERT_NEAR(glm::length(updated[i].field - made[i].field), 0.0, kTolerance) << i;
+    }
 
     auto less = AirBlock::create(without_flow);
     ASSERT_TRUE(less);
@@ -396,47 +411,315 @@ TEST_P(AirGlTest, WrongSettingsAndTooLargeFlowsAreRefused) {
     refused = AirBlock::create(air);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
-    EXPECT_NE(refused.error().message.find("513x1x1"), std::string::npos) << refused.error().message;
 }
 
 TEST_P(AirGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     const AirSettings air = everything();
     const std::vector<glm::vec4> points = randomPoints(500, 1.0F, 1.0F, 13);
     const std::vector<Sample> plain = evaluate(air, points);
-    GLuint texture = 0;
-    glGenTextures(1, &texture);
-    const GlTexture owner(texture);
-    glActiveTexture(GL_TEXTURE6);
-    glBindTexture(GL_TEXTURE_3D, texture);
-    const GlBuffer buffer = makeBuffer();
-    glBindBuffer(GL_UNIFORM_BUFFER, buffer.name());
-    glBufferData(GL_UNIFORM_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
-    glBindBufferRange(GL_UNIFORM_BUFFER, 1, buffer.name(), 256, 512);
-    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer.name());
-    glPixelStorei(GL_UNPACK_ROW_LENGTH, 3);
-    glPixelStorei(GL_UNPACK_SKIP_IMAGES, 2);
-    glActiveTexture(GL_TEXTURE2);
-    const std::vector<Sample> odd = evaluate(air, points);
+    const CallerState caller;
+    const auto block = AirBlock::create(air);
+    ASSERT_TRUE(block);
+    caller.expectKept("create");
+    const std::vector<Sample> odd = evaluate(*block, points);
     ASSERT_EQ(odd.size(), plain.size());
     for (std::size_t i = 0; i < odd.size(); ++i) {
         ASSERT_EQ(odd[i].air, plain[i].air);
     }
-    GLint value = 0;
-    glGetIntegerv(GL_ACTIVE_TEXTURE, &value);
-    EXPECT_EQ(value, GL_TEXTURE2);
-    glActiveTexture(GL_TEXTURE6);
-    glGetIntegerv(GL_TEXTURE_BINDING_3D, &value);
-    EXPECT_EQ(static_cast<GLuint>(value), texture);
-    glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, 1, &value);
-    EXPECT_EQ(static_cast<GLuint>(value), buffer.name());
-    GLint64 start = 0;
-    glGetInteger64i_v(GL_UNIFORM_BUFFER_START, 1, &start);
-    EXPECT_EQ(start, 256);
-    glGetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &value);
-    EXPECT_EQ(static_cast<GLuint>(value), buffer.name());
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(AirGlTest);
+
+constexpr double kUnitRms = 1.45944383;  // as curl_noise.cpp says
+/// No speed exceeds so many amplitudes. With all numbers at ±15, blended with another pattern of the same, a corner's share is
+/// at most √2 · 15 √3 · t² (|driving| + |turning|), in whatever direction; the greatest sum over the corners is 4.314 kUnitRms.
+const double kNoiseSpeedMax = 4.4 * std::sqrt(2.0) * 15.0 / std::sqrt(85.0);
+
+/// One octave of amplitude 1, whose lattice has the object's unit, at rest or with a pattern a second.
+CurlNoise unitLattice(std::uint32_t seed, bool moves = false) {
+    const float scale = curlUnits({.scale = 1.0F});
+    return {1.0F, scale, 1, moves ? scale : 0.0F, seed};
+}
+
+/// The place of the skewed coordinates q.
+glm::vec4 unskewed(const glm::dvec3& q, float t = 0.0F) {
+    return {glm::vec3(q - (q.x + q.y + q.z) / 6.0), t};
+}
+
+class CurlNoiseGlTest : public AirGlTest {
+  protected:
+    using Numbers = std::vector<std::array<double, 6>>;
+
+    /// The two vectors of lattice points: near one the velocity is t² ((4t/3 - 1/2) b + (b·d) d + a × d) with
+    /// t = 1/2 - |d|². So at it the velocity is b / 24; and its curl is a / 2, of which central differences over h
+    /// miss 4 h².
+    static Numbers cornerNumbers(const CurlNoise& noise, const std::vector<glm::ivec3>& lattice,
+                                 float t = 0.0F) {
+        constexpr float kStep = 0.02F;
+        std::vector<glm::vec4> points;
+        for (const glm::ivec3& point : lattice) {
+            points.push_back(unskewed(point, t));
+        }
+        const std::vector<glm::dvec3> velocity = blown(noise, points);
+        const auto d = differences(noise, points, kStep);
+        Numbers numbers;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const glm::dvec3 b = velocity[i] * (24.0 / kUnitRms);
+            const glm::dvec3 a =
+                glm::dvec3(d[i][1].z - d[i][2].y, d[i][2].x - d[i][0].z, d[i][0].y - d[i][1].x) *
+                (2.0 / (static_cast<double>(kStep) * kUnitRms));
+            numbers.push_back({a.x, a.y, a.z, b.x, b.y, b.z});
+        }
+        return numbers;
+    }
+    static double odd(double number) { return 2.0 * std::floor(0.5 * number) + 1.0; }
+};
+
+// Central differences over 0.02 of the finest cell are off by h²/6 of a third derivative, some 1e-3 of the
+// gradient, and by roundings of some 1e-4 of it. A field with divergence, or with one term of the curl wrong,
+// has as much of it as of anything else.
+TEST_P(CurlNoiseGlTest, HasNoDivergence) {
+    for (const int octaves : {1, 2, 4}) {
+        const CurlNoise noise{1.5F, 0.8F, octaves, 0.4F, 7};
+        const float h = 0.02F * noise.scale / static_cast<float>(1 << (octaves - 1));
+        double divergence = 0.0;
+        double gradient = 0.0;
+        for (const auto& d : differences(noise, randomPoints(2000, 4.0F, 20.0F, 1), h)) {
+            divergence += std::pow(d[0].x + d[1].y + d[2].z, 2.0);
+            gradient += glm::dot(d[0], d[0]) + glm::dot(d[1], d[1]) + glm::dot(d[2], d[2]);
+        }
+        EXPECT_LT(std::sqrt(divergence / gradient), 2e-3) << octaves;
+        EXPECT_GT(gradient, 0.01);
+    }
+}
+
+// The amplitude is the root mean square of the speed, whatever the octaves, the seed and the time, and no
+// direction is preferred.
+TEST_P(CurlNoiseGlTest, HasTheAmplitudeItSaysAndNoPreferredDirection) {
+    for (const int octaves : {1, 2, 3, 4}) {
+        for (const float t : {0.0F, 0.75F}) {  // a pattern, and half way to the next
+            const CurlNoise noise{2.0F, 0.5F, octaves, 1.0F / 3.0F, static_cast<std::uint32_t>(octaves)};
+            std::vector<glm::vec4> points = randomPoints(60'000, 100.0F, 0.0F, 2);
+            for (glm::vec4& p : points) {
+                p.w = t;
+            }
+            glm::dvec3 mean(0.0);
+            glm::dvec3 squares(0.0);
+            double fastest = 0.0;
+            for (const glm::dvec3& v : blown(noise, points)) {
+                mean += v / static_cast<double>(points.size());
+                squares += v * v / static_cast<double>(points.size());
+                fastest = std::max(fastest, glm::length(v));
+            }
+            EXPECT_NEAR(std::sqrt(squares.x + squares.y + squares.z), 2.0, 0.02) << octaves << " " << t;
+            EXPECT_LT(fastest, 4.0 * 2.0) << "the header says so";
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_NEAR(mean[axis], 0.0, 0.025) << octaves << " " << t;
+                EXPECT_NEAR(squares[axis], 4.0 / 3.0, 0.05) << octaves << " " << t;
+            }
+        }
+    }
+}
+
+// Pinned: the noise of a seed is part of a scene's result.
+TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
+    Pcg32 random(6);
+    std::vector<glm::ivec3> lattice;
+    for (int i = 0; i < 200; ++i) {
+        const float x = random.between(-40.0F, 40.0F);
+        const float y = random.between(-40.0F, 40.0F);
+        lattice.emplace_back(glm::vec3(x, y, random.between(-40.0F, 40.0F)));
+    }
+    for (const std::uint32_t seed : {1U, 2U, 4'000'000'000U}) {
+        for (const auto& numbers : cornerNumbers(unitLattice(seed), lattice)) {
+            for (const double number : numbers) {
+                ASSERT_NEAR(number, odd(number), 0.06) << seed;
+                ASSERT_LE(std::abs(odd(number)), 15.0) << seed;
+            }
+        }
+    }
+    constexpr double kNumbers[2][6] = {{7, 3, -3, -5, -11, -1}, {1, -9, 9, 5, 13, -1}};
+    const Numbers at = cornerNumbers(unitLattice(1), {glm::ivec3(0), glm::ivec3(3, -2, 5)});
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t m = 0; m < 6; ++m) {
+            EXPECT_NEAR(at[i][m], kNumbers[i][m], m < 3 ? 0.06 : 1e-3) << i << " " << m;
+        }
+    }
+    // All octaves, far into their patterns.
+    const std::vector<glm::vec4> points = {
+        {0.3F, -0.7F, 1.9F, 0.4F}, {-5.1F, 2.2F, 0.6F, 33.3F}, {1.5F, 8.25F, -3.5F, 77.7F}};
+    const glm::dvec3 pinned[3] = {
+        {0.093286, -0.440639, -1.087173}, {0.000630, -0.218924, 0.443611}, {0.174797, 0.082640, -0.205891}};
+    const std::vector<glm::dvec3> v = blown({0.8F, 0.6F, 4, 0.9F, 4'000'000'000U}, points);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        EXPECT_NEAR(glm::length(v[i] - pinned[i]), 0.0, kTolerance)
+            << v[i].x << ", " << v[i].y << ", " << v[i].z;
+    }
+}
+
+constexpr int kCubeSide = 32;
+constexpr int kCube = kCubeSide * kCubeSide * kCubeSide;
+
+/// The largest of the correlations of a number of `a` with one of `b`, which lies by `offset` from it, in units of chance.
+double worstCorrelation(const std::vector<std::array<double, 6>>& a,
+                        const std::vector<std::array<double, 6>>& b, const glm::ivec3& offset) {
+    const auto wrapped = [](int at, int by) { return (at + by + kCubeSide) % kCubeSide; };
+    double sums[6][6] = {};
+    for (int i = 0; i < kCube; ++i) {
+        const int y = wrapped(i / kCubeSide % kCubeSide, offset.y);
+        const int z = wrapped(i / (kCubeSide * kCubeSide), offset.z);
+        const int j = wrapped(i % kCubeSide, offset.x) + kCubeSide * (y + kCubeSide * z);
+        for (std::size_t m = 0; m < 6; ++m) {
+            for (std::size_t n = 0; n < 6; ++n) {
+                sums[m][n] += a[static_cast<std::size_t>(i)][m] * b[static_cast<std::size_t>(j)][n];
+            }
+        }
+    }
+    double worst = 0.0;
+    for (std::size_t m = 0; m < 6; ++m) {
+        for (std::size_t n = 0; n < 6; ++n) {
+            const bool itself = &a == &b && offset == glm::ivec3(0) && m == n;
+            worst = std::max(worst, std::abs(sums[m][n] / 85.0 - (itself ? kCube : 0.0)));
+        }
+    }
+    return worst / std::sqrt(static_cast<double>(kCube));
+}
+
+// Between lattice points that are neighbours, between the six numbers of one, between patterns and between seeds
+// there is no correlation; and each number is as frequent as the others.
+TEST_P(CurlNoiseGlTest, DrawsIndependentNumbers) {
+    const auto cube = [](const CurlNoise& noise, int origin, float t) {
+        std::vector<glm::ivec3> lattice;
+        for (int i = 0; i < kCube; ++i) {
+            lattice.push_back(
+                origin + glm::ivec3(i % kCubeSide, i / kCubeSide % kCubeSide, i / (kCubeSide * kCubeSide)));
+        }
+        Numbers numbers = cornerNumbers(noise, lattice, t);
+        for (auto& one : numbers) {
+            std::transform(one.begin(), one.end(), one.begin(), odd);
+        }
+        return numbers;
+    };
+    const CurlNoise noise = unitLattice(9, true);
+    const Numbers numbers = cube(noise, -kCubeSide / 2, 0.0F);
+    constexpr double kLuck = 5.5;   // of six hundred pairs
+    for (int i = 0; i < 14; ++i) {  // the others are these the other way about
+        const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        EXPECT_LT(worstCorrelation(numbers, numbers, offset), kLuck) << i;
+    }
+    const glm::ivec3 here(0);
+    EXPECT_LT(worstCorrelation(numbers, cube(noise, -kCubeSide / 2, 1.0F), here), kLuck);
+    EXPECT_LT(worstCorrelation(numbers, cube(unitLattice(10), -kCubeSide / 2, 0.0F), here), kLuck);
+    EXPECT_LT(worstCorrelation(numbers, cube(noise, kCubeSide / 2, 0.0F), here), kLuck);
+    for (std::size_t m = 0; m < 6; ++m) {
+        std::array<int, 16> frequency{};
+        for (const auto& one : numbers) {
+            ++frequency.at(static_cast<std::size_t>(one.at(m) + 15.0) / 2);
+        }
+        for (const int count : frequency) {
+            EXPECT_NEAR(count, kCube / 16.0, 5.0 * std::sqrt(kCube / 16.0)) << m;
+        }
+    }
+}
+
+// Where the simplices meet, other corners have a share in the velocity: at faces within a cell's cube, where two
+// fractions are equal, and at those between cubes. A wrong order of corners, or a share that does not end at the
+// face opposite to its corner, makes the velocity jump; a share that ends too abruptly makes it bend.
+TEST_P(CurlNoiseGlTest, HasNoJumpAndNoKinkAtTheFacesOfSimplices) {
+    Pcg32 random(8);
+    constexpr std::size_t kPoints = 4000;
+    for (int face = 0; face < 7; ++face) {  // the last kind: anywhere
+        std::vector<glm::vec4> points;
+        for (std::size_t i = 0; i < kPoints; ++i) {
+            glm::dvec3 q;
+            for (int axis = 0; axis < 3; ++axis) {
+                q[axis] = static_cast<double>(random.between(-20.0F, 20.0F));
+            }
+            if (face < 3) {
+                const int next = (face + 1) % 3;
+                q[next] = std::floor(q[next]) + q[face] - std::floor(q[face]);
+            } else if (face < 6) {
+                q[face - 3] = std::round(q[face - 3]);
+            }
+            const glm::vec4 p = unskewed(q);
+            const glm::vec4 n(onUnitSphere(random), 0.0F);
+            points.insert(points.end(), {p, p + 1e-4F * n, p - 1e-4F * n, p + 0.01F * n, p - 0.01F * n});
+        }
+        const std::vector<glm::dvec3> v = blown(unitLattice(3), points);
+        ASSERT_EQ(v.size(), points.size());
+        double bend = 0.0;
+        for (std::size_t i = 0; i < v.size(); i += 5) {
+            ASSERT_LT(glm::length(v[i + 1] - v[i + 2]), 0.01) << face;  // no derivative exceeds 30 or so
+            const glm::dvec3 second = v[i + 3] - 2.0 * v[i] + v[i + 4];
+            bend += glm::dot(second, second) / static_cast<double>(kPoints);
+        }
+        // A kink would be some 0.01 times a derivative, of which the root mean square is 7.
+        EXPECT_LT(std::sqrt(bend), 0.01) << face;
+    }
+}
+
+// The size of eddies is that of the cubic lattice's gradient noise: the mean square of all nine derivatives over
+// that of the velocity is 29.1052974 / scale², by integrals of polynomials in closed form.
+TEST_P(CurlNoiseGlTest, HasEddiesOfItsScale) {
+    constexpr float kScale = 2.0F;
+    const CurlNoise noise{1.5F, kScale, 1, 0.2F, 11};
+    std::vector<glm::vec4> points = randomPoints(60'000, 50.0F * kScale, 0.0F, 9);
+    for (glm::vec4& p : points) {
+        p.w = 0.7F;
+    }
+    double velocity = 0.0;
+    for (const glm::dvec3& v : blown(noise, points)) {
+        velocity += glm::dot(v, v);
+    }
+    double derivative = 0.0;
+    for (const auto& d : differences(noise, points, 0.01F * kScale)) {
+        derivative += (glm::dot(d[0], d[0]) + glm::dot(d[1], d[1]) + glm::dot(d[2], d[2])) / (0.01 * 0.01);
+    }
+    EXPECT_NEAR(derivative / velocity, 29.105, 0.4);
+}
+
+TEST_P(CurlNoiseGlTest, ChangesSmoothlyInTimeAndRepeatsAfterItsPeriod) {
+    const CurlNoise noise{1.0F, 0.5F, 3, 0.25F, 5};  // a pattern lasts 2 s
+    std::vector<glm::vec4> points;
+    for (const glm::vec4& random : randomPoints(300, 10.0F, 0.0F, 4)) {
+        // Before and after the moments at which patterns of some octave follow each other; then two patterns, and the ends of
+        // the period.
+        for (const float t :
+             {0.499F, 0.501F, 0.999F, 1.001F, 1.999F, 2.001F, 5.999F, 6.001F, 0.0F, 2.0F, 255.9999F}) {
+            points.emplace_back(glm::vec3(random), t);
+        }
+    }
+    const std::vector<glm::dvec3> v = blown(noise, points);
+    ASSERT_EQ(v.size(), points.size());
+    double correlation = 0.0;
+    for (std::size_t i = 0; i < v.size(); i += 11) {
+        for (std::size_t k = 0; k < 8; k += 2) {
+            ASSERT_LT(glm::length(v[i + k] - v[i + k + 1]), 0.05);
+        }
+        correlation += glm::dot(v[i + 8], v[i + 9]) / 300.0;
+        ASSERT_LT(glm::length(v[i + 10] - v[i + 8]), 0.01) << "a jump where time is taken back";
+    }
+    EXPECT_NEAR(correlation, 0.0, 0.15) << "after a pattern's time another should blow";
+}
+
+// Far away floats are coarser than the noise's cells, and a fused multiply-add lands in another one; but no speed
+// is greater there.
+TEST_P(CurlNoiseGlTest, IsBoundedFarAway) {
+    std::vector<glm::vec4> points = randomPoints(20'000, 1.0F, 100.0F, 4);
+    Pcg32 random(14);
+    for (glm::vec4& p : points) {
+        // From 1 to 2^33 lattice units in each axis, some beyond all numbers.
+        for (int axis = 0; axis < 3; ++axis) {
+            p[axis] = std::ldexp(p[axis], static_cast<int>(random.between(-10.0F, 24.0F)));
+            p[axis] = random.between(0.0F, 1.0F) < 0.02F ? std::copysign(3e38F, p[axis]) : p[axis];
+        }
+    }
+    for (const glm::dvec3& v : blown({1.0F, 1e-3F, 4, 1e-4F, 5}, points)) {
+        ASSERT_LT(glm::length(v), kNoiseSpeedMax);
+    }
+}
+
+RELIEF_INSTANTIATE_GL_TESTS(CurlNoiseGlTest);
 
 }  // namespace
 }  // namespace relief

@@ -74,7 +74,7 @@ TEST(BodyGrid, FindsTheBodiesWhoseBoxesHoldAPoint) {
             const std::vector<BodyBox> boxes = randomBoxes(300, half, spread, random);
             const BodyGrid grid = BodyGrid::of(boxes, spread < 1.0F ? 0.25F : 1.4F);
             EXPECT_LE(grid.levels.size(), kGridLevelsMax);
-            for (int i = 0; i < 3'000; ++i) {
+            for (int i = 0; i < 600; ++i) {
                 // Everywhere, within a box, and in its very corners.
                 const BodyBox& box = boxes[random.next() % boxes.size()];
                 const glm::vec3 at = inCube(random, 1.0F);
@@ -95,7 +95,7 @@ TEST(BodyGrid, FindsTheBodiesWhoseBoxesHoldAPoint) {
             }
         }
     }
-    EXPECT_GT(met, 10'000U);
+    EXPECT_GT(met, 2'000U);
 }
 
 BodyBox along(const glm::vec3& low, const glm::vec3& size, std::uint32_t body) {
@@ -115,7 +115,7 @@ TEST(BodyGrid, AsksFewOfMany) {
     const BodyGrid grid = BodyGrid::of(boxes, 0.5F);
     EXPECT_LE(grid.entries.size(), 30 * boxes.size());
     std::size_t asked = 0;
-    constexpr int kPoints = 20'000;
+    constexpr int kPoints = 5'000;
     for (int i = 0; i < kPoints; ++i) {
         const glm::vec3 p = spread * inCube(random, 1.0F);
         for (const BodyGrid::Level& level : grid.levels) {

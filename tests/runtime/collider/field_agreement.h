@@ -6,6 +6,9 @@
 // of the distance's own scale (that of the map's volume), and normals by kNormal. A point closer than kBorder
 // texels to a texel's edge may fall to the neighbour: it counts as agreeing if it agrees with the CPU's
 // answer at one of the surrounding points kBorder texels away, and such points are counted.
+// The normal of a patch changes along it, by a rounding of the point more than kNormal where the patch is curved. A GPU that
+// fuses multiplications and additions rounds the point otherwise; its answers by patches may also differ by the bound of
+// patch_rounding.h. A software renderer fuses nothing and gets no such allowance.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,9 +17,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
+#include <vector>
 
 #include "formats/collider.h"
+#include "runtime/gl/gl_capabilities.h"
 #include "tests/runtime/collider/field_query.h"
+#include "tests/runtime/collider/patch_rounding.h"
 
 namespace relief {
 
@@ -33,11 +39,28 @@ inline bool agrees(const FieldSample& a, const FieldSample& b) {
             glm::length(a.normal - b.normal) <= kNormal);
 }
 
+/// The votes of a GPU's map of patches that rounding leaves possible; none if the map is of another kind.
+inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider, const glm::vec3& p,
+                                                        const FieldSample& gpu) {
+    if (gpu.map < 0 || isSoftwareRenderer()) {
+        return {};
+    }
+    const DepthMap& map = collider.maps[static_cast<std::size_t>(gpu.map)];
+    return map.format == MapFormat::kPatches ? rounding::patchVotes(map, p)
+                                             : std::vector<rounding::RoundedVote>{};
+}
+
 /// True if two maps vote alike at p, but for rounding, and the GPU chose the other: its answer is that map's own.
-inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample& gpu) {
+inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample& gpu,
+                 const rounding::RoundedVote* vote) {
     const FieldSample cpu = evaluate(collider, p);
-    if (cpu.map < 0 || gpu.map < 0 || std::abs(cpu.distance - gpu.distance) > kRelative * 2.0F) {
+    const double apart = vote != nullptr ? vote->distance.error : 0.0;
+    if (cpu.map < 0 || gpu.map < 0 ||
+        std::abs(double{cpu.distance} - double{gpu.distance}) > double{kRelative} * 2.0 + apart) {
         return false;
+    }
+    if (vote != nullptr) {
+        return true;
     }
     Collider alone;
     alone.bounds = collider.bounds;
@@ -47,22 +70,34 @@ inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample
     return agrees(gpu, own);
 }
 
+/// Of the 27 points of a cube of side 2, the middle among them.
+inline glm::vec3 neighbour(int k) {
+    return {static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1), static_cast<float>(k / 9 - 1)};
+}
+
 /// Agreement with the CPU's answer at p, or at one of the 26 neighbours `step` away; there a tie counts, too.
 enum class Agreement { kExact, kAtBorder, kNone };
 inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const FieldSample& gpu, float step) {
-    if (agrees(gpu, evaluate(collider, p))) {
+    const FieldSample cpu = evaluate(collider, p);
+    if (agrees(gpu, cpu)) {
         return Agreement::kExact;
     }
-    if (tied(collider, p, gpu)) {
+    const std::vector<rounding::RoundedVote> votes = possibleVotes(collider, p, gpu);
+    const auto own = std::find_if(votes.begin(), votes.end(),
+                                  [&](const rounding::RoundedVote& vote) { return isWithin(gpu, vote); });
+    const bool rounded = own != votes.end();
+    if (rounded && gpu.map == cpu.map) {
+        return Agreement::kExact;
+    }
+    if (tied(collider, p, gpu, rounded ? &*own : nullptr)) {
         return Agreement::kAtBorder;
     }
     for (int k = 0; k < 27; ++k) {
-        const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
-                               static_cast<float>(k / 9 - 1));
-        const FieldSample near = evaluate(collider, p + step * offset);
+        const FieldSample near = evaluate(collider, p + step * neighbour(k));
         // The distance has moved with the point, too.
-        if (near.map == gpu.map && std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
-            glm::length(near.normal - gpu.normal) <= kNormal) {
+        if (near.map == gpu.map &&
+            (rounded || (std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
+                         glm::length(near.normal - gpu.normal) <= kNormal))) {
             return Agreement::kAtBorder;
         }
     }
@@ -91,7 +126,9 @@ inline void expectAgreement(const Collider& collider, std::span<const glm::vec3>
                 if (none++ < 5) {
                     const FieldSample cpu = evaluate(collider, points[i]);
                     ADD_FAILURE() << "point " << i << ": GPU " << (*samples)[i].distance << " map "
-                                  << (*samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map;
+                                  << (*samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map
+                                  << ", normals " << glm::length((*samples)[i].normal - cpu.normal)
+                                  << " apart";
                 }
                 break;
         }

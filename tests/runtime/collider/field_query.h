@@ -2,6 +2,8 @@
 // shaders/collider/collider.glsl is formats/collider.cpp.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
@@ -121,6 +123,15 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
         }
     }
     return samples;
+}
+
+/// The field of textures that are there already.
+inline std::vector<FieldSample> fieldOf(const ColliderTextures& textures, std::span<const glm::vec3> points) {
+    const auto query = FieldQuery::create(textures);
+    EXPECT_TRUE(query) << query.error().message;
+    auto samples = query->evaluate(points);
+    EXPECT_TRUE(samples) << samples.error().message;
+    return samples.value_or(std::vector<FieldSample>(points.size()));
 }
 
 }  // namespace relief

@@ -1,6 +1,7 @@
 // shaders/collider/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
 // frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -129,7 +130,7 @@ TEST_P(FieldQueryGlTest, EveryFormatCompareAndDecodeAgreesWithTheCpu) {
             if (kind.compare == Compare::kGap) {
                 asOneOfGaps(collider.maps[0]);
             }
-            expectAgreement(collider, randomPoints(50'000, random), 1.0F / 90.0F, 1e-3);
+            expectAgreement(collider, randomPoints(8'000, random), 1.0F / 90.0F, 1e-3);
         }
     }
 }
@@ -146,7 +147,7 @@ TEST_P(FieldQueryGlTest, AnyMixtureOfMapsAgreesWithTheCpu) {
             collider.maps.push_back(randomMap(kind.format, kind.compare, width, height, random));
         }
         // Forty maps have forty times the borders.
-        expectAgreement(collider, randomPoints(20'000, random), 1.0F / 60.0F, 5e-3);
+        expectAgreement(collider, randomPoints(6'000, random), 1.0F / 60.0F, 5e-3);
     }
 }
 
@@ -164,26 +165,17 @@ DepthMap turnedPatches(std::mt19937& random) {
     return map;
 }
 
-TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpu) {
-    std::mt19937 random(29);
-    for (int repeat = 0; repeat < 20; ++repeat) {
-        Collider collider;
-        collider.maps.push_back(turnedPatches(random));
-        expectAgreement(collider, randomPoints(20'000, random, 5.0F), 1.0F / 60.0F, 5e-3);
-    }
-}
-
-// Twenty kinds of company: planar maps alone, a cube alone, both; the patches first, last or between.
-TEST_P(FieldQueryGlTest, PatchesAmongOtherMapsAgreeWithTheCpu) {
+// Twenty kinds of company: none, planar maps alone, a cube alone, both; the patches first, last or between.
+TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
     std::mt19937 random(test::seedFrom(31));
     int asked = 0, by_patches = 0;
     for (unsigned repeat = 0; repeat < 20; ++repeat) {
         Collider collider;
-        const unsigned company = 1 + repeat % 4;
+        const unsigned company = repeat % 5;
         for (unsigned i = 0; i < company; ++i) {
             // Every format of the ten in turn; a cube alone where company is one.
             const Kind& kind =
-                kKinds[company == 1 ? 5 + repeat / 4 % 2 : (3 * repeat + i) % std::size(kKinds)];
+                kKinds[company == 1 ? 5 + repeat / 5 % 2 : (3 * repeat + i) % std::size(kKinds)];
             DepthMap map = randomMap(kind.format, kind.compare, kind.width, kind.height, random);
             if (repeat % 2 == 0) {  // as large as the tree
                 map.object_per_map *= 5.0F;
@@ -195,12 +187,12 @@ TEST_P(FieldQueryGlTest, PatchesAmongOtherMapsAgreeWithTheCpu) {
         }
         const auto place = static_cast<std::ptrdiff_t>(repeat / 2 % (company + 1));
         collider.maps.insert(collider.maps.begin() + place, turnedPatches(random));
-        std::vector<glm::vec3> points = randomPoints(50'000, random, 5.0F);
-        const std::vector<glm::vec3> near = randomPoints(50'000, random, repeat % 2 == 0 ? 4.0F : 0.8F);
+        std::vector<glm::vec3> points = randomPoints(8'000, random, 5.0F);
+        const std::vector<glm::vec3> near = randomPoints(8'000, random, repeat % 2 == 0 ? 4.0F : 0.8F);
         points.insert(points.end(), near.begin(), near.end());
         SCOPED_TRACE(repeat);
         expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
-        for (std::size_t i = 0; i < points.size(); i += 100) {
+        for (std::size_t i = 0; company > 0 && i < points.size(); i += 20) {
             const int map = evaluate(collider, points[i]).map;
             asked += map >= 0 ? 1 : 0;
             by_patches += map == place ? 1 : 0;
@@ -266,53 +258,6 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
     }
 }
 
-// ---- the early out
-
-/// reliefSolid at every point, one a fragment.
-std::vector<InsideSample> insideByGpu(const Collider& collider, std::span<const glm::vec3> points) {
-    constexpr GLsizei kWidth = 1024;
-    const PassState guard;
-    std::vector<InsideSample> samples;
-    const auto height = static_cast<GLsizei>((points.size() + kWidth - 1) / kWidth);
-    std::vector<float> texels(std::size_t{4} * kWidth * static_cast<std::size_t>(height), 0.0F);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        std::copy_n(&points[i].x, 3, &texels[4 * i]);
-    }
-    const Result<ColliderTextures> textures = ColliderTextures::create(collider);
-    const Result<GlProgram> program = makeQueryProgram("collider/collider.glsl", kFieldQuery,
-                                                       textures->defines() + "#define RELIEF_QUERY_INSIDE\n");
-    EXPECT_TRUE(program) << program.error().message;
-    if (!program) {
-        return samples;
-    }
-    const GlTexture input = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, texels.data());
-    const GlTexture normal_sign = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
-    const GlTexture map = makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT);
-    const std::array<GLuint, 2> targets = {normal_sign.name(), map.name()};
-    const Result<GlFramebuffer> framebuffer = makeFramebuffer(targets);
-    EXPECT_TRUE(framebuffer);
-    const GlVertexArray no_attributes = makeVertexArray();
-    const ColliderTextures::Binding binding{1, 0};
-    textures->attach(*program, binding);
-    program->set("u_points", 0);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->name());
-    glViewport(0, 0, kWidth, height);
-    glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, input.name());
-    textures->bind(binding);
-    glBindVertexArray(no_attributes.name());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    const Result<std::vector<float>> fields = readTextureFloats(normal_sign, kWidth, height);
-    const Result<std::vector<float>> maps = readTextureFloats(map, kWidth, height);
-    EXPECT_TRUE(fields && maps);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const float* field = &(*fields)[4 * i];
-        samples.push_back(
-            {field[3] < 0.0F, {field[0], field[1], field[2]}, static_cast<int>((*maps)[4 * i])});
-    }
-    return samples;
-}
-
 TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) {
     std::mt19937 random(29);
     std::size_t inside = 0;
@@ -327,42 +272,43 @@ TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) 
                 collider.maps.back().empty_is_outside = false;
             }
         }
-        const std::vector<glm::vec3> points = randomPoints(20'000, random);
-        const std::vector<InsideSample> early = insideByGpu(collider, points);
-        ASSERT_EQ(early.size(), points.size());
-        const Result<FieldQuery> query = FieldQuery::create(collider);
-        ASSERT_TRUE(query) << query.error().message;
-        const Result<std::vector<FieldSample>> full = query->evaluate(points);
-        ASSERT_TRUE(full) << full.error().message;
+        const std::vector<glm::vec3> points = randomPoints(10'000, random);
+        const auto textures = ColliderTextures::create(collider);
+        ASSERT_TRUE(textures) << textures.error().message;
+        const auto walk = FieldQuery::create(*textures);
+        const auto early_out = FieldQuery::create(*textures, "#define RELIEF_QUERY_INSIDE\n");
+        ASSERT_TRUE(walk && early_out);
+        const auto full = walk->evaluate(points);
+        const auto early = early_out->evaluate(points);
+        ASSERT_TRUE(full && early);
         std::size_t at_border = 0;
         std::size_t other_sign = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
+            const FieldSample& own = (*early)[i];
             // On the GPU itself the same votes give the same sign, unless its compiler fuses them
             // differently.
             const FieldSample& whole = (*full)[i];
-            const bool same = early[i].inside == whole.inside() &&
-                              (!early[i].inside || (early[i].map == whole.map &&
-                                                    glm::length(early[i].normal - whole.normal) <= kNormal));
+            const bool same = own.inside() == whole.inside() &&
+                              (!own.inside() ||
+                               (own.map == whole.map && glm::length(own.normal - whole.normal) <= kNormal));
             other_sign += same ? 0U : 1U;
-            if (!early[i].inside) {
-                ASSERT_EQ(early[i].normal, glm::vec3(0.0F)) << i;
+            if (!own.inside()) {
+                ASSERT_EQ(own.normal, glm::vec3(0.0F)) << i;
             }
             const auto agreesAt = [&](const glm::vec3& p) {
                 const InsideSample cpu = evaluateInside(collider, p);
-                return cpu.inside == early[i].inside && cpu.map == early[i].map &&
-                       glm::length(cpu.normal - early[i].normal) <= kNormal;
+                return cpu.inside == own.inside() && cpu.map == own.map &&
+                       glm::length(cpu.normal - own.normal) <= kNormal;
             };
             if (!agreesAt(points[i])) {
                 bool near = false;
                 for (int k = 0; k < 27 && !near; ++k) {
-                    const glm::vec3 offset(static_cast<float>(k % 3 - 1), static_cast<float>(k / 3 % 3 - 1),
-                                           static_cast<float>(k / 9 - 1));
-                    near = agreesAt(points[i] + kBorder / 90.0F * offset);
+                    near = agreesAt(points[i] + kBorder / 90.0F * neighbour(k));
                 }
                 ASSERT_TRUE(near) << i;
                 ++at_border;
             }
-            inside += early[i].inside ? 1U : 0U;
+            inside += own.inside() ? 1U : 0U;
         }
         EXPECT_LE(static_cast<double>(at_border), 2e-3 * static_cast<double>(points.size()));
         EXPECT_LE(static_cast<double>(other_sign), 1e-4 * static_cast<double>(points.size()));
@@ -377,17 +323,10 @@ TEST_P(FieldQueryGlTest, TooManyMapsAndTooLargeMapsAreNamedErrors) {
     Collider collider;
     EXPECT_EQ(FieldQuery::create(collider).error().code, ErrorCode::kUnsupported);
     collider.maps.assign(20'000, randomMap(MapFormat::kFixed8, Compare::kLess, 3, 3, random));
-    const auto many = FieldQuery::create(collider);
-    ASSERT_FALSE(many);
-    EXPECT_EQ(many.error().code, ErrorCode::kLimit);
-    EXPECT_NE(many.error().message.find("20000 maps"), std::string::npos) << many.error().message;
-
+    EXPECT_EQ(FieldQuery::create(collider).error().code, ErrorCode::kLimit);
     collider.maps.resize(1);
     collider.maps[0].width = collider.maps[0].height = 1U << 16U;
-    const auto large = FieldQuery::create(collider);
-    ASSERT_FALSE(large);
-    EXPECT_EQ(large.error().code, ErrorCode::kLimit);
-    EXPECT_NE(large.error().message.find("4294967296 texels"), std::string::npos) << large.error().message;
+    EXPECT_EQ(FieldQuery::create(collider).error().code, ErrorCode::kLimit);
 }
 
 /// A map may be longer than the GL's textures are wide, and the bytes on the GPU are the maps' own.
@@ -401,41 +340,11 @@ TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
     }
     collider.maps.push_back(randomMap(MapFormat::kCube8, Compare::kLess, 19, 19, random));
     // A column is no more than a hundred roundings of x wide.
-    expectAgreement(collider, randomPoints(20'000, random), 1e-3F, 4e-2);
+    expectAgreement(collider, randomPoints(10'000, random), 1e-3F, 4e-2);
     const auto textures = ColliderTextures::create(collider);
     ASSERT_TRUE(textures);
     EXPECT_GE(textures->bytes(), collider.gpuBytes());
     EXPECT_LE(textures->bytes(), collider.gpuBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
-}
-
-/// What a caller has bound must still be bound afterwards.
-TEST_P(FieldQueryGlTest, StateIsRestored) {
-    std::mt19937 random(23);
-    Collider collider;
-    collider.maps.push_back(randomMap(MapFormat::kFixed8, Compare::kLess, 8, 8, random));
-    const GlTexture texture = makeTexture2D(GL_RGBA8, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE);
-    glActiveTexture(GL_TEXTURE1);
-    glBindTexture(GL_TEXTURE_2D, texture.name());
-    glEnable(GL_BLEND);
-    glEnable(GL_SCISSOR_TEST);
-    glViewport(1, 2, 3, 4);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
-    Result<FieldQuery> query = FieldQuery::create(collider);
-    ASSERT_TRUE(query);
-    ASSERT_TRUE(query->evaluate(randomPoints(10, random)));
-    GLint value[4];
-    glGetIntegerv(GL_ACTIVE_TEXTURE, value);
-    EXPECT_EQ(value[0], GL_TEXTURE1);
-    glGetIntegerv(GL_TEXTURE_BINDING_2D, value);
-    EXPECT_EQ(static_cast<GLuint>(value[0]), texture.name());
-    glGetIntegerv(GL_VIEWPORT, value);
-    EXPECT_EQ(value[3], 4);
-    glGetIntegerv(GL_CURRENT_PROGRAM, value);
-    EXPECT_EQ(value[0], 0);
-    glGetIntegerv(GL_UNPACK_ALIGNMENT, value);
-    EXPECT_EQ(value[0], 8);
-    EXPECT_TRUE(glIsEnabled(GL_BLEND));
-    EXPECT_TRUE(glIsEnabled(GL_SCISSOR_TEST));
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(FieldQueryGlTest);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <glm/glm.hpp>
 #include <limits>
 #include <numbers>
@@ -10,7 +9,8 @@
 #include <vector>
 
 #include "runtime/collider/wobble_pass.h"
-#include "runtime/gl/gl_functions.h"
+#include "runtime/gl/buffer_read.h"
+#include "tests/runtime/gl/caller_state.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -54,15 +54,7 @@ class WobblePassGlTest : public GlTest {
   protected:
     static std::vector<glm::vec3> read(const WobblePass& pass) {
         std::vector<glm::vec3> values(pass.bytes() / sizeof(glm::vec3));
-        GLint bound = 0;
-        glGetIntegerv(GL_ARRAY_BUFFER_BINDING, &bound);
-        glBindBuffer(GL_ARRAY_BUFFER, pass.buffer().name());
-        const void* from =
-            glMapBufferRange(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(pass.bytes()), GL_MAP_READ_BIT);
-        EXPECT_NE(from, nullptr);
-        std::memcpy(values.data(), from, pass.bytes());
-        glUnmapBuffer(GL_ARRAY_BUFFER);
-        glBindBuffer(GL_ARRAY_BUFFER, static_cast<GLuint>(bound));
+        EXPECT_TRUE(readBuffer(pass.buffer(), 0, std::as_writable_bytes(std::span(values))));
         return values;
     }
 };
@@ -141,36 +133,13 @@ TEST_P(WobblePassGlTest, WhatMakesNoSenseIsRefused) {
 
 TEST_P(WobblePassGlTest, TheCallersStateIsKept) {
     const Points points = somePoints(10);
-    GLuint buffers[2] = {};
-    glGenBuffers(2, buffers);
-    for (const GLuint buffer : buffers) {
-        glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, buffer);
-        glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, 256, nullptr, GL_STATIC_DRAW);
-    }
-    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffers[0], 64, 128);
-    glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, buffers[1]);
-    glEnable(GL_RASTERIZER_DISCARD);
+    const CallerState caller;
     auto pass = WobblePass::create(kSome, points.positions, points.normals);
     ASSERT_TRUE(pass) << pass.error().message;
+    caller.expectKept("create");
     pass->run(0.2);
-    GLint generic = 0;
-    GLint first = 0;
-    GLint64 start = 0;
-    GLint64 size = 0;
-    glGetIntegerv(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, &generic);
-    glGetIntegeri_v(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, 0, &first);
-    glGetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_START, 0, &start);
-    glGetInteger64i_v(GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0, &size);
-    EXPECT_EQ(static_cast<GLuint>(generic), buffers[1]);
-    EXPECT_EQ(static_cast<GLuint>(first), buffers[0]);
-    EXPECT_EQ(start, 64);
-    EXPECT_EQ(size, 128);
-    EXPECT_TRUE(glIsEnabled(GL_RASTERIZER_DISCARD));
-    GLint program = -1;
-    glGetIntegerv(GL_CURRENT_PROGRAM, &program);
-    EXPECT_EQ(program, 0);
+    caller.expectKept("run");
     EXPECT_EQ(read(*pass).size(), points.positions.size());
-    glDeleteBuffers(2, buffers);
 }
 
 }  // namespace

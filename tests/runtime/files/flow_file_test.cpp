@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 
-#include "formats/base/file_io.h"
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
@@ -17,20 +15,8 @@ namespace fs = std::filesystem;
 
 class FlowFileTest : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ =
-            fs::path(testing::TempDir()) /
-            (std::string("relief_flow_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     fs::path bytes(const std::string& name, const void* data, std::size_t size) const {
-        const fs::path path = folder_ / name;
-        std::ofstream(path, std::ios::binary)
-            .write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-        return path;
+        return folder_.write(name, {static_cast<const char*>(data), size});
     }
     [[nodiscard]] FlowFile file(const fs::path& path) const {
         FlowFile flow;
@@ -50,7 +36,7 @@ class FlowFileTest : public testing::Test {
         EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
 
-    fs::path folder_;
+    const test::TemporaryFolder folder_;
 };
 
 TEST_F(FlowFileTest, ARawVolumeRunsAlongXFirst) {
@@ -79,7 +65,7 @@ TEST_F(FlowFileTest, ARawVolumeRunsAlongXFirst) {
 }
 
 TEST_F(FlowFileTest, AFileThatIsNotThereIsNamed) {
-    FlowFile from = file(folder_ / "none.raw");
+    FlowFile from = file(folder_.path() / "none.raw");
     from.size = {1, 1, 1};
     expectError(from, ErrorCode::kIo, "none.raw", "");
 }

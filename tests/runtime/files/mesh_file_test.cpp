@@ -10,7 +10,6 @@
 #include <fstream>
 #include <glm/glm.hpp>
 #include <string>
-#include <tuple>
 
 namespace relief {
 namespace {
@@ -71,7 +70,7 @@ TEST(ObjMesh, Hostile) {
     expectError(obj(""), "a.obj: it has no faces");
     expectError(obj(three), "no faces");
     expectError(obj(three + "f 1 2\n"), "no faces");
-    expectError(obj(three + "f\n"), "a.obj: line 4: a face without corners");
+    expectError(obj(three + "f\n"), "a.obj: line 4: ");
     for (const char* corner : {"0", "4", "-4", "x", "1.5", "99999999999999999999", "/1", "2x"}) {
         expectError(obj(three + "f 1 2 " + corner + "\n"), "a.obj: line 4: ");
     }
@@ -87,33 +86,31 @@ const std::string kHead =
     "element face 2\nproperty int flags\nproperty list uchar int vertex_indices\nend_header\n";
 
 TEST(PlyMesh, ColorsAsBytesOrFloats) {
-    const std::string end = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     using Color = std::array<std::uint8_t, 4>;
-    for (const auto& [type, one, half] : {std::tuple("uchar", "255", "128"), {"float", "1", "0.5"}}) {
-        const std::string t = std::string("property ") + type + " ";
-        const std::string text =
-            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-            "property float z\n" +
-            t + "red\n" + t + "green\n" + t + "blue\n" + end;
-        const std::string rest =
-            std::string(one) + " 0 0\n1 0 0 0 " + half + " 0\n0 1 0 0 0 " + one + "\n3 0 1 2\n";
-        const auto mesh = ply(text + "0 0 0 " + rest);
-        ASSERT_TRUE(mesh) << mesh.error().message;
-        EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0, 255}, {0, 128, 0, 255}, {0, 0, 255, 255}}))
-            << type;
-    }
-}
-
-TEST(PlyMesh, AlphaIsReadBesideColors) {
-    const auto mesh =
-        ply("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
-            "z\nproperty uchar red\n"
-            "property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\nproperty list "
-            "uchar int "
-            "vertex_indices\nend_header\n0 0 0 1 2 3 4\n1 0 0 5 6 7 8\n0 1 0 9 10 11 0\n3 0 1 2\n");
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    using Color = std::array<std::uint8_t, 4>;
-    EXPECT_EQ(mesh->colors, (std::vector<Color>{{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 10, 11, 0}}));
+    const auto colors = [](const std::string& type, std::array<const char*, 3> values,
+                           const char* alpha = nullptr) {
+        std::string text = "ply\nformat ascii 1.0\nelement vertex 3\n";
+        for (const char* name : {"x", "y", "z"}) {
+            text += std::string("property float ") + name + "\n";
+        }
+        for (const char* name : {"red", "green", "blue"}) {
+            text += "property " + type + " " + name + "\n";
+        }
+        text += alpha != nullptr ? "property " + type + " alpha\n" : "";
+        text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+        const char* const places[] = {"0 0 0 ", "1 0 0 ", "0 1 0 "};
+        for (std::size_t i = 0; i < 3; ++i) {
+            text += std::string(places[i]) + values[i] + (alpha != nullptr ? alpha : "") + "\n";
+        }
+        const auto mesh = ply(text + "3 0 1 2\n");
+        EXPECT_TRUE(mesh) << mesh.error().message;
+        return mesh ? mesh->colors : std::vector<Color>{};
+    };
+    const std::vector<Color> primaries{{255, 0, 0, 255}, {0, 128, 0, 255}, {0, 0, 255, 255}};
+    EXPECT_EQ(colors("uchar", {"255 0 0", "0 128 0", "0 0 255"}), primaries);
+    EXPECT_EQ(colors("float", {"1 0 0", "0 0.5 0", "0 0 1"}), primaries);
+    EXPECT_EQ(colors("uchar", {"1 2 3", "5 6 7", "9 10 11"}, " 4"),
+              (std::vector<Color>{{1, 2, 3, 4}, {5, 6, 7, 4}, {9, 10, 11, 4}}));
 }
 
 TEST(PlyMesh, AsciiWithOtherElements) {
@@ -167,39 +164,41 @@ TEST(PlyMesh, BinaryOfEitherOrder) {
 }
 
 TEST(PlyMesh, Hostile) {
+    expectError(ply(""), "'a.ply'");
+    expectError(ply("plyx\nend_header\n"), "PLY");
+    expectError(ply("ply\nend_header\n"), "format");
+    expectError(ply("ply\nformat binary 1.0\nend_header\n"), "format");
     const std::string ascii = "ply\nformat ascii 1.0\n";
-    expectError(ply(""), "'a.ply': its header does not end");
-    expectError(ply("plyx\nend_header\n"), "it is no PLY file");
-    expectError(ply("ply\nend_header\n"), "no format");
-    expectError(ply("ply\nformat binary 1.0\nend_header\n"), "no format");
-    expectError(ply(ascii + "end_header\n"), "'vertex' once");
-    expectError(ply(ascii + "property float x\nend_header\n"), "belongs to no element");
-    expectError(ply(ascii + "element vertex -1\nend_header\n"), "element of its header");
-    expectError(ply(ascii + "element vertex 99999999999999999999999\nend_header\n"), "x, y and z");
-    expectError(ply(ascii + "element vertex 1\nproperty half x\nend_header\n"), "unknown type");
-    expectError(ply(ascii + "element vertex 1\nproperty float x\nend_header\n1\n"), "x, y and z");
     const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
     const std::string one_face = "element face 1\nproperty list char int vertex_index\nend_header\n";
+    for (const auto& [text, names] :
+         {std::pair(std::string("end_header\n"), "'vertex'"),
+          {"property float x\nend_header\n", "element"},
+          {"element vertex -1\nend_header\n", "element"},
+          {"element vertex 99999999999999999999999\nend_header\n", "x, y and z"},
+          {"element vertex 1\nproperty half x\nend_header\n", "type"},
+          {"element vertex 1\nproperty float x\nend_header\n1\n", "x, y and z"},
+          // A count that the file does not hold allocates nothing of that size.
+          {"element vertex 20000000\n" + xyz + one_face + "1 2 3\n", "too early"},
+          {"element vertex 1\n" + xyz + one_face + "1 nan 3\n3 0 0 0\n", "finite"},
+          {"element vertex 1\n" + xyz + one_face + "1 z 3\n", "'a.ply'"},
+          // A crowd of faces without anything in them ends at once.
+          {"element vertex 0\n" + xyz + "element face 18446744073709551615\nend_header\n", "no faces"}}) {
+        expectError(ply(ascii + text), names);
+    }
     expectError(ply(ascii + "element vertex 300000001\n" + xyz + one_face), "vertices", ErrorCode::kLimit);
-    // A count that the file does not hold allocates nothing of that size.
-    expectError(ply(ascii + "element vertex 20000000\n" + xyz + one_face + "1 2 3\n"), "ends too early");
-    expectError(ply(ascii + "element vertex 1\n" + xyz + one_face + "1 nan 3\n3 0 0 0\n"), "not finite");
-    expectError(ply(ascii + "element vertex 1\n" + xyz + one_face + "1 z 3\n"), "is none");
-    const std::string face =
-        ascii + "element vertex 3\n" + xyz +
-        "element face 1\nproperty list char int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    const std::string face = ascii + "element vertex 3\n" + xyz + one_face + "0 0 0\n1 0 0\n0 1 0\n";
     EXPECT_TRUE(ply(face + "3 0 1 2\n"));
-    expectError(ply(face + "3 0 1 3\n"), "face 0 names the vertex");
-    expectError(ply(face + "3 0 1 -1\n"), "face 0 names the vertex");
-    expectError(ply(face + "3 0 1 0.5\n"), "face 0 names the vertex");
-    expectError(ply(face + "2 0 1\n"), "no faces");
-    expectError(ply(face + "-3 0 1 2\n"), "length");
-    expectError(ply(face + "1e9 0 1 2\n"), "ends too early");
-    expectError(ply(face + "1e10 0 1 2\n"), "length");
-    expectError(ply(face + "3 0 1"), "ends too early");
-    // A crowd of faces without anything in them ends at once.
-    expectError(ply(ascii + "element vertex 0\n" + xyz + "element face 18446744073709551615\nend_header\n"),
-                "no faces");
+    for (const auto& [text, names] : {std::pair("3 0 1 3\n", "face 0"),
+                                      {"3 0 1 -1\n", "face 0"},
+                                      {"3 0 1 0.5\n", "face 0"},
+                                      {"2 0 1\n", "no faces"},
+                                      {"-3 0 1 2\n", "length"},
+                                      {"1e9 0 1 2\n", "too early"},
+                                      {"1e10 0 1 2\n", "length"},
+                                      {"3 0 1", "too early"}}) {
+        expectError(ply(face + text), names);
+    }
 }
 
 // Every prefix and every flipped byte is read or refused; the sanitizers see the rest.

@@ -3,17 +3,26 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "formats/animation/animated_mesh.h"
+#include "runtime/collider/live_collider.h"
+#include "runtime/collider/skin_pass.h"
+#include "runtime/collider/wobble_pass.h"
 #include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/picture/collider_mesh.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
+#include "runtime/picture/mesh_renderer.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/picture/sprite_atlas.h"
 #include "tests/runtime/collider/analytic_collider.h"
@@ -41,6 +50,7 @@ class Replaced {
 // What the replacements share with the test that runs: they are plain functions.
 int allocations = 0;
 int failing_allocation = -1;
+std::string failed_call;
 GLenum pending_error = GL_NO_ERROR;
 GLint texture_side = 0;
 decltype(epoxy_glTexImage2D) real_image_2d = nullptr;
@@ -51,32 +61,35 @@ decltype(epoxy_glGetError) real_get_error = nullptr;
 decltype(epoxy_glGetIntegerv) real_get_integer = nullptr;
 decltype(epoxy_glGetShaderiv) real_get_shader = nullptr;
 
-bool failsNow() {
+bool failsNow(const char* call, GLenum target, GLsizeiptr width, GLsizeiptr height = 1,
+              GLsizeiptr depth = 1) {
     if (allocations++ != failing_allocation) {
         return false;
     }
+    failed_call = call + (" of target " + std::to_string(target)) + ", " + std::to_string(width) + " x " +
+                  std::to_string(height) + " x " + std::to_string(depth);
     pending_error = GL_OUT_OF_MEMORY;
     return true;
 }
 void image2d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border,
              GLenum format, GLenum type, const void* pixels) {
-    if (!failsNow()) {
+    if (!failsNow("glTexImage2D", target, width, height)) {
         real_image_2d(target, level, internal, width, height, border, format, type, pixels);
     }
 }
 void image3d(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLsizei depth,
              GLint border, GLenum format, GLenum type, const void* pixels) {
-    if (!failsNow()) {
+    if (!failsNow("glTexImage3D", target, width, height, depth)) {
         real_image_3d(target, level, internal, width, height, depth, border, format, type, pixels);
     }
 }
 void storage2d(GLenum target, GLsizei levels, GLenum internal, GLsizei width, GLsizei height) {
-    if (!failsNow()) {
+    if (!failsNow("glTexStorage2D", target, width, height)) {
         real_storage_2d(target, levels, internal, width, height);
     }
 }
 void bufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
-    if (!failsNow()) {
+    if (!failsNow("glBufferData", target, size)) {
         real_buffer_data(target, size, data, usage);
     }
 }
@@ -118,6 +131,20 @@ PictureMesh tetrahedron() {
     PictureMesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    return mesh;
+}
+
+/// One triangle with a joint and a morph target.
+AnimatedMesh animatedTriangle() {
+    AnimatedMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.influence_begin = {0, 1, 2, 3};
+    mesh.influences.resize(3);
+    mesh.delta_begin = {0, 1, 1, 1};
+    mesh.deltas.resize(1);
+    mesh.joints.resize(1);
+    mesh.weights.resize(1);
     return mesh;
 }
 
@@ -229,12 +256,47 @@ class GlFaultTest : public GlTest {
     }
     /// What is small on every GL, and never beyond a limit.
     std::vector<Work> smallWork() {
-        return {{"mesh", [] { return outcome(ColliderMesh::create(tetrahedron())); }},
-                {"particles, lit", [this]() -> Result<void> {
-                     auto renderer = ParticleRenderer::create(view());
-                     return renderer ? renderer->draw(*particles_, {}, {}, frame_->target(), {}, nullptr)
-                                     : outcome(renderer);
-                 }}};
+        return {
+            {"mesh", [] { return outcome(ColliderMesh::create(tetrahedron())); }},
+            {"particles, lit", [this] { return drawParticles(view(), StepPath::kFragment); }},
+            {"bodies",
+             [this] {
+                 const std::array<ColliderBody, 2> bodies{ColliderBody{&collider_, {}},
+                                                          ColliderBody{&collider_, {}}};
+                 return outcome(ColliderTextures::create(bodies));
+             }},
+            {"live mesh",
+             []() -> Result<void> {
+                 const PictureMesh mesh = tetrahedron();
+                 Collider frames = RELIEF_TRY(liveFrames({glm::vec3(0.0F), glm::vec3(1.0F)}, 32));
+                 return outcome(LiveCollider::create(mesh.positions, trianglesOf(mesh), std::move(frames)));
+             }},
+            {"wobbling mesh",
+             [] {
+                 const PictureMesh mesh = tetrahedron();
+                 const std::vector<glm::vec3> normals(mesh.positions.size());
+                 return outcome(WobblePass::create({}, mesh.positions, normals));
+             }},
+            {"animated mesh", [] { return outcome(SkinPass::create(animatedTriangle())); }},
+            {"picture of meshes", []() -> Result<void> {
+                 PictureMesh mesh = tetrahedron();
+                 mesh.colors.resize(mesh.positions.size());
+                 auto renderer = RELIEF_TRY(MeshRenderer::create({&mesh, 1}));
+                 return renderer.setPositions(0, mesh.positions);
+             }}};
+    }
+    /// The particle fills the middle of the picture.
+    Result<void> drawParticles(const std::optional<ColliderView>& collider, StepPath path) {
+        glBindFramebuffer(GL_FRAMEBUFFER, frame_->target().framebuffer);
+        const std::array<GLfloat, 4> black{0.0F, 0.0F, 0.0F, 1.0F};
+        const GLfloat far = 1.0F;
+        glClearBufferfv(GL_COLOR, 0, black.data());
+        glClearBufferfv(GL_DEPTH, 0, &far);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        auto renderer = RELIEF_TRY(ParticleRenderer::create(collider, path));
+        const Camera camera{.eye = {0.0F, 2.0F, 4.0F}, .target = {0.0F, 2.0F, 0.0F}};
+        const ParticleStyle style{.diameter = 1.0F, .fade_in = 0.0F, .sprite = Sprite::kQuad};
+        return renderer.draw(*particles_, camera, style, frame_->target());
     }
 
     Collider collider_;
@@ -267,10 +329,46 @@ TEST_P(GlFaultTest, EveryAllocationThatFailsIsNamed) {
                 EXPECT_GT(failing_allocation, 0) << "nothing is allocated: the test does not test";
                 break;
             }
-            ASSERT_FALSE(done) << "allocation " << failing_allocation << " failed in silence";
+            ASSERT_FALSE(done) << "allocation " << failing_allocation
+                               << " failed in silence: " << failed_call;
             EXPECT_EQ(done.error().code, ErrorCode::kLimit) << done.error().message;
             EXPECT_NE(done.error().message.find("no room on the GPU"), std::string::npos)
                 << done.error().message;
+        }
+    }
+    failing_allocation = -1;
+    pending_error = GL_NO_ERROR;
+}
+
+// The room for tiles is the one allocation that may fail without an error: the GL then draws the particles.
+TEST_P(GlFaultTest, ParticlesAreDrawnWhereTilesHaveNoRoom) {
+    ASSERT_TRUE(drawParticles(std::nullopt, StepPath::kFragment));
+    const std::vector<std::uint8_t> drawn = frame_->read();
+    EXPECT_GT(*std::max_element(drawn.begin(), drawn.end()), 100)
+        << "nothing is drawn: the test does not test";
+    const Replaced two(epoxy_glTexImage2D, &image2d);
+    const Replaced three(epoxy_glTexImage3D, &image3d);
+    const Replaced storage(epoxy_glTexStorage2D, &storage2d);
+    const Replaced buffers(epoxy_glBufferData, &bufferData);
+    const Replaced errors(epoxy_glGetError, &getError);
+    ASSERT_TRUE(drawParticles(std::nullopt, StepPath::kFragment));
+    const int first = std::exchange(allocations, 0);
+    ASSERT_TRUE(drawParticles(std::nullopt, StepPath::kCompute));
+    const int end = allocations;
+    EXPECT_EQ(end - first, 8) << "seven buffers and the layer";
+    for (failing_allocation = 0; failing_allocation < end; ++failing_allocation) {
+        allocations = 0;
+        pending_error = GL_NO_ERROR;
+        failed_call.clear();
+        const Result<void> done = drawParticles(std::nullopt, StepPath::kCompute);
+        SCOPED_TRACE("allocation " + std::to_string(failing_allocation) + ": " + failed_call);
+        ASSERT_FALSE(failed_call.empty());
+        ASSERT_EQ(done.has_value(), failing_allocation >= first);
+        if (done) {
+            const std::vector<std::uint8_t> picture = frame_->read();
+            for (std::size_t i = 0; i < drawn.size(); ++i) {
+                ASSERT_LE(std::abs(picture[i] - drawn[i]), 1) << "byte " << i;
+            }
         }
     }
     failing_allocation = -1;

@@ -3,17 +3,32 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "runtime/particles/particle_system.h"
+#include "runtime/particles/random.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/particles/step_gl_test.h"
 
 namespace relief {
 
 inline constexpr float kDt = 1.0F / 60.0F;
+
+inline glm::vec3 randomIn(Pcg32& random, const glm::vec3& low, const glm::vec3& high) {
+    const float x = random.between(low.x, high.x);
+    const float y = random.between(low.y, high.y);
+    return {x, y, random.between(low.z, high.z)};
+}
+inline glm::vec3 randomIn(Pcg32& random, float half) {
+    return randomIn(random, glm::vec3(-half), glm::vec3(half));
+}
+
+inline glm::quat turn(const glm::vec3& axis, float angle) {
+    return glm::angleAxis(angle, glm::normalize(axis));
+}
 
 class CollisionTest : public StepGlTest {
   protected:
@@ -27,13 +42,28 @@ class CollisionTest : public StepGlTest {
         textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
         ASSERT_TRUE(particles_->setCollider(textures_.get()));
     }
+    void collideWith(const Collider& collider) { collideWith(ColliderTextures::create(collider)); }
+    void collideWith(const ColliderBody& body) { collideWith(ColliderTextures::create(std::span(&body, 1))); }
     void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
+    void setPose(const Pose& pose) { textures_->setPoses(std::span(&pose, 1)); }
     [[nodiscard]] std::vector<ParticleState> state() const {
         auto read = particles_->readState();
         EXPECT_TRUE(read);
         return read.value_or(std::vector<ParticleState>{});
     }
     void spawnOne(const Birth& birth) { ASSERT_EQ(particles_->spawn(std::span(&birth, 1)), 1U); }
+    void step(int count = 1) {
+        for (int i = 0; i < count; ++i) {
+            ASSERT_TRUE(particles_->step(kDt));
+        }
+    }
+    /// The events of the last step.
+    StepEvents takeEvents(std::uint64_t tag = 0) {
+        EXPECT_TRUE(particles_->requestEvents(tag));
+        auto events = particles_->waitEvents();
+        EXPECT_TRUE(events && *events);
+        return events && *events ? std::move(**events) : StepEvents{};
+    }
 
     std::unique_ptr<ColliderTextures> textures_;
     std::unique_ptr<ParticleSystem> particles_;

@@ -12,17 +12,15 @@
 #include <numbers>
 
 #include "formats/animation/mesh_parts.h"
-#include "formats/animation/mesh_pose.h"
 #include "runtime/particles/emitter.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/particles/statistics.h"
 
 namespace relief {
 namespace {
 
-constexpr int kCount = 100'000;
+constexpr int kCount = 50'000;
 constexpr double kPi = std::numbers::pi;
-/// Of Kolmogorov's distance times √n: above it by chance once in a million.
-constexpr double kCritical = 2.7;
 
 /// A grid of `u` times `v` quads, whose vertex (i, j) is at place(i / u, j / v).
 struct Grid {
@@ -62,60 +60,6 @@ std::vector<EmitterSurface::Place> drawn(const EmitterSurface& surface, int coun
     return places;
 }
 
-/// Kolmogorov's distance of numbers from a distribution, times √n.
-double off(std::vector<double> values, const std::function<double(double)>& cdf) {
-    std::sort(values.begin(), values.end());
-    const auto n = static_cast<double>(values.size());
-    double worst = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double f = cdf(values[i]);
-        worst = std::max({worst, f - static_cast<double>(i) / n, static_cast<double>(i + 1) / n - f});
-    }
-    return worst * std::sqrt(n);
-}
-
-/// Pearson's χ² of counts from their expected shares, less its mean, in its standard deviations; above 6 by chance
-/// once in millions.
-double chi(const std::vector<std::size_t>& counts, const std::vector<double>& areas) {
-    double area = 0.0;
-    double n = 0.0;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-        area += areas[i];
-        n += static_cast<double>(counts[i]);
-    }
-    double sum = 0.0;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-        const double expected = n * areas[i] / area;
-        sum += (static_cast<double>(counts[i]) - expected) * (static_cast<double>(counts[i]) - expected) /
-               expected;
-    }
-    const double free = static_cast<double>(counts.size()) - 1.0;
-    return (sum - free) / std::sqrt(2.0 * free);
-}
-
-// Archimedes: heights on a sphere are uniform. The grid is finest at its poles, so that births by vertex or by triangle would not be.
-TEST(EmitterSurface, IsUniformOnASphere) {
-    const Grid grid(160, 320, [](double u, double v) {
-        return glm::dvec3(std::sin(kPi * u) * std::cos(2 * kPi * v), std::cos(kPi * u),
-                          -std::sin(kPi * u) * std::sin(2 * kPi * v));
-    });
-    const EmitterSurface surface = surfaceOf(grid.triangles, grid.positions);
-    EXPECT_NEAR(surface.area(), 4 * kPi, 2e-3);
-    std::array<std::vector<double>, 3> heights;
-    for (const EmitterSurface::Place& place : drawn(surface)) {
-        ASSERT_NEAR(glm::length(place.position), 1.0F, 3e-4F);
-        ASSERT_NEAR(glm::length(place.normal), 1.0F, 1e-6F);
-        ASSERT_GT(std::abs(glm::dot(place.normal, place.position)), 0.999F);
-        ASSERT_EQ(place.velocity, glm::vec3(0.0F));
-        for (int axis = 0; axis < 3; ++axis) {
-            heights[static_cast<std::size_t>(axis)].push_back(double{place.position[axis]});
-        }
-    }
-    for (const std::vector<double>& of_axis : heights) {
-        EXPECT_LT(off(of_axis, [](double h) { return 0.5 * (h + 1.0); }), kCritical);
-    }
-}
-
 TEST(EmitterSurface, IsUniformOnABoxAndPointsOutwards) {
     const glm::vec3 half(0.5F, 2.0F, 0.1F);
     const AnimatedMesh box = movingBox(half);
@@ -127,6 +71,8 @@ TEST(EmitterSurface, IsUniformOnABoxAndPointsOutwards) {
         areas[i] = double{half[(axis + 1) % 3]} * double{half[(axis + 2) % 3]};
     }
     for (const EmitterSurface::Place& place : drawn(surface)) {
+        ASSERT_NEAR(glm::length(place.normal), 1.0F, 1e-6F);
+        ASSERT_EQ(place.velocity, glm::vec3(0.0F));
         int axis = 0;
         while (axis < 2 && std::abs(place.normal[axis]) < 0.5F) {
             ++axis;
@@ -137,7 +83,7 @@ TEST(EmitterSurface, IsUniformOnABoxAndPointsOutwards) {
                                     (place.position[(axis + 2) % 3] > 0.0F ? 2U : 0U);
         ++counts[static_cast<std::size_t>(axis) * 8 + (side > 0.0F ? 4U : 0U) + quarter];
     }
-    EXPECT_LT(chi(counts, areas), 6.0);
+    EXPECT_LT(test::chiSquare(counts, areas), test::kChiSquareMax);
 }
 
 // A straight pipe that is bent into a quarter of a torus: its outer side is stretched, R + r cos φ.
@@ -160,56 +106,20 @@ TEST(EmitterSurface, IsUniformOnABentPipe) {
     EXPECT_NEAR(surface.area(), 0.5 * kPi * kBend * 2 * kPi * kRadius, 1e-3);
     std::vector<double> around;
     std::vector<double> along;
-    for (const EmitterSurface::Place& place : drawn(surface)) {
+    for (const EmitterSurface::Place& place : drawn(surface, 100'000)) {
         const glm::dvec3 p(place.position);
         const double phi = std::atan2(p.z, std::hypot(p.x, p.y) - kBend);
         around.push_back(phi < 0.0 ? phi + 2 * kPi : phi);
         along.push_back(std::atan2(p.y, p.x));
     }
-    EXPECT_LT(off(along, [](double theta) { return theta / (0.5 * kPi); }), kCritical);
+    EXPECT_LT(test::kolmogorov(along, [](double theta) { return theta / (0.5 * kPi); }),
+              test::kKolmogorovMax);
     const auto bent_share = [](double phi) {
         return (kBend * phi + kRadius * std::sin(phi)) / (2 * kPi * kBend);
     };
-    EXPECT_LT(off(around, bent_share), kCritical);
-    EXPECT_GT(off(around, [](double phi) { return phi / (2 * kPi); }), 20.0) << "areas at rest would be seen";
-}
-
-// The areas of a skinned, morphed mesh are those of its pose.
-TEST(EmitterSurface, IsUniformOnAPosedMesh) {
-    AnimatedMesh mesh = bendingTube(16, 20);
-    MeshPose pose = poseAt(mesh, mesh.clips[0], 0.8);
-    pose.weights[0] = 0.7F;
-    const std::vector<glm::vec3> now = posed(mesh, pose);
-    EmitterSurface surface = surfaceOf(mesh.triangles, mesh.positions);
-    surface.move(now, now, 0.0);
-    std::vector<double> areas;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const glm::dvec3 p(now[t.x]);
-        areas.push_back(glm::length(glm::cross(glm::dvec3(now[t.y]) - p, glm::dvec3(now[t.z]) - p)));
-    }
-    std::vector<std::size_t> counts(areas.size());
-    for (const EmitterSurface::Place& place : drawn(surface, 200'000)) {
-        std::size_t of = 0;
-        double least = std::numeric_limits<double>::infinity();
-        const glm::dvec3 p(place.position);
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            const glm::uvec3& t = mesh.triangles[i];
-            const glm::dvec3 a(now[t.x]);
-            const glm::dvec3 b(now[t.y]);
-            const glm::dvec3 c(now[t.z]);
-            // In the triangle, the areas with its sides add up to the whole.
-            const double excess = glm::length(glm::cross(b - a, p - a)) +
-                                  glm::length(glm::cross(c - b, p - b)) +
-                                  glm::length(glm::cross(a - c, p - c)) - areas[i];
-            if (excess < least) {
-                least = excess;
-                of = i;
-            }
-        }
-        ASSERT_LT(least, 1e-6);
-        ++counts[of];
-    }
-    EXPECT_LT(chi(counts, areas), 6.0);
+    EXPECT_LT(test::kolmogorov(around, bent_share), test::kKolmogorovMax);
+    EXPECT_GT(test::kolmogorov(around, [](double phi) { return phi / (2 * kPi); }), 20.0)
+        << "areas at rest would be seen";
 }
 
 // Points of a turning body go with ω × r; what a straight line makes of the arc is within the header's bounds.
@@ -259,7 +169,8 @@ TEST(EmitterSurface, WeightsAreADensityThatIsLinear) {
             ASSERT_LE(x + y, 1.000001) << "the other triangle has no weight";
             shares.push_back(corner == 0 ? 1.0 - x - y : corner == 1 ? x : y);
         }
-        EXPECT_LT(off(shares, [](double x) { return x * x * (3.0 - 2.0 * x); }), kCritical);
+        EXPECT_LT(test::kolmogorov(shares, [](double x) { return x * x * (3.0 - 2.0 * x); }),
+                  test::kKolmogorovMax);
     }
     // A triangle of thrice the mean weight has thrice the births.
     std::size_t near = 0;
@@ -287,31 +198,33 @@ TEST(EmitterSurface, GroupsOfAMeshAreItsJoints) {
                 surfaceOf(mesh.triangles, mesh.positions).area(), 1e-6);
     const auto none = groupWeights(mesh, "Head");
     ASSERT_FALSE(none);
-    EXPECT_NE(none.error().message.find("'Head'; it has 'foot', 'middle'"), std::string::npos)
-        << none.error().message;
+    EXPECT_NE(none.error().message.find("'Head'"), std::string::npos) << none.error().message;
     EXPECT_FALSE(groupWeights(mesh, ""));
 }
 
 TEST(EmitterSurface, RefusesWhatIsNoSurface) {
     const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const std::vector<glm::uvec3> one{{0, 1, 2}};
-    const auto refused = [&](const std::vector<glm::uvec3>& triangles, std::vector<float> weights,
-                             std::vector<glm::vec3> positions, const char* words) {
-        const auto made = EmitterSurface::create(triangles, std::move(weights), std::move(positions));
-        ASSERT_FALSE(made) << words;
-        EXPECT_NE(made.error().message.find(words), std::string::npos) << made.error().message;
-    };
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    refused({{0, 1, 3}}, {}, corners, "corner does not exist");
-    refused(one, {1.0F}, corners, "one weight a position");
-    refused(one, {1.0F, -1.0F, 1.0F}, corners, "weight");
-    refused(one, {1.0F, kNan, 1.0F}, corners, "weight");
-    refused(one, {0.0F, 0.0F, 0.0F}, corners, "no area");
-    refused({}, {}, corners, "no area");
-    refused({{0, 1, 1}}, {}, corners, "no area");
-    refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kNan, 1, 0}}, "no area");
-    refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kInfinity, 1, 0}}, "no area");
+    struct Case {
+        std::vector<glm::uvec3> triangles;
+        std::vector<float> weights;
+        std::vector<glm::vec3> positions;
+    };
+    const Case cases[] = {{{{0, 1, 3}}, {}, corners},
+                          {one, {1.0F}, corners},
+                          {one, {1.0F, -1.0F, 1.0F}, corners},
+                          {one, {1.0F, kNan, 1.0F}, corners},
+                          {one, {0.0F, 0.0F, 0.0F}, corners},
+                          {{}, {}, corners},
+                          {{{0, 1, 1}}, {}, corners},
+                          {one, {}, {{0, 0, 0}, {1, 0, 0}, {kNan, 1, 0}}},
+                          {one, {}, {{0, 0, 0}, {1, 0, 0}, {kInfinity, 1, 0}}}};
+    for (const Case& wrong : cases) {
+        EXPECT_FALSE(EmitterSurface::create(wrong.triangles, wrong.weights, wrong.positions))
+            << &wrong - cases;
+    }
     // Tiny and huge ones are none the worse.
     for (const float scale : {1e-18F, 1e15F}) {
         EmitterSurface surface = surfaceOf(one, {corners[0], scale * corners[1], scale * corners[2]});
@@ -363,48 +276,6 @@ TEST(EmitterSurface, AnEmitterThrowsAlongTheNormalAndTakesOnItsVelocity) {
         // x goes to −z and z to x.
         const glm::vec3 thrown = births[i].velocity - quarter * own[i].velocity;
         EXPECT_LT(glm::length(thrown - 0.5F * glm::vec3(3 * 2.0F, 5.0F, -3 * 1.0F)), 1e-4F);
-    }
-}
-
-// Steps of half the length are the same births where the motion is a straight one, and as near as the header has it where not.
-TEST(EmitterSurface, BirthsDoNotDependOnTheSteps) {
-    const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
-    const auto birthsBy = [&](int steps, double turn) {
-        Emitter emitter(settingsOf(surfaceOf(box.triangles, box.positions)), 5);
-        std::vector<Birth> births;
-        const double dt = 0.2 / steps;
-        const auto at = [&](double time) {
-            std::vector<glm::vec3> out;
-            for (const glm::vec3& p : box.positions) {
-                const double c = std::cos(turn * time);
-                const double s = std::sin(turn * time);
-                out.emplace_back(c * double{p.x} - s * double{p.y} + time, s * double{p.x} + c * double{p.y},
-                                 p.z);
-            }
-            return out;
-        };
-        for (int step = 0; step < steps; ++step) {
-            const std::size_t before = births.size();
-            emitter.moveSurface(at(step * dt), at((step + 1) * dt), dt);
-            emitter.emit(dt, 1000, births);
-            for (std::size_t i = before; i < births.size(); ++i) {
-                births[i].velocity = emitter.placeVelocities()[i - before];
-            }
-        }
-        return births;
-    };
-    for (const double turn : {0.0, 4.0}) {
-        const std::vector<Birth> coarse = birthsBy(10, turn);
-        const std::vector<Birth> fine = birthsBy(40, turn);
-        ASSERT_EQ(coarse.size(), 600U);
-        ASSERT_EQ(fine.size(), coarse.size());
-        const double arm = 0.62;
-        for (std::size_t i = 0; i < fine.size(); ++i) {
-            ASSERT_LE(double{glm::length(fine[i].position - coarse[i].position)},
-                      arm * turn * turn * 0.02 * 0.02 / 8 + 1e-6);
-            ASSERT_LE(double{glm::length(fine[i].velocity - coarse[i].velocity)},
-                      arm * turn * turn * 0.025 / 2 + 1e-4);
-        }
     }
 }
 

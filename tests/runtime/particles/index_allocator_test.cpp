@@ -82,18 +82,5 @@ TEST(IndexAllocator, KnowsNothingBeyondItsCapacity) {
     EXPECT_EQ(none.extent(), 0U);
 }
 
-TEST(IndexAllocator, HoldsFourMillion) {
-    constexpr std::uint32_t kCapacity = 1U << 22;
-    IndexAllocator allocator(kCapacity);
-    for (std::uint32_t i = 0; i < kCapacity; ++i) {
-        ASSERT_EQ(allocator.acquire(), i);
-    }
-    EXPECT_EQ(allocator.acquire(), std::nullopt);
-    for (std::uint32_t i = kCapacity; i-- > 1;) {
-        ASSERT_TRUE(allocator.release(i));
-        ASSERT_EQ(allocator.extent(), i);
-    }
-}
-
 }  // namespace
 }  // namespace relief

@@ -27,6 +27,12 @@ StepEvents stepOf(std::vector<ParticleEvent> events) {
     return step;
 }
 
+std::vector<Birth> birthsOf(const SpawnSettings& settings, const std::vector<ParticleEvent>& events) {
+    std::vector<Birth> births;
+    EXPECT_EQ(Spawner(settings, 2).spawn(stepOf(events), {}, 10'000, births), 0U);
+    return births;
+}
+
 TEST(Spawner, AHitMakesWhatItSays) {
     SpawnSettings settings;
     settings.type = 1;
@@ -77,31 +83,25 @@ TEST(Spawner, OnlyWhatIsAskedForCounts) {
     age.death = true;
     auto killed = hitOf(5, 1, 1.0F);
     killed.death = true;
-    const StepEvents step =
-        stepOf({hitOf(0, 0, 5.0F), hitOf(1, 1, 5.0F), hitOf(2, 1, 1.9F), lasting, age, killed});
-    std::vector<Birth> births;
-    Spawner(settings, 1).spawn(step, {}, 1000, births);
-    ASSERT_EQ(births.size(), 3U);
-    EXPECT_EQ(births[0].position.x, 1.0F);
-    births.clear();
+    const std::vector<ParticleEvent> step = {
+        hitOf(0, 0, 5.0F), hitOf(1, 1, 5.0F), hitOf(2, 1, 1.9F), lasting, age, killed};
+    const std::vector<Birth> hits = birthsOf(settings, step);
+    ASSERT_EQ(hits.size(), 3U);
+    EXPECT_EQ(hits[0].position.x, 1.0F);
     settings.on = SpawnOn::kDeath;
-    Spawner(settings, 1).spawn(step, {}, 1000, births);
-    EXPECT_EQ(births.size(), 6U) << "one of age and one killed";
+    EXPECT_EQ(birthsOf(settings, step).size(), 6U) << "one of age and one killed";
     settings.of.reset();
     settings.on = SpawnOn::kCollision;
     settings.min_speed = 0.0F;
-    births.clear();
-    Spawner(settings, 1).spawn(step, {}, 1000, births);
-    EXPECT_EQ(births.size(), 12U);
+    EXPECT_EQ(birthsOf(settings, step).size(), 12U);
     settings.material = 4;
     auto elsewhere = hitOf(8, 0, 5.0F);
     elsewhere.material = 3;
     auto there = hitOf(9, 0, 5.0F);
     there.material = 4;
-    births.clear();
-    Spawner(settings, 1).spawn(stepOf({hitOf(7, 0, 5.0F), elsewhere, there}), {}, 1000, births);
-    ASSERT_EQ(births.size(), 3U);
-    EXPECT_EQ(births[0].position.x, 9.0F);
+    const std::vector<Birth> own = birthsOf(settings, {hitOf(7, 0, 5.0F), elsewhere, there});
+    ASSERT_EQ(own.size(), 3U);
+    EXPECT_EQ(own[0].position.x, 9.0F);
 }
 
 // Births and refusals are all that were due, whatever the limits; the same seed gives the same.
@@ -188,10 +188,8 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
     settings.count_min = settings.count_max = 3000;
     settings.speed_min = settings.speed_max = 1.0F;
     settings.inherit = 2.0F;
-    std::vector<Birth> births;
-    Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
     glm::vec3 mean{0.0F};
-    for (const Birth& birth : births) {
+    for (const Birth& birth : birthsOf(settings, {age})) {
         const glm::vec3 thrown = birth.velocity - glm::vec3(6.0F, 0.0F, 0.0F);
         EXPECT_NEAR(glm::length(thrown), 1.0F, 1e-5F);
         mean += thrown / 3000.0F;
@@ -199,13 +197,10 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
     EXPECT_LT(glm::length(mean), 0.05F);
     settings.cone_degrees = 0.0F;
     settings.count_min = settings.count_max = 1;
-    births.clear();
-    Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
-    EXPECT_LT(glm::length(births[0].velocity - glm::vec3(7.0F, 0.0F, 0.0F)), 1e-6F);
+    const auto thrown = [&] { return birthsOf(settings, {age}).at(0).velocity; };
+    EXPECT_LT(glm::length(thrown() - glm::vec3(7.0F, 0.0F, 0.0F)), 1e-6F);
     age.velocity = {};
-    births.clear();
-    Spawner(settings, 2).spawn(stepOf({age}), {}, 10'000, births);
-    EXPECT_LT(glm::length(births[0].velocity - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
+    EXPECT_LT(glm::length(thrown() - glm::vec3(0.0F, 1.0F, 0.0F)), 1e-6F);
 }
 
 // An event of a particle that is lost makes nothing that is: it counts as refused.

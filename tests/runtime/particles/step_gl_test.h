@@ -40,4 +40,9 @@ class StepGlTest : public GlTestOf<StepCase> {
                                              StepCase{GlApi::kGl33Core, StepPath::kCompute}), \
                              stepTestName)
 
+// What the CPU decides alone, such as which arguments are refused.
+#define RELIEF_INSTANTIATE_STEP_TESTS_ONCE(suite)                                                            \
+    INSTANTIATE_TEST_SUITE_P(Paths, suite, testing::Values(StepCase{GlApi::kGl33Core, StepPath::kFragment}), \
+                             stepTestName)
+
 }  // namespace relief

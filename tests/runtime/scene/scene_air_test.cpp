@@ -1,46 +1,20 @@
-// The scene's keys of air and fields: what they set, both ends of their ranges, and every mistake with its
-// line and column.
+// The scene's air and fields: what their keys set, and what the report has of them.
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "formats/fields/json.h"
 #include "runtime/player/report.h"
-#include "runtime/scene/scene.h"
-#include "runtime/scene/scene_parser.h"
-#include "tests/runtime/scene/scene_error.h"
+#include "tests/runtime/scene/scene_text.h"
 
 namespace relief {
 namespace {
 
-const std::string kHead = "[collider]\nfile = \"a.relief\"\n";
-
-Result<Scene> parse(const std::string& more) {
-    return parseScene(kHead + more, "dir/scene.toml");
-}
-
 Scene good(const std::string& more) {
-    const auto scene = parse(more);
-    EXPECT_TRUE(scene) << more << "\n" << scene.error().message;
-    return scene.value_or(Scene{});
-}
-
-/// `more` starts at line 3.
-void expectError(const std::string& more, const std::string& place, const std::string& part) {
-    expectSceneError(kHead + more, "dir/scene.toml:" + place + ": ", part);
+    return goodScene(kSceneHead + more);
 }
 
 const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
-
-TEST(SceneAir, WithoutItsTablesThereIsNone) {
-    const Scene scene = good("");
-    EXPECT_TRUE(scene.air.attractors.empty());
-    EXPECT_TRUE(scene.air.vortices.empty());
-    EXPECT_FALSE(scene.air.curl_noise);
-    EXPECT_FALSE(scene.air.viscosity);
-    EXPECT_FALSE(scene.flow);
-    EXPECT_EQ(scene.air.wind, glm::vec3(0.0F));
-}
 
 TEST(SceneAir, AttractorsAndVorticesInTheirOrder) {
     const Scene scene = good(
@@ -104,68 +78,10 @@ TEST(SceneAir, CurlNoiseAndViscosity) {
     EXPECT_TRUE(checkAir(good("[curl_noise]\namplitude = 1e-300\nscale = 1e-300\n").air));
 }
 
-TEST(SceneAir, MistakesOfFieldsAreNamed) {
-    const std::string attractor = "[[attractor]]\nposition = [0, 0, 0]\nstrength = 1\nradius = 1\n";
-    const std::string vortex = "[[vortex]]\ncenter = [0, 0, 0]\nstrength = 1\nradius = 1\n";
-    expectError("[attractor]\nstrength = 1\n", "3:1", "[[attractor]]");
-    expectError("[[attractor]]\nstrength = 1\nradius = 1\n", "3:1", "attractor.position is missing");
-    expectError("[[attractor]]\nposition = [0, 0, 0]\nradius = 1\n", "3:1", "strength is missing");
-    expectError("[[attractor]]\nposition = [0, 0, 0]\nstrength = 1\n", "3:1", "radius is missing");
-    expectError("[[attractor]]\nposition = [0, 0, 0]\nstrength = 0\nradius = 1\n", "5:12", "does nothing");
-    expectError("[[attractor]]\nposition = [0, 0, 0]\nstrength = nan\nradius = 1\n", "5:12", "out of range");
-    expectError("[[attractor]]\nposition = [0, 0, 0]\nstrength = 1\nradius = 0\n", "6:10", "above 0");
-    expectError(attractor + "falloff = 3\n", "7:11", "0 to 2");
-    expectError(attractor + "falloff = 1.5\n", "7:11", "whole number");
-    expectError(attractor + "reach = 0\n", "7:9", "above 0");
-    expectError(attractor + "raech = 1\n", "7:1", "reach");
-    std::string nine;
-    for (int i = 0; i < 9; ++i) {
-        nine += attractor;
-    }
-    expectError(nine, "35:1", "9 of [[attractor]]");
-    expectError("[[vortex]]\nstrength = 1\nradius = 1\n", "3:1", "vortex.center is missing");
-    expectError(vortex + "axis = [0, 0, 0]\n", "7:8", "no direction");
-    expectError(vortex + "reach = 1\n", "7:1", "unknown key");
-}
-
-TEST(SceneAir, MistakesOfAirAreNamed) {
-    expectError("[flow]\n" + kBox, "3:1", "flow.raw is missing");
-    expectError("[flow]\nraw = \"\"\nsize = [1, 1, 1]\n" + kBox, "4:7", "names no file");
-    expectError("[flow]\nfile = \"a.exr\"\n" + kBox, "4:1", "unknown key");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 0, 0]\n", "3:1",
-                "flow.box_max is missing");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 2, 0]\nbox_max = [1, 2, 3]\n",
-                "6:11", "y axis");
-    expectError("[flow]\nraw = \"a.raw\"\n" + kBox, "3:1", "flow.size is missing");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1]\n" + kBox, "5:8", "three whole numbers");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 513]\n" + kBox, "5:15", "1 to 512");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [512, 512, 65]\n" + kBox, "5:8", "bytes");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\ncomponents = 4\n" + kBox, "6:14", "2 to 3");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\noutside = \"wrap\"\n" + kBox, "6:11", "\"edge\"");
-    expectError("[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\ngain = 0\n" + kBox, "6:8", "does nothing");
-    expectError("[forces]\ndrag = 0\n[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\n" + kBox, "5:1",
-                "forces.drag");
-    expectError("[curl_noise]\nscale = 1\n", "3:1", "amplitude is missing");
-    expectError("[curl_noise]\namplitude = 1\n", "3:1", "scale is missing");
-    expectError("[curl_noise]\namplitude = 0\nscale = 1\n", "4:13", "above 0");
-    expectError("[curl_noise]\namplitude = 1\nscale = 1\noctaves = 5\n", "6:11", "1 to 4");
-    expectError("[curl_noise]\namplitude = 1\nscale = 1\ndrift = 1001\n", "6:9", "lower it");
-    expectError("[curl_noise]\namplitude = 1\nscale = 1\nseed = -1\n", "6:8", "out of range");
-    expectError("[curl_noise]\namplitude = 1\nscale = 1\n[forces]\nviscosity = 0\n", "3:1",
-                "forces.viscosity");
-    expectError("[forces]\nviscosity = 1\ndrag = 2\n", "4:13", "exclude each other");
-    expectError("[forces]\nviscosity = -1\n", "4:13", "out of range");
-    expectError("[forces]\nviscosity = 0\nwind = [1, 0, 0]\n", "5:8", "forces.viscosity is 0");
-    expectError("[flwo]\n", "3:2", "'flow'");
-}
-
 /// Every key and default of the air, and none of what the scene does not have.
 TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
-    Bounds bounds;
-    bounds.add({0.0F, 0.0F, 0.0F});
-    bounds.add({1.0F, 1.0F, 1.0F});
     const auto report = [&](const std::string& more) {
-        const auto scene = withDefaults(good(more), bounds);
+        const auto scene = withDefaults(good(more), unitBounds());
         EXPECT_TRUE(scene);
         PlayerReport result;
         result.scene = scene.value_or(Scene{});

@@ -1,11 +1,11 @@
-// [[material]] of scenes, "materials" of worlds and [[spawn]] material: what is read, whom it reaches, and every mistake with its place.
+// [[material]] of scenes, "materials" of worlds and [[spawn]] material: what is read, and whom it reaches.
 #include <gtest/gtest.h>
 
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_emitter.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/scene/scene_error.h"
+#include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -13,7 +13,7 @@ namespace {
 
 const std::string kHead = "[[collider]]\nfile = \"box.relief\"\n";
 
-std::filesystem::path boxIn(const test::TemporaryFolder& folder) {
+void writeBox(const test::TemporaryFolder& folder) {
     Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
     box.materials.list = {{"oak", 0.5F, 0.25F}, {"stove"}};
     box.materials.size = 1.0F;
@@ -21,12 +21,11 @@ std::filesystem::path boxIn(const test::TemporaryFolder& folder) {
     box.materials.nodes.resize(1);
     box.materials.nodes[0].leaves = {0, 1, 0, 1, 0, 1, 0, 1};
     EXPECT_TRUE(saveCollider(folder.path() / "box.relief", box));
-    return folder.path() / "box.relief";
 }
 
 TEST(SceneMaterial, ResponsesReachTheCollidersByName) {
     const test::TemporaryFolder folder;
-    static_cast<void>(boxIn(folder));
+    writeBox(folder);
     const auto loaded =
         loadAll(folder.write("scene.toml",
                              kHead + "[[material]]\nname = \"stove\"\nfriction = 0.75\nlifetime_loss = 3\n"
@@ -43,38 +42,22 @@ TEST(SceneMaterial, ResponsesReachTheCollidersByName) {
     EXPECT_EQ(makeSpawners(loaded->scene.spawns, std::span(names).first(1)).front().settings().material, 1);
 }
 
-TEST(SceneMaterial, MistakesHaveTheirPlace) {
-    const auto expectError = [](const std::string& more, const std::string& place, const std::string& part) {
-        expectSceneError(kHead + more, "dir/scene.toml:" + place + ": ", part);
-    };
-    expectError("[[material]]\nfriction = 1\n", "3:1", "name");
-    expectError("[[material]]\nname = \"a\"\nfriction = 2\n", "5:12", "1");
-    expectError("[[material]]\nname = \"a\"\nlifetime_loss = -1\n", "5:17", "0");
-    expectError("[[material]]\nname = \"a\"\nfricton = 1\n", "5:1", "friction");
-    expectError("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "is taken");
-    expectError("[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision");
-
+TEST(SceneMaterial, UnknownNamesAreErrors) {
     const test::TemporaryFolder folder;
-    static_cast<void>(boxIn(folder));
-    for (const auto& [more, words] :
-         {std::pair(
-              "[[material]]\nname = \"stave\"\n",
-              "scene.toml:3:1: material[0].name = 'stave' is the name of no material; did you mean 'stove'? "
-              "There are 'oak', 'stove'"),
-          std::pair("[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n",
-                    "scene.toml:3:1: spawn[0].material = 'ice' is the name of no material; there are 'oak', "
-                    "'stove'")}) {
+    writeBox(folder);
+    for (const auto& [more, what] :
+         {std::pair("[[material]]\nname = \"stave\"\n", "material[0].name = 'stave'"),
+          {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n", "spawn[0].material = 'ice'"}}) {
         const auto loaded = loadAll(folder.write("scene.toml", kHead + more), {});
         ASSERT_FALSE(loaded);
-        EXPECT_NE(loaded.error().message.find(words), std::string::npos) << loaded.error().message;
+        EXPECT_NE(loaded.error().message.find(std::string("scene.toml:3:1: ") + what), std::string::npos)
+            << loaded.error().message;
         // A scene that another one becomes as it plays.
         const auto plays = loadAll(folder.write("plays.toml", kHead), {});
         const auto changed = parseScene(kHead + more, "scene.toml");
         ASSERT_TRUE(plays && changed);
         EXPECT_TRUE(checkMaterials(plays->scene, *plays));
-        const auto checked = checkMaterials(*changed, *plays);
-        ASSERT_FALSE(checked);
-        EXPECT_NE(checked.error().message.find(words), std::string::npos) << checked.error().message;
+        EXPECT_FALSE(checkMaterials(*changed, *plays));
     }
 }
 
@@ -90,11 +73,7 @@ TEST(SceneMaterial, WorldsHaveThemToo) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->materials, world.materials);
     world.materials[1].name = "oak";
-    const auto twice = parseWorld(worldText(world));
-    ASSERT_FALSE(twice);
-    EXPECT_NE(twice.error().message.find("materials[1].name = 'oak' is that of another one; join them"),
-              std::string::npos)
-        << twice.error().message;
+    EXPECT_EQ(parseWorld(worldText(world)).error().code, ErrorCode::kInvalidInput);
     world.materials.clear();
     EXPECT_EQ(worldText(world).find("materials"), std::string::npos);
 }

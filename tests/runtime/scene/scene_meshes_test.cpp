@@ -5,10 +5,9 @@
 
 #include <fstream>
 
-#include "runtime/scene/scene_parser.h"
 #include "runtime/scene/scene_world.h"
 #include "tests/runtime/collider/three_bodies.h"
-#include "tests/runtime/scene/scene_error.h"
+#include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -105,38 +104,21 @@ TEST_F(DrawnMeshesTest, NamesThatAreNoFilesAreErrors) {
     world.colliders[1].mesh = "window";
     const auto meshes = loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"));
     ASSERT_FALSE(meshes);
-    EXPECT_NE(meshes.error().message.find("'window.ply' or .obj for a collider; add it"), std::string::npos)
-        << meshes.error().message;
+    EXPECT_NE(meshes.error().message.find("'window.ply'"), std::string::npos) << meshes.error().message;
 }
 
 TEST(SceneWeather, ChangesEvenlyBetweenItsTimes) {
-    const auto scene = parseScene(
-        "[collider]\nfile = \"a.relief\"\n[render]\nmeshes = \"m\"\nfog = 5\n"
-        "[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n[[render.weather]]\ntime = 3\nsnow = 0.6\nwet "
-        "= 1\n",
-        "dir/scene.toml");
-    ASSERT_TRUE(scene) << scene.error().message;
-    EXPECT_EQ(meshStyle(*scene, 0.0).snow, 0.2F);
-    EXPECT_FLOAT_EQ(meshStyle(*scene, 2.0).snow, 0.4F);
-    EXPECT_FLOAT_EQ(meshStyle(*scene, 2.0).wet, 0.5F);
-    EXPECT_FLOAT_EQ(meshStyle(*scene, 2.0).sun, 0.75F);
-    EXPECT_EQ(meshStyle(*scene, 9.0).snow, 0.6F);
-    EXPECT_EQ(meshStyle(*scene, 9.0).fog, 5.0F);
-    const auto calm =
-        parseScene("[collider]\nfile = \"a.relief\"\n[render]\nmeshes = \"m\"\n", "dir/scene.toml");
-    EXPECT_EQ(meshStyle(*calm, 1.0).sun, 1.0F);
-}
-
-TEST(SceneWeather, WhatHasNoEffectIsAnError) {
-    const std::string start = "[collider]\nfile = \"a.relief\"\n[render]\n";
-    const std::string at = "dir/scene.toml:";
-    expectSceneError(start + "fog = 5\n", at + "4:", "does nothing without render.meshes");
-    expectSceneError(start + "[[render.weather]]\nsnow = 1\n",
-                     at + "4:", "does nothing without render.meshes");
-    expectSceneError(start + "meshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
-                     at + "8:", "does not rise");
-    expectSceneError(start + "meshes = \"m\"\n[[render.weather]]\nsnow = 1.5\n", at + "6:", "snow");
-    expectSceneError(start + "meshes = \"m\"\nmesh = \"a.obj\"\n", at, "mesh");
+    const std::string meshes = kSceneHead + "[render]\nmeshes = \"m\"\n";
+    const Scene scene = goodScene(meshes +
+                                  "fog = 5\n[[render.weather]]\ntime = 1\nsnow = 0.2\nsun = 0.5\n"
+                                  "[[render.weather]]\ntime = 3\nsnow = 0.6\nwet = 1\n");
+    EXPECT_EQ(meshStyle(scene, 0.0).snow, 0.2F);
+    EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).snow, 0.4F);
+    EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).wet, 0.5F);
+    EXPECT_FLOAT_EQ(meshStyle(scene, 2.0).sun, 0.75F);
+    EXPECT_EQ(meshStyle(scene, 9.0).snow, 0.6F);
+    EXPECT_EQ(meshStyle(scene, 9.0).fog, 5.0F);
+    EXPECT_EQ(meshStyle(goodScene(meshes), 1.0).sun, 1.0F);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Emitters of a surface: what is read, what is filled in, and every mistake with its place.
+// Emitters of a surface: which area they have, and what is no surface.
 #include "runtime/scene/scene_births.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/collider/animated_container.h"
-#include "tests/runtime/scene/scene_error.h"
+#include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -110,9 +110,8 @@ TEST_F(SceneSurface, MayBeThatOfAMeshFile) {
     EXPECT_NEAR(area(head + "material = \"iron\"\n"), 2.0, 1e-6);
     EXPECT_NEAR(area(head + "material = \"wood\"\ngroup = \"shell\"\n"), 1.0, 1e-6);
     EXPECT_NEAR(area(head + "attach = 0\n"), 4.0, 1e-6) << "in the collider's space";
-    expectRefused(head + "group = \"floor\"\n", "3:1",
-                  "no group or object 'floor'; it has 'shell', 'lid top'");
-    expectRefused(head + "material = \"glass\"\n", "3:1", "no material 'glass'; it has 'wood', 'iron'");
+    expectRefused(head + "group = \"floor\"\n", "3:1", "'shell', 'lid top'");
+    expectRefused(head + "material = \"glass\"\n", "3:1", "'wood', 'iron'");
     expectRefused(head + "material = \"wood\"\ngroup = \"lid top\"\n", "3:1", "no area");
     const auto loaded = load(head);
     ASSERT_TRUE(loaded);
@@ -137,37 +136,18 @@ TEST_F(SceneSurface, OfAColliderThatWobbles) {
     const std::string wobbles =
         "[[collider]]\nmesh = \"ball.obj\"\ndeform = { amplitude = 0.1, frequency = 1 }\n";
     EXPECT_NEAR(area(wobbles + kSurface + "attach = 0\n"), 1.5 + 0.5 * std::sqrt(3.0), 1e-6);
-    expectRefused(wobbles + kSurface + "attach = 0\ngroup = \"a\"\n", "4:1", "it has none with a name");
+    expectRefused(wobbles + kSurface + "attach = 0\ngroup = \"a\"\n", "4:1", "emitter.group");
 }
 
-TEST_F(SceneSurface, MistakesHaveTheirPlaceAndCure) {
-    const auto mistake = [](const std::string& keys, const std::string& place, const std::string& part) {
-        expectSceneError(kCollider + kSurface + keys, "dir/scene.toml:" + place + ": ", part);
-    };
-    mistake("", "4:9", "needs emitter.attach");
-    mistake("attach = 1\n", "5:10", "none of the 1 colliders");
-    mistake("attach = 0\ngroup = \"\"\n", "6:9", "is empty");
-    mistake("attach = 0\nmaterial = \"\"\n", "6:12", "is empty");
-    mistake("attach = 0\ncenter = [0, 0, 0]\n", "6:10", "does nothing");
-    mistake("attach = 0\n[[emitter.key]]\ntime = 0\n[[emitter.key]]\ntime = 1\n", "6:1",
-            "moves no surface of a collider");
-    mistake("mesh = \"../cube.obj\"\n", "5:8", "leads out of the scene's folder");
-    expectSceneError(kCollider + "[[emitter]]\ngroup = \"Head\"\n",
-                     "dir/scene.toml:4:9: ", "choose emitter.shape = \"surface\"");
-
+TEST_F(SceneSurface, PartsThatAreNotThereAreErrors) {
     const std::string head = kPlayed + kSurface + "attach = 0\n";
-    expectRefused(head + "group = \"Head\"\n", "4:1",
-                  "emitter.group: there is no joint or node with vertices of its own 'Head'; it has 'foot', "
-                  "'middle'");
-    expectRefused(head + "material = \"hair\"\n", "4:1",
-                  "emitter.material: there is no material 'hair'; it has 'cloth', 'skin'");
+    expectRefused(head + "group = \"Head\"\n", "4:1", "emitter.group");
+    expectRefused(head + "material = \"hair\"\n", "4:1", "emitter.material");
     Collider bare = animatedContainer(mesh_);
     bare.animation.clear();
     ASSERT_TRUE(saveCollider(folder_.path() / "tube.relief", bare));
-    expectRefused(kCollider + kSurface + "attach = 0\ngroup = \"Head\"\n", "3:1",
-                  "emitter.group needs a mesh, and it keeps none; name the one that it was baked from");
-    expectRefused(kCollider + kSurface + "attach = 0\n", "3:1",
-                  "'" + (folder_.path() / "tube.relief").string() + "': no surface is found");
+    expectRefused(kCollider + kSurface + "attach = 0\ngroup = \"Head\"\n", "3:1", "emitter.group");
+    expectRefused(kCollider + kSurface + "attach = 0\n", "3:1", (folder_.path() / "tube.relief").string());
     folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     expectRefused(kCollider + kSurface + "mesh = \"flat.obj\"\n", "3:1", "no area");
 }

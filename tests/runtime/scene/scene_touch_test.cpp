@@ -8,7 +8,7 @@
 
 #include "formats/container.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/scene/scene_error.h"
+#include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -72,11 +72,13 @@ class SceneTouch : public testing::Test {
         }
         return made;
     }
-    /// \param scene  that ends with an emitter of a surface. \return how many births touch something.
+    /// \param scene  that ends with an emitter of a surface. \param keys  of that emitter's way.
+    /// \return how many births touch something.
     std::size_t expectTruth(const std::string& scene, const std::string& touching, double seconds,
-                            const Truth& truth) {
-        const std::vector<Born> all = run(scene, seconds).births;
-        const std::vector<Born> kept = run(scene + "touching = { " + touching + " }\n", seconds).births;
+                            const Truth& truth, const std::string& keys = "") {
+        const std::vector<Born> all = run(scene + keys, seconds).births;
+        const std::vector<Born> kept =
+            run(scene + "touching = { " + touching + " }\n" + keys, seconds).births;
         std::size_t next = 0;
         std::size_t unknown = 0;
         for (const Born& one : all) {
@@ -111,30 +113,21 @@ const std::string kStep =
     "[[emitter.key]]\ntime = 2\n[[emitter.key]]\ntime = 3\nposition = [0, 0.3, 0]\n";
 
 TEST_F(SceneTouch, AFootRaisesDustWhereAndWhileItIsDown) {
-    const std::string touching = "touching = { within = 0.05, material = \"earth\" }\n";
-    const std::vector<Born> all = run(kNoGround + kBox + kFoot + kStep, 3.0).births;
-    const std::vector<Born> kept = run(kNoGround + kBox + kFoot + touching + kStep, 3.0).births;
-    ASSERT_EQ(all.size(), 9000U);
-    std::size_t next = 0;
-    for (const Born& one : all) {
-        const bool stays = next < kept.size() && kept[next].birth.position == one.birth.position;
-        next += stays ? 1 : 0;
-        const double height = footHeight(one.moment);
-        ASSERT_NEAR(height, double{one.birth.position.y}, 1e-6);
-        if (std::abs(height - 0.05) > 0.002 && std::abs(one.birth.position.x) > 0.002F) {
-            ASSERT_EQ(stays, height < 0.05 && one.birth.position.x > 0.0F)
-                << one.moment << " " << one.birth.position.x;
-        }
-    }
-    EXPECT_EQ(next, kept.size());
-    // Half of the area, 4/3 of 3 s; five standard deviations.
-    EXPECT_NEAR(static_cast<double>(kept.size()), 2000.0, 200.0);
-    // Several names, and none: both halves.
-    for (const char* names : {", material = [\"earth\", \"oak\"]", ""}) {
-        const std::string both = std::string("touching = { within = 0.05") + names + " }\n";
-        EXPECT_NEAR(static_cast<double>(run(kNoGround + kBox + kFoot + both + kStep, 3.0).births.size()),
-                    4000.0, 240.0);
-    }
+    const auto dust = [&](const std::string& names, bool only_earth) {
+        return expectTruth(
+            kNoGround + kBox + kFoot, "within = 0.05" + names, 3.0,
+            [&](const glm::dvec3& p, double time) -> std::optional<bool> {
+                EXPECT_NEAR(footHeight(time), p.y, 1e-6);
+                const auto down = below(footHeight(time), 0.05, 0.002);
+                const auto earth = only_earth ? below(-p.x, 0.0, 0.002) : true;
+                return down && earth ? std::optional(*down && *earth) : std::nullopt;
+            },
+            kStep);
+    };
+    // Half of the area or all of it, 4/3 of 3 s; five standard deviations.
+    EXPECT_NEAR(static_cast<double>(dust(", material = \"earth\"", true)), 2000.0, 200.0);
+    EXPECT_NEAR(static_cast<double>(dust(", material = [\"earth\", \"oak\"]", false)), 4000.0, 240.0);
+    EXPECT_NEAR(static_cast<double>(dust("", false)), 4000.0, 240.0);
 }
 
 TEST_F(SceneTouch, ABodyThatComesToTheSurface) {
@@ -270,28 +263,12 @@ TEST_F(SceneTouch, DroppedBirthsTakeNoRoom) {
     EXPECT_EQ(tight.births[19].birth.position, whole.births[19].birth.position);
 }
 
-TEST_F(SceneTouch, MistakesHaveTheirPlaceAndCure) {
-    const auto mistake = [](const std::string& more, const std::string& place, const std::string& part) {
-        expectSceneError(kBox + kFoot + more, "dir/scene.toml:" + place + ": ", part);
-    };
-    mistake("touching = {}\n", "8:12", "emitter.touching.within is missing");
-    mistake("touching = \"earth\"\n", "8:12", "must be a table");
-    mistake("touching = { within = 0 }\n", "8:23", "out of range");
-    mistake("touching = { within = 1, min_speed = -1 }\n", "8:38", "out of range");
-    mistake("touching = { within = 1, material = 3 }\n", "8:37", "a name, or a list of names");
-    mistake("touching = { within = 1, material = [\"earth\", 3] }\n", "8:47", "a name, or a list of names");
-    mistake("touching = { within = 1, material = [] }\n", "8:37", "has no name");
-    mistake("touching = { within = 1, material = \"\" }\n", "8:37", "an empty one");
-    mistake("touching = { within = 1, speed = 1 }\n", "8:26", "unknown key");
-    expectSceneError(kBox + "[[emitter]]\npoint = [0, 0, 0]\ntouching = { within = 1 }\n",
-                     "dir/scene.toml:5:12: ", "choose emitter.shape = \"surface\"");
+TEST_F(SceneTouch, AnUnknownMaterialIsAnError) {
     const auto unknown = load(kBox + kFoot + "touching = { within = 1, material = [\"oak\", \"erth\"] }\n");
     ASSERT_FALSE(unknown);
     EXPECT_EQ(unknown.error().code, ErrorCode::kInvalidInput);
-    EXPECT_NE(
-        unknown.error().message.find("scene.toml:3:1: emitter[0].touching.material = 'erth' is the name of "
-                                     "no material; did you mean 'earth'? There are 'earth', 'oak'"),
-        std::string::npos)
+    EXPECT_NE(unknown.error().message.find("scene.toml:3:1: emitter[0].touching.material = 'erth'"),
+              std::string::npos)
         << unknown.error().message;
 }
 

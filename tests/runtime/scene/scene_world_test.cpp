@@ -5,17 +5,16 @@
 
 #include "runtime/collider/world_bodies.h"
 #include "tests/runtime/collider/three_bodies.h"
-#include "tests/runtime/scene/scene_error.h"
+#include "tests/runtime/scene/scene_text.h"
 
 namespace relief {
 namespace {
 
 Scene placed(const std::string& text) {
-    auto scene = parseScene("world = \"level/world.json\"\n" + text, "dir/scene.toml");
-    EXPECT_TRUE(scene) << scene.error().message;
-    const auto done = placeBodies(*scene, test::threeBodies());
+    Scene scene = goodScene("world = \"level/world.json\"\n" + text);
+    const auto done = placeBodies(scene, test::threeBodies());
     EXPECT_TRUE(done) << done.error().message;
-    return *scene;
+    return scene;
 }
 
 TEST(SceneWorld, BodiesAreCollidersAsTheWorldPlacesThem) {
@@ -67,10 +66,9 @@ World threeBodiesAndATile() {
 
 TEST(SceneWorld, ATableOfANodeMovesAllItsTiles) {
     const auto scene = [](const std::string& text) {
-        auto read = parseScene("world = \"w.json\"\n" + text, "dir/scene.toml");
-        EXPECT_TRUE(read) << read.error().message;
-        EXPECT_TRUE(placeBodies(*read, threeBodiesAndATile()));
-        return *read;
+        Scene read = goodScene("world = \"w.json\"\n" + text);
+        EXPECT_TRUE(placeBodies(read, threeBodiesAndATile()));
+        return read;
     };
     const Scene moved = scene(
         "[[collider]]\nnode = \"door\"\nangle = 30\n[[collider.key]]\ntime = 1\n[[collider.key]]\ntime = 2\n"
@@ -94,35 +92,16 @@ TEST(SceneWorld, ATableOfANodeMovesAllItsTiles) {
     EXPECT_FALSE(still.colliders[2].tile_of);
 }
 
-TEST(SceneWorld, ANameOfTwoNodesIsRefused) {
-    World world = threeBodiesAndATile();
-    world.bodies[2].position.x += 1.0F;
-    auto scene = parseScene("world = \"w.json\"\n[[collider]]\nnode = \"door\"\n", "dir/scene.toml");
-    const auto done = placeBodies(*scene, world);
-    ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().message,
-              "dir/scene.toml:1:9: collider[0].node = 'door' is the name of 2 bodies of 'dir/w.json' in "
-              "different places; give their nodes names of their own");
-}
-
-TEST(SceneWorld, MistakesAreNamed) {
-    const std::string world = "world = \"w.json\"\n";
-    expectSceneError("[[collider]]\nnode = \"door\"\n", "dir/scene.toml:2:8: ", "needs world");
-    expectSceneError(world + "[collider]\nnode = \"door\"\nfriction = 0\n",
-                     "dir/scene.toml:4:12: ", "the world's");
-    expectSceneError(world + "[collider]\nnode = \"\"\n", "dir/scene.toml:3:8: ", "is empty");
-    expectSceneError(world + "[collider]\nnode = \"door\"\n[[collider.key]]\ntime = 1\n",
-                     "dir/scene.toml:4:1: ", "moves nothing");
-    expectSceneError("world = 3\n", "dir/scene.toml:1:9: ", "world");
-    expectSceneError("world = \"/etc/world.json\"\n", "dir/scene.toml:1:9: ", "world");
-    auto scene = parseScene(world + "[collider]\nnode = \"window\"\n", "dir/scene.toml");
-    ASSERT_TRUE(scene);
-    const auto none = placeBodies(*scene, test::threeBodies());
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().message,
-              "dir/scene.toml:1:9: collider[0].node = 'window' is the name of no body of 'dir/w.json'; take "
-              "one that its "
-              "\"bodies\" list as \"node\"");
+TEST(SceneWorld, ANodeHasOnePlaceInTheWorld) {
+    World elsewhere = threeBodiesAndATile();
+    elsewhere.bodies[2].position.x += 1.0F;
+    for (const auto& [node, world] : {std::pair("door", elsewhere), {"window", test::threeBodies()}}) {
+        Scene scene = goodScene("world = \"w.json\"\n[[collider]]\nnode = \"" + std::string(node) + "\"\n");
+        const auto done = placeBodies(scene, world);
+        ASSERT_FALSE(done) << node;
+        EXPECT_TRUE(done.error().message.starts_with("dir/scene.toml:1:9: collider[0].node = '"))
+            << done.error().message;
+    }
 }
 
 }  // namespace

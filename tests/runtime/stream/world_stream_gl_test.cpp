@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <glm/glm.hpp>
 #include <random>
 
@@ -86,8 +87,9 @@ class WorldStreamGlTest : public GlTest {
                                     0.8F + 0.1F * static_cast<float>(k)}});
             }
         }
-        for (const Collider& collider : coarse_) {
-            coarse_bytes_ += collider.gpuBytes();
+        for (std::size_t i = 0; i < kColliders; ++i) {
+            coarse_bytes_ += coarse_[i].gpuBytes();
+            largest_ = std::max(largest_, fine_[i].gpuBytes());
         }
         Pcg32 places(9);
         for (std::uint32_t i = 0; i < 4000; ++i) {
@@ -111,13 +113,6 @@ class WorldStreamGlTest : public GlTest {
         ASSERT_TRUE(made) << made.error().message;
         stream_ = *std::move(made);
     }
-    [[nodiscard]] std::vector<FieldSample> fieldOf(const ColliderTextures& textures) const {
-        const auto query = FieldQuery::create(textures);
-        EXPECT_TRUE(query) << query.error().message;
-        const auto samples = query->evaluate(points_);
-        EXPECT_TRUE(samples);
-        return *samples;
-    }
     /// Compares the field with that of textures in which these colliders are fine and the others coarse.
     void expectFine(const std::vector<std::size_t>& fine) {
         std::vector<ColliderBody> bodies = bodies_;
@@ -129,8 +124,8 @@ class WorldStreamGlTest : public GlTest {
         }
         const auto textures = ColliderTextures::create(bodies);
         ASSERT_TRUE(textures) << textures.error().message;
-        const std::vector<FieldSample> expected = fieldOf(*textures);
-        const std::vector<FieldSample> found = fieldOf(stream_->textures());
+        const std::vector<FieldSample> expected = fieldOf(*textures, points_);
+        const std::vector<FieldSample> found = fieldOf(stream_->textures(), points_);
         std::size_t different = 0;
         std::size_t near = 0;
         for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -162,10 +157,14 @@ class WorldStreamGlTest : public GlTest {
     World world_;
     std::vector<ColliderBody> bodies_;
     std::uint64_t coarse_bytes_ = 0;
+    std::uint64_t largest_ = 0;  // of the fine ones
     std::vector<glm::vec3> points_;
     std::unique_ptr<WorldStream> stream_;
     TestSource* source_ = nullptr;
 };
+
+// What is wanted, loaded, evicted and reported: the CPU decides alone, so one API is enough.
+using WorldStreamBooksGlTest = WorldStreamGlTest;
 
 TEST_P(WorldStreamGlTest, TheFieldIsThatOfWhatIsThere) {
     open({});
@@ -218,20 +217,25 @@ TEST_P(WorldStreamGlTest, AnUpdateCopiesSoManyBytesAndTheCoarseMapsStandInUntilA
     EXPECT_EQ(stream_->counts().uploaded, fine_[3].gpuBytes());
 }
 
-TEST_P(WorldStreamGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
-    std::uint64_t largest = 0;
-    for (const Collider& collider : fine_) {
-        largest = std::max(largest, collider.gpuBytes());
-    }
-    open({.gpu_bytes = coarse_bytes_ + 3 * largest});
-    static_cast<void>(finish({0}));
-    static_cast<void>(finish({1}));
-    static_cast<void>(finish({0, 2}));
-    expectFine({0, 1, 2});
-    EXPECT_EQ(finish({3}), std::vector<std::size_t>{3});
-    EXPECT_LE(stream_->counts().gpu_bytes, coarse_bytes_ + 3 * largest);
-    EXPECT_EQ(finish({0, 2}), std::vector<std::size_t>()) << "1 has gone for 3";
-    expectFine({0, 2, 3});
+TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
+    // The first to go is the largest, so that its place is enough for any other.
+    std::vector<std::size_t> by_size{0, 1, 2, 3, 4, 5};
+    std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].gpuBytes(); });
+    const std::size_t old = by_size[0];
+    const std::size_t first = by_size[1];
+    const std::size_t second = by_size[2];
+    const std::size_t late = by_size[3];
+    const std::uint64_t room =
+        coarse_bytes_ + fine_[old].gpuBytes() + fine_[first].gpuBytes() + fine_[second].gpuBytes();
+    open({.gpu_bytes = room});
+    static_cast<void>(finish({first}));
+    static_cast<void>(finish({old}));
+    static_cast<void>(finish({first, second}));
+    expectFine({old, first, second});
+    EXPECT_EQ(finish({late}), std::vector<std::size_t>{late});
+    EXPECT_LE(stream_->counts().gpu_bytes, room);
+    EXPECT_EQ(finish({first, second}), std::vector<std::size_t>()) << "the old one has gone";
+    expectFine({first, second, late});
     // More than there is room for: the nearest, and nothing is loaded in vain.
     const PointOfInterest all{{0.0F, 3.0F, 0.0F}, 200.0F};
     EXPECT_TRUE(stream_->finish({&all, 1}));
@@ -244,15 +248,11 @@ TEST_P(WorldStreamGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     EXPECT_TRUE(source_->asked.empty());
 }
 
-TEST_P(WorldStreamGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWanted) {
-    std::uint64_t largest = 0;
-    for (const Collider& collider : fine_) {
-        largest = std::max(largest, collider.gpuBytes());
-    }
-    open({.gpu_bytes = coarse_bytes_ + 2 * largest});
+TEST_P(WorldStreamBooksGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWanted) {
+    open({.gpu_bytes = coarse_bytes_ + 2 * largest_});
     // In any order and number: in the end the one that alone is wanted is there, and nothing has been loaded in vain.
     Pcg32 random(12);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 25; ++i) {
         std::vector<std::size_t> some;
         for (std::size_t k = 0; k < kColliders; ++k) {
             if (random.next() % 3 == 0) {
@@ -265,17 +265,13 @@ TEST_P(WorldStreamGlTest, ThereIsRoomAgainWhenWhatWasInTheWayIsNoLongerWanted) {
         const std::size_t alone = random.next() % kColliders;
         static_cast<void>(finish({alone}));
         EXPECT_EQ(stream_->counts().present, 1U) << alone;
-        EXPECT_LE(stream_->counts().gpu_bytes, coarse_bytes_ + 2 * largest);
+        EXPECT_LE(stream_->counts().gpu_bytes, coarse_bytes_ + 2 * largest_);
     }
     EXPECT_TRUE(stream_->takeWarnings().empty());
 }
 
-TEST_P(WorldStreamGlTest, TwoThatAreAsNearDoNotTakeTurns) {
-    std::uint64_t largest = 0;
-    for (const Collider& collider : fine_) {
-        largest = std::max(largest, collider.gpuBytes());
-    }
-    open({.gpu_bytes = coarse_bytes_ + largest});
+TEST_P(WorldStreamBooksGlTest, TwoThatAreAsNearDoNotTakeTurns) {
+    open({.gpu_bytes = coarse_bytes_ + largest_});
     for (int i = 0; i < 12; ++i) {
         const PointOfInterest between{{15.0F + (i % 2 == 0 ? 0.1F : -0.1F), 3.0F, 0.0F}, 20.0F};
         ASSERT_TRUE(stream_->finish({&between, 1}));
@@ -283,44 +279,45 @@ TEST_P(WorldStreamGlTest, TwoThatAreAsNearDoNotTakeTurns) {
     EXPECT_EQ(source_->asked.size(), 1U);
 }
 
-TEST_P(WorldStreamGlTest, WhatIsBrokenIsNamedOnceAndItsCoarseMapsStay) {
+TEST_P(WorldStreamBooksGlTest, WhatIsBrokenIsNamedOnceAndItsCoarseMapsStay) {
     open({});
     source_->broken = 2;
     EXPECT_EQ(finish({1, 2}), (std::vector<std::size_t>{1, 2}));
     expectFine({1});
-    EXPECT_EQ(stream_->takeWarnings(), std::vector<std::string>{"it is damaged; its coarse likeness stays"});
+    EXPECT_EQ(stream_->takeWarnings().size(), 1U);
     EXPECT_EQ(finish({1, 2}), std::vector<std::size_t>());
     EXPECT_TRUE(stream_->takeWarnings().empty());
     EXPECT_EQ(stream_->counts().failed, 1U);
     fine_[3] = colliderOf(test::patchesOf({{1, 1, 1}, 0}, {PatchRecord::flat(true, {0, 1, 0}, -1.0F)}));
     static_cast<void>(finish({3}));
-    EXPECT_EQ(stream_->takeWarnings(),
-              std::vector<std::string>{
-                  "'thing 3' is not the collider that the world names; its coarse likeness stays"});
+    const std::vector<std::string> warnings = stream_->takeWarnings();
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("'thing 3'"), std::string::npos) << warnings[0];
     expectFine({1});
 }
 
-TEST_P(WorldStreamGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
+TEST_P(WorldStreamBooksGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
     open({});
+    const PointOfInterest here = at(1);
+    const PointOfInterest there = at(4);
+    const auto update = [&](const PointOfInterest& point) { ASSERT_TRUE(stream_->update({&point, 1})); };
     source_->holds_back = true;
     for (int i = 0; i < 5; ++i) {
-        const PointOfInterest here = at(1);
-        ASSERT_TRUE(stream_->update({&here, 1}));
+        update(here);
     }
     EXPECT_EQ(source_->asked, std::vector<std::size_t>{1});
-    const PointOfInterest there = at(4);
-    ASSERT_TRUE(stream_->update({&there, 1}));
+    update(there);
     source_->holds_back = false;
     for (int i = 0; i < 5; ++i) {
-        ASSERT_TRUE(stream_->update({&there, 1}));
+        update(there);
     }
     EXPECT_EQ(source_->asked, (std::vector<std::size_t>{1, 4}));
     expectFine({4});
 }
 
-TEST_P(WorldStreamGlTest, SoManyAreUnderWayAtOnce) {
+TEST_P(WorldStreamBooksGlTest, SoManyAreUnderWayAtOnce) {
     const std::vector<PointOfInterest> points{at(0), at(1), at(2), at(3), at(4)};
-    for (const std::size_t most : {1U, 2U, 4U}) {
+    for (const std::size_t most : {1U, 4U}) {
         open({.under_way = most});
         source_->holds_back = true;
         for (int i = 0; i < 5; ++i) {
@@ -330,16 +327,12 @@ TEST_P(WorldStreamGlTest, SoManyAreUnderWayAtOnce) {
     }
 }
 
-TEST_P(WorldStreamGlTest, TooLittleMemoryIsSaid) {
+TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsSaid) {
     auto made = WorldStream::create(world_, bodies_, coarseOnes(), std::make_unique<TestSource>(fine_),
                                     {.gpu_bytes = coarse_bytes_ - 1});
     ASSERT_FALSE(made);
     EXPECT_EQ(made.error().code, ErrorCode::kLimit);
-    std::uint64_t largest = 0;
-    for (const Collider& collider : fine_) {
-        largest = std::max(largest, collider.gpuBytes());
-    }
-    open({.gpu_bytes = coarse_bytes_ + largest - 8});
+    open({.gpu_bytes = coarse_bytes_ + largest_ - 8});
     EXPECT_EQ(stream_->takeWarnings().size(), 1U);
     EXPECT_EQ(stream_->counts().failed, 1U);
     for (const float radius : {0.0F, -1.0F, std::nanf("")}) {
@@ -492,7 +485,7 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
     }
 }
 
-TEST_P(WorldStreamGlTest, FilesThatAreMissingOrOthersAreNamed) {
+TEST_P(WorldStreamBooksGlTest, FilesThatAreMissingOrOthersAreNamed) {
     const test::TemporaryFolder folder;
     const fs::path path = writeTiles(folder.path());
     fs::remove(folder.path() / "3-4.relief");
@@ -515,5 +508,6 @@ TEST_P(WorldStreamGlTest, FilesThatAreMissingOrOthersAreNamed) {
 }  // namespace
 
 RELIEF_INSTANTIATE_GL_TESTS(WorldStreamGlTest);
+INSTANTIATE_TEST_SUITE_P(Apis, WorldStreamBooksGlTest, testing::Values(GlApi::kGl33Core), glApiTestName);
 
 }  // namespace relief

@@ -1,4 +1,5 @@
 // The native tools, which the browser is compared with.
+import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -32,21 +33,29 @@ export function generator(seed) {
     };
 }
 
-/** Plays a scene in a folder; words: options of relief-sim. Of its particles at the end the places, by id. */
+/** Tables of a scene as TOML. */
+export const tomlOf = (tables) => Object.entries(tables).map(([table, keys]) =>
+    `[${table}]\n${Object.entries(keys).map(([key, value]) => `${key} = ${JSON.stringify(value)}\n`).join("")}`).join("");
+
+/** Plays a scene in a folder; words: options of relief-sim. Of its particles at the end { place, age }, by id. */
 export function play(folder, scene, ...words) {
     writeFileSync(path.join(folder, "scene.toml"), scene);
     run("relief-sim", path.join(folder, "scene.toml"), "-q", "--dump", path.join(folder, "final.ply"), ...words);
     const bytes = readFileSync(path.join(folder, "final.ply"));
-    const places = new Map();
+    const particles = new Map();
     for (let at = bytes.indexOf("end_header\n") + "end_header\n".length; at < bytes.length; at += 40) {
-        places.set(bytes.readUInt32LE(at + 32), [0, 4, 8].map((k) => bytes.readFloatLE(at + k)));
+        const number = (k) => bytes.readFloatLE(at + 4 * k);
+        particles.set(bytes.readUInt32LE(at + 32), { place: [number(0), number(1), number(2)], age: number(6) });
     }
-    return places;
+    return particles;
 }
 
-/** The same, and its hits. */
-export function playWithHits(folder, scene) {
-    const file = path.join(folder, "hits.jsonl");
-    const places = play(folder, scene, "--events", file);
-    return { places, hits: readFileSync(file, "utf8").trim().split("\n").map((line) => JSON.parse(line)) };
+/** How far each of a page's particles, as ParticleSystem.read() has them, is from where relief-sim has it. */
+export function distances(rows, native) {
+    assert.equal(rows.length / 12, native.size);
+    return Array.from({ length: native.size }, (_, i) => {
+        const [id, place] = [rows[12 * i + 11], rows.slice(12 * i, 12 * i + 3)];
+        assert.ok(native.has(id), `relief-sim has no particle ${id}`);
+        return Math.hypot(...native.get(id).place.map((x, k) => x - place[k]));
+    });
 }

@@ -34,3 +34,12 @@ export async function viewer(t, folder, more = []) {
         return opened;
     };
 }
+
+/** The page in a file, in a browser that ends with the test. */
+export async function openFile(t, file, options = {}) {
+    const browser = await launch();
+    t.after(() => browser.close());
+    const opened = await openPage(browser, pathToFileURL(file).href, options);
+    await opened.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
+    return opened;
+}

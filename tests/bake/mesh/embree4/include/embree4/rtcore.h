@@ -1,6 +1,6 @@
 // Stands for <embree4/rtcore.h> where there is no Embree 4: the names and signatures in which Embree 4 differs from 3, as
 // its manual gives them, done by Embree 3. With it -DRELIEF_EMBREE=4 compiles and bakes
-// (tests/cli/embree4.sh, tests/long/soak.sh embree4).
+// (tests/cli/embree4.sh, scripts/nightly.sh embree4).
 #pragma once
 
 // Embree 4's context has no filter and no flags; code that takes them from it is told so at the end of this file.

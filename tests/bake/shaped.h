@@ -1,0 +1,26 @@
+// Meshes shaped as the tool shapes them.
+#pragma once
+
+#include "bake/repair/winding.h"
+#include "bake/shape/shape.h"
+#include "tests/bake/meshes.h"
+
+namespace relief::test {
+
+[[nodiscard]] inline ShapedMesh shapedBy(TriangleMesh mesh, const ShapeOptions& options) {
+    Result<Winding> winding = windOutwards(std::move(mesh));
+    EXPECT_TRUE(winding);
+    Result<ShapedMesh> shape = shapeMesh(winding->mesh, options);
+    EXPECT_TRUE(shape) << shape.error().message;
+    return std::move(*shape);
+}
+
+inline void expectKinds(const ShapeReport& report, std::uint64_t solids, std::uint64_t holed,
+                        std::uint64_t sheets, std::uint64_t terrains) {
+    EXPECT_EQ(report.solids, solids);
+    EXPECT_EQ(report.solids_with_holes, holed);
+    EXPECT_EQ(report.sheets, sheets);
+    EXPECT_EQ(report.terrains, terrains);
+}
+
+}  // namespace relief::test

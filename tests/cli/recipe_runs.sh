@@ -1,0 +1,158 @@
+# Runs of recipes as processes: crashes, shards, signals, readers that go away; keys for other caches; the pages' examples.
+. "$(dirname "$0")/lib.sh"
+
+mkdir in
+for i in 1 2 3 4 5; do tetrahedron "in/r$i.obj" "$i"; done
+printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "r?.obj"' 'output = "{stem}.relief"' 'map = "cube:size=32"' >in/r.toml
+hashes() { (cd "$1" && find . -name '*.relief' | sort | xargs sha256sum); }
+
+# One bake at a time, and four shards at once into one folder, give the same bytes.
+expect 0 "$relief" bake --recipe in/r.toml -o alone -j 1
+hashes alone >first
+jobs=()
+for k in 1 2 3 4; do
+    "$relief" bake --recipe in/r.toml -o shards --shard $k/4 --events "s$k" -j 1 -q &
+    jobs+=($!)
+done
+for job in "${jobs[@]}"; do wait "$job" || die "a shard failed"; done
+hashes shards | cmp - first || die "four shards give other bytes"
+[ "$(cat s1 s2 s3 s4 | grep -c '"event":"done"')" -eq 5 ] || die "shards overlap"
+expect 0 "$relief" bake --recipe in/r.toml -o shards
+[ "$(cat stderr)" = "5 assets up to date" ] || die "the shards' cache is not whole: $(cat stderr)"
+
+# A bake that crashes harms nothing else: the other asset is baked, and no temporary file is left.
+mkdir many
+for i in 0 1 2 3 4; do cp "$bunny" many/b$i.obj; done
+tetrahedron many/a.obj
+cat >many/m.toml <<'T'
+version = 1
+[defaults]
+output = "{stem}.relief"
+[[asset]]
+mesh = "a.obj"
+map = "cube:size=32"
+[[asset]]
+mesh = "b?.obj"
+budget = "16MB"
+quality = "best"
+T
+sed '/b?.obj/s/b?/b0/' many/m.toml >many/one.toml
+python3 - "$relief" <<'P' || die "a crash is not told as one"
+import json, os, signal, subprocess, sys
+run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/one.toml', '-j', '1', '--events', '-'],
+                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+while (event := json.loads(run.stdout.readline()))['event'] != 'started' or event['mesh'] != 'b0.obj':
+    pass
+# The event comes before the process.
+while not (children := open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()):
+    pass
+child = int(children[0])
+while b'--json' not in (words := open(f'/proc/{child}/cmdline', 'rb').read()):  # not yet the bake's own
+    pass
+assert b'--time-limit=3600' in words.split(b'\0'), words
+os.kill(child, signal.SIGSEGV)
+events = [json.loads(line) for line in run.stdout]
+failed = [e for e in events if e['event'] == 'failed']
+assert run.wait() == 4, run.returncode
+assert len(failed) == 1 and failed[0]['code'] == 4 and 'signal 11' in failed[0]['error'], events
+P
+[ -f many/a.relief ] && rm many/a.relief || die "the other asset is not there"
+
+# An interrupted run ends by the signal within 2 s and leaves no child and no temporary file; what was done stays done.
+for signal in INT TERM; do
+    python3 - "$relief" $signal <<'P' || die "interrupting by SIG$signal failed"
+import json, processes, signal, subprocess, sys, time
+number = getattr(signal, 'SIG' + sys.argv[2])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # bash has background jobs ignore it
+run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-j', '2', '--events', '-'],
+                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+started = 0
+for line in run.stdout:
+    event = json.loads(line)
+    started += event['event'] == 'started' and event['mesh'].startswith('b')
+    if started == 2:
+        break
+time.sleep(0.3)
+children = open(f'/proc/{run.pid}/task/{run.pid}/children').read().split()
+assert children, 'no child runs'
+begin = time.monotonic()
+run.send_signal(number)
+rest = [json.loads(line) for line in run.stdout]
+code = run.wait()
+took = time.monotonic() - begin
+assert code == -number, code
+assert took < 2, took
+assert rest[-1]['event'] == 'summary' and rest[-1]['signal'] == number, rest
+assert all(processes.gone(int(child), 0.0) for child in children), 'a child is left'
+P
+    [ -z "$(find many -name '.relief-*.tmp')" ] || die "a temporary file is left"
+    [ -f many/a.relief ] || die "what was done is gone"
+done
+expect 0 "$relief" bake --recipe many/m.toml --dry-run
+grep -q 'a.relief .*up to date' stdout || die "what was done is not known: $(cat stdout)"
+
+# A killed run leaves no child behind; without a reader of its events a run goes on, and reports it.
+python3 - "$relief" <<'P' || die "a killed run leaves a child, or a closed pipe ends a run"
+import os, processes, subprocess, sys, time
+run = subprocess.Popen([sys.argv[1], 'bake', '--recipe', 'many/m.toml', '-q'])
+path = f'/proc/{run.pid}/task/{run.pid}/children'
+while not (children := open(path).read().split()):
+    time.sleep(0.02)
+time.sleep(0.1)
+run.kill()
+run.wait()
+assert all(processes.gone(int(child), 5.0) for child in children)
+reader, writer = os.pipe()
+os.close(reader)
+run = subprocess.run([sys.argv[1], 'bake', '--recipe', 'in/r.toml', '-o', 'piped', '--events', '-'],
+                     stdout=writer, stderr=subprocess.PIPE, text=True)
+assert run.returncode == 2 and 'cannot write events' in run.stderr, run
+P
+hashes piped | cmp - first || die "not everything was baked behind a closed pipe"
+
+# The page's example and the sample are valid recipes.
+sed -n '/^```toml$/,/^```$/{//!p}' "$RELIEF_SOURCE/bake/recipe/README.md" >example.toml
+mkdir -p rocks/test halls plans sample/meshes/rocks
+tetrahedron rocks/a.obj 1
+tetrahedron rocks/b.obj 2
+tetrahedron rocks/test/c.obj 3
+tetrahedron halls/entrance.obj 4
+"$relief" bake halls/entrance.obj -o entrance.relief --budget 20kB --plan-out plans/entrance.toml -q
+expect 0 "$relief" bake --recipe example.toml -j 2
+[ "$(cd baked && find . -name '*.relief' | sort | xargs)" = "./halls/entrance.relief ./rocks/a.relief ./rocks/b.relief" ] ||
+    die "the example bakes $(find baked -name '*.relief')"
+cp "$RELIEF_SOURCE/samples/recipe/colliders.toml" sample/
+cp rocks/a.obj sample/meshes/rocks/
+cp rocks/b.obj sample/meshes/rocks/b_lod1.obj
+expect 0 "$relief" bake --recipe sample/colliders.toml
+[ "$(find sample -name '*.relief')" = sample/colliders/meshes/rocks/a.relief ] || die "the sample bakes $(find sample -name '*.relief')"
+
+# Keys for other caches: known before anything is baked, the same afterwards and elsewhere, and others if anything else is.
+keys() { python3 -c "import json; print(*[a['asset'] + '=' + a.get('key', '') for a in json.load(open('stdout'))['assets']])"; }
+mkdir keys
+tetrahedron keys/t.obj 2
+{ echo 'mtllib m.mtl' && sed 's/^f/usemtl a\nf/' keys/t.obj; } >keys/m.obj
+echo 'newmtl a' >keys/m.mtl
+cp plans/entrance.toml keys/plan.toml
+printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "m.obj"' 'output = "m.relief"' 'budget = "20kB"' '[[asset]]' 'mesh = "t.obj"' \
+    'output = "t.relief"' 'plan = "plan.toml"' >keys/r.toml
+cp -r keys elsewhere
+expect 0 "$relief" bake --recipe keys/r.toml --dry-run --json
+keys >before
+grep -qE '^m.relief=[0-9a-f]{32} t.relief=[0-9a-f]{32}$' before || die "keys: $(cat before)"
+for _ in baked 'up to date'; do
+    expect 0 "$relief" bake --recipe keys/r.toml --json
+    keys | cmp - before || die "the keys are others once baked: $(keys)"
+done
+changes() { # WHICH: exactly these assets' keys are others now
+    expect 0 "$relief" bake --recipe elsewhere/r.toml --dry-run --json
+    [ "$(keys | tr ' ' '\n' | grep -vxFf <(tr ' ' '\n' <before) | cut -d= -f1)" = "$1" ] || die "other keys than that of $1: $(keys)"
+    cp keys/m.mtl keys/*.obj keys/*.toml elsewhere/
+}
+changes ''
+echo 'Kd 0 1 0' >>elsewhere/m.mtl
+changes m.relief
+echo '# ' >>elsewhere/plan.toml
+changes t.relief
+sed -i 's/20kB/21kB/' elsewhere/r.toml
+changes m.relief

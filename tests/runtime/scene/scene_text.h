@@ -1,0 +1,58 @@
+// Scenes written in tests, and mistakes in them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "runtime/scene/scene.h"
+#include "runtime/scene/scene_parser.h"
+
+namespace relief {
+
+/// A collider; the lines after it start at line 3.
+inline const std::string kSceneHead = "[[collider]]\nfile = \"a.relief\"\n";
+
+inline Result<Scene> sceneOf(const std::string& text) {
+    return parseScene(text, "dir/scene.toml");
+}
+
+/// The scene of a text that must be one.
+inline Scene goodScene(const std::string& text) {
+    const auto scene = sceneOf(text);
+    EXPECT_TRUE(scene) << text << "\n" << scene.error().message;
+    Scene none;
+    none.colliders.resize(1);
+    none.emitters.resize(1);
+    return scene.value_or(none);
+}
+
+inline Bounds unitBounds() {
+    Bounds bounds;
+    bounds.add({-1.0F, 0.0F, -0.5F});
+    bounds.add({1.0F, 1.0F, 0.5F});
+    return bounds;
+}
+
+struct SceneMistake {
+    std::string text;
+    std::string place;  ///< line and column of its error, "3:1"
+    std::string names;  ///< the key, or what else tells it from other mistakes at that place
+};
+
+/// Each text after the head is no scene, which is said in one line.
+inline void expectMistakes(const std::string& head, const std::vector<SceneMistake>& mistakes) {
+    for (const auto& [text, place, names] : mistakes) {
+        SCOPED_TRACE(head + text);
+        const auto scene = sceneOf(head + text);
+        ASSERT_FALSE(scene);
+        const std::string& message = scene.error().message;
+        EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
+        EXPECT_TRUE(message.starts_with("dir/scene.toml:" + place + ": ")) << message;
+        EXPECT_NE(message.find(names), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+}
+
+}  // namespace relief
