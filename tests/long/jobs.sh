@@ -49,7 +49,7 @@ programs() {
 # These have jobs of their own.
 strace_tests='^cli[.](atomic_outputs|import_faults)$'
 sample_tests='^cli[.](samples|demo|lead_through)$'
-other_tests='^(python[.]|fuzz[.]|docs$|bench$)|bake.oracle|bake.volume|runtime.vdb|cli[.]vdb'
+other_tests='^(python[.]|fuzz[.]|docs$|bench|oracle[.]|vdb[.])|^cli[.]vdb$'
 
 job nightly 45 release
 job_release() {
@@ -90,21 +90,21 @@ job_python() {
 job nightly 5 vdb
 job_vdb() {
     release
-    programs '*' "$bin/relief_runtime_vdb_test" "$bin/relief_bake_volume_test"
+    programs '*' "$bin/relief_vdb_test"
     tested build/release -R 'cli[.]vdb'
 }
 
 job nightly 5 oracle
 job_oracle() {
-    release relief_bake_oracle_test
-    programs '*' "$bin/relief_bake_oracle_test"
+    release relief_oracle_test
+    programs '*' "$bin/relief_oracle_test"
 }
 
 job nightly 2 bench
 job_bench() {
     release
     tested build/release -R '^bench$'
-    programs '*' "$bin/relief_runtime_bench_test"
+    programs '*' "$bin/relief_bench_test"
 }
 
 job nightly 2 docs
@@ -122,7 +122,7 @@ job_web() {
 
 # sanitized OPTION…: tests in a build with all sanitizers in all folders, and -O1, because numbers take long at -O0.
 sanitized() {
-    built sanitize --preset sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1' -DRELIEF_BUILD_NUMBER_TESTS=ON
+    built sanitize --preset sanitize -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-O1 -g1'
     export ASAN_OPTIONS=detect_leaks=1:intercept_tls_get_addr=0:strict_string_checks=1:allocator_may_return_null=1
     export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1
     tested "$build" "$@"
@@ -163,12 +163,12 @@ job_cases() {
 job nightly 5 seeds
 job_seeds() {
     local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)} next
-    release relief relief-sim relief_formats_test relief_bake_{import,pipeline,repair,shape}_test
+    release relief relief-sim relief_{unit,import,bake}_test
     # All that draws its cases by seedFrom() (tests/seeds.h), and the scripts that do.
     RELIEF_TEST_SEED=$seed programs 'Voxels.*:ImportGltf.*:ImportFormat.*:ImportParts.*:ImportMessage.*:Shape.*:Winding.*:Mutated*.*' \
-        "$bin"/relief_formats_test "$bin"/relief_bake_{import,pipeline,repair,shape}_test
+        "$bin"/relief_{unit,import,bake}_test
     for next in 1 2 3 4 5 6 7 8 9; do
-        RELIEF_TEST_SEED=$((seed + next)) programs 'Voxels.*' "$bin/relief_bake_pipeline_test" >"$work/voxels.log"
+        RELIEF_TEST_SEED=$((seed + next)) programs 'Voxels.*' "$bin/relief_bake_test" >"$work/voxels.log"
     done
     RELIEF_TEST_SEED=$seed RELIEF_MUTANTS=500 RELIEF_SCENES=200 tested build/release -R '^cli[.](mutants|scenes)$'
     say "seed $seed, and the nine after it for Voxels"
@@ -176,8 +176,8 @@ job_seeds() {
 
 job nightly 3 import
 job_import() {
-    release relief_bake_import_test
-    RELIEF_SOAK=1 "$bin/relief_bake_import_test" --gtest_filter='*EveryModelOfThePackage*' --gtest_output="json:$work/import.json"
+    release relief_import_test
+    RELIEF_SOAK=1 "$bin/relief_import_test" --gtest_filter='*EveryModelOfThePackage*' --gtest_output="json:$work/import.json"
     python3 - "$work/import.json" <<'P'
 import json, sys
 test = json.load(open(sys.argv[1]))['testsuites'][0]['testsuite'][0]
@@ -304,8 +304,8 @@ job_embree4() {
 job weekly 90 sweep
 job_sweep() {
     local status=0
-    release relief_runtime_particles_test
-    RELIEF_SOAK=1 "$bin/relief_runtime_particles_test" --gtest_filter='*ASweptStepNeverTunnels*' \
+    release relief_gl_test
+    RELIEF_SOAK=1 "$bin/relief_gl_test" --gtest_filter='*ASweptStepNeverTunnels*' \
         --gtest_output="json:$work/sweep.json" || status=$?
     python3 - "$work/sweep.json" <<'P'
 import json, sys
@@ -366,14 +366,14 @@ job weekly 15 characters
 job_characters() {
     local clip clips=()
     scripts/setup.sh npm
-    release relief relief_runtime_bench_test
+    release relief relief_bench_test
     (cd "$work" && npm pack @pmndrs/viverse@0.2.20 && tar xzf pmndrs-viverse-*.tgz)
     for clip in mannequin walk run idle jump-up; do
         sed -n 's/.*base64,\([A-Za-z0-9+\/=]*\).*/\1/p' "$work/package/dist/assets/$clip.js" | base64 -d >"$work/$clip.glb"
         [ "$clip" = mannequin ] || clips+=(--clips "$work/$clip.glb")
     done
     "$bin/relief" bake "$work/mannequin.glb" --animated "${clips[@]}" -o "$work/mannequin.relief" -q
-    RELIEF_ANIMATED=$work/mannequin.relief "$bin/relief_runtime_bench_test" --gtest_filter='*AnimatedAccuracy*' |
+    RELIEF_ANIMATED=$work/mannequin.relief "$bin/relief_bench_test" --gtest_filter='*AnimatedAccuracy*' |
         sed "s/^.*% wrong/$name: &/"
 }
 
