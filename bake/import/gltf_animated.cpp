@@ -85,7 +85,7 @@ class AnimatedReader {
   public:
     AnimatedReader(const ImportJob& job, const GltfDocument& file, ImportFiles& files)
         : job_(job),
-          document_(file.json),
+          document_(*file.json),
           buffers_(file.chunks, files),
           meshes_(job.triangle_max, buffers_, out_.warnings) {
         out_.warnings = file.chunks.warnings;

@@ -6,6 +6,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "bake/import/gltf_meshopt.h"
@@ -250,9 +251,9 @@ Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
 
 Result<GltfDocument> openGltf(std::span<const std::byte> bytes) {
     GltfDocument document{RELIEF_TRY(gltfChunks(bytes)), {}};
-    document.json = RELIEF_TRY(parseGltfJson(document.chunks.json));
-    return document.json.is_object() ? Result<GltfDocument>(std::move(document))
-                                     : invalidInput("its JSON is no object");
+    document.json = std::make_shared<nlohmann::json>(RELIEF_TRY(parseGltfJson(document.chunks.json)));
+    return document.json->is_object() ? Result<GltfDocument>(std::move(document))
+                                      : invalidInput("its JSON is no object");
 }
 
 Result<std::vector<std::byte>> dataUriBytes(std::string_view uri) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,7 +32,7 @@ struct GltfChunks {
 /// A file, taken apart and parsed; borrows its bytes.
 struct GltfDocument {
     GltfChunks chunks;
-    nlohmann::json json;  ///< an object
+    std::shared_ptr<const nlohmann::json> json;  ///< an object
 };
 /// Errors: those of gltfChunks and parseGltfJson.
 [[nodiscard]] Result<GltfDocument> openGltf(std::span<const std::byte> bytes);

@@ -1,6 +1,9 @@
 #include "bake/import/gltf_json.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "formats/base/text.h"
 #include "formats/fields/strict_json.h"
@@ -12,15 +15,7 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
 
-}  // namespace
-
-Result<Json> parseGltfJson(std::string_view text) {
-    // Some files are padded with zeros, at which the parser would stop.
-    text = text.substr(0, text.find_last_not_of(std::string_view(" \t\r\n\0", 5)) + 1);
-    Result<Json> json = parseStrictJson(text);
-    return json ? std::move(json) : fail(json.error().code, json.error().message + "; export it again");
-}
-
+// Each takes a value of a type, and returns what is wrong with it ("[3] is no number"), or "".
 std::string takeGltf(const Json& json, bool& value) {
     value = json.is_boolean() && json.get<bool>();
     return json.is_boolean() ? "" : " is neither true nor false";
@@ -42,9 +37,54 @@ std::string takeGltf(const Json& json, std::string& value) {
     return json.is_string() ? "" : " is no string";
 }
 
+template <class T>
+std::string takeGltf(const Json& json, std::vector<T>& values) {
+    if (!json.is_array()) {
+        return " is not an array";
+    }
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        if (std::string fault = takeGltf(json[i], values.emplace_back()); !fault.empty()) {
+            return "[" + std::to_string(i) + "]" + fault;
+        }
+    }
+    return "";
+}
+
+}  // namespace
+
+Result<Json> parseGltfJson(std::string_view text) {
+    // Some files are padded with zeros, at which the parser would stop.
+    text = text.substr(0, text.find_last_not_of(std::string_view(" \t\r\n\0", 5)) + 1);
+    Result<Json> json = parseStrictJson(text);
+    return json ? std::move(json) : fail(json.error().code, json.error().message + "; export it again");
+}
+
 tl::unexpected<Error> GltfValue::wrong(const std::string& what, ErrorCode code) const {
     return fail(code, (path_.empty() ? "the document" : path_) + " " + what);
 }
+
+bool GltfValue::has(const char* name) const {
+    return json_->contains(name);
+}
+
+template <class T>
+Result<std::optional<T>> GltfValue::get(const char* name) const {
+    std::optional<T> value;
+    if (const auto found = json_->find(name); found != json_->end()) {
+        if (const std::string fault = takeGltf(*found, value.emplace()); !fault.empty()) {
+            return invalidInput(pathOf(name) + fault);
+        }
+    }
+    return value;
+}
+
+template Result<std::optional<bool>> GltfValue::get(const char* name) const;
+template Result<std::optional<float>> GltfValue::get(const char* name) const;
+template Result<std::optional<std::uint64_t>> GltfValue::get(const char* name) const;
+template Result<std::optional<std::string>> GltfValue::get(const char* name) const;
+template Result<std::optional<std::vector<float>>> GltfValue::get(const char* name) const;
+template Result<std::optional<std::vector<std::uint64_t>>> GltfValue::get(const char* name) const;
+template Result<std::optional<std::vector<std::string>>> GltfValue::get(const char* name) const;
 
 std::string GltfValue::pathOf(const char* name) const {
     return (path_.empty() ? "" : path_ + ".") + name;

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,25 +18,6 @@ namespace relief {
 /// parseStrictJson(), but spaces and zeros may follow.
 [[nodiscard]] Result<nlohmann::json> parseGltfJson(std::string_view text);
 
-/// Takes a value of a type. \return what is wrong of it ("[3] is no number"), or "".
-[[nodiscard]] std::string takeGltf(const nlohmann::json& json, bool& value);
-[[nodiscard]] std::string takeGltf(const nlohmann::json& json, float& value);
-[[nodiscard]] std::string takeGltf(const nlohmann::json& json,
-                                   std::uint64_t& value);  ///< up to 2⁵³; 24.0 is whole
-[[nodiscard]] std::string takeGltf(const nlohmann::json& json, std::string& value);
-template <class T>
-[[nodiscard]] std::string takeGltf(const nlohmann::json& json, std::vector<T>& values) {
-    if (!json.is_array()) {
-        return " is not an array";
-    }
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        if (std::string fault = takeGltf(json[i], values.emplace_back()); !fault.empty()) {
-            return "[" + std::to_string(i) + "]" + fault;
-        }
-    }
-    return "";
-}
-
 /// An object of the document. A member that is there but of another type than asked for is an error (kInvalidInput), and so
 /// is null.
 class GltfValue {
@@ -48,21 +29,13 @@ class GltfValue {
     [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what,
                                               ErrorCode code = ErrorCode::kInvalidInput) const;
 
-    [[nodiscard]] bool has(const char* name) const { return json_->contains(name); }
+    [[nodiscard]] bool has(const char* name) const;
     /// Its place in the list that it is of.
     [[nodiscard]] std::uint64_t index() const { return index_; }
 
     /// bool, std::uint64_t, std::string, or a vector of float or these; nullopt where there is none.
     template <class T>
-    [[nodiscard]] Result<std::optional<T>> get(const char* name) const {
-        std::optional<T> value;
-        if (const auto found = json_->find(name); found != json_->end()) {
-            if (const std::string fault = takeGltf(*found, value.emplace()); !fault.empty()) {
-                return invalidInput(pathOf(name) + fault);
-            }
-        }
-        return value;
-    }
+    [[nodiscard]] Result<std::optional<T>> get(const char* name) const;
     /// \param otherwise  where there is none.
     template <class T>
     [[nodiscard]] Result<T> get(const char* name, T otherwise) const {

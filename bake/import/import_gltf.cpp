@@ -184,7 +184,7 @@ class GltfReader {
 
 Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files) {
     const GltfDocument file = RELIEF_TRY(openGltf(job.bytes));
-    const GltfValue document(file.json);
+    const GltfValue document(*file.json);
     Result<ImportScene> scene = GltfReader(job, file.chunks, document, files).run();
     if (scene) {
         const std::vector<std::string>& warnings = file.chunks.warnings;

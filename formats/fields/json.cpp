@@ -349,7 +349,7 @@ GeneratedText schemaFile(const std::string& name, std::string_view title, std::s
                  {"title", title},
                  {"description", description}};
     file.update(schemaOf(value));
-    return {"formats/schemas/" + name + ".schema.json", "", jsonText(file)};
+    return {name + ".schema.json", "", jsonText(file), true};
 }
 
 }  // namespace relief

@@ -15,7 +15,7 @@ namespace relief {
 /// The same in one line.
 [[nodiscard]] std::string jsonLineOf(FieldRef value);
 
-/// The file NAME.schema.json: the schema of what the above write of such a value.
+/// The file NAME.schema.json, which the build writes: the schema of the text that the functions above write.
 [[nodiscard]] GeneratedText schemaFile(const std::string& name, std::string_view title,
                                        std::string_view description, FieldRef value);
 

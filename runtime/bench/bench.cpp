@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "formats/base/stopwatch.h"
 #include "runtime/gl/gl_functions.h"

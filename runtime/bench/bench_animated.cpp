@@ -1,5 +1,6 @@
 // A collider that plays its first clip.
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "formats/container.h"
 #include "runtime/bench/bench.h"

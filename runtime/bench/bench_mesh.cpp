@@ -1,5 +1,7 @@
 // A collider that wobbles.
 #include "runtime/bench/bench.h"
+
+#include <nlohmann/json.hpp>
 #include "runtime/bench/bench_scene.h"
 #include "runtime/collider/live_collider.h"
 #include "runtime/collider/wobble_pass.h"

@@ -3,6 +3,7 @@
 // all of them. A software renderer draws points on either path.
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "formats/container.h"

@@ -5,6 +5,7 @@
 // bytes a particle; a step reads the 16 of the birth texture besides.
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "formats/base/file_io.h"
 #include "formats/container.h"

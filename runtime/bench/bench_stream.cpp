@@ -1,6 +1,7 @@
 // Frames of a flight over a world that is streamed: whether any takes longer than the others.
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "formats/base/stopwatch.h"

@@ -1,4 +1,5 @@
 // relief-generate ROOT [--check]: writes the files and parts of files that are derived from fields(), or names the stale ones.
+// relief-generate --schemas FOLDER: writes the JSON Schemas.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -43,9 +44,22 @@ Result<std::string> withPart(const GeneratedText& generated, const std::string& 
     return file.substr(0, begin) + generated.text + file.substr(end);
 }
 
+Result<int> writeSchemas(const fs::path& folder) {
+    fs::create_directories(folder);
+    for (const GeneratedText& generated : all()) {
+        if (generated.built) {
+            RELIEF_TRY(writeFile(folder / generated.path, std::as_bytes(std::span(generated.text))));
+        }
+    }
+    return 0;
+}
+
 Result<int> generate(const fs::path& root, bool check) {
     int stale = 0;
     for (const GeneratedText& generated : all()) {
+        if (generated.built) {
+            continue;
+        }
         const fs::path path = root / generated.path;
         const std::string old = fs::exists(path) ? RELIEF_TRY(readText(path)) : std::string();
         const std::string text =
@@ -69,11 +83,14 @@ Result<int> generate(const fs::path& root, bool check) {
 
 int main(int argc, char** argv) {
     const bool check = argc == 3 && std::string_view(argv[2]) == "--check";
-    if (argc != 2 && !check) {
-        std::fputs("usage: relief-generate ROOT [--check]\n", stderr);
+    const bool schemas = argc == 3 && std::string_view(argv[1]) == "--schemas";
+    if (argc != 2 && !check && !schemas) {
+        std::fputs("usage: relief-generate ROOT [--check]\n       relief-generate --schemas FOLDER\n",
+                   stderr);
         return 1;
     }
-    const relief::Result<int> stale = relief::generate(argv[1], check);
+    const relief::Result<int> stale =
+        schemas ? relief::writeSchemas(argv[2]) : relief::generate(argv[1], check);
     if (!stale) {
         std::fprintf(stderr, "relief-generate: %s\n", stale.error().message.c_str());
         return 4;

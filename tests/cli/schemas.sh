@@ -1,4 +1,4 @@
-# The JSON Schemas of formats/schemas are valid and closed, and describe everything; real outputs of each verb satisfy
+# The JSON Schemas of the build are valid and closed, and describe everything; real outputs of each verb satisfy
 # them, and documents with anything added, missing or changed do not.
 . "$(dirname "$0")/lib.sh"
 
@@ -148,7 +148,8 @@ echo nonsense >bad.toml
 made sim-check 3 "$relief_sim" bad.toml --check --json
 outputs+=(sim-events:hits.jsonl recipe-events:events.jsonl world:w/world.json)
 
-python3 validate.py "$RELIEF_SOURCE/formats/schemas" "${outputs[@]}" || die "schemas and outputs differ"
+"$RELIEF_BIN/relief-generate" --schemas schemas
+python3 validate.py schemas "${outputs[@]}" || die "schemas and outputs differ"
 
 # The schema of scenes, which editors complete them by: every sample satisfies it, and a wrong key or value does not.
 python3 - "$RELIEF_SOURCE" <<'P' || die "the schema of scenes and the samples differ"
