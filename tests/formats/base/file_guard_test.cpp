@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
@@ -15,9 +16,6 @@ namespace fs = std::filesystem;
 class FileGuardTest : public testing::Test {
   protected:
     void SetUp() override {
-        std::string name = testing::TempDir() + "/relief-guard-XXXXXX";
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder_ = name;
         fs::create_directory(folder_ / "real");
         fs::create_directory_symlink("real", folder_ / "linked");
         for (const char* file : {"scene", "real/input", "real/old"}) {
@@ -26,7 +24,6 @@ class FileGuardTest : public testing::Test {
         fs::create_symlink("scene", folder_ / "symbolic");
         fs::create_hard_link(folder_ / "scene", folder_ / "hard");
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
     [[nodiscard]] fs::path in(const std::string& name) const {
         return name == "-" ? fs::path(name) : folder_ / name;
@@ -52,7 +49,8 @@ class FileGuardTest : public testing::Test {
         EXPECT_NE(done.error().message.find(says), std::string::npos) << done.error().message;
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
     FileGuard guard_;
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "formats/base/file_io.h"
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
@@ -17,13 +18,6 @@ namespace fs = std::filesystem;
 
 class TemporaryFiles : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string text = (fs::temp_directory_path() / "relief-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(text.data()), nullptr);
-        folder_ = text;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     [[nodiscard]] std::set<std::string> names() const {
         std::set<std::string> found;
         for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -32,7 +26,8 @@ class TemporaryFiles : public ::testing::Test {
         return found;
     }
 
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path folder_ = temporary_.path();
 };
 
 TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {

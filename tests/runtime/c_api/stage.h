@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <regex>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -312,28 +313,16 @@ class Stage {
 
 enum class Outcome : std::uint8_t { kNothing, kSuccess, kFailure };
 
-// Objects that a call has made are freed at once.
-inline void release(relief_collider* made) {
-    relief_collider_free(made);
-}
-inline void release(relief_textures* made) {
-    relief_textures_free(made);
-}
-inline void release(relief_particles* made) {
-    relief_particles_free(made);
-}
-inline void release(relief_world* made) {
-    relief_world_free(made);
-}
-inline void release(relief_animation* made) {
-    relief_animation_free(made);
-}
-inline void release(relief_emitter* made) {
-    relief_emitter_free(made);
-}
-inline void release(relief_picture* made) {
-    relief_picture_free(made);
-}
+/// Frees at once what a call has made.
+struct Release {
+    static void of(relief_collider* made) { relief_collider_free(made); }
+    static void of(relief_textures* made) { relief_textures_free(made); }
+    static void of(relief_particles* made) { relief_particles_free(made); }
+    static void of(relief_world* made) { relief_world_free(made); }
+    static void of(relief_animation* made) { relief_animation_free(made); }
+    static void of(relief_emitter* made) { relief_emitter_free(made); }
+    static void of(relief_picture* made) { relief_picture_free(made); }
+};
 
 template <class T>
 Outcome outcomeOf(const T& returned) {
@@ -342,7 +331,7 @@ Outcome outcomeOf(const T& returned) {
     } else if constexpr (std::is_same_v<T, const char*>) {
         return returned != nullptr ? Outcome::kNothing : Outcome::kFailure;  // "" may be either
     } else if constexpr (std::is_pointer_v<T>) {
-        release(returned);
+        Release::of(returned);
         return returned != nullptr ? Outcome::kSuccess : Outcome::kFailure;
     } else if constexpr (std::is_signed_v<T>) {
         return returned >= 0 ? Outcome::kSuccess : Outcome::kFailure;
@@ -356,11 +345,9 @@ struct Argument {
     std::string type;
     [[nodiscard]] bool isPointer() const { return type.back() == '*'; }
     [[nodiscard]] bool isHandle() const {
-        const std::string bare =
-            type.substr(type.find("relief_") == std::string::npos ? 0 : type.find("relief_"));
-        return bare == "relief_collider*" || bare == "relief_textures*" || bare == "relief_particles*" ||
-               bare == "relief_picture*" || bare == "relief_world*" || bare == "relief_animation*" ||
-               bare == "relief_emitter*";
+        static const std::regex kHandle(
+            "(const )?relief_(collider|textures|particles|picture|world|animation|emitter)\\*");
+        return std::regex_match(type, kHandle);
     }
 };
 

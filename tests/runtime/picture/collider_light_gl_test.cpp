@@ -105,7 +105,7 @@ double sunPastSphere(const glm::dvec3& p, const glm::dvec3& center, double radiu
     const glm::dvec3 a = glm::normalize(glm::cross(sun, glm::dvec3(0, 0, 1)));
     const glm::dvec3 b = glm::cross(sun, a);
     int seen = 0;
-    constexpr int kRays = 4000;
+    constexpr int kRays = 1000;
     for (int i = 0; i < kRays; ++i) {
         const double r = static_cast<double>(kSunWidth) * std::sqrt((i + 0.5) / kRays);
         const double angle = 2.0 * kPi * 0.61803398875 * i;
@@ -123,12 +123,12 @@ TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
     use(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128));
     for (const float height : {-0.55F, -1.0F, -2.5F}) {
         std::vector<glm::vec3> points;
-        for (int z = 0; z < 40; ++z) {
-            for (int x = 0; x < 40; ++x) {
+        for (int z = 0; z < 28; ++z) {
+            for (int x = 0; x < 28; ++x) {
                 // Along the light, below the sphere.
                 const glm::vec3 under = sunDirection() * (height / sunDirection().y);
-                points.push_back(under + glm::vec3(0.05F * static_cast<float>(x) - 1.0F, 0.0F,
-                                                   0.05F * static_cast<float>(z) - 1.0F));
+                points.push_back(under + glm::vec3(0.07F * static_cast<float>(x) - 1.0F, 0.0F,
+                                                   0.07F * static_cast<float>(z) - 1.0F));
             }
         }
         const std::vector<Light> lights = at(points);
@@ -155,10 +155,10 @@ TEST_P(ColliderLightGlTest, ASphereCastsItsShade) {
                 ++between;
             }
         }
-        EXPECT_GT(full, 300) << height;
-        EXPECT_GT(dark, 30) << height;
+        EXPECT_GT(full, 150) << height;
+        EXPECT_GT(dark, 15) << height;
         EXPECT_LT(in_dark / dark, 0.01) << height;
-        EXPECT_GT(between, 50) << height;
+        EXPECT_GT(between, 25) << height;
         EXPECT_NEAR(sum / between, 0.0, 0.06) << height;
     }
 }

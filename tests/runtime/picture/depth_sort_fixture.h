@@ -108,6 +108,13 @@ inline std::vector<Element> latticeElements(const Cloud& cloud, std::uint32_t co
     return elements;
 }
 
+inline std::vector<Element> stablySorted(const Cloud& cloud, std::uint32_t ranks) {
+    std::vector<Element> sorted = latticeElements(cloud, ranks);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Element& a, const Element& b) { return a.key > b.key; });
+    return sorted;
+}
+
 /// One sorter, of the case's path.
 class DepthSorterTest : public StepGlTest {
   protected:

@@ -1,16 +1,21 @@
 // The depth sort while particles move, are born and die, and while the viewer moves: what must hold in every
 // frame, and how far from sorted the order is.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <string>
 
-#include "runtime/particles/particle_system.h"
 #include "tests/runtime/picture/depth_sort_fixture.h"
 #include "tests/runtime/picture/disorder.h"
 
 namespace relief {
 namespace {
+
+TEST(Disorder, IsThatOfItsPairsAndPlaces) {
+    const std::array<double, 4> drawn{4.0, 1.0, 2.0, 3.0};
+    const Disorder disorder = disorderOf(drawn);
+    EXPECT_DOUBLE_EQ(disorder.adjacent, 2.0 / 3.0);
+    EXPECT_DOUBLE_EQ(disorder.pairs, 0.5);
+    EXPECT_DOUBLE_EQ(disorder.depth_error, 1.0);  // |4−4|, |1−3|, |2−2|, |3−1|
+}
 
 class DepthSortMotionGlTest : public DepthSorterTest {};
 
@@ -48,39 +53,6 @@ TEST_P(DepthSortMotionGlTest, APermutationWhateverTheExtentDoes) {
             ASSERT_EQ(sorter_->count(), ranksFor(extent)) << "leg " << leg;
         }
     }
-}
-
-TEST_P(DepthSortMotionGlTest, BirthsAndDeathsOfAParticleSystem) {
-    auto particles = ParticleSystem::create(onPath({.capacity = 3000}));
-    ASSERT_TRUE(particles) << particles.error().message;
-    make(particles->capacity());
-    Pcg32 random(19);
-    std::uint32_t least = 3000;
-    std::uint32_t most = 0;
-    for (int step = 0; step < 160; ++step) {
-        std::vector<Birth> births(step % 80 < 25 ? 80 : 2);
-        for (Birth& birth : births) {
-            birth.position = {random.uniform(), random.uniform(), random.uniform()};
-            birth.lifetime = random.between(0.1F, 0.5F);
-        }
-        particles->spawn(births);
-        particles->step(1.0F / 60.0F);
-        const std::uint32_t extent = particles->extent();
-        sorter_->update(particles->positions(), particles->textureWidth(), extent, kEye,
-                        DepthSorter::passesPerFrame(extent, 5));
-        const std::vector<Element> order = readOrder(*sorter_);
-        expectPermutation(order);
-        ASSERT_FALSE(HasFatalFailure()) << "step " << step;
-        std::uint32_t drawn = 0;
-        for (const Element& element : order) {
-            drawn += element.key != 0 ? 1 : 0;
-            ASSERT_EQ(element.key != 0, element.index < extent && particles->isLive(element.index));
-        }
-        ASSERT_EQ(drawn, particles->counts().alive);
-        least = step > 60 ? std::min(least, sorter_->count()) : least;
-        most = std::max(most, sorter_->count());
-    }
-    EXPECT_GE(most, 4 * least) << "the extent was to rise and fall";
 }
 
 /// Snow in a box of 3 · 1 · 3 that falls, drifts and comes back at the top, seen by a camera that goes round
@@ -178,15 +150,9 @@ TEST_P(DepthSortMotionGlTest, SpreadOverFramesItKeepsUpWithMotion) {
         Motion motion;
         double most;  // of pairs out of order and of the depth error, as shares of the unsorted
     };
-    const std::array<Case, 9> cases{{{{.frames = 10, .life = 0.0F}, 0.05},
-                                     {{.frames = 10, .life = 30.0F}, 0.06},
-                                     {{.frames = 10, .life = 5.0F}, 0.14},
+    const std::array<Case, 3> cases{{{{.frames = 10, .life = 5.0F}, 0.14},
                                      {{.frames = 30, .life = 0.0F}, 0.1},
-                                     {{.frames = 30, .life = 30.0F}, 0.15},
-                                     {{.frames = 30, .life = 5.0F}, 0.28},
-                                     {{.frames = 50, .life = 0.0F}, 0.12},
-                                     {{.frames = 50, .life = 30.0F}, 0.17},
-                                     {{.frames = 50, .life = 5.0F}, 0.34}}};
+                                     {{.frames = 50, .life = 30.0F}, 0.17}}};
     for (auto [motion, most] : cases) {
         if (exact()) {
             motion.frames = 3;  // each of them is whole
@@ -194,10 +160,7 @@ TEST_P(DepthSortMotionGlTest, SpreadOverFramesItKeepsUpWithMotion) {
         const auto [sorted, unsorted] = disorderInMotion(motion, GetParam().path);
         const std::string name =
             "frames_" + std::to_string(motion.frames) + "_life_" + std::to_string(std::lround(motion.life));
-        RecordProperty(name + "_adjacent", std::to_string(sorted.adjacent));
-        RecordProperty(name + "_pairs", std::to_string(sorted.pairs));
-        RecordProperty(name + "_depth_error", std::to_string(sorted.depth_error));
-        RecordProperty(name + "_depth_error_unsorted", std::to_string(unsorted.depth_error));
+        RecordProperty(name, std::to_string(sorted.depth_error / unsorted.depth_error));
         EXPECT_NEAR(unsorted.pairs, 0.5, 0.02) << name;
         EXPECT_LT(sorted.adjacent, 0.95 * unsorted.adjacent) << name;
         EXPECT_LT(sorted.pairs, most * unsorted.pairs) << name;

@@ -214,10 +214,12 @@ TEST_P(MeshRendererGlTest, VerticesMove) {
 }
 
 TEST_P(MeshRendererGlTest, WrongMeshesAreErrors) {
-    const Bounds around{{-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}};
-    const std::vector<MeshPlace> places{{3, {}, false}};
-    EXPECT_EQ(renderer_->draw({camera_, 1.0F}, {}, places, around, frame_->target()).error().code,
-              ErrorCode::kUsage);
+    EXPECT_EQ(
+        renderer_
+            ->draw({camera_, 1.0F}, {}, std::vector<MeshPlace>{{3, {}, false}}, around_, frame_->target())
+            .error()
+            .code,
+        ErrorCode::kUsage);
     std::vector<PictureMesh> meshes{box({0, 0, 0}, {1, 1, 1}, kRed)};
     meshes[0].colors.pop_back();
     EXPECT_EQ(MeshRenderer::create(meshes).error().code, ErrorCode::kInvalidInput);

@@ -56,16 +56,22 @@ class SpriteGlTest : public GlTest {
 
     /// A sprite at the origin for each type, of lifetime 8, aged `age` seconds.
     void spawn(const std::vector<std::uint32_t>& types, float age) {
-        auto particles = ParticleSystem::create({.capacity = 64});
-        ASSERT_TRUE(particles) << particles.error().message;
-        particles_.reset();
-        particles_.emplace(std::move(*particles));
         std::vector<Birth> births;
         for (const std::uint32_t type : types) {
             births.push_back({glm::vec3(0.0F), glm::vec3(0.0F), 8.0F, type});
         }
+        spawn(births, age);
+    }
+    void spawn(const std::vector<Birth>& births, float dt, int steps = 1,
+               Integrator integrator = Integrator::kEuler) {
+        auto particles = ParticleSystem::create({.capacity = 64, .integrator = integrator});
+        ASSERT_TRUE(particles) << particles.error().message;
+        particles_.reset();
+        particles_.emplace(std::move(*particles));
         particles_->spawn(births);
-        particles_->step(age);
+        for (int i = 0; i < steps; ++i) {
+            particles_->step(dt);
+        }
     }
     static ParticleLook look(const glm::vec3& color, float opacity, float size) {
         ParticleLook out;
@@ -73,6 +79,12 @@ class SpriteGlTest : public GlTest {
         out.opacity = {{0.0F, opacity}};
         out.size = {{0.0F, size}};
         out.lit = false;
+        return out;
+    }
+    static ParticleLook cells(std::uint32_t first, std::uint32_t last, float size = 1.0F) {
+        ParticleLook out = look(glm::vec3(1.0F), 1.0F, size);
+        out.cell_first = first;
+        out.cell_last = last;
         return out;
     }
     void draw(const GlTexture* order = nullptr, const GlTexture* behind = nullptr) {
@@ -150,9 +162,7 @@ TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
     useAtlas();
     for (const Sprite sprite : {Sprite::kQuad, Sprite::kPoint}) {
         style_.sprite = sprite;
-        ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
-        one.cell_first = 1;
-        one.cell_last = 1;
+        ParticleLook one = cells(1, 1);
         style_.looks = {one};
         spawn({0}, 1.0F);
         draw();
@@ -180,9 +190,7 @@ TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
 // its square.
 TEST_P(SpriteGlTest, AQuadTurnsWithItsCorners) {
     useAtlas();
-    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
-    one.cell_first = 0;
-    one.cell_last = 0;
+    ParticleLook one = cells(0, 0);
     one.rotation = {{0.0F, 0.25F * kPi}};
     style_.looks = {one};
     spawn({0}, 1.0F);
@@ -200,9 +208,7 @@ TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
     GLfloat sizes[2] = {};
     glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, sizes);
     useAtlas();
-    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
-    one.cell_first = 0;
-    one.cell_last = 0;
+    ParticleLook one = cells(0, 0);
     one.size = {{0.0F, 4.0F * sizes[1] / 32.0F}};
     style_.looks = {one};
     spawn({0}, 1.0F);
@@ -270,14 +276,7 @@ TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
     for (const Integrator integrator : {Integrator::kEuler, Integrator::kVerlet}) {
         for (const glm::vec3 way :
              {glm::vec3(1.0F, 0.0F, 0.0F), {0.0F, 1.0F, 0.0F}, {-kDiagonal, kDiagonal, 0.0F}}) {
-            auto particles = ParticleSystem::create({.capacity = 64, .integrator = integrator});
-            ASSERT_TRUE(particles) << particles.error().message;
-            particles_.emplace(std::move(*particles));
-            const Birth birth{glm::vec3(0.0F), way, 8.0F, 0};
-            particles_->spawn(std::span(&birth, 1));
-            for (int i = 0; i < 8; ++i) {
-                particles_->step(0.0625F);
-            }
+            spawn({{glm::vec3(0.0F), way, 8.0F, 0}}, 0.0625F, 8, integrator);
             draw();  // its head's centre has come to way / 2, 16 pixels; its tail's to -16
             const auto at = [&](float along, float across) {
                 const glm::vec2 p =
@@ -303,17 +302,10 @@ TEST_P(SpriteGlTest, AStretchedSpriteReachesBackAlongItsWay) {
 // The right side of a cell is the head.
 TEST_P(SpriteGlTest, AStretchedCellHasItsRightSideInFront) {
     useAtlas();
-    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
+    ParticleLook one = cells(1, 1, 0.5F);
     one.stretch = 1.0F;
-    one.cell_first = 1;
-    one.cell_last = 1;
     style_.looks = {one};
-    auto particles = ParticleSystem::create({.capacity = 64});
-    ASSERT_TRUE(particles);
-    particles_.emplace(std::move(*particles));
-    const Birth birth{glm::vec3(0.0F), glm::vec3(0.0F, -1.0F, 0.0F), 8.0F, 0};
-    particles_->spawn(std::span(&birth, 1));
-    particles_->step(0.5F);
+    spawn({{glm::vec3(0.0F), glm::vec3(0.0F, -1.0F, 0.0F), 8.0F, 0}}, 0.5F);
     draw();  // downwards: 48 pixels long, 16 wide; the cell is turned by a quarter clockwise
     expectNear(pixel(36, 44), kRed, kHalf, "upper left of the cell: tail, right");
     expectNear(pixel(36, 19), kGreen, kHalf, "upper right: head, right");
@@ -328,12 +320,7 @@ TEST_P(SpriteGlTest, ATailBehindTheViewerIsCutOff) {
     ParticleLook one = look(glm::vec3(1.0F), 1.0F, 0.5F);
     one.stretch = 8.0F;
     style_.looks = {one};
-    auto particles = ParticleSystem::create({.capacity = 64});
-    ASSERT_TRUE(particles);
-    particles_.emplace(std::move(*particles));
-    const Birth birth{glm::vec3(0.0F), glm::vec3(0.25F, 0.0F, -1.0F), 80.0F, 0};
-    particles_->spawn(std::span(&birth, 1));
-    particles_->step(0.03125F);
+    spawn({{glm::vec3(0.0F), glm::vec3(0.25F, 0.0F, -1.0F), 80.0F, 0}}, 0.03125F);
     draw();  // its tail goes left and towards the viewer, past him
     EXPECT_GT(pixel(8, 32).a, 0.0F);
     EXPECT_EQ(pixel(48, 32).a, 0.0F);
@@ -341,9 +328,7 @@ TEST_P(SpriteGlTest, ATailBehindTheViewerIsCutOff) {
 
 TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
     useAtlas();
-    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
-    one.cell_first = 0;
-    one.cell_last = 1;
+    ParticleLook one = cells(0, 1);
     style_.looks = {one};
     spawn({0}, 3.9F);  // 0.49 of its life
     draw();
@@ -437,9 +422,7 @@ TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
 
 TEST_P(SpriteGlTest, RandomTurnsAreThoseOfTheParticle) {
     useAtlas();
-    ParticleLook one = look(glm::vec3(1.0F), 1.0F, 1.0F);
-    one.cell_first = 1;
-    one.cell_last = 1;
+    ParticleLook one = cells(1, 1);
     one.turn = kPi;
     style_.looks = {one};
     spawn({0}, 1.0F);

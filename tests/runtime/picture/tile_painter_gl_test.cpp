@@ -57,6 +57,7 @@ class TilePainterGlTest : public GlTest {
         style_.opacity = 0.6F;
     }
     void TearDown() override {
+        sorter_.reset();
         particles_.reset();
         renderers_.clear();
         collider_renderer_.reset();
@@ -89,6 +90,9 @@ class TilePainterGlTest : public GlTest {
         }
         particles_->spawn(births);
         particles_->step(1.0F);
+        auto sorter = DepthSorter::create(count, StepPath::kCompute);
+        ASSERT_TRUE(sorter) << sorter.error().message;
+        sorter_.emplace(std::move(*sorter));
     }
 
     std::vector<float> draw(ParticleRenderer& renderer, bool ordered, bool among_collider) {
@@ -102,13 +106,10 @@ class TilePainterGlTest : public GlTest {
             EXPECT_TRUE(collider_renderer_->draw(camera_, ColliderStyle{}, target()));
         }
         ParticleOrder order;
-        const std::uint32_t sorted = std::max(particles_->extent(), 1U);
-        auto sorter = DepthSorter::create(sorted, StepPath::kCompute);
-        EXPECT_TRUE(sorter);
         if (ordered) {
-            sorter->update(particles_->positions(), particles_->textureWidth(), particles_->extent(),
-                           camera_.eye, 0);
-            order = {&sorter->order(), sorter->count()};
+            sorter_->update(particles_->positions(), particles_->textureWidth(), particles_->extent(),
+                            camera_.eye, 0);
+            order = {&sorter_->order(), sorter_->count()};
         }
         const auto drawn = renderer.draw(*particles_, camera_, style_, target(), order,
                                          among_collider ? &collider_renderer_->depth() : nullptr);
@@ -168,6 +169,7 @@ class TilePainterGlTest : public GlTest {
     std::optional<ColliderRenderer> collider_renderer_;
     std::vector<ParticleRenderer> renderers_;
     std::optional<ParticleSystem> particles_;
+    std::optional<DepthSorter> sorter_;
     GlTexture color_;
     GlTexture depth_;
     GlFramebuffer framebuffer_;
@@ -238,11 +240,6 @@ TEST_P(TilePainterGlTest, QuadsCellsAndStretchedSprites) {
     style_.blend = Blend::kAdditive;
     style_.opacity = 0.2F;
     expectTheSame("stretched, added", false, false);
-    // Without room: the quads are drawn, the very same.
-    style_.diameter = 1.5F;
-    style_.opacity = 0.01F;
-    spawn(10'000, 0.7F);
-    EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
 }
 
 TEST_P(TilePainterGlTest, SpritesOfEverySize) {
@@ -286,13 +283,15 @@ TEST_P(TilePainterGlTest, TheOrderIsKept) {
     EXPECT_GT(other.most, 0.4);
 }
 
-// Tiles have room for 2^18 entries of few sprites. Then points are drawn, the very same.
-TEST_P(TilePainterGlTest, WithoutRoomThePointsAreDrawn) {
+// Tiles have room for 2^18 entries of few sprites. Then points or quads are drawn, the very same.
+TEST_P(TilePainterGlTest, WithoutRoomSpritesAreDrawn) {
     spawn(8000, 0.7F);
     style_.diameter = 2.0F;
     style_.opacity = 0.01F;
-    const std::vector<float> points = draw(renderers_[0], true, false);
-    EXPECT_EQ(points, draw(renderers_[1], true, false));
+    for (const Sprite sprite : {Sprite::kQuad, Sprite::kPoint}) {
+        style_.sprite = sprite;
+        EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
+    }
     // And tiles are painted again afterwards.
     style_.diameter = 0.05F;
     style_.opacity = 0.6F;
@@ -311,19 +310,10 @@ TEST_P(TilePainterGlTest, ACloudFarAway) {
     EXPECT_NE(points, draw(renderers_[1], true, false));
 }
 
-// Before its first update a sorter has no ranks.
-TEST_P(TilePainterGlTest, NoRanks) {
+TEST_P(TilePainterGlTest, NothingAliveNothingInSightAndNoRanks) {
     spawn(300);
-    const auto sorter = DepthSorter::create(300, StepPath::kCompute);
-    ASSERT_TRUE(sorter);
-    ASSERT_EQ(sorter->count(), 0U);
-    for (ParticleRenderer& renderer : renderers_) {
-        EXPECT_TRUE(renderer.draw(*particles_, camera_, style_, target(), {&sorter->order(), 0}));
-    }
-}
-
-TEST_P(TilePainterGlTest, NothingAliveAndNothingInSight) {
-    spawn(300);
+    ASSERT_EQ(sorter_->count(), 0U) << "before its first update";
+    EXPECT_TRUE(renderers_[1].draw(*particles_, camera_, style_, target(), {&sorter_->order(), 0}));
     const std::vector<float> seen = draw(renderers_[1], true, false);
     camera_.target = {0.0F, 0.0F, 9.0F};  // all lie behind the viewer
     EXPECT_EQ(draw(renderers_[0], true, false), draw(renderers_[1], true, false));
@@ -367,32 +357,6 @@ TEST_P(TilePainterGlTest, DepthThatIsNoTexture) {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     EXPECT_EQ(draw(renderers_[0], true, true), draw(renderers_[1], true, true));
     glDeleteRenderbuffers(1, &depth);
-}
-
-TEST_P(TilePainterGlTest, TheCallersBuffersStayBound) {
-    spawn(500);
-    std::array<GLuint, 3> buffers{};
-    glGenBuffers(3, buffers.data());
-    constexpr std::array<GLenum, 3> kTargets{GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,
-                                             GL_DRAW_INDIRECT_BUFFER};
-    constexpr std::array<GLenum, 3> kBindings{GL_COPY_READ_BUFFER_BINDING, GL_COPY_WRITE_BUFFER_BINDING,
-                                              GL_DRAW_INDIRECT_BUFFER_BINDING};
-    for (std::size_t i = 0; i < 3; ++i) {
-        glBindBuffer(kTargets[i], buffers[i]);
-        glBufferData(kTargets[i], 64, nullptr, GL_STATIC_DRAW);
-    }
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, buffers[1]);
-    const std::vector<float> tiles = draw(renderers_[1], true, true);
-    for (std::size_t i = 0; i < 3; ++i) {
-        GLint bound = 0;
-        glGetIntegerv(kBindings[i], &bound);
-        EXPECT_EQ(static_cast<GLuint>(bound), buffers[i]);
-    }
-    GLint bound = 0;
-    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, 2, &bound);
-    EXPECT_EQ(static_cast<GLuint>(bound), buffers[1]);
-    glDeleteBuffers(3, buffers.data());
-    EXPECT_EQ(tiles, draw(renderers_[1], true, true));
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(TilePainterGlTest);
