@@ -78,6 +78,20 @@ Result<FlowField> loadFlow(const FlowFile& file) {
     return flow;
 }
 
+std::optional<FieldFault> check(FlowFile& flow, const GivenFields& /*given*/) {
+    flow.origin += ": flow.raw: ";
+    if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
+        return FieldFault{"size", "is not possible: " + checked.error().message};
+    }
+    for (int i = 0; i < 3; ++i) {
+        if (!(flow.box_min[i] < flow.box_max[i])) {
+            return FieldFault{"box_min", "is not below flow.box_max on the " + std::string(1, "xyz"[i]) +
+                                             " axis; move one of them"};
+        }
+    }
+    return std::nullopt;
+}
+
 void fields(FieldVisitor& visit, FlowFile& flow) {
     const FieldFile path{flow.path, flow.origin};
     visit("raw", path, {"Little-endian 32-bit floats, x fastest, then y, then z", {}, {}, {}, kRequired});

@@ -27,6 +27,7 @@ struct FlowFile {
     float gain = 1.0F;
 };
 void fields(FieldVisitor& visit, FlowFile& flow);
+[[nodiscard]] std::optional<FieldFault> check(FlowFile& flow, const GivenFields& given);
 
 /// The largest velocity taken, in either direction: object units a second.
 inline constexpr float kFlowSpeedMax = 1e6F;

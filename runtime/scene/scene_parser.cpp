@@ -12,20 +12,6 @@ constexpr std::uint64_t kSceneBytesMax = std::uint64_t{1} << 20;
 
 }  // namespace
 
-std::optional<FieldFault> check(FlowFile& flow, const GivenFields& /*given*/) {
-    flow.origin += ": flow.raw: ";
-    if (auto checked = checkFlowSize({flow.size[0], flow.size[1], flow.size[2]}); !checked) {
-        return FieldFault{"size", "is not possible: " + checked.error().message};
-    }
-    for (int i = 0; i < 3; ++i) {
-        if (!(flow.box_min[i] < flow.box_max[i])) {
-            return FieldFault{"box_min", "is not below flow.box_max on the " + std::string(1, "xyz"[i]) +
-                                             " axis; move one of them"};
-        }
-    }
-    return std::nullopt;
-}
-
 void readScene(const TomlValue& top, Scene& scene) {
     readToml(top, scene);
 }

@@ -458,7 +458,7 @@ TEST_P(CollisionGlTest, TheCallersStateIsKept) {
 TEST_P(CollisionGlTest, NumbersDoNotCompile) {
     const auto programs = [] {
         std::vector<GLuint> names;
-        for (GLuint name = 1; name < 1000; ++name) {
+        for (GLuint name = 1; name < 65536; ++name) {
             if (glIsProgram(name) == GL_TRUE) {
                 names.push_back(name);
             }
