@@ -108,7 +108,7 @@ job_bench() {
 }
 
 job nightly 2 docs
-job_docs() { scripts/docs.sh "$work/docs"; }
+job_docs() { scripts/docs.sh "$work/docs" | sed "s/^[0-9]* links of/$name: &/"; }
 
 job nightly 20 web
 job_web() {
