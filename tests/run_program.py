@@ -9,9 +9,11 @@ least one case ran and all passed, else 1.
 """
 
 import argparse
+import ctypes
 import os
 import queue
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -19,6 +21,13 @@ import time
 
 RUN = re.compile(rb'^\[ RUN      \] (\S+)')
 END = re.compile(rb'^\[ *(OK|FAILED|SKIPPED) *\] ([^\s,]+).*?(?:\((\d+) ms\))?$')
+
+
+LIBC = ctypes.CDLL(None)
+
+
+def end_with_parent():
+    LIBC.prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
 class Run:
@@ -30,7 +39,7 @@ class Run:
         self.reason = ''
         process = subprocess.Popen([program, f'--gtest_filter={filter_text}', '--gtest_color=no'], env=environment,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                   start_new_session=True)
+                                   preexec_fn=end_with_parent)
         lines = queue.Queue()
 
         def read():
@@ -62,7 +71,7 @@ class Run:
             else:
                 log.append(line)
         if self.reason:
-            os.killpg(process.pid, 9)
+            process.kill()
         code = process.wait()
         self.log = b''.join(log)
         if not self.reason and code not in (0, 1):
@@ -147,8 +156,8 @@ def main():
     missing = [case for case in cases if case not in times and case not in failures]
     for case in missing:
         report(case, 'did not run', b'')
-    slowest = sorted(times.items(), key=lambda item: -item[1])[:8]
-    print('slowest: ' + ', '.join(f'{case} {ms / 1000:.1f} s' for case, ms in slowest if ms >= 500))
+    slowest = sorted(times.items(), key=lambda item: -item[1])[:20]
+    print('slowest: ' + ', '.join(f'{case} {ms / 1000:.1f} s' for case, ms in slowest if ms >= 2000))
     print(f'{len(cases)} cases, {len(failures)} failed, {time.monotonic() - begun:.1f} s')
     return 1 if failures else 0
 
