@@ -65,6 +65,7 @@ def distance(p, triangles):
 
 
 triangles = read_obj(sys.argv[1])
+triangles = triangles[np.argsort(triangles[:, 0, 0])]
 low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
 side = float((high - low).max())
 near = 3 * side / 510
@@ -78,10 +79,11 @@ for row in rows:
         continue
     still = resting < 3000 and row['vx'] == row['vy'] == row['vz'] == 0
     within = sum(of.crossings(p) % 2 for of in columns) >= 2
-    if still or within:
-        # The nearest triangle has a corner no farther off than the nearest corner and its longest edge.
-        reach = np.linalg.norm(triangles - p, axis=2).min(axis=1)
-        to = distance(p, triangles[reach <= reach.min() + longest])
-        resting += still and to <= near
-        deepest = max(deepest, to if within else 0.0)
+    if within:
+        deepest = max(deepest, distance(p, triangles))
+    if still:
+        # A triangle so near has its first corner no farther off than the longest edge more.
+        first, last = np.searchsorted(triangles[:, 0, 0], [p[0] - near - longest, p[0] + near + longest])
+        close = triangles[first:last][(np.abs(triangles[first:last, 0] - p) <= near + longest).all(axis=1)]
+        resting += int(len(close) > 0 and distance(p, close) <= near)
 print(json.dumps({'particles': len(rows), 'deepest_share_of_longest_side': deepest / side, 'resting_on_mesh': resting}))
