@@ -407,7 +407,9 @@ TEST_P(CollisionGlTest, WhatHasAnAgeHasMovedInTheAirsWind) {
         EXPECT_TRUE(particles_->setForces(
             {{}, with_air ? glm::vec3(0.0F, 9.0F, 0.0F) : glm::vec3(2.0F, 0.0F, 0.0F), 3.0F}));
         if (with_air) {
-            ASSERT_TRUE(particles_->setAir({.wind = {2.0F, 0.0F, 0.0F}}));
+            AirSettings air;
+            air.wind = {2.0F, 0.0F, 0.0F};
+            ASSERT_TRUE(particles_->setAir(air));
         }
         spawnOne({{}, {}, 100.0F, 0, 0.25F});
         particles_->step(0.25F);
@@ -431,7 +433,8 @@ TEST_P(CollisionGlTest, TheCallersStateIsKept) {
     flow->nodes.assign(8, glm::vec3(1.0F));
     flow->box_min = glm::vec3(-1.0F);
     flow->box_max = glm::vec3(1.0F);
-    AirSettings air{.wind = {1.0F, 0.0F, 0.0F}};
+    AirSettings air;
+    air.wind = {1.0F, 0.0F, 0.0F};
     air.flow = flow;
     ASSERT_TRUE(particles_->setAir(air));
     caller.expectKept("setAir");
