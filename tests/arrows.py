@@ -17,7 +17,7 @@ THIRD_PARTIES = {
     'pugixml.hpp': ['bake/import'],
     'embree3': ['bake/mesh'],
     'embree4': ['bake/mesh'],
-    'CGAL': ['bake/mesh', 'bake/repair'],
+    'CGAL': ['bake/repair'],
     'OpenEXR': ['bake/picture', 'bake/heights'],
     'cairo.h': ['bake/picture'],
     'openvdb': ['runtime/vdb'],

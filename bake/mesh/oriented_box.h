@@ -1,5 +1,4 @@
-// The oriented bounding box of (nearly) least volume, by CGAL's oriented_bounding_box (Chang, Gorissen and Melchior 2011).
-// Many parts are built along its axes, however they lie in their file.
+// The oriented bounding box of least volume. Many parts are built along its axes, however they lie in their file.
 #pragma once
 
 #include <array>
@@ -17,8 +16,9 @@ namespace relief {
 [[nodiscard]] std::vector<glm::dvec3> extremeVertices(const VertexBlocks& vertices);
 
 /// The axes of the box round these points: right-handed, of unit length to rounding, the longest side's first. Components
-/// that differ from 0 by rounding alone are 0. The same points give the same bits: fixed seed, one thread.
-/// \return nullopt for points (nearly) in a plane, where the least volume is undefined, or where CGAL gave up.
+/// that differ from 0 only by rounding are 0. The same points give the same bits. The time grows with the cube of their
+/// number.
+/// \return nullopt for points (nearly) in a plane, where the least volume is undefined.
 [[nodiscard]] std::optional<std::array<glm::dvec3, 3>> orientedBoxAxes(std::span<const glm::dvec3> points);
 
 struct OrientedBox {

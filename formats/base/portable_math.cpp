@@ -126,20 +126,3 @@ double acos(double x) {
 }
 
 }  // namespace relief::portable
-
-// What portable_libm.h calls.
-extern "C" {
-double relief_portable_acos(double x) noexcept;
-double relief_portable_cos(double radians) noexcept;
-double relief_portable_sin(double radians) noexcept;
-
-double relief_portable_acos(double x) noexcept {
-    return relief::portable::acos(x);
-}
-double relief_portable_cos(double radians) noexcept {
-    return relief::portable::cos(radians);
-}
-double relief_portable_sin(double radians) noexcept {
-    return relief::portable::sin(radians);
-}
-}

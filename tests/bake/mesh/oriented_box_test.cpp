@@ -1,17 +1,20 @@
-// The axes of the oriented box, against boxes of known axes, and on all that has no volume; then what the
-// planner makes of them.
+// The axes of the oriented box, against shapes whose least box is known and against random frames, and on points without a
+// volume; then what the planner makes of them.
 #include "bake/mesh/oriented_box.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <random>
 
 #include "bake/measure/accuracy.h"
 #include "bake/plan/view.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/plan_views.h"
+#include "tests/seeds.h"
 
 namespace relief::test {
 namespace {
@@ -28,6 +31,92 @@ double largestCosine(const glm::dvec3& direction, const glm::dmat3& axes) {
         largest = std::max(largest, std::abs(glm::dot(glm::normalize(direction), axes[i])));
     }
     return largest;
+}
+
+double volumeAlong(const std::vector<glm::dvec3>& points, const std::array<glm::dvec3, 3>& axes) {
+    double volume = 1.0;
+    for (const glm::dvec3& axis : axes) {
+        const auto [low, high] =
+            std::ranges::minmax_element(points, {}, [&](const glm::dvec3& p) { return glm::dot(p, axis); });
+        volume *= glm::dot(*high - *low, axis);
+    }
+    return volume;
+}
+
+double leastVolume(const std::vector<glm::dvec3>& points) {
+    const auto axes = orientedBoxAxes(points);
+    EXPECT_TRUE(axes);
+    return axes ? volumeAlong(points, *axes) : 0.0;
+}
+
+/// Uniform over all rotations: a unit quaternion by rejection.
+glm::dmat3 randomTurn(std::mt19937& random) {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    while (true) {
+        const double w = unit(random);
+        const double x = unit(random);
+        const double y = unit(random);
+        const double z = unit(random);
+        const double s = w * w + x * x + y * y + z * z;
+        if (s > 0.01 && s < 1.0) {
+            return {1 - 2 * (y * y + z * z) / s, 2 * (x * y + z * w) / s,     2 * (x * z - y * w) / s,
+                    2 * (x * y - z * w) / s,     1 - 2 * (x * x + z * z) / s, 2 * (y * z + x * w) / s,
+                    2 * (x * z + y * w) / s,     2 * (y * z - x * w) / s,     1 - 2 * (x * x + y * y) / s};
+        }
+    }
+}
+
+std::vector<glm::dvec3> turned(std::vector<glm::dvec3> points, const glm::dmat3& turn) {
+    for (glm::dvec3& p : points) {
+        p = glm::dvec3(3, -5, 2) + turn * p;
+    }
+    return points;
+}
+
+// Breaks when a face or an edge of the hull is missed, or when the search stops short of a minimum.
+TEST(OrientedBox, HasTheLeastVolume) {
+    std::vector<glm::dvec3> box;
+    for (int corner = 0; corner < 8; ++corner) {
+        box.emplace_back((corner & 1) * 0.7, (corner & 2) * 0.5, (corner & 4) * 0.01);
+    }
+    // No face of the least box holds a face of a regular tetrahedron: each holds an edge, which is its diagonal.
+    const std::vector<glm::dvec3> tetrahedron = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    constexpr int kSides = 36;
+    std::vector<glm::dvec3> cylinder;
+    for (int i = 0; i < kSides; ++i) {
+        const double angle = 2.0 * glm::pi<double>() * i / kSides;
+        for (const double z : {-2.0, 2.0}) {
+            cylinder.emplace_back(std::cos(angle), std::sin(angle), z);
+        }
+    }
+    const double width = 2.0 * std::cos(glm::pi<double>() / kSides);  // between opposite sides
+    std::mt19937 random(seedFrom(11));
+    for (int i = 0; i < 20; ++i) {
+        const glm::dmat3 turn = randomTurn(random);
+        EXPECT_NEAR(leastVolume(turned(box, turn)), 0.7 * 1.0 * 0.04, 1e-9);
+        EXPECT_NEAR(leastVolume(turned(tetrahedron, turn)), 8.0, 1e-5);
+        EXPECT_NEAR(leastVolume(turned(cylinder, turn)), 4.0 * width * width, 1e-6);
+    }
+}
+
+TEST(OrientedBox, NoRandomFrameHasASmallerBox) {
+    std::mt19937 random(seedFrom(12));
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (const std::size_t count :
+         {std::size_t{4}, std::size_t{5}, std::size_t{7}, std::size_t{12}, std::size_t{100}}) {
+        for (int repeat = 0; repeat < 4; ++repeat) {
+            std::vector<glm::dvec3> points(count);
+            for (glm::dvec3& p : points) {
+                p = {unit(random), 0.7 * unit(random), 0.4 * unit(random)};
+            }
+            double random_least = std::numeric_limits<double>::infinity();
+            for (int i = 0; i < 5'000; ++i) {
+                const glm::dmat3 turn = randomTurn(random);
+                random_least = std::min(random_least, volumeAlong(points, {turn[0], turn[1], turn[2]}));
+            }
+            EXPECT_LE(leastVolume(points), random_least) << count << " points";
+        }
+    }
 }
 
 TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
