@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the tests but for the slow ones in a build of its own, and writes how much of the sources they run:
+# Runs the default tier in a build of its own, and writes how much of the sources they run:
 # out/coverage/index.html, and a summary. scripts/coverage.sh [CTEST OPTION]…, such as -R Voxels
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,7 +10,7 @@ cmake -G Ninja -S . -B $build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='
     -DRELIEF_BUILD_BENCHMARKS=OFF -DRELIEF_BUILD_PYTHON=OFF >&2
 cmake --build $build >&2
 find $build -name '*.gcda' -delete
-ctest --test-dir $build -j "$(nproc)" -LE slow "$@" >&2
+ctest --test-dir $build -j "$(nproc)" -LE nightly "$@" >&2
 mkdir -p out/coverage
 gcovr --root . --filter '(bake|formats|runtime)/' --exclude-throw-branches -j "$(nproc)" \
     --html-details out/coverage/index.html --print-summary $build
