@@ -3,7 +3,7 @@
 # without the baker. scripts/gpu_test.sh [--allow-software] [build|run [FOLDER]]
 #
 #   (nothing)      build, then run
-#   build          builds the tests, and gathers them with their shared libraries in FOLDER (build/gpu/tests): copy it to a
+#   build          builds the tests, and gathers them with their shared libraries in FOLDER (build/gpu_tests): copy it to a
 #                  machine with a GPU
 #   run            runs the tests of FOLDER, and needs only python3 and the driver
 #   --allow-software  also runs on a software renderer such as Mesa's llvmpipe; otherwise that ends with exit status 5
@@ -27,7 +27,7 @@ for argument; do
         *) folder=$argument ;;
     esac
 done
-folder=${folder:-build/gpu/tests}
+folder=${folder:-build/gpu_tests}
 
 build() {
     scripts/setup.sh
