@@ -55,7 +55,7 @@ class SpriteGlTest : public GlTest {
     }
 
     /// A sprite at the origin for each type, of lifetime 8, aged `age` seconds.
-    void spawn(const std::vector<std::uint32_t>& types, float age) {
+    void spawnTypes(const std::vector<std::uint32_t>& types, float age) {
         std::vector<Birth> births;
         for (const std::uint32_t type : types) {
             births.push_back({glm::vec3(0.0F), glm::vec3(0.0F), 8.0F, type});
@@ -164,7 +164,7 @@ TEST_P(SpriteGlTest, ACellTurnsAnticlockwise) {
         style_.sprite = sprite;
         ParticleLook one = cells(1, 1);
         style_.looks = {one};
-        spawn({0}, 1.0F);
+        spawnTypes({0}, 1.0F);
         draw();
         expectNear(pixel(20, 43), kRed, kHalf, "upper left");
         expectNear(pixel(43, 43), kGreen, kHalf, "upper right");
@@ -193,7 +193,7 @@ TEST_P(SpriteGlTest, AQuadTurnsWithItsCorners) {
     ParticleLook one = cells(0, 0);
     one.rotation = {{0.0F, 0.25F * kPi}};
     style_.looks = {one};
-    spawn({0}, 1.0F);
+    spawnTypes({0}, 1.0F);
     draw();
     EXPECT_EQ(pixel(31, 31 + 22).a, 1.0F);
     EXPECT_EQ(pixel(31, 31 + 24).a, 0.0F);
@@ -211,7 +211,7 @@ TEST_P(SpriteGlTest, AQuadIsNoSmallerThanItSays) {
     ParticleLook one = cells(0, 0);
     one.size = {{0.0F, 4.0F * sizes[1] / 32.0F}};
     style_.looks = {one};
-    spawn({0}, 1.0F);
+    spawnTypes({0}, 1.0F);
     // Its centre lies beside the picture, where a point would be gone.
     camera_.eye.x = 1.5F;
     camera_.target.x = 1.5F;
@@ -236,7 +236,7 @@ TEST_P(SpriteGlTest, KeyFramesAtExactAges) {
     for (const Case& c :
          {Case{2.0F, {0.5F, 0.5F, 0.0F}, 0.5F, 0.5F}, Case{4.0F, {0.0F, 1.0F, 0.0F}, 1.0F, 1.0F},
           Case{6.0F, {0.0F, 0.5F, 0.5F}, 0.75F, 1.5F}, Case{1.0F, {0.75F, 0.25F, 0.0F}, 0.25F, 0.5F}}) {
-        spawn({0}, c.age);
+        spawnTypes({0}, c.age);
         draw();
         expectNear(pixel(32, 32), glm::vec4(c.opacity * c.color, c.opacity), kHalf, "middle");
         // A grain is full up to 0.65 of its radius, and nothing from the radius on.
@@ -258,7 +258,7 @@ TEST_P(SpriteGlTest, ManyKeysAtExactAges) {
     }
     style_.looks = {one};
     for (const int i : {0, 1, 6, 7, 100, 127, 128, 253}) {
-        spawn({0}, 8.0F * (key(i) + 0.25F / 255.0F));
+        spawnTypes({0}, 8.0F * (key(i) + 0.25F / 255.0F));
         draw();
         const float low = one.opacity[static_cast<std::size_t>(i)].value;
         const float high = one.opacity[static_cast<std::size_t>(i) + 1].value;
@@ -330,10 +330,10 @@ TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
     useAtlas();
     ParticleLook one = cells(0, 1);
     style_.looks = {one};
-    spawn({0}, 3.9F);  // 0.49 of its life
+    spawnTypes({0}, 3.9F);  // 0.49 of its life
     draw();
     EXPECT_NEAR(pixel(20, 43).g, 0.2158605F, kHalf) << "128 of sRGB in linear light";
-    spawn({0}, 4.1F);
+    spawnTypes({0}, 4.1F);
     draw();
     expectNear(pixel(20, 43), kRed, kHalf, "second cell");
 }
@@ -341,7 +341,7 @@ TEST_P(SpriteGlTest, CellsArePlayedOverAge) {
 TEST_P(SpriteGlTest, EachTypeHasItsLook) {
     style_.looks = {look({1, 0, 0}, 1.0F, 1.0F), look({0, 1, 0}, 1.0F, 1.0F)};
     for (const auto& [type, wanted] : {std::pair{0U, kRed}, {1U, kGreen}, {9U, kGreen}}) {
-        spawn({type}, 1.0F);
+        spawnTypes({type}, 1.0F);
         draw();
         expectNear(pixel(32, 32), wanted, kHalf, "middle");
     }
@@ -360,7 +360,7 @@ TEST_P(SpriteGlTest, AdditiveSumsInAnyOrder) {
         reversed.push_back(7 - static_cast<int>(i));
         sum += opacity;
     }
-    spawn(types, 1.0F);
+    spawnTypes(types, 1.0F);
     draw();
     EXPECT_EQ(pixel(32, 32), glm::vec4(sum));
     const std::vector<float> first = pixels_;
@@ -375,7 +375,7 @@ TEST_P(SpriteGlTest, AdditiveSumsInAnyOrder) {
 // Over: the later of two halves covers half of the earlier.
 TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
     style_.looks = {look({1, 0, 0}, 0.5F, 1.0F), look({0, 1, 0}, 0.5F, 1.0F)};
-    spawn({0, 1}, 1.0F);
+    spawnTypes({0, 1}, 1.0F);
     const GlTexture forwards = orderTexture({0, 1});
     const GlTexture backwards = orderTexture({1, 0});
     const GlTexture one = orderTexture({1, -1});
@@ -402,7 +402,7 @@ TEST_P(SpriteGlTest, AlphaFollowsTheOrder) {
 TEST_P(SpriteGlTest, SoftEdgesFadeByDistance) {
     style_.looks = {look(glm::vec3(1.0F), 1.0F, 0.5F)};
     style_.soft = 0.4F;
-    spawn({0}, 1.0F);
+    spawnTypes({0}, 1.0F);
     for (const auto& [behind, wanted] :
          {std::pair{0.0F, 0.0F}, {0.1F, 0.25F}, {0.2F, 0.5F}, {0.3F, 0.75F}, {0.4F, 1.0F}, {9.0F, 1.0F}}) {
         const glm::vec2 depth = camera_.depthOfDistance();
@@ -425,10 +425,10 @@ TEST_P(SpriteGlTest, RandomTurnsAreThoseOfTheParticle) {
     ParticleLook one = cells(1, 1);
     one.turn = kPi;
     style_.looks = {one};
-    spawn({0}, 1.0F);
+    spawnTypes({0}, 1.0F);
     draw();
     const std::vector<float> first = pixels_;
-    spawn({0}, 2.0F);
+    spawnTypes({0}, 2.0F);
     draw();
     EXPECT_EQ(pixels_, first) << "the start stays";
     style_.looks[0].spin = 1.0F;
@@ -437,7 +437,7 @@ TEST_P(SpriteGlTest, RandomTurnsAreThoseOfTheParticle) {
 }
 
 TEST_P(SpriteGlTest, WhatCannotBeDrawnIsRefused) {
-    spawn({0}, 1.0F);
+    spawnTypes({0}, 1.0F);
     const RenderTarget target{framebuffer_.name(), kSide, kSide};
     style_.looks.resize(kLooksMax + 1);
     EXPECT_EQ(renderer_->draw(*particles_, camera_, style_, target).error().code, ErrorCode::kUsage);
