@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -71,18 +72,13 @@ class MeshMaker {
         for (unsigned i = 0; i < 8; ++i) {
             corners.push_back(low + size * glm::vec3(i & 1U, i >> 1U & 1U, i >> 2U));
         }
-        add(corners, {{0, 4, 6},
-                      {0, 6, 2},
-                      {1, 3, 7},
-                      {1, 7, 5},
-                      {0, 1, 5},
-                      {0, 5, 4},
-                      {2, 6, 7},
-                      {2, 7, 3},
-                      {0, 2, 3},
-                      {0, 3, 1},
-                      {4, 5, 7},
-                      {4, 7, 6}});
+        std::vector<glm::uvec3> triangles;
+        for (const glm::uvec4& q : {glm::uvec4(0, 4, 6, 2), glm::uvec4(1, 3, 7, 5), glm::uvec4(0, 1, 5, 4),
+                                    glm::uvec4(2, 6, 7, 3), glm::uvec4(0, 2, 3, 1), glm::uvec4(4, 5, 7, 6)}) {
+            triangles.emplace_back(q.x, q.y, q.z);
+            triangles.emplace_back(q.x, q.z, q.w);
+        }
+        add(corners, triangles);
     }
 
     /// The last part again: as it is, inside out, smaller about its middle, or moved by a hair.

@@ -14,10 +14,6 @@
 
 namespace {
 
-bool isLine(const std::string& text) {
-    return text.find_first_of(std::string_view("\n\r\x1b\0", 4)) == std::string::npos;
-}
-
 void mustBePolygons(const relief::PolygonMesh& mesh) {
     const std::uint64_t corners = std::accumulate(mesh.sizes.begin(), mesh.sizes.end(), std::uint64_t{0});
     mustHold(corners == mesh.corners.size(), "each corner belongs to a polygon");
@@ -28,7 +24,7 @@ void mustBePolygons(const relief::PolygonMesh& mesh) {
         mustHold(corner < mesh.positions.size(), "corners exist");
     }
     for (const std::string& warning : mesh.warnings) {
-        mustHold(isLine(warning), "a warning is one line");
+        mustBeLine(warning);
     }
 }
 
@@ -41,7 +37,7 @@ void mustBeJudged(std::span<const std::byte> bytes) {
 
 void mustBeRead(const relief::Result<relief::PolygonMesh>& mesh) {
     if (!mesh) {
-        mustHold(isLine(mesh.error().message), "an error is one line");
+        mustBeLine(mesh.error().message);
         return;
     }
     mustBePolygons(*mesh);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 /// Runs one input, which may be anything. Returns 0. What must never happen ends the process.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -16,4 +17,10 @@ inline void mustHold(bool holds, const char* promise) {
         std::fprintf(stderr, "broken promise: %s\n", promise);
         std::abort();
     }
+}
+
+/// A message or a warning.
+inline void mustBeLine(std::string_view text) {
+    mustHold(!text.empty() && text.find_first_of(std::string_view("\n\r\x1b\0", 4)) == text.npos,
+             "a message is one line");
 }
