@@ -187,7 +187,7 @@ def test_a_simulation_and_its_hits_are_those_of_relief_sim(bunny, tmp_path):
     dump = np.frombuffer(body, dtype=np.dtype([("position", "<f4", 3), ("velocity", "<f4", 3), ("age", "<f4"),
                                                ("lifetime", "<f4"), ("id", "<u4"), ("type", "<u4")]))
     order = np.argsort(simulation.ids)
-    assert simulation.alive == len(dump) > 1000 and abs(simulation.time - 1.7) < 1e-3
+    assert simulation.alive == len(dump) > 1000 and abs(simulation.time - 1.5) < 1e-3
     for ours, theirs in (("ids", "id"), ("positions", "position"), ("velocities", "velocity"), ("types", "type"),
                          ("lifetimes", "lifetime")):
         assert np.array_equal(getattr(simulation, ours)[order], dump[theirs]), ours

@@ -17,7 +17,7 @@
 namespace relief {
 namespace {
 
-constexpr std::uint32_t kParticles = 1500;
+constexpr std::uint32_t kParticles = 3000;
 
 /// What a step is compiled for.
 struct Features {
