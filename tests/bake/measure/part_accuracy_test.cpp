@@ -3,24 +3,19 @@
 #include "bake/measure/part_accuracy.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "bake/repair/winding.h"
-#include "bake/shape/shape.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/shaped.h"
+#include "tests/bake/threads.h"
 
 namespace relief::test {
 namespace {
 
-ShapedMesh shaped(TriangleMesh mesh, const ShapeOptions& options = {ShapeAs::kAuto, 0.01, {}}) {
-    Result<Winding> winding = windOutwards(std::move(mesh));
-    EXPECT_TRUE(winding) << winding.error().message;
-    Result<ShapedMesh> shape = shapeMesh(winding->mesh, options);
-    EXPECT_TRUE(shape) << shape.error().message;
-    return std::move(*shape);
+ShapedMesh shaped(const TriangleMesh& mesh, const ShapeOptions& options = {ShapeAs::kAuto, 0.01, {}}) {
+    return shapedBy(mesh, options);
 }
 
 PartsAccuracy measured(const ShapedMesh& shape, const Field& field, const PartOptions& options = {}) {
@@ -87,10 +82,7 @@ TEST(PartAccuracy, PartsBelowTheDetailDoNotCount) {
 
 TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
     const TriangleMesh outer = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
-    TriangleMesh sheet = makePlane(0.1F, 2);
-    for (glm::vec3& p : sheet.positions) {
-        p *= 0.5F;
-    }
+    const TriangleMesh sheet = moved(makePlane(0.1F, 2), [](const glm::dvec3& p) { return 0.5 * p; });
     const ShapedMesh shape = shaped(joined({outer, sheet}));
     const PartsAccuracy found = measured(shape, fieldOfBoxes({outer.bounds}));
     EXPECT_EQ(found.countOf(PartVerdict::kHeld), 1U);
@@ -100,10 +92,8 @@ TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
 
 TEST(PartAccuracy, AShellIsWrongBeyondTheThicknessThatWasAskedFor) {
     // A leaf of 0.1 beside a body of 10: a default of 0.02 is a fifth of it.
-    TriangleMesh leaf = makePlane(0.0F, 2);
-    for (glm::vec3& p : leaf.positions) {
-        p = 0.05F * p + glm::vec3(0.0F, 8.0F, 0.0F);
-    }
+    const TriangleMesh leaf =
+        moved(makePlane(0.0F, 2), [](const glm::dvec3& p) { return 0.05 * p + glm::dvec3(0.0, 8.0, 0.0); });
     const TriangleMesh body = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(5.0));
     const TriangleMesh mesh = joined({body, leaf});
     constexpr double kThick = 0.02;
@@ -190,8 +180,7 @@ TEST(PartAccuracy, IsTheSameForAnyNumberOfThreads) {
     options.parts_max = 30;
     options.points_all = 3000;
     const PartsAccuracy all = measured(shape, fieldOfBoxes(kept), options);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const PartsAccuracy again = measured(shape, fieldOfBoxes(kept), options);
+    const PartsAccuracy again = onThreads(1, [&] { return measured(shape, fieldOfBoxes(kept), options); });
     EXPECT_EQ(all.countOf(PartVerdict::kRest), 10U);
     ASSERT_EQ(all.parts.size(), again.parts.size());
     for (std::size_t i = 0; i < all.parts.size(); ++i) {

@@ -2,8 +2,6 @@
 // lies behind another part, sheets and open meshes.
 #include "bake/measure/worst_places.h"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "tests/bake/meshes.h"
+#include "tests/bake/threads.h"
 
 namespace relief::test {
 namespace {
@@ -28,15 +27,6 @@ Measured measured(const TriangleMesh& mesh, const Collider& collider, std::uint3
     const TruthSamples truth = sampleTruth(*query, {.samples = samples});
     const Sights sights(collider.maps, *query);
     return {worstPlaces(truth, *query, sights, collider), sights.unseenPercent(truth.surface)};
-}
-
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-    for (const glm::uvec3& t : other.triangles) {
-        mesh.triangles.push_back(t + first);
-    }
-    mesh = finished(mesh.positions, mesh.triangles);
 }
 
 std::vector<std::string> threeViews(const std::string& size) {
@@ -106,8 +96,7 @@ TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexel) {
 }
 
 TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
-    TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
-    append(mesh, makeIcosphere({0.2, 0, 0}, 0.5, 4));
+    const TriangleMesh mesh = joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeIcosphere({0.2, 0, 0}, 0.5, 4)});
     std::vector<std::string> specs = threeViews("32");
     const Measured found = measured(mesh, bakeSpecs(mesh, specs));
     ASSERT_EQ(found.places.size(), 3U);
@@ -127,8 +116,8 @@ TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
 TEST(WorstPlaces, BehindAPlateAreBehindASilhouette) {
     // A plate 0.1 thick hovers 0.02 above a block. The view from above does not see into the gap; of the view from the
     // side, a texel of 0.25 holds it.
-    TriangleMesh mesh = makeBoxMesh({0, -0.5, 0}, {1, 0.5, 1});
-    append(mesh, makeBoxMesh({0, 0.07, 0}, {1, 0.05, 1}));
+    const TriangleMesh mesh =
+        joined({makeBoxMesh({0, -0.5, 0}, {1, 0.5, 1}), makeBoxMesh({0, 0.07, 0}, {1, 0.05, 1})});
     const Measured found =
         measured(mesh, bakeSpecs(mesh, {std::string("front-back:dir=-y,size=64") + kPlanes,
                                         std::string("front-back:dir=-x,size=10") + kPlanes}));
@@ -147,9 +136,8 @@ TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
         EXPECT_EQ(flat.places[0].cause, WrongCause::kSheet) << wordOf(flat.places[0].cause);
     }
     // A sphere that has lost its cap: most rays still find its inside, but the view from above looks in.
-    TriangleMesh sphere = makeIcosphere({0, 0, 0}, 1.0, 4);
-    std::erase_if(sphere.triangles, [&](const glm::uvec3& t) { return sphere.positions[t.x].y > 0.8F; });
-    sphere = finished(sphere.positions, sphere.triangles);
+    const TriangleMesh sphere =
+        without(makeIcosphere({0, 0, 0}, 1.0, 4), [](const glm::dvec3& p) { return p.y > 0.8; });
     const Measured open =
         measured(sphere, bakeSpecs(sphere, {std::string("front-back:dir=-y,size=64") + kPlanes}));
     ASSERT_FALSE(open.places.empty());
@@ -160,22 +148,17 @@ TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
 TEST(WorstPlaces, AreTheSameForAnyNumberOfThreads) {
     const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 64, 32);
     const Collider collider = bakeSpecs(torus, threeViews("16"));
-    std::vector<WorstPlace> first;
-    for (const unsigned threads : {1U, 2U, 7U}) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        tbb::task_arena arena(static_cast<int>(threads));
-        std::vector<WorstPlace> places;
-        arena.execute([&] { places = measured(torus, collider, 5000).places; });
-        if (first.empty()) {
-            first = places;
-        }
-        ASSERT_EQ(places.size(), first.size());
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            EXPECT_EQ(places[i].position, first[i].position);
-            EXPECT_EQ(places[i].points, first[i].points);
-            EXPECT_EQ(places[i].cause, first[i].cause);
-            EXPECT_EQ(places[i].map, first[i].map);
-        }
+    const auto placesOn = [&](int threads) {
+        return onThreads(threads, [&] { return measured(torus, collider, 5000).places; });
+    };
+    const std::vector<WorstPlace> first = placesOn(1);
+    const std::vector<WorstPlace> places = placesOn(7);
+    ASSERT_EQ(places.size(), first.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(places[i].position, first[i].position);
+        EXPECT_EQ(places[i].points, first[i].points);
+        EXPECT_EQ(places[i].cause, first[i].cause);
+        EXPECT_EQ(places[i].map, first[i].map);
     }
 }
 

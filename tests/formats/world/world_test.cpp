@@ -67,22 +67,15 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
     for (const Case& one : std::initializer_list<Case>{
              {R"("collider":0,"node":"chair.001")", R"("collider":1,"node":"")",
               "bodies[0].collider = 1 is none of the 1"},
-             {R"("collider":0,"node":"chair.001")", R"("collider":-1,"node":"")",
-              "bodies[0].collider must be a whole"},
              {R"("collider":0,"node":"chair.001")", R"("collider":0.5,"node":"")",
-              "bodies[0].collider must be a whole"},
-             {R"("collider":0,"node":"chair.001")", R"("collider":9e99,"node":"")",
               "bodies[0].collider must be a whole"},
              {"[0.0,0.6,0.0,0.8]", "[0.0,0.6,0.0,0.9]", "bodies[0].rotation is no rotation"},
              {"[0.0,0.6,0.0,0.8]", "[0,0,0,0]", "bodies[0].rotation is no rotation"},
              {"[0.0,0.6,0.0,0.8]", "[0,0,1]", "bodies[0].rotation must be an array of 4"},
-             {"[0.0,0.6,0.0,0.8]", "[0,0,0,1,0]", "bodies[0].rotation has 5 elements"},
              {"\"scale\":2.0", "\"scale\":0", "bodies[0].scale = 0 is out of range"},
-             {"\"scale\":2.0", "\"scale\":-1", "bodies[0].scale = -1 is out of range"},
              {"\"scale\":2.0", "\"scale\":1e-300", "bodies[0].scale = "},
              {"\"scale\":2.0", "\"scale\":\"2\"", "bodies[0].scale must be a number"},
              {"\"scale\":2.0", "\"scale\":NaN", "no valid JSON"},
-             {"\"scale\":2.0", "\"scale\":1e999", "no valid JSON"},
              {"\"scale\":2.0", "\"scale\":2.0,\"scale\":2.0", "has the key 'scale' twice"},
              {"\"scale\":2.0", "\"scales\":2.0", "bodies[0] has no scale"},
              {"\"scale\":2.0", "\"scale\":2.0,\"frction\":0",
@@ -90,7 +83,6 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
              {"\"friction\":0.25", "\"friction\":1.5",
               "bodies[0].friction = 1.5 is out of range; choose 0 to 1"},
              {"[1.0,0.1,-3.0]", "[1e30,0,0]", "bodies[0].position[0] = "},
-             {"[1.0,0.1,-3.0]", "[null,0,0]", "bodies[0].position[0] must be a number"},
              {"chair.relief", "../chair.relief",
               "colliders[0].file = '../chair.relief' must be a path inside"},
              {"chair.relief", "a/../../chair.relief", "must be a path inside"},
@@ -99,7 +91,6 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
              {"chair.relief", "a\\u0000b", "holds a zero byte"},
              {"aaaa", "AAAA", "colliders[0].hash must be 32 digits"},
              {"\"gpu_bytes\":4096", "\"gpu_bytes\":0", "colliders[0].gpu_bytes = 0 is out of range"},
-             {"\"gpu_bytes\":4096,", "", "colliders[0] has no gpu_bytes"},
              {"\"max\":[1.0,1.0,1.0]", "\"max\":[1.0,1.0,1.0],\"coarse\":{}",
               "colliders[0].coarse has no file"},
              {"\"max\":[1.0,1.0,1.0]", "\"max\":[1.0,1.0,1.0],\"coarse\":null", "colliders[0].coarse "},
@@ -129,9 +120,11 @@ TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
 TEST(World, HasLimits) {
     World world = smallWorld();
     world.bodies.resize(kWorldBodiesMax);
-    EXPECT_TRUE(parseWorld(worldText(world)));
-    world.bodies.emplace_back();
-    EXPECT_FALSE(parseWorld(worldText(world)));
+    std::string text = worldText(world);
+    EXPECT_TRUE(parseWorld(text));
+    const std::size_t last = text.rfind("    {");
+    text.insert(last, text.substr(last, text.find('\n', last) - last) + ",\n");
+    EXPECT_FALSE(parseWorld(text)) << "a body more";
     world = smallWorld();
     for (std::size_t i = 1; i <= kWorldCollidersMax; ++i) {
         world.colliders.push_back(world.colliders[0]);
@@ -159,10 +152,14 @@ class WorldFolder : public testing::Test {
         collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),
                                         test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {1.01, 1.01, 1.01}),
                                         MapFormat::kFrontBackFixed, Compare::kBoth, 64, 64)};
+        writeCollider();
+        world_.bodies.resize(1);
+    }
+    /// The world's only collider.
+    void writeCollider() {
         const std::vector<std::byte> bytes = test::written(collider_);
         ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
         world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
-        world_.bodies.resize(1);
     }
     [[nodiscard]] WorldFile fileOf(const char* name, std::span<const std::byte> bytes) const {
         return {name, xxh3_128Hex(bytes), collider_.gpuBytes()};
@@ -279,9 +276,7 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
     std::mt19937 random(12);
     collider_.maps = {test::randomPatches(random)};
     collider_.bounds = insideBox(collider_).value();
-    const std::vector<std::byte> bytes = test::written(collider_);
-    ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
-    world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
+    writeCollider();
     world_.bodies = {{0, "a", {0.0F, 0.0F, 0.0F}},
                      {0, "b", {2.0F, 1.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "c", {-1.0F, 0.5F, 3.0F}, {0.5F, 0.5F, 0.5F, 0.5F}, 0.5F}};
@@ -307,9 +302,7 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
 
 TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {
     collider_.bounds.min.y = 0.4F;  // the mesh is the top of the solid
-    const std::vector<std::byte> bytes = test::written(collider_);
-    ASSERT_TRUE(writeFile(folder_ / "a.relief", bytes));
-    world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
+    writeCollider();
     Result<LoadedWorld> loaded = load();
     ASSERT_TRUE(loaded) << loaded.error().message;
     const WorldField field(*std::move(loaded));
