@@ -1,7 +1,6 @@
 // relief bake: a mesh becomes a collider.
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <span>
@@ -140,17 +139,17 @@ void addBake(CLI::App& app, Action& action) {
         "relief bake level.glb --world level --budget 16MB\n"
         "relief bake hero.glb --animated --clips walk.glb -o hero.relief\n"
         "relief bake heights.png --heights spacing=1,low=0,high=500 -o ground.relief");
-    verb.add_option(
-            "MESH", command->request.mesh,
-            "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; or a height map, see --heights")
-        ->type_name("");
-    verb.add_option("-o,--output", command->output, "The collider to write; - for standard output")
-        ->option_text("OUT.relief");
+    addOption(
+        verb, "MESH", command->request.mesh,
+        "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; or a height map, see --heights")
+        ->typeName("");
+    addOption(verb, "-o,--output", command->output, "The collider to write; - for standard output")
+        ->valueText("OUT.relief");
     addFields(verb, command->request);
     addFields(verb, command->outputs);
     addRecipeOptions(verb, command->recipe);
     addWorldOption(verb, command->world);
-    verb.callback([command, &verb, &action] {
+    onVerb(verb, [command, &verb, &action] {
         action = [command, &verb](FileGuard& files) -> Result<void> {
             if (!command->recipe.recipe.empty()) {
                 return runRecipeCommand(command->recipe,

@@ -1,5 +1,4 @@
 // relief check: whether a container is sound, and how well a collider keeps to its mesh.
-#include <CLI/CLI.hpp>
 #include <span>
 
 #include "bake/cli/command.h"
@@ -183,40 +182,40 @@ void addCheck(CLI::App& app, Action& action) {
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json\n"
         "relief check level/world.json --mesh level.glb\n"
         "relief check ground/world.json --mesh heights.png");
-    verb.add_option("FILE", command->file, "The collider, or the world; - for standard input")
-        ->type_name("")
+    addOption(verb, "FILE", command->file, "The collider, or the world; - for standard input")
+        ->typeName("")
         ->required();
-    CLI::Option* mesh = addMeshOptions(verb, command->request);
-    verb.add_option("--max-error", command->max_error,
-                    "Exit with 7 if more than this share of the points near the surface, in percent, is on "
-                    "the wrong side, or a part is lost")
-        ->option_text("PCT")
+    OptionRef mesh = addMeshOptions(verb, command->request);
+    addOption(verb, "--max-error", command->max_error,
+              "Exit with 7 if more than this share of the points near the surface, in percent, is on "
+              "the wrong side, or a part is lost")
+        ->valueText("PCT")
         ->transform(percent())
         ->needs(mesh);
-    verb.add_option(
-            "--heights", command->heights,
-            "--mesh is a height map, and the collider or world its ground. key=value,... as relief bake "
-            "has them, by default those that it was baked with")
-        ->option_text("SPEC")
+    addOption(verb, "--heights", command->heights,
+              "--mesh is a height map, and the collider or world its ground. key=value,... as relief bake "
+              "has them, by default those that it was baked with")
+        ->valueText("SPEC")
         ->needs(mesh);
-    verb.add_option("--within", command->within,
-                    "Of a world or ground: measure at points up to this far from the surface, in world units "
-                    "(default: of a body nearly all within 1.5 % of its longest side, of ground the distance "
-                    "between samples)")
-        ->option_text("LENGTH")
-        ->check(CLI::Range(1e-6, 1e15))
+    addOption(verb, "--within", command->within,
+              "Of a world or ground: measure at points up to this far from the surface, in world units "
+              "(default: of a body nearly all within 1.5 % of its longest side, of ground the distance "
+              "between samples)")
+        ->valueText("LENGTH")
+        ->range(1e-6, 1e15)
         ->needs(mesh);
-    verb.add_option("--html", command->html,
-                    "Also write the page of relief view, with the findings in it: verdict, places to fly to, "
-                    "what to do")
-        ->option_text("OUT")
+    addOption(verb, "--html", command->html,
+              "Also write the page of relief view, with the findings in it: verdict, places to fly to, "
+              "what to do")
+        ->valueText("OUT")
         ->needs(mesh);
     addFields(verb, command->request.import);
     addFields(verb, command->request.import_limits);
     addMemoryOption(verb, command->limits);
-    verb.add_flag("--json", command->json, "Print JSON");
-    verb.callback(
-        [command, &action] { action = [command](FileGuard& files) { return runCheck(*command, files); }; });
+    addFlag(verb, "--json", command->json, "Print JSON");
+    onVerb(verb, [command, &action] {
+        action = [command](FileGuard& files) { return runCheck(*command, files); };
+    });
 }
 
 }  // namespace relief

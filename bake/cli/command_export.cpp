@@ -1,7 +1,6 @@
 // relief export: every map as OpenEXR; or what a program of one's own uploads.
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <span>
@@ -15,6 +14,7 @@
 #include "formats/container.h"
 #include "formats/fields/json_value.h"
 #include "runtime/collider/gpu_image.h"
+#include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/vdb/vdb_writer.h"
@@ -221,20 +221,21 @@ void addExport(CLI::App& app, Action& action) {
         "relief export bunny.relief -o maps/\nrelief export bunny.relief --gpu engine/bunny/\n"
         "relief export bunny.relief --vdb bunny.vdb --voxels 256\nrelief export bunny.relief --mesh "
         "bunny.ply");
-    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    verb.add_option("-o,--output", command->output, "The folder; made if it is missing")->option_text("DIR");
-    verb.add_option("--gpu", command->gpu, "The folder for textures, block and GLSL; made if it is missing")
-        ->option_text("DIR");
-    verb.add_option("--vdb", command->vdb, "The level set, \"surface\"; - for standard output")
-        ->option_text("OUT.vdb");
-    verb.add_option("--mesh", command->mesh, "The surface as PLY; - for standard output")
-        ->option_text("OUT.ply");
-    verb.add_option("--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
-        ->option_text("N")
+    addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
+    addOption(verb, "-o,--output", command->output, "The folder; made if it is missing")->valueText("DIR");
+    addOption(verb, "--gpu", command->gpu, "The folder for textures, block and GLSL; made if it is missing")
+        ->valueText("DIR");
+    addOption(verb, "--vdb", command->vdb, "The level set, \"surface\"; - for standard output")
+        ->valueText("OUT.vdb");
+    addOption(verb, "--mesh", command->mesh, "The surface as PLY; - for standard output")
+        ->valueText("OUT.ply");
+    addOption(verb, "--voxels", command->voxels, "Of --vdb and --mesh, along the longest side; default 128")
+        ->valueText("N")
         ->transform(wholeNumber(kVoxelsMin, kVoxelsMax));
     addMemoryOption(verb, command->limits);
-    verb.callback(
-        [command, &action] { action = [command](FileGuard& files) { return runExport(*command, files); }; });
+    onVerb(verb, [command, &action] {
+        action = [command](FileGuard& files) { return runExport(*command, files); };
+    });
 }
 
 }  // namespace relief

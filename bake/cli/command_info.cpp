@@ -1,5 +1,4 @@
 // relief info: what is in a container, or in a world.
-#include <CLI/CLI.hpp>
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_world.h"
@@ -109,13 +108,13 @@ void addInfo(CLI::App& app, Action& action) {
                              "relief info bunny.relief\n"
                              "relief info level/world.json\n"
                              "relief info bunny.relief --json | jq .maps[0].object_to_map");
-    verb.add_option("FILE", command->file,
-                    "The collider, or a world.json; - for a collider on standard input")
-        ->type_name("")
+    addOption(verb, "FILE", command->file,
+              "The collider, or a world.json; - for a collider on standard input")
+        ->typeName("")
         ->required();
     addMemoryOption(verb, command->limits);
-    verb.add_flag("--json", command->json, "Print JSON");
-    verb.callback([command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });
+    addFlag(verb, "--json", command->json, "Print JSON");
+    onVerb(verb, [command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });
 }
 
 }  // namespace relief

@@ -2,7 +2,6 @@
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
+#include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {
@@ -71,20 +71,21 @@ void addQuery(CLI::App& app, Action& action) {
         "those of the plane that decides the side; the side is the same",
         "relief query bunny.relief --points in.csv -o out.csv\n"
         "echo 0,0.1,0 | relief query bunny.relief --points - -o - --distance plane");
-    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
-    verb.add_option("--points", command->points, "Lines x,y,z in object space; - for standard input")
-        ->option_text("IN.csv")
+    addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
+    addOption(verb, "--points", command->points, "Lines x,y,z in object space; - for standard input")
+        ->valueText("IN.csv")
         ->required();
-    verb.add_option("-o,--output", command->output, "The samples; - for standard output")
-        ->option_text("OUT.csv")
+    addOption(verb, "-o,--output", command->output, "The samples; - for standard output")
+        ->valueText("OUT.csv")
         ->required();
     addWords(verb, "--distance", command->distance,
              WordsFor<DistanceTo>{{"nearest", DistanceTo::kNearest}, {"plane", DistanceTo::kPlane}},
              "To the nearest surface, which is searched for (default), or to the plane that decides\n"
              "the side, which is what particles collide with");
     addMemoryOption(verb, command->limits);
-    verb.callback(
-        [command, &action] { action = [command](FileGuard& files) { return runQuery(*command, files); }; });
+    onVerb(verb, [command, &action] {
+        action = [command](FileGuard& files) { return runQuery(*command, files); };
+    });
 }
 
 }  // namespace relief

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -56,14 +55,11 @@ std::vector<FieldWords> fieldsOfAsset() {
 /// Options that a recipe has its own place for.
 Result<void> checkOptions(const RecipeCall& call) {
     const std::vector<RecipeKey> keys = recipeKeys();
-    for (const CLI::Option* option : call.verb.get_options()) {
-        if (option->count() == 0) {
-            continue;
-        }
-        const std::vector<std::string>& names = option->get_lnames();
+    for (const GivenOption& option : givenOptions(call.verb)) {
+        const std::vector<std::string>& names = option.long_names;
         if (names.empty()) {
             return fail(ErrorCode::kUsage,
-                        option->get_name() + " and --recipe are two ways to name meshes; leave one out");
+                        option.name + " and --recipe are two ways to name meshes; leave one out");
         }
         if (names[0] == "plan-out") {
             return fail(ErrorCode::kUsage, "--plan-out is for one mesh; leave it out beside --recipe");
@@ -385,24 +381,24 @@ std::vector<RecipeKey> recipeKeys() {
 }
 
 void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
-    CLI::Option* recipe = verb.add_option(
-        "--recipe", options.recipe,
+    OptionRef recipe = addOption(
+        verb, "--recipe", options.recipe,
         "Bake what this TOML file lists instead of MESH: only what is not up to date, -j assets at\n"
         "once, each by a process of its own; -o is a folder, the recipe's by default");
-    recipe->option_text("FILE");
+    recipe->valueText("FILE");
     addParsed(verb, "--shard", options.shard, parseShard, "K/N with 1 <= K <= N, such as 2/4",
               "Of --recipe: only the K-th of N parts, which may run at the same time")
-        ->option_text("K/N")
+        ->valueText("K/N")
         ->needs(recipe);
-    verb.add_option("--events", options.events,
-                    "Of --recipe: write what happens as lines of JSON; - for standard output")
-        ->option_text("FILE")
+    addOption(verb, "--events", options.events,
+              "Of --recipe: write what happens as lines of JSON; - for standard output")
+        ->valueText("FILE")
         ->needs(recipe);
-    verb.add_option("--stamp", options.stamp,
-                    "Of --recipe: write this file when everything is up to date: the target for --depfile")
-        ->option_text("FILE")
+    addOption(verb, "--stamp", options.stamp,
+              "Of --recipe: write this file when everything is up to date: the target for --depfile")
+        ->valueText("FILE")
         ->needs(recipe);
-    verb.add_flag("--dry-run", options.dry_run, "Of --recipe: only print what would be baked, and why")
+    addFlag(verb, "--dry-run", options.dry_run, "Of --recipe: only print what would be baked, and why")
         ->needs(recipe);
 }
 

@@ -1,7 +1,6 @@
 // relief slice: the field on a plane, as a figure.
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "bake/cli/command.h"
@@ -9,6 +8,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
+#include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 
 namespace relief {
@@ -82,21 +82,22 @@ void addSlice(CLI::App& app, Action& action) {
         addVerb(app, command->common, "slice", "Draws the field on a plane: the distance in false colours",
                 "relief slice bunny.relief --axis z --at center -o slice.png\n"
                 "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.png");
-    verb.add_option("FILE", command->file, "The collider; - for standard input")->type_name("")->required();
+    addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
     addWords(verb, "--axis", command->axis, WordsFor<Axis>{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}},
              "The plane is across this axis; default z");
     addParsed(verb, "--at", command->place, parsePlace, "a number or center",
               "Where on the axis, object units; default center, the middle of the bounds")
-        ->option_text("V");
-    verb.add_option("--size", command->size, "Samples along the longer side; default 512")
-        ->option_text("N")
+        ->valueText("V");
+    addOption(verb, "--size", command->size, "Samples along the longer side; default 512")
+        ->valueText("N")
         ->transform(wholeNumber());
-    verb.add_option("-o,--output", command->output, "The PNG; - for standard output")
-        ->option_text("OUT.png")
+    addOption(verb, "-o,--output", command->output, "The PNG; - for standard output")
+        ->valueText("OUT.png")
         ->required();
     addMemoryOption(verb, command->limits);
-    verb.callback(
-        [command, &action] { action = [command](FileGuard& files) { return runSlice(*command, files); }; });
+    onVerb(verb, [command, &action] {
+        action = [command](FileGuard& files) { return runSlice(*command, files); };
+    });
 }
 
 }  // namespace relief

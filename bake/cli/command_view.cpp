@@ -3,7 +3,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
@@ -375,12 +374,11 @@ Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits
     return scenePage(file, limits, std::move(page));
 }
 
-CLI::Option* addMeshOptions(CLI::App& verb, CheckRequest& request) {
-    CLI::Option* mesh =
-        verb.add_option("--mesh", request.mesh, "The mesh or the level that it was baked from")
-            ->option_text("MESH");
+OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request) {
+    OptionRef mesh = addOption(verb, "--mesh", request.mesh, "The mesh or the level that it was baked from")
+                         ->valueText("MESH");
     const auto measurement = [&](FieldVisitor& visit) { measurementFields(visit, request); };
-    for (CLI::Option* option : addFields(verb, group(measurement))) {
+    for (const OptionRef option : addFields(verb, group(measurement))) {
         option->needs(mesh);
     }
     return mesh;
@@ -409,19 +407,19 @@ void addView(CLI::App& app, Action& action) {
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
         "relief view scene.toml\n"
         "relief view level/world.json --mesh level.glb");
-    verb.add_option("FILE", command->file,
-                    "The collider, a scene (.toml) or a world.json; - for a collider on standard input")
-        ->type_name("")
+    addOption(verb, "FILE", command->file,
+              "The collider, a scene (.toml) or a world.json; - for a collider on standard input")
+        ->typeName("")
         ->required();
     addMeshOptions(verb, command->check);
     addFields(verb, command->check.import);
     addFields(verb, command->check.import_limits);
     addMemoryOption(verb, command->limits);
-    verb.add_option("-o,--output", command->output,
-                    "The page; - for standard output; default FILE with .html in place of its extension")
-        ->option_text("OUT");
-    verb.callback(
-        [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
+    addOption(verb, "-o,--output", command->output,
+              "The page; - for standard output; default FILE with .html in place of its extension")
+        ->valueText("OUT");
+    onVerb(verb,
+           [command, &action] { action = [command](FileGuard& files) { return runView(*command, files); }; });
 }
 
 }  // namespace relief

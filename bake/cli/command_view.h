@@ -37,7 +37,7 @@ namespace relief {
 
 /// Adds --mesh, and the fields that need it.
 /// \return --mesh
-CLI::Option* addMeshOptions(CLI::App& verb, CheckRequest& request);
+OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request);
 
 /// Logs the warnings, and with -v the times.
 void showCheckWarnings(const MeshCheck& check);

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <span>
 
@@ -98,14 +97,14 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
 }
 
 void addWorldOption(CLI::App& verb, std::string& folder) {
-    verb.add_option(
-            "--world", folder,
-            "Bake a level: each different mesh of MESH once, however many nodes place it, into this folder, "
-            "and world.json, which places them. --budget is for all together, 16 MB by default. Only what "
-            "has "
-            "changed is baked again")
-        ->option_text("DIR")
-        ->excludes(verb.get_option("--recipe"));
+    addOption(
+        verb, "--world", folder,
+        "Bake a level: each different mesh of MESH once, however many nodes place it, into this folder, "
+        "and world.json, which places them. --budget is for all together, 16 MB by default. Only what "
+        "has "
+        "changed is baked again")
+        ->valueText("DIR")
+        ->excludes("--recipe");
 }
 
 Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& call) {

@@ -26,17 +26,17 @@ Result<void> run(int argc, char** argv) {
     Bench bench;
     app.add_option("CASE", name, "step, picture, mesh, animated or stream")
         ->required()
-        ->transform(oneOf(kWords<"step", "picture", "mesh", "animated", "stream">));
+        ->transform(CLI::Validator(oneOf(kWords<"step", "picture", "mesh", "animated", "stream">), ""));
     app.add_option(
            "FILE", bench.file,
            "The collider of step, picture and animated; the .obj or .ply of mesh; the world.json of stream")
         ->required();
     app.add_option("--particles", bench.particles, "For step, a multiple of 1024")
         ->option_text("N")
-        ->transform(wholeNumber(4, ParticleSystem::kCapacityMax));
+        ->transform(CLI::Validator(wholeNumber(4, ParticleSystem::kCapacityMax), ""));
     app.add_option("--blocks", bench.rounds, "Rounds of measurements")
         ->option_text("N")
-        ->transform(wholeNumber(1, 1000));
+        ->transform(CLI::Validator(wholeNumber(1, 1000), ""));
     addWords(app, "--path", bench.path,
              WordsFor<StepPath>{{"fragment", StepPath::kFragment}, {"compute", StepPath::kCompute}},
              "Of the particles");
@@ -47,7 +47,7 @@ Result<void> run(int argc, char** argv) {
         ->option_text("FILE...");
     app.add_option("--stream-bytes", bench.stream_bytes, "Of the GPU, for stream")
         ->option_text("N")
-        ->transform(wholeNumber(1, std::uint64_t{1} << 33U));
+        ->transform(CLI::Validator(wholeNumber(1, std::uint64_t{1} << 33U), ""));
     app.add_flag("--large", bench.large, "Sizes for a GPU, even where there is none");
     if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
         return {};

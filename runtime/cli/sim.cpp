@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "formats/base/file_io.h"
@@ -35,46 +34,46 @@ std::optional<FrameSize> parseFrameSize(std::string_view text) {
 /// What is written, and how often.
 void addOutputs(CLI::App& app, SimCommand& command) {
     PlayerOptions& player = command.player;
-    app.add_option(
-           "--frames", player.frames,
-           "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
-           "overwritten one by one; any beyond this run's last stay")
-        ->option_text("DIR");
+    addOption(
+        app, "--frames", player.frames,
+        "Write frame_0000.png and so on into this folder, made if missing. Frames of an earlier run are "
+        "overwritten one by one; any beyond this run's last stay")
+        ->valueText("DIR");
     addParsed(app, "--size", command.size, parseFrameSize, "a size such as 960x720, each side at least 1",
               "Size of the frames in pixels, instead of the scene's")
-        ->option_text("WxH")
+        ->valueText("WxH")
         ->needs("--frames");
-    app.add_option("--seed", player.overrides.seed, "Seed of the births, instead of the scene's")
-        ->option_text("S")
+    addOption(app, "--seed", player.overrides.seed, "Seed of the births, instead of the scene's")
+        ->valueText("S")
         ->transform(wholeNumber(0, kSeedMax));
-    app.add_option("--dump", player.dump, "Write the final particles; - for standard output")
-        ->option_text("OUT.ply");
-    app.add_option("--dump-frames", player.dump_frames,
-                   "Write particles_0000.ply and so on into this folder, made if missing, as often as frames")
-        ->option_text("DIR");
+    addOption(app, "--dump", player.dump, "Write the final particles; - for standard output")
+        ->valueText("OUT.ply");
+    addOption(app, "--dump-frames", player.dump_frames,
+              "Write particles_0000.ply and so on into this folder, made if missing, as often as frames")
+        ->valueText("DIR");
     addWords(app, "--dump-format", command.dump_format,
              WordsFor<DumpFormat>{{"ply", DumpFormat::kPly}, {"vdb", DumpFormat::kVdb}},
              "Of --dump and --dump-frames: PLY, or points of OpenVDB; default: what --dump's name ends with, "
              "else ply");
-    app.add_option("--first-frame", player.overrides.first_frame,
-                   "Step of the first frame of --frames and --dump-frames, instead of the scene's "
-                   "render.first; 0: before the first step")
-        ->option_text("N")
+    addOption(app, "--first-frame", player.overrides.first_frame,
+              "Step of the first frame of --frames and --dump-frames, instead of the scene's "
+              "render.first; 0: before the first step")
+        ->valueText("N")
         ->transform(wholeNumber(0, kStepsMax));
-    app.add_option("--last-frame", player.overrides.last_frame,
-                   "Step of the last frame, instead of the scene's render.last; the run goes on to its end")
-        ->option_text("N")
+    addOption(app, "--last-frame", player.overrides.last_frame,
+              "Step of the last frame, instead of the scene's render.last; the run goes on to its end")
+        ->valueText("N")
         ->transform(wholeNumber(0, kStepsMax));
-    app.add_option("--frame-every", player.overrides.frame_every,
-                   "Steps from frame to frame, instead of the scene's render.every")
-        ->option_text("N")
+    addOption(app, "--frame-every", player.overrides.frame_every,
+              "Steps from frame to frame, instead of the scene's render.every")
+        ->valueText("N")
         ->transform(wholeNumber(1, kStepsMax));
-    app.add_option("--events", player.events,
-                   "Write the hits while playing, a line of JSON each; - for standard output")
-        ->option_text("OUT.jsonl");
-    app.add_option("--events-min-speed", player.events_min_speed,
-                   "Leave hits out of --events that are slower, world units a second")
-        ->option_text("V")
+    addOption(app, "--events", player.events,
+              "Write the hits while playing, a line of JSON each; - for standard output")
+        ->valueText("OUT.jsonl");
+    addOption(app, "--events-min-speed", player.events_min_speed,
+              "Leave hits out of --events that are slower, world units a second")
+        ->valueText("V")
         ->needs("--events")
         ->transform(number(0.0F, 1e9F, "a speed, 0 or more"));
 }
@@ -159,24 +158,25 @@ Result<void> playScene(SimCommand& command) {
 
 void defineSim(CLI::App& app, SimCommand& command) {
     setUpHelp(app);
-    app.description(
+    describeApp(
+        app,
         "Plays a scene against a baked collider\n\n"
         "Headless: particles fall, collide and rest. Given a collider or a world alone it lets snow fall on "
-        "it.");
-    app.footer("relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply");
-    app.add_option("INPUT", command.player.input, "Scene (.toml), collider (.relief) or world (world.json)")
-        ->type_name("SCENE.toml|COLLIDER.relief|WORLD.json");
-    app.add_option("--steps", command.player.overrides.steps, "Steps to play, instead of the scene's")
-        ->option_text("N")
+        "it.",
+        "relief-sim bunny_in_the_snow.toml --frames frames --dump snow.ply");
+    addOption(app, "INPUT", command.player.input, "Scene (.toml), collider (.relief) or world (world.json)")
+        ->typeName("SCENE.toml|COLLIDER.relief|WORLD.json");
+    addOption(app, "--steps", command.player.overrides.steps, "Steps to play, instead of the scene's")
+        ->valueText("N")
         ->transform(wholeNumber(0, kStepsMax));
     addOutputs(app, command);
-    app.add_option("--root", command.player.overrides.root,
-                   "Folder whose files the scene may name too, by ..; default: those of its own folder alone")
-        ->option_text("DIR");
+    addOption(app, "--root", command.player.overrides.root,
+              "Folder whose files the scene may name too, by ..; default: those of its own folder alone")
+        ->valueText("DIR");
     addMemoryOption(app, command.player.overrides.limits);
-    CLI::Option* const check =
-        app.add_flag("--check", command.check,
-                     "Only check the scene and what it names, without a GPU: one line, or the first mistake");
+    const OptionRef check =
+        addFlag(app, "--check", command.check,
+                "Only check the scene and what it names, without a GPU: one line, or the first mistake");
     addWords(app, "--api", command.player.gpu.api,
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
              "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0");
@@ -193,16 +193,16 @@ void defineSim(CLI::App& app, SimCommand& command) {
          {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
         check->excludes(played);
     }
-    app.add_flag("--json", command.json, "Print the report, or what --check finds, as JSON");
-    app.add_flag("-q,--quiet", command.quiet,
-                 "No progress and no summary; errors still, and what --json asks for");
+    addFlag(app, "--json", command.json, "Print the report, or what --check finds, as JSON");
+    addFlag(app, "-q,--quiet", command.quiet,
+            "No progress and no summary; errors still, and what --json asks for");
 }
 
 Result<void> runSim(int argc, char** argv) {
-    CLI::App app("", "relief-sim");
+    const auto app = makeApp("relief-sim");
     SimCommand command;
-    defineSim(app, command);
-    if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
+    defineSim(*app, command);
+    if (!RELIEF_TRY(parseCommandLine(*app, argumentsOf(argc, argv)))) {
         return {};
     }
     RELIEF_TRY(checkTogether(command));

@@ -190,6 +190,33 @@ void setUpHelp(CLI::App& app, const std::string& help) {
     app.set_version_flag("--version", app.get_name() + " " RELIEF_VERSION, "Print the version and exit");
 }
 
+void AppDeleter::operator()(CLI::App* app) const {
+    delete app;
+}
+
+std::unique_ptr<CLI::App, AppDeleter> makeApp(const std::string& name) {
+    return std::unique_ptr<CLI::App, AppDeleter>(new CLI::App("", name));
+}
+
+void describeApp(CLI::App& app, const std::string& description, const std::string& examples) {
+    app.description(description);
+    app.footer(examples);
+}
+
+void onVerb(CLI::App& verb, std::function<void()> parsed) {
+    verb.callback(std::move(parsed));
+}
+
+std::vector<GivenOption> givenOptions(const CLI::App& parsed) {
+    std::vector<GivenOption> given;
+    for (const CLI::Option* option : parsed.get_options()) {
+        if (option->count() > 0) {
+            given.push_back({option->get_name(), option->get_lnames()});
+        }
+    }
+    return given;
+}
+
 Result<bool> parseCommandLine(CLI::App& app, std::vector<std::string> arguments) {
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
     try {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,23 @@ namespace relief {
 /// Gives a program its --help and --version, before it gets its options and verbs. Help begins with the examples: the
 /// lines of the footer. \param help  the help text of --help.
 void setUpHelp(CLI::App& app, const std::string& help = "Print this help and exit");
+
+struct AppDeleter {
+    void operator()(CLI::App* app) const;
+};
+/// A command line without options. \param name  of the program
+[[nodiscard]] std::unique_ptr<CLI::App, AppDeleter> makeApp(const std::string& name);
+/// \param examples  complete command lines, one a line
+void describeApp(CLI::App& app, const std::string& description, const std::string& examples);
+/// Calls back once a verb is parsed.
+void onVerb(CLI::App& verb, std::function<void()> parsed);
+
+struct GivenOption {
+    std::string name;
+    std::vector<std::string> long_names;  ///< without their dashes
+};
+/// The options that a command line contains.
+[[nodiscard]] std::vector<GivenOption> givenOptions(const CLI::App& parsed);
 
 /// Parses the command line. Prints the answers to --help and --version.
 /// \param arguments  without the program's name.

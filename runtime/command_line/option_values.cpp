@@ -2,22 +2,22 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
 namespace relief {
 namespace {
 
 /// The words that readWord() takes for a T, as words that CLI11 converts.
 template <class T>
-CLI::Validator fieldValue(const FieldInfo& info, const std::string& must = {}) {
-    return {[info, must](std::string& word) {
-                FieldInfo named = info;
-                named.must = must;
-                T value{};
-                std::string wrong = readWord(word, named, value);
-                word = wrong.empty() ? wordsOf(value).front() : word;
-                return wrong;
-            },
-            ""};
+WordReader fieldValue(const FieldInfo& info, const std::string& must = {}) {
+    return [info, must](std::string& word) {
+        FieldInfo named = info;
+        named.must = must;
+        T value{};
+        std::string wrong = readWord(word, named, value);
+        word = wrong.empty() ? wordsOf(value).front() : word;
+        return wrong;
+    };
 }
 
 /// The sentence, the default and the largest value of a count.
@@ -35,33 +35,85 @@ std::string helpOf(const FieldWords& field) {
 
 }  // namespace
 
-CLI::Validator wholeNumber(std::uint64_t least, std::uint64_t most) {
+OptionRef OptionRef::valueText(const std::string& text) const {
+    return option_->option_text(text);
+}
+
+OptionRef OptionRef::typeName(const std::string& name) const {
+    return option_->type_name(name);
+}
+
+OptionRef OptionRef::required() const {
+    return option_->required();
+}
+
+OptionRef OptionRef::needs(OptionRef other) const {
+    return option_->needs(other.option_);
+}
+
+OptionRef OptionRef::needs(const std::string& name) const {
+    return option_->needs(name);
+}
+
+OptionRef OptionRef::excludes(OptionRef other) const {
+    return option_->excludes(other.option_);
+}
+
+OptionRef OptionRef::excludes(const std::string& name) const {
+    return option_->excludes(name);
+}
+
+OptionRef OptionRef::transform(const WordReader& read) const {
+    return option_->transform(CLI::Validator(read, ""));
+}
+
+OptionRef OptionRef::range(double least, double most) const {
+    return option_->check(CLI::Range(least, most));
+}
+
+template <class T>
+OptionRef addOption(CLI::App& app, const std::string& names, T& field, const std::string& help) {
+    return app.add_option(names, field, help);
+}
+template OptionRef addOption(CLI::App&, const std::string&, std::string&, const std::string&);
+template OptionRef addOption(CLI::App&, const std::string&, std::filesystem::path&, const std::string&);
+template OptionRef addOption(CLI::App&, const std::string&, std::uint64_t&, const std::string&);
+template OptionRef addOption(CLI::App&, const std::string&, std::optional<std::uint32_t>&,
+                             const std::string&);
+template OptionRef addOption(CLI::App&, const std::string&, std::optional<std::uint64_t>&,
+                             const std::string&);
+template OptionRef addOption(CLI::App&, const std::string&, std::optional<float>&, const std::string&);
+
+OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const std::string& help) {
+    return app.add_flag(names, field, help);
+}
+
+WordReader wholeNumber(std::uint64_t least, std::uint64_t most) {
     return fieldValue<std::uint64_t>({.range = {static_cast<double>(least), static_cast<double>(most)}});
 }
 
-CLI::Validator number(float least, float most, const std::string& must) {
+WordReader number(float least, float most, const std::string& must) {
     return fieldValue<float>({.range = {double{least}, double{most}}}, must);
 }
 
-CLI::Validator percent() {
+WordReader percent() {
     return fieldValue<float>({.unit = "%", .range = kFromZero});
 }
 
-CLI::Validator oneOf(std::span<const std::string_view> words) {
+WordReader oneOf(std::span<const std::string_view> words) {
     return fieldValue<std::string>({.words = words});
 }
 
 void addMemoryOption(CLI::App& app, ContainerLimits& limits) {
     limits.memory = kToolMemory;
-    app.add_option(
-           "--max-memory", limits.memory,
-           "Texels that a collider may unpack to; default 160MB, or 16 times its file if that is more")
-        ->option_text("BYTES")
+    addOption(app, "--max-memory", limits.memory,
+              "Texels that a collider may unpack to; default 160MB, or 16 times its file if that is more")
+        ->valueText("BYTES")
         ->transform(fieldValue<std::uint64_t>({.unit = "bytes", .range = kFromOne}));
 }
 
-CLI::Option* addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
-                           std::function<void(std::size_t)> set, const std::string& help) {
+OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
+                        std::function<void(std::size_t)> set, const std::string& help) {
     std::string shown;
     for (const std::string_view word : words) {
         shown.append(shown.empty() ? "" : "|").append(word);
@@ -79,9 +131,8 @@ CLI::Option* addWordOption(CLI::App& app, const std::string& names, std::vector<
     return app.add_option(names, read, help)->option_text(shown);
 }
 
-CLI::Option* addFormOption(CLI::App& app, const std::string& names,
-                           std::function<bool(const std::string&)> read, const std::string& must,
-                           const std::string& help) {
+OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
+                        const std::string& must, const std::string& help) {
     const std::string name = names.substr(names.rfind(',') + 1);
     const CLI::callback_t callback = [read = std::move(read), must, name](const CLI::results_t& words) {
         if (!read(words.back())) {
@@ -107,13 +158,13 @@ class FieldOptions : public FieldVisitor {
         }
     }
     [[nodiscard]] bool fills() const override { return true; }
-    std::vector<CLI::Option*> take() { return std::move(options_); }
+    std::vector<OptionRef> take() { return std::move(options_); }
 
   private:
     void add(const FieldWords& field, const std::function<std::string(const std::string&)>& read);
 
     CLI::App& app_;
-    std::vector<CLI::Option*> options_;
+    std::vector<OptionRef> options_;
 };
 
 void FieldOptions::add(const FieldWords& field, const std::function<std::string(const std::string&)>& read) {
@@ -135,12 +186,12 @@ void FieldOptions::add(const FieldWords& field, const std::function<std::string(
     if (field.kind == FieldKind::kList) {
         option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
     }
-    options_.push_back(option);
+    options_.emplace_back(option);
 }
 
 }  // namespace
 
-std::vector<CLI::Option*> addFields(CLI::App& app, FieldRef target) {
+std::vector<OptionRef> addFields(CLI::App& app, FieldRef target) {
     FieldOptions options(app);
     target.visit(options);
     return options.take();

@@ -1,8 +1,7 @@
 // The values of options: validators and transformers for CLI11 that stand in front of a typed field. Those of CLI11
 // would take 0x10, -1 for a large number, and nan, and their messages name no cure.
 //
-// Each turns the word into one that CLI11 converts, or says "is 'x' but must be …"; parseCommandLine() puts the name of
-// the option in front.
+// parseCommandLine() puts the name of the option in front of the messages.
 #pragma once
 
 #include <cstddef>
@@ -22,30 +21,57 @@
 namespace CLI {
 class App;
 class Option;
-class Validator;
 }  // namespace CLI
 
 namespace relief {
 
+/// Turns a word into one that CLI11 converts. \return empty, or what is wrong: "is 'x' but must be …".
+using WordReader = std::function<std::string(std::string& word)>;
+
+/// An option of a command line, for sources that do without the header of CLI11, which takes seconds to compile.
+class OptionRef {
+  public:
+    OptionRef(CLI::Option* option) : option_(option) {}  // NOLINT: implicit
+    const OptionRef* operator->() const { return this; }
+
+    OptionRef valueText(const std::string& text) const;  ///< stands for the value in --help: "OUT.png"
+    OptionRef typeName(const std::string& name) const;   ///< the same of an argument without a name
+    OptionRef required() const;
+    OptionRef needs(OptionRef other) const;
+    OptionRef needs(const std::string& name) const;
+    OptionRef excludes(OptionRef other) const;
+    OptionRef excludes(const std::string& name) const;
+    OptionRef transform(const WordReader& read) const;
+    OptionRef range(double least, double most) const;
+
+  private:
+    CLI::Option* option_;
+};
+
+/// An option that CLI11 converts: a string, a path, a number or an optional of one; option_values.cpp lists the types.
+template <class T>
+OptionRef addOption(CLI::App& app, const std::string& names, T& field, const std::string& help);
+OptionRef addFlag(CLI::App& app, const std::string& names, bool& field, const std::string& help);
+
 /// Decimal digits alone, from `least` to `most`.
-[[nodiscard]] CLI::Validator wholeNumber(std::uint64_t least = 0,
-                                         std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+[[nodiscard]] WordReader wholeNumber(std::uint64_t least = 0,
+                                     std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 /// A finite float from `least` to `most`. \param must  "a number of degrees, 0 or more".
-[[nodiscard]] CLI::Validator number(float least, float most, const std::string& must);
+[[nodiscard]] WordReader number(float least, float most, const std::string& must);
 /// "1.5" or "1.5%", 0 or more; for a float field.
-[[nodiscard]] CLI::Validator percent();
+[[nodiscard]] WordReader percent();
 /// One of some words, as kWords, for a field that holds text.
-[[nodiscard]] CLI::Validator oneOf(std::span<const std::string_view> words);
+[[nodiscard]] WordReader oneOf(std::span<const std::string_view> words);
 
 template <class Enum>
 using WordsFor = std::vector<std::pair<std::string_view, Enum>>;
 
 /// An option that takes one of some words; the help shows them as a|b|c. \param set  gets the index of the word.
-CLI::Option* addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
-                           std::function<void(std::size_t)> set, const std::string& help);
+OptionRef addWordOption(CLI::App& app, const std::string& names, std::vector<std::string_view> words,
+                        std::function<void(std::size_t)> set, const std::string& help);
 template <class Field, class Enum>
-CLI::Option* addWords(CLI::App& app, const std::string& names, Field& field, const WordsFor<Enum>& words,
-                      const std::string& help) {
+OptionRef addWords(CLI::App& app, const std::string& names, Field& field, const WordsFor<Enum>& words,
+                   const std::string& help) {
     std::vector<std::string_view> known;
     std::vector<Enum> values;
     for (const auto& [word, value] : words) {
@@ -58,13 +84,12 @@ CLI::Option* addWords(CLI::App& app, const std::string& names, Field& field, con
 }
 
 /// An option of a form of its own. \param read  whether the word has that form
-CLI::Option* addFormOption(CLI::App& app, const std::string& names,
-                           std::function<bool(const std::string&)> read, const std::string& must,
-                           const std::string& help);
+OptionRef addFormOption(CLI::App& app, const std::string& names, std::function<bool(const std::string&)> read,
+                        const std::string& must, const std::string& help);
 /// \param parse  std::string to std::optional<T>; nullopt: not of this form.
 template <class T, class Parse>
-CLI::Option* addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
-                       const std::string& must, const std::string& help) {
+OptionRef addParsed(CLI::App& app, const std::string& names, std::optional<T>& field, const Parse& parse,
+                    const std::string& must, const std::string& help) {
     return addFormOption(
         app, names,
         [&field, parse](const std::string& word) {
@@ -85,6 +110,6 @@ void addMemoryOption(CLI::App& app, ContainerLimits& limits);
 
 /// Adds an option for each field of a struct, or of a group, which must outlive the app. Messages are those of readWord(),
 /// with the name of the option in front (parseCommandLine). \return the options, in that order.
-std::vector<CLI::Option*> addFields(CLI::App& app, FieldRef target);
+std::vector<OptionRef> addFields(CLI::App& app, FieldRef target);
 
 }  // namespace relief

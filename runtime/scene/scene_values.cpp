@@ -14,8 +14,8 @@ namespace {
 
 /// One value, or keys [age, value…].
 template <class T>
-void readTrack(const TomlValue& from, void* value, const FieldInfo& info) {
-    auto& track = *static_cast<AgeTrack<T>*>(value);
+void readTrack(const TomlValue& from, void* into, const FieldInfo& info) {
+    auto& track = *static_cast<AgeTrack<T>*>(into);
     constexpr bool kColor = !std::is_same_v<T, float>;
     constexpr std::size_t kParts = kColor ? 3 : 1;
     constexpr std::string_view kWanted =

@@ -24,11 +24,12 @@ struct Values {
 };
 
 void define(CLI::App& app, Values& values) {
-    app.add_option("--count", values.count)->transform(wholeNumber(1, 4'000'000'000));
-    app.add_option("--degrees", values.degrees)->transform(number(0.0F, 360.0F, "degrees, 0 to 360"));
-    app.add_option("--share", values.share)->transform(percent());
+    app.add_option("--count", values.count)->transform(CLI::Validator(wholeNumber(1, 4'000'000'000), ""));
+    app.add_option("--degrees", values.degrees)
+        ->transform(CLI::Validator(number(0.0F, 360.0F, "degrees, 0 to 360"), ""));
+    app.add_option("--share", values.share)->transform(CLI::Validator(percent(), ""));
     addMemoryOption(app, values.limits);
-    app.add_option("--color", values.color)->check(oneOf(kWords<"red", "blue">));
+    app.add_option("--color", values.color)->check(CLI::Validator(oneOf(kWords<"red", "blue">), ""));
     addWords(app, "--fruit", values.fruit,
              WordsFor<Fruit>{{"apple", Fruit::kApple}, {"pear", Fruit::kPear}, {"plum", Fruit::kPlum}}, "");
     addParsed(
