@@ -156,9 +156,6 @@ template <>
 inline constexpr const FieldCustom* kFieldCustom<AgeKey<glm::vec3>> = &kColorKeyField;
 void fields(FieldVisitor& visit, ParticleLook& look);
 
-/// Of a scene's [flow].
-[[nodiscard]] std::optional<FieldFault> check(FlowFile& flow, const GivenFields& given);
-
 /// A [[type]]: how its particles move, collide and look.
 struct SceneType : ParticleType {
     std::string name;  ///< "": none
