@@ -131,9 +131,9 @@ TEST_F(GroundChecks, ALostTileIsMissing) {
 TEST_F(GroundChecks, ThreadsChangeNothing) {
     write("hills.raw", 150, 150, hills);
     const WorldField field = baked("hills.raw", spec("tile=64"), true);
-    const GroundAccuracy many = check("hills.raw", "tile=64", field);
+    const GroundAccuracy many = *tryCheck("hills.raw", spec("tile=64"), field, 2'000);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const GroundAccuracy alone = check("hills.raw", "tile=64", field);
+    const GroundAccuracy alone = *tryCheck("hills.raw", spec("tile=64"), field, 2'000);
     EXPECT_EQ(many.near.mean, alone.near.mean);
     EXPECT_EQ(many.seams->p99, alone.seams->p99);
     EXPECT_EQ(many.anywhere.total(), alone.anywhere.total());

@@ -21,6 +21,7 @@ class WrittenByHand : public LevelBakes {
   protected:
     void SetUp() override {
         request_.bake.budget = 64'000;
+        request_.bake.quality = Quality::kFast;
         request_.bake.no_check = true;
         writeLevel({{"door", "oak"}, {"floor", "stone"}});
     }
