@@ -17,7 +17,7 @@ class EventsGlTest : public CollisionTest {};
 
 // A ball of radius r at height h over the floor, at rest. After n steps of semi-implicit Euler its height is
 // h - g dt² n (n + 1) / 2 and its speed g dt n; within a step its way is straight. It stops where it touches.
-TEST_P(EventsGlTest, ADroppedBallHitsOnceWhereAndWhenAndAsFastAsComputed) {
+TEST_P(EventsGlTest, ADroppedBallHitsOnceAtThePlaceTimeAndSpeedOfTheClosedForm) {
     constexpr double kG = 9.81;
     constexpr double kH = 1.7;
     constexpr double kR = 0.13;

@@ -259,7 +259,7 @@ TEST_P(StepPathGlTest, ToursAreForSweepsOfASingleCollider) {
     EXPECT_FALSE(tours(box, {.sweep = true}));
 }
 
-TEST_P(StepPathGlTest, AutoTakesComputeWhereAGpuDraws) {
+TEST_P(StepPathGlTest, TheAutomaticPathFollowsTheDevice) {
     const auto particles = ParticleSystem::create({.capacity = 10});
     ASSERT_TRUE(particles);
     EXPECT_EQ(particles->path(), context_->software() ? StepPath::kFragment : StepPath::kCompute);
