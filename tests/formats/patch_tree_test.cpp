@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "formats/depth_map.h"
 #include "formats/validate.h"

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/vec3.hpp>
 #include <string>
 
 namespace relief {

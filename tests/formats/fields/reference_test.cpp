@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/vec3.hpp>
+
 namespace relief {
 namespace {
 
