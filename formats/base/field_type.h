@@ -139,7 +139,7 @@ class FieldRef {
     /// Of a string, a text or a path.
     [[nodiscard]] bool isText() const;
     [[nodiscard]] std::string_view text() const;
-    [[nodiscard]] std::string_view word() const { return type_->words[whole()]; }
+    [[nodiscard]] std::string_view word() const { return type_->words[static_cast<std::size_t>(whole())]; }
     [[nodiscard]] bool setWord(std::string_view word) const;  ///< false: there is no such word
 
   private:
