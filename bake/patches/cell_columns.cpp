@@ -316,6 +316,19 @@ ClippedTriangle clipToUnitCube(const UnitTriangle& triangle, ClippedPolygon* kep
     return clipped;
 }
 
+CellPlane meanPlane(std::span<const ClippedTriangle> pieces) {
+    glm::dvec3 normal(0.0);
+    glm::dvec3 center(0.0);
+    double area = 0.0;
+    for (const ClippedTriangle& piece : pieces) {
+        normal += piece.area * piece.normal;
+        center += piece.area * piece.center;
+        area += piece.area;
+    }
+    normal = length(normal) > 1e-9 * area ? unit(normal) : glm::dvec3(0.0, 1.0, 0.0);
+    return {normal, dot(normal, 0.5 - center / area)};
+}
+
 bool meetsUnitCube(const UnitTriangle& triangle) {
     bool contained = true;
     for (int axis = 0; axis < 3; ++axis) {

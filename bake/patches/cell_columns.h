@@ -48,6 +48,17 @@ struct ClippedPolygon {
 [[nodiscard]] ClippedTriangle clipToUnitCube(const UnitTriangle& triangle, ClippedPolygon* polygon = nullptr);
 [[nodiscard]] bool meetsUnitCube(const UnitTriangle& triangle);
 
+/// A plane in the unit cube of a cell.
+struct CellPlane {
+    glm::dvec3 normal{0.0, 1.0, 0.0};  ///< of unit length, outwards
+    double offset = 0.0;               ///< distance of the cube's middle, in cells, negative inside
+
+    [[nodiscard]] double at(const glm::dvec3& in_cell) const { return dot(normal, in_cell - 0.5) + offset; }
+};
+/// Through the middle of a surface, by its mean normal; level where that is none.
+/// \param pieces  not all without an area.
+[[nodiscard]] CellPlane meanPlane(std::span<const ClippedTriangle> pieces);
+
 /// The eighths of a cell, x fastest.
 /// \param triangles  of unitTriangles().
 [[nodiscard]] std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,

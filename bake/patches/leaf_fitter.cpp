@@ -45,7 +45,10 @@ class LeafTrial {
           pieces_(node.tried == 0 ? clippedTriangles(triangles_) : std::vector<ClippedTriangle>()),
           columns_(query, node.cell, triangles_, grids[frameOf(node)]) {
         if (node.tried < kFlatsAndSingles) {
-            singles_.emplace(columns_, costs_);
+            if (node.tried == 0) {
+                node.mean = meanPlane(pieces_);
+            }
+            singles_.emplace(columns_, costs_, node.mean);
         }
         if (node.tried == 0) {
             tryFlats();
@@ -224,7 +227,7 @@ PatchHeights LeafFitter::heights(const PatchNode& node) const {
         return node.heights[node.chosen - kFlats];
     }
     const CellColumns columns = keptColumns(node);
-    return PatchFitter(columns, costs_, node.turned).fit(kPatchSideMax, kFinalRounds).heights;
+    return PatchFitter(columns, costs_, node.mean, node.turned).fit(kPatchSideMax, kFinalRounds).heights;
 }
 
 std::array<PatchHeights, 2> LeafFitter::pair(const PatchNode& node) const {

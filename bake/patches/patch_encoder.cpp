@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/mesh/loops.h"
+#include "bake/patches/depth_planes.h"
 
 namespace relief {
 namespace {
@@ -41,7 +42,7 @@ class Encoder {
             const PatchNode& node = *records[i];
             if (!node.split && node.hasRecord()) {
                 first[i] = next;
-                next += node.shape().texels();
+                next += node.texels();
             }
         }
         std::vector<PatchRecord> texels(next);
@@ -52,7 +53,7 @@ class Encoder {
             progress(static_cast<double>(++done) / static_cast<double>(records.size()));
             if (node.split) {
                 texels[1 + i] = splitOf(node, first[i]);
-            } else if (!node.hasRecord()) {
+            } else if (!node.surface() && node.planes != DepthPlanes::kTwo) {
                 texels[1 + i] = flat(node);
             } else {
                 writeLeaf(node, first[i], texels[1 + i], texels);
@@ -82,46 +83,25 @@ class Encoder {
   private:
     /// A cell without a patch: the nearest surface.
     [[nodiscard]] PatchRecord flat(const PatchNode& node) const {
-        const glm::dvec3 middle = node.cell.middle();
-        const ClosestPoint closest = query_.closest(glm::vec3(middle));
-        const bool inside = node.inside();
-        glm::dvec3 away = middle - closest.point;
-        away = length(away) > 0.0 ? (inside ? -away : away) : unitNormal(query_.mesh(), closest.triangle);
-        const double distance = closest.distance / roots_.size;
-        return PatchRecord::flat(inside, glm::vec3(unit(away)),
-                                 static_cast<float>(inside ? -distance : distance));
+        const CellPlane plane = planeOfMiddle(query_, node);
+        return PatchRecord::flat(node.inside(), glm::vec3(plane.normal),
+                                 static_cast<float>(plane.offset * node.cell.size / roots_.size));
     }
 
     [[nodiscard]] PatchRecord splitOf(const PatchNode& node, std::uint32_t first) const {
         std::uint32_t children = 0;
         std::uint32_t inside = 0;
-        glm::dvec3 normal(0.0);
-        glm::dvec3 center(0.0);
-        double area = 0.0;
-        for (const ClippedTriangle& piece : clippedTriangles(unitTriangles(query_.mesh(), node.cell))) {
-            normal += piece.area * piece.normal;
-            center += piece.area * piece.center;
-            area += piece.area;
-        }
-        normal = length(normal) > 1e-9 * area ? unit(normal) : glm::dvec3(0.0, 1.0, 0.0);
-        center /= area;
-        int agree = 0;
         for (unsigned i = 0; i < 8; ++i) {
             const PatchNode& child = (*node.children)[i];
-            if (child.hasRecord()) {
-                children |= 1U << i;
-                continue;
-            }
-            const glm::dvec3 middle = 0.5 * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U) + 0.25;
-            inside |= child.inside() ? 1U << i : 0U;
-            agree += (dot(normal, middle - center) < 0.0) == child.inside() ? 1 : -1;
+            children |= child.hasRecord() ? 1U << i : 0U;
+            inside |= !child.hasRecord() && child.inside() ? 1U << i : 0U;
         }
-        normal = agree < 0 ? -normal : normal;  // of meshes that are not wound
-        return PatchRecord::split(children, inside, first, glm::vec3(normal),
-                                  static_cast<float>(dot(normal, glm::dvec3(0.5) - center)));
+        const CellPlane plane = planeOfSplit(query_, node);
+        return PatchRecord::split(children, inside, first, glm::vec3(plane.normal),
+                                  static_cast<float>(plane.offset));
     }
 
-    /// Writes a leaf with a surface.
+    /// Writes a leaf with patches.
     /// \param first  the texels that it has beside its record.
     void writeLeaf(const PatchNode& node, std::uint32_t first, PatchRecord& record,
                    std::vector<PatchRecord>& texels) const {
@@ -130,9 +110,20 @@ class Encoder {
                 texels[at + k] = heights.texel(k);
             }
         };
+        if (node.planes == DepthPlanes::kTwo) {
+            const auto planes = depthPlanesOf(query_, node);
+            record = PatchRecord::pair(true, first);
+            texels[first] = (*planes)[0];
+            texels[first + 1] = (*planes)[1];
+            first += 2;
+        }
+        if (!node.surface()) {
+            return;
+        }
         if (!node.shape().pair) {
             const PatchHeights heights = fitter_.heights(node);
-            record = PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
+            (node.planes == DepthPlanes::kTwo ? texels[first - 2] : record) =
+                PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
             write(heights, first);
             return;
         }

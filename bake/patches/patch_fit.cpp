@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <span>
 
 #include "bake/patches/lanes.h"
@@ -12,7 +14,9 @@ namespace {
 
 /// Weight of second differences against a column's: where no column tells, the patch goes on straight.
 constexpr double kSmooth = 3e-4;
-constexpr double kAnchor = 1e-7;
+constexpr double kAnchor = 1e-5;
+/// Cosine of a plane to the axis of its frame, below which it has no heights.
+constexpr double kSteep = 0.1;
 /// An error below which all errors weigh the same, in units of w.
 constexpr float kSmallError = 4e-3F;
 
@@ -166,14 +170,44 @@ struct RowSums {
     Lanes right[2] = {};
 };
 
+/// The heights of a plane; of one that is steep in the frame none.
+template <std::size_t kSide>
+std::array<double, kSide * kSide> heightsOf(const PatchFrame& frame, const CellPlane& plane) {
+    std::array<double, kSide * kSide> heights{};
+    // w along each axis of (u, v, w), by the inverse of across().
+    const glm::dvec3 origin = frame.across(glm::dvec3(0.0));
+    glm::dmat3 by_cell;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 one(0.0);
+        one[axis] = 1.0;
+        by_cell[axis] = frame.across(one) - origin;
+    }
+    const glm::dmat3 to_cell = glm::inverse(by_cell);
+    const glm::dvec3 rises = plane.normal * to_cell;
+    if (std::abs(rises.z) < kSteep * length(to_cell[2])) {
+        return heights;
+    }
+    const double at_origin = plane.at(-(to_cell * origin));
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        const double u = static_cast<double>(i % kSide) / (kSide - 1);
+        const double v = static_cast<double>(i / kSide) / (kSide - 1);
+        heights[i] = -(at_origin + rises.x * u + rises.y * v) / rises.z;
+    }
+    return heights;
+}
+
 /// One round of least squares.
+/// \param anchors  the heights where neither lines nor smoothness tell.
 /// \param weighted  by the errors of `heights`, of the round before.
 template <std::size_t kSide>
-void fitRound(const LineGrid& grid, const HeightTargets& targets, bool weighted,
+void fitRound(const LineGrid& grid, const HeightTargets& targets,
+              const std::array<double, kSide * kSide>& anchors, bool weighted,
               std::array<double, kSide * kSide>& heights) {
     static const HeightSystem<kSide> kEmpty;
     HeightSystem<kSide> system = kEmpty;
     const HeightLanes<kSide> before(grid, heights);
+    // The system is that of the heights above the anchors: exact for a plane, however few lines meet it.
+    const HeightLanes<kSide> anchored(grid, anchors);
     std::size_t line = 0;
     for (std::size_t square = 0; square + 1 < kSide; ++square) {
         RowSums lower;  // both rows' heights the lower one's share, ...
@@ -182,6 +216,7 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets, bool weighted,
         for (std::size_t j = 0; j < before.lines(); ++j) {
             const float t = before.rowShare(j);
             const auto row = before.row(square, t);
+            const auto anchor = anchored.row(square, t);
             RowSums sum;
             for (std::size_t i = 0; i < before.quarter(); ++i, line += kLanes) {
                 const auto height = loadLanes<Lanes>(targets.height(line));
@@ -199,8 +234,9 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets, bool weighted,
                 sum.square[0] += first - both;
                 sum.square[1] += both;
                 sum.square[2] += second - both;
-                sum.right[0] += first * height;
-                sum.right[1] += second * height;
+                const Lanes above_anchor = height - anchor.at(s);
+                sum.right[0] += first * above_anchor;
+                sum.right[1] += second * above_anchor;
             }
             for (std::size_t k = 0; k < 3; ++k) {
                 const Lanes once = t * sum.square[k];
@@ -233,6 +269,9 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets, bool weighted,
         }
     }
     system.solve(heights);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        heights[i] += anchors[i];
+    }
 }
 
 template <std::size_t kSide>
@@ -282,9 +321,9 @@ Part bestPart(const CellColumn& column, const MistakeCosts& costs, bool walls) {
 
 }  // namespace
 
-PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
+PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs, const CellPlane& mean,
                          std::optional<bool> outside_below)
-    : columns_(columns), costs_(costs), targets_(columns.grid().lines().size()) {
+    : columns_(columns), costs_(costs), mean_(mean), targets_(columns.grid().lines().size()) {
     const std::vector<double>& lengths = columns.grid().lengths();
     std::array<double, kLanes> inside{};
     for (std::size_t i = 0; i < lengths.size(); i += kLanes) {
@@ -387,9 +426,10 @@ double PatchFitter::wrongOf(const std::array<double, kSide * kSide>& heights) co
 
 template <std::size_t kSide>
 FittedPatch PatchFitter::fitOf(int rounds) const {
+    const std::array<double, kSide* kSide> anchors = heightsOf<kSide>(columns_.grid().frame(), mean_);
     std::array<double, kSide * kSide> heights{};
     for (int round = 0; round < rounds; ++round) {
-        fitRound<kSide>(columns_.grid(), targets_, round > 0, heights);
+        fitRound<kSide>(columns_.grid(), targets_, anchors, round > 0, heights);
     }
     FittedPatch fitted;
     fitted.heights = coded<kSide>(heights);
@@ -467,7 +507,7 @@ FittedPair PairFitter::fitOf(int rounds) const {
             }
         }
         for (std::size_t k = 0; k < 2; ++k) {
-            fitRound<kSide>(grid, targets[k], round > 0, heights[k]);
+            fitRound<kSide>(grid, targets[k], {}, round > 0, heights[k]);
         }
     }
     FittedPair fitted;

@@ -83,8 +83,9 @@ class PairFitter {
 class PatchFitter {
   public:
     /// \param columns  borrowed.
+    /// \param mean  the plane that heights lie in where no line meets the surface.
     /// \param outside_below  by the columns where it is not given.
-    PatchFitter(const CellColumns& columns, const MistakeCosts& costs,
+    PatchFitter(const CellColumns& columns, const MistakeCosts& costs, const CellPlane& mean,
                 std::optional<bool> outside_below = {});
 
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
@@ -107,6 +108,7 @@ class PatchFitter {
 
     const CellColumns& columns_;
     MistakeCosts costs_;
+    CellPlane mean_;
     bool outside_below_ = false;
     HeightTargets targets_;
     std::vector<float> by_error_;              // 0 of the lines below, else 1; none where there are none

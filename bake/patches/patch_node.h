@@ -34,6 +34,13 @@ inline constexpr std::array<PatchShape, 8> kPatchShapes = {
 inline constexpr std::size_t kFlats = 2;
 inline constexpr std::size_t kFlatsAndSingles = 5;
 
+/// Planes of a leaf for points deep inside, beside its surface (depth_planes.h).
+enum class DepthPlanes : std::uint8_t {
+    kNone,
+    kOne,  ///< of a leaf without a surface, in a record of its own
+    kTwo,  ///< as a pair of patches; of a leaf with a single surface that and another plane
+};
+
 struct PatchNode {
     FrameChoice frame;
     std::uint8_t tried = 0;   ///< of kPatchShapes
@@ -42,6 +49,7 @@ struct PatchNode {
     bool turned = false;   ///< a single surface has the outside below
     bool walls = true;     ///< a pair has the inside between
     bool in_void = false;  ///< of one without triangles
+    DepthPlanes planes = DepthPlanes::kNone;
     std::array<double, kPatchShapes.size()>
         mistakes;             ///< of each tried: volume, object units, times its costs
     double pair_least = 0.0;  ///< mistakes of the best pair there could be
@@ -50,13 +58,19 @@ struct PatchNode {
     double wrong = 0.0;       ///< mistakes of that
     std::unique_ptr<std::array<PatchNode, 8>> children;
     MeshCell cell;
+    CellPlane mean;                       ///< of the surface in the cell
     std::array<PatchHeights, 2> heights;  ///< of single surfaces of 2² and 3²
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
     /// Without a look at the cell, which is out of reach of the cache: what has a surface is tried as both flats.
     [[nodiscard]] bool seenEmpty() const { return tried == 1; }
     [[nodiscard]] const PatchShape& shape() const { return kPatchShapes[chosen]; }
-    [[nodiscard]] bool hasRecord() const { return split || shape().side > 0; }
+    [[nodiscard]] bool surface() const { return shape().side > 0; }
+    [[nodiscard]] bool hasRecord() const { return split || surface() || planes != DepthPlanes::kNone; }
+    /// Texels beside the record of a leaf.
+    [[nodiscard]] std::uint32_t texels() const {
+        return (surface() ? shape().texels() : 0) + (planes == DepthPlanes::kTwo ? 2 : 0);
+    }
     /// Of one without a surface.
     [[nodiscard]] bool inside() const { return empty() ? in_void || cell.bodies.inside() : chosen == 1; }
     [[nodiscard]] double cost(std::size_t index, double byte) const {

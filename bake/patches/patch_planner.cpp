@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bake/mesh/loops.h"
+#include "bake/patches/depth_planes.h"
 #include "bake/patches/leaf_fitter.h"
 #include "bake/patches/patch_encoder.h"
 #include "formats/base/text.h"
@@ -19,6 +20,9 @@
 namespace relief {
 namespace {
 
+/// Of the bytes, that planes for points deep inside (depth_planes.h) get at least, and at most.
+constexpr double kDepthShare = 0.05;
+constexpr double kDepthShareMost = 0.35;
 /// A root for each so many bytes.
 constexpr double kBytesPerRoot = 160.0;
 /// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
@@ -34,6 +38,8 @@ constexpr int kNarrowings = 12;
 constexpr double kSpare = 3e-4;
 /// The same of a curve, so that it does not end long before.
 constexpr double kSpareOfCurve = 0.3;
+/// Least step of the worth of a byte towards a smaller tree.
+constexpr double kDearer = 1.05;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
@@ -64,7 +70,7 @@ class Planner {
         : query_(query),
           options_(options),
           held_(query.mesh().bounds),
-          bytes_(static_cast<double>(options.bytes)),
+          bytes_((options.texel > 0.0 ? 1.0 : 1.0 - kDepthShare) * static_cast<double>(options.bytes)),
           fitter_(query, options.costs, options.lines) {
         if (options.roots_hold) {
             held_.add(options.roots_hold->min);
@@ -82,9 +88,10 @@ class Planner {
             roots_.size = rootSizeByBytes();
             makeRoots();
             if (const std::optional<ByteRange> range = descend()) {
-                narrow(*range, kSpare);
+                leaveForDepth(narrow(*range, kSpare));
             }
         }
+        DepthPlaneChoice(query_, nodes_).take(spareBytes(), byteOfTexel());
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
             roots.push_back(&node);
@@ -237,13 +244,14 @@ class Planner {
             wrong_ += node.wrong;
         }
         taken_ = takenBytes();
-        tried_.push_back({taken_, wrong_});
+        tried_.push_back({taken_ / (1.0 - kDepthShare), wrong_});
         return taken_;
     }
 
     /// Of the map of all that is chosen.
-    [[nodiscard]] double takenBytes() const {
-        double texels = 1.0 + static_cast<double>(nodes_.size());
+    /// \param planes  bytes of planes for points deep inside.
+    [[nodiscard]] double takenBytes(double planes = 0.0) const {
+        double texels = 1.0 + static_cast<double>(nodes_.size()) + planes / kPatchTexelBytes;
         for (const PatchNode& node : nodes_) {
             // A root has a record in any case.
             texels += std::max(0.0, node.bytes / kPatchTexelBytes - 1.0);
@@ -282,9 +290,32 @@ class Planner {
         return range;
     }
 
+    /// Bytes that the tree leaves, but for what fills its last row of texels.
+    [[nodiscard]] double spareBytes() const {
+        const double all = static_cast<double>(options_.bytes);
+        const PatchMapSize size = patchMapSize(static_cast<std::size_t>(all / kPatchTexelBytes));
+        return all - takenBytes() - kPatchTexelBytes * size.width;
+    }
+
+    /// Takes a smaller tree where planes for points deep inside are worth more than its last bytes.
+    /// \param byte  that the tree was chosen by.
+    void leaveForDepth(double byte) {
+        const double wanted = DepthPlaneChoice(query_, nodes_).bytesWorth(byte);
+        if (wanted <= spareBytes()) {
+            return;
+        }
+        bytes_ = static_cast<double>(options_.bytes) -
+                 std::min(wanted, kDepthShareMost * static_cast<double>(options_.bytes));
+        for (double taken = taken_; taken > bytes_;) {
+            byte *= std::max(kDearer, taken / bytes_ * taken / bytes_);
+            taken = chooseAll(byte);
+        }
+    }
+
     /// Takes the least worth of a byte at which the tree fits, nearly.
     /// \param spare  of the bytes, that it may leave.
-    void narrow(ByteRange range, double spare) {
+    /// \return that worth.
+    double narrow(ByteRange range, double spare) {
         double byte = range.cheap;
         const auto square = [](double x) { return x * x; };
         for (int i = 0; i < kNarrowings && range.taken_dear < (1.0 - spare) * bytes_; ++i) {
@@ -298,6 +329,7 @@ class Planner {
         if (byte != range.dear) {
             chooseAll(range.dear);
         }
+        return range.dear;
     }
 
     /// Splits what does not hold the surface down to the cells of the texel.
@@ -305,8 +337,7 @@ class Planner {
         if (texels_ > texels_most_) {
             return;  // planTexel() discards it all
         }
-        const double byte = kByteOfTexel * texel_ * texel_ * texel_;
-        const bool held = fitter_.hold(node, kHeldWithin * texel_, byte);
+        const bool held = fitter_.hold(node, kHeldWithin * texel_, byteOfTexel());
         if (!held && levels > 0) {
             if (node.cell.triangles.size() >= kManyTriangles) {
                 report(kSearchShare *
@@ -327,6 +358,9 @@ class Planner {
             texels_ += static_cast<std::uint64_t>(node.bytes / kPatchTexelBytes);
         }
     }
+
+    /// Wrong volume that a byte is worth; 0: by bytes.
+    [[nodiscard]] double byteOfTexel() const { return kByteOfTexel * texel_ * texel_ * texel_; }
 
     [[nodiscard]] double rootsDone() const {
         return static_cast<double>(roots_done_) / static_cast<double>(nodes_.size());
@@ -371,7 +405,10 @@ class Planner {
             ++roots_done_;
             report(kSearchShare * rootsDone());
         });
-        return texels_ <= texels_most_ && takenBytes() <= bytes_;
+        if (texels_ > texels_most_ || takenBytes() > bytes_) {
+            return false;
+        }
+        return takenBytes(DepthPlaneChoice(query_, nodes_).bytesWorth(byteOfTexel())) <= bytes_;
     }
 
     /// Takes the cells below the roots for roots, as long as these are a small share of the tree.
