@@ -67,42 +67,10 @@ TriangleMesh makeJar() {
     return grid.mesh(glm::dvec3(-1.0), 0.2);
 }
 
-TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlane) {
-    std::mt19937 random(5);
-    std::uniform_real_distribution<double> unit(0.0, 1.0);
-    PlaneFitOptions options;
-    options.reach = 0.5;
-    for (int repeat = 0; repeat < 1000; ++repeat) {
-        std::vector<FootprintRay> rays(16);
-        const double texel = 0.02;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            rays[i].origin = {texel * (static_cast<double>(i % 4) - 1.5) / 4,
-                              texel * (static_cast<double>(i / 4) - 1.5) / 4, 0};
-            rays[i].direction = {0, 0, 1};
-            if (repeat % 2 == 0 || unit(random) < 0.8) {
-                rays[i].u = 0.3 + 0.05 * unit(random);
-                rays[i].normal =
-                    glm::normalize(glm::dvec3(unit(random) - 0.5, unit(random) - 0.5, -unit(random)));
-            }
-        }
-        const FootprintRay center{{0, 0, 0}, {0, 0, 1}, -1.0, glm::dvec3(0.0)};
-        const std::optional<FittedPlane> plane =
-            fitSupportingPlane(rays, nullptr, {}, center, center.origin, options);
-        ASSERT_TRUE(plane);
-        ASSERT_FALSE(plane->stands);
-        EXPECT_LE(plane->normal.z, -1.0 / 32.0);
-        const glm::dvec3 on_plane(0, 0, plane->code / 65534.0);
-        for (const FootprintRay& ray : rays) {
-            if (ray.u >= 0.0) {
-                EXPECT_LE(dot(plane->normal, ray.origin + ray.u * ray.direction - on_plane), 1e-12);
-            }
-        }
-    }
-}
-
-/// Footprints whose rays run side by side and all meet a surface are asked about in another way than those of which one
-/// runs askew, if by far less than matters: both find planes that are as good.
-TEST(PlaneFit, RaysSideBySideAreAskedInAnotherWayForTheSame) {
+/// No sampled point of the surface lies in front of the plane. Footprints whose rays run side by side and all meet a surface
+/// are searched in another way than those of which one runs askew, if by far less than matters, or misses: the first two find
+/// planes that are as good.
+TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlaneWhicheverWayIsSearched) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     PlaneFitOptions options;
@@ -140,6 +108,9 @@ TEST(PlaneFit, RaysSideBySideAreAskedInAnotherWayForTheSame) {
         const auto costOf = [&](const FittedPlane& plane) {
             double cost = 0.0;
             for (const FootprintRay& ray : rays) {
+                if (ray.u < 0.0) {
+                    continue;
+                }
                 const glm::dvec3 met = ray.origin + ray.u * ray.direction;
                 const glm::dvec3 stored(0, 0, plane.code / 65534.0);
                 const double free = dot(plane.normal, met - stored) / plane.normal.z;
@@ -149,6 +120,17 @@ TEST(PlaneFit, RaysSideBySideAreAskedInAnotherWayForTheSame) {
             return cost;
         };
         EXPECT_NEAR(costOf(*straight), costOf(*askew), 1e-12);
+        for (FootprintRay& ray : rays) {
+            ray.normal =
+                glm::normalize(glm::dvec3(0.5 * unit(random), 0.5 * unit(random), -std::abs(unit(random))));
+        }
+        rays.pop_back();
+        rays.push_back(center);
+        const std::optional<FittedPlane> torn = fit();
+        ASSERT_TRUE(torn);
+        ASSERT_FALSE(torn->stands);
+        EXPECT_LE(torn->normal.z, -1.0 / 32.0);
+        costOf(*torn);
         same += straight->code == askew->code && straight->normal == askew->normal ? 1 : 0;
     }
     EXPECT_GT(same, 0.99 * kRepeats);

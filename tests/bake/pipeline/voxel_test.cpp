@@ -173,35 +173,25 @@ TEST(Voxels, NothingDeepIsOutsideWhereItOnceWas) {
     }
 }
 
-TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferred) {
-    for (std::uint32_t seed = seedFrom(101), end = seed + 3; seed < end; ++seed) {
+TEST(Voxels, NothingDeepIsOutsideWhateverIsPreferredOrPlanned) {
+    for (std::uint32_t seed = seedFrom(101), end = seed + 6; seed < end; ++seed) {
+        SCOPED_TRACE(seed);
         const VoxelGrid grid = VoxelGrid::random(seed);
         const PreparedMesh mesh(grid.mesh());
         for (const Prefer prefer : {Prefer::kInside, Prefer::kOutside}) {
-            SCOPED_TRACE(std::to_string(seed) + " " + std::string(wordOf(prefer)));
             const std::vector<std::string> specs = {"front-back:dir=-x,size=80",
                                                     "front-back:dir=1/2/3,size=70", "cube:size=30"};
             expectNothingDeepOutside(grid, baked(mesh, specs, Quality::kNormal, prefer), seed);
         }
-    }
-}
-
-TEST(Voxels, NothingDeepIsOutsideOfAPlan) {
-    for (std::uint32_t seed = seedFrom(201), end = seed + 6; seed < end; ++seed) {
-        SCOPED_TRACE(seed);
-        const VoxelGrid grid = VoxelGrid::random(seed);
-        const PreparedMesh mesh(grid.mesh());
-        const Result<MeshQuery> query = MeshQuery::build(mesh);
-        ASSERT_TRUE(query);
-        PlanOptions options;
-        options.budget_bytes = 65536 << (seed % 3);
-        const Result<Plan> plan = planViews(*query, options);
+        const Result<Plan> plan = planViews(queryOf(mesh), {std::uint64_t{65536} << (seed % 3), {}});
         ASSERT_TRUE(plan);
-        BakeOptions bake_options;
-        bake_options.maps = specsOf(*plan);
-        const Result<Baked> result = bake(mesh, bake_options);
-        ASSERT_TRUE(result);
-        expectNothingDeepOutside(grid, result->collider, seed);
+        std::vector<std::string> specs;
+        for (const MapSpec& spec : specsOf(*plan)) {
+            specs.push_back(toString(spec));
+        }
+        const Collider collider = baked(mesh, specs, Quality::kNormal);
+        ASSERT_FALSE(collider.maps.empty());
+        expectNothingDeepOutside(grid, collider, seed);
     }
 }
 
