@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "formats/normal_index.h"
+
 namespace relief::test {
 namespace {
 
@@ -129,21 +131,6 @@ class Torus : public Shape {
     double tube_;
 };
 
-class HalfSpace : public Shape {
-  public:
-    HalfSpace(const glm::dvec3& normal, double offset) : normal_(normal), offset_(offset) {}
-
-    std::vector<Hit> hits(const glm::dvec3& origin, const glm::dvec3& direction) const override {
-        const double t = (offset_ - glm::dot(normal_, origin)) / glm::dot(normal_, direction);
-        return t > 0.0 ? std::vector<Hit>{{t, normal_}} : std::vector<Hit>{};
-    }
-    bool inside(const glm::dvec3& p) const override { return glm::dot(normal_, p) < offset_; }
-
-  private:
-    glm::dvec3 normal_;
-    double offset_;
-};
-
 Affine inverseOf(const glm::dvec3& origin, const glm::dmat3& axes, const glm::dvec3& sides) {
     Affine affine;
     for (int i = 0; i < 3; ++i) {
@@ -182,10 +169,6 @@ std::unique_ptr<Shape> makeTorus(double ring_radius, double tube_radius) {
     return std::make_unique<Torus>(ring_radius, tube_radius);
 }
 
-std::unique_ptr<Shape> makeHalfSpace(const glm::dvec3& normal, double offset) {
-    return std::make_unique<HalfSpace>(normal, offset);
-}
-
 glm::dvec3 OrthographicFrame::toMap(const glm::dvec3& p) const {
     return (glm::transpose(axes) * (p - origin)) / sides;
 }
@@ -212,15 +195,8 @@ DepthMap emptyMap(const OrthographicFrame& frame, MapFormat format, Compare comp
 }
 
 DepthMap emptyMap(const CubeFrame& frame, Compare compare, std::uint32_t size) {
-    DepthMap map;
-    map.format = MapFormat::kCube8;
-    map.compare = compare;
-    map.width = size;
-    map.height = size;
-    map.object_to_map = inverseOf(frame.center, frame.axes, frame.half);
-    map.object_per_map = glm::vec3(frame.half);
-    clearTexels(map);
-    return map;
+    return emptyMap(OrthographicFrame{frame.center, frame.axes, frame.half}, MapFormat::kCube8, compare, size,
+                    size);
 }
 
 std::vector<Hit> texelHits(const Shape& shape, const OrthographicFrame& frame, const DepthMap& map,
@@ -281,8 +257,61 @@ DepthMap makeMap(const Shape& shape, const CubeFrame& frame, Compare compare, st
     return map;
 }
 
+Collider threeMaps(const Shape& shape, const glm::dvec3& center, const glm::dmat3& axes, double half,
+                   std::uint32_t size, MapFormat format, Decode decode) {
+    Collider collider;
+    const double side = 2.0 * half * size / (size - 6);
+    for (int k = 0; k < 3; ++k) {
+        const glm::dmat3 look(axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]);
+        collider.maps.push_back(makeMap(shape, centeredFrame(center, look, glm::dvec3(side)), format,
+                                        Compare::kBoth, size, size));
+        collider.maps.back().decode = decode;
+    }
+    return collider;
+}
+
 double angleInDegrees(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
+
+std::string nameOf(const Encoding& encoding) {
+    return std::string(mapFormatName(encoding.format)) + " " + depthEncodingName(encoding.format) + " " +
+           compareName(encoding.compare);
+}
+
+glm::dvec3 storedNormal(MapFormat format, const glm::dvec3& normal) {
+    const glm::vec3 single(normal);
+    return glm::dvec3(format == MapFormat::kFloat32 ? single : decodeNormal(encodeNormal(single)));
+}
+
+double depthQuantum(MapFormat format, double depth) {
+    switch (format) {
+        case MapFormat::kFloat32:
+            return depth * 0x1p-24;
+        case MapFormat::kFrontBackHalf:
+            return std::max(depth * 0x1p-11, depth < 0x1p-14 ? 0x1p-14 : 0.0);
+        case MapFormat::kFixed8:
+        case MapFormat::kFrontBackFixed:
+            return 0.5 / 65534.0 + 0x1p-22;
+        case MapFormat::kCube8:
+            return 0.5 * kCubeDepthMax / 65534.0 + 0x1p-22;
+        case MapFormat::kPatches:
+            break;
+    }
+    return 0.0;
+}
+
+double transformSlack(const glm::vec4& row, const glm::vec3& p) {
+    const glm::dvec4 terms = glm::abs(glm::dvec4(row) * glm::dvec4(p, 1.0));
+    return 8.0 * 0x1p-24 * (terms.x + terms.y + terms.z + terms.w);
+}
+
+double roundingSlack(const DepthMap& map, const glm::vec3& p, double from_surface) {
+    double slack = 16.0 * 0x1p-24 * from_surface;
+    for (int k = 0; k < 3; ++k) {
+        slack += (transformSlack(map.object_to_map.row[k], p) + 0x1p-20) * double{map.object_per_map[k]};
+    }
+    return slack;
 }
 
 }  // namespace relief::test

@@ -5,8 +5,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "formats/collider.h"
 #include "formats/depth_map.h"
 
 namespace relief::test {
@@ -30,8 +32,6 @@ class Shape {
 /// Around the z axis of object space. Only for rays through its centre or parallel to its axis, whose hits
 /// are roots of a quadratic.
 [[nodiscard]] std::unique_ptr<Shape> makeTorus(double ring_radius, double tube_radius);
-/// The points with dot(normal, p) < offset.
-[[nodiscard]] std::unique_ptr<Shape> makeHalfSpace(const glm::dvec3& normal, double offset);
 
 /// The volume of an orthographic map: p = origin + axes · (sides ∘ p').
 struct OrthographicFrame {
@@ -53,6 +53,7 @@ struct CubeFrame {
 };
 
 [[nodiscard]] glm::dmat3 rotation(const glm::dvec3& axis, double degrees);
+inline const glm::dmat3 kTurned = rotation({1.0, 2.0, -0.5}, 37.0);  ///< along no axis
 
 /// The centred volume of the given sides.
 [[nodiscard]] OrthographicFrame centeredFrame(const glm::dvec3& center, const glm::dmat3& axes,
@@ -77,6 +78,34 @@ struct CubeFrame {
 [[nodiscard]] DepthMap makeMap(const Shape& shape, const CubeFrame& frame, Compare compare,
                                std::uint32_t size);
 
+/// Front-back maps that look along the three axes in turn. Each leaves three texels around a box of this half side.
+[[nodiscard]] Collider threeMaps(const Shape& shape, const glm::dvec3& center, const glm::dmat3& axes,
+                                 double half, std::uint32_t size, MapFormat format,
+                                 Decode decode = Decode::kProjected);
+
 [[nodiscard]] double angleInDegrees(const glm::dvec3& a, const glm::dvec3& b);
+
+/// What an orthographic map may be.
+struct Encoding {
+    MapFormat format;
+    Compare compare;
+};
+inline constexpr Encoding kOrthographic[] = {
+    {MapFormat::kFloat32, Compare::kLess},       {MapFormat::kFloat32, Compare::kGreater},
+    {MapFormat::kFixed8, Compare::kLess},        {MapFormat::kFixed8, Compare::kGreater},
+    {MapFormat::kFrontBackHalf, Compare::kBoth}, {MapFormat::kFrontBackFixed, Compare::kBoth}};
+[[nodiscard]] std::string nameOf(const Encoding& encoding);
+
+/// A unit normal as a texel of this format holds it.
+[[nodiscard]] glm::dvec3 storedNormal(MapFormat format, const glm::dvec3& normal);
+
+/// How far a stored depth may be from the given depth, in map units.
+[[nodiscard]] double depthQuantum(MapFormat format, double depth);
+
+/// Rounding of a row of T·P in float, in map units: the row's entries, three products, three sums.
+[[nodiscard]] double transformSlack(const glm::vec4& row, const glm::vec3& p);
+
+/// Rounding of the distance of a plane in float, in object units: of T·P and of the products and sums behind it.
+[[nodiscard]] double roundingSlack(const DepthMap& map, const glm::vec3& p, double from_surface);
 
 }  // namespace relief::test

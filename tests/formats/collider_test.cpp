@@ -44,14 +44,6 @@ Collider colliderOf(const Votes& votes) {
 const glm::vec3 kOrigin(0.0F);
 constexpr float kFar = kFarOutside;
 
-TEST(Voter, SaysWhatItIsTold) {
-    for (const float distance : {-1.5F, -0.25F, 0.0F, 0.25F, 1.5F, kFar}) {
-        ASSERT_TRUE(vote(voter(distance), kOrigin));
-        EXPECT_EQ(vote(voter(distance), kOrigin)->distance, distance);
-    }
-    EXPECT_FALSE(vote(voter(std::nullopt), kOrigin));
-}
-
 TEST(Rule2, AnyOutsideWinsThenTheSmallestPositiveOrTheLargestNegative) {
     const auto distance = [](const Votes& votes) { return evaluate(colliderOf(votes), kOrigin).distance; };
     EXPECT_EQ(distance({-1.0F, -0.25F, -0.5F}), -0.25F);
@@ -145,60 +137,10 @@ TEST(Inside, IsTheSignOfEvaluateForAnyOrderOfVotes) {
 }
 
 TEST(Inside, StopsAtTheFirstMapThatSeesThePointOutside) {
-    EXPECT_EQ(evaluateInside(colliderOf({-0.5F, 1.0F, 0.25F}), kOrigin).map, 1);
-    EXPECT_EQ(evaluateInside(colliderOf({std::nullopt, kFar, 0.25F}), kOrigin).map, 1);
-    EXPECT_EQ(evaluateInside(colliderOf({-0.5F, -0.25F, -0.75F}), kOrigin).map, 1);
-    EXPECT_EQ(evaluateInside(colliderOf({std::nullopt}), kOrigin).map, -1);
     // What lies behind that map is not looked at: it has no texels to read.
     Collider collider = colliderOf({-0.5F, 0.25F, -0.5F});
     collider.maps[2].texels.clear();
     EXPECT_FALSE(evaluateInside(collider, kOrigin).inside);
-}
-
-TEST(Inside, AgreesOnAShape) {
-    const auto torus = test::makeTorus(1.0, 0.4);
-    Collider collider;
-    for (const Decode decode : {Decode::kPlane, Decode::kProjected}) {
-        collider.maps.push_back(test::makeMap(
-            *torus, test::centeredFrame({0, 0, 0}, test::rotation({0, 0, 1}, 20.0), {3.2, 3.2, 1.2}),
-            MapFormat::kFrontBackFixed, Compare::kBoth, 40, 40));
-        collider.maps.push_back(test::makeMap(
-            *torus, test::CubeFrame{{0, 0, 0}, glm::dmat3(1.0), glm::dvec3(1.7)}, Compare::kLess, 20));
-        collider.maps.back().empty_is_outside = false;
-        for (DepthMap& map : collider.maps) {
-            map.decode = decode;
-        }
-        int inside = 0;
-        for (float x = -1.55F; x < 1.6F; x += 0.043F) {
-            for (float y = -1.55F; y < 1.6F; y += 0.043F) {
-                for (float z = -0.7F; z < 0.7F; z += 0.09F) {
-                    ASSERT_NO_FATAL_FAILURE(expectInsideAgrees(collider, {x, y, z}));
-                    inside += evaluateInside(collider, {x, y, z}).inside ? 1 : 0;
-                }
-            }
-        }
-        EXPECT_GT(inside, 1000);
-    }
-}
-
-TEST(Collider, TexelBytesIsTheSumOfItsMaps) {
-    Collider collider = colliderOf({-0.5F, kFar});
-    EXPECT_EQ(collider.texelBytes(), 2U * 9U * 16U);
-    collider.maps.push_back(
-        test::emptyMap(test::CubeFrame{{0, 0, 0}, glm::dmat3(1.0), {1, 1, 1}}, Compare::kLess, 5));
-    EXPECT_EQ(collider.texelBytes(), 2U * 9U * 16U + 6U * 25U * 4U);
-}
-
-TEST(Bounds, GrowByPoints) {
-    Bounds bounds;
-    EXPECT_GT(bounds.min.x, bounds.max.x);
-    bounds.add({1, 2, 3});
-    EXPECT_EQ(bounds.size(), glm::vec3(0.0F));
-    bounds.add({-1, 2, 8});
-    EXPECT_EQ(bounds.min, glm::vec3(-1, 2, 3));
-    EXPECT_EQ(bounds.max, glm::vec3(1, 2, 8));
-    EXPECT_EQ(bounds.center(), glm::vec3(0, 2, 5.5F));
-    EXPECT_EQ(bounds.longestSide(), 5.0F);
 }
 
 }  // namespace

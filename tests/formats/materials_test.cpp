@@ -14,24 +14,8 @@
 namespace relief::test {
 namespace {
 
-/// A cube of side 4 about the origin. Octant 7 is split: its octant 0 is of material 2, the others of 1; octant 0 is a pair of
-/// sides along x − y, the rest is of material 0.
-Materials sample() {
-    Materials made;
-    made.list = {
-        {"oak", 0.5F, 0.25F, 0.0F, 0.5F}, {"stone", 1.0F, 0.0F, 2.0F, 0.25F}, {"", 1.0F, 0.0F, 0.0F, 0.25F}};
-    made.sides = {{4, 1, 2}};
-    made.origin = glm::vec3(-2.0F);
-    made.size = 4.0F;
-    made.nodes.resize(2);
-    made.nodes[0].head = 1U << 8U | 0x80U;
-    made.nodes[0].leaves = {3, 0, 0, 0, 0, 0, 0, 0};
-    made.nodes[1].leaves = {2, 1, 1, 1, 1, 1, 1, 1};
-    return made;
-}
-
 TEST(Materials, APointFindsItsCell) {
-    const Materials materials = sample();
+    const Materials materials = someMaterials();
     ASSERT_EQ(faultOfMaterials(materials), "");
     const glm::vec3 up(0.0F, 1.0F, 0.0F);
     const auto at = [&](float x, float y, float z) { return materialAt(materials, {x, y, z}, up); };
@@ -93,13 +77,13 @@ TEST(Materials, EveryFaultIsFound) {
               }},
              {"octant of a material that does not exist", [](Materials& m) { m.nodes[1].leaves[3] = 4; }},
              {"octant of a material that does not exist", [](Materials& m) { m.nodes[0].leaves[7] = 1; }}}) {
-        Materials materials = sample();
+        Materials materials = someMaterials();
         wrong.spoil(materials);
         const std::string fault = faultOfMaterials(materials);
         EXPECT_NE(fault.find(wrong.message), std::string::npos) << wrong.message << ": " << fault;
     }
     // A chain of nodes is refused where it gets too deep for a lookup.
-    Materials deep = sample();
+    Materials deep = someMaterials();
     deep.nodes.assign(kMaterialLevelsMax + 1, {});
     for (std::size_t i = 0; i + 1 < deep.nodes.size(); ++i) {
         deep.nodes[i].head = static_cast<std::uint32_t>(i + 1) << 8U | 1U;
@@ -113,7 +97,7 @@ TEST(Materials, EveryFaultIsFound) {
 TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
     Collider collider = readmeExample();
     const std::vector<std::byte> without = written(collider);
-    collider.materials = sample();
+    collider.materials = someMaterials();
     for (const int level : {0, 9}) {
         const std::vector<std::byte> bytes = written(collider, level);
         const Result<Collider> read = readContainer(bytes);
@@ -126,42 +110,18 @@ TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
     }
     collider.materials = {};
     EXPECT_EQ(written(collider), without);
-    collider.materials = sample();
+    collider.materials = someMaterials();
     collider.materials.nodes[0].head = 0x80U;
     EXPECT_FALSE(writeContainer(collider));
 }
 
-// Every byte of the metadata changed, with checksums that vouch for it: an error, or a collider that keeps the invariants.
-TEST(Materials, HostileBytesAreRefusedOrValid) {
-    Collider collider = readmeExample();
-    collider.materials = sample();
-    for (const int level : {0, 9}) {
-        const std::vector<std::byte> bytes = written(collider, level);
-        std::size_t refused = 0;
-        for (std::size_t i = 64; i < bytes.size() - 36; ++i) {
-            for (const unsigned flip : {0x01U, 0x80U, 0xFFU}) {
-                std::vector<std::byte> wrong = bytes;
-                wrong[i] ^= static_cast<std::byte>(flip);
-                mendChecksums(wrong);
-                const Result<Collider> read = readContainer(wrong);
-                refused += read ? 0 : 1;
-                if (read) {
-                    EXPECT_EQ(faultOfMaterials(read->materials), "") << i;
-                }
-                static_cast<void>(inspectContainer(wrong));
-            }
-        }
-        EXPECT_GT(refused, 300U);
-    }
-}
-
 TEST(Materials, ResponsesAreByName) {
-    Materials materials = sample();
+    Materials materials = someMaterials();
     const std::vector<MaterialResponse> responses{{"stone", 0.1F, {}, 5.0F}, {"stove", {}, {}, {}}};
     EXPECT_EQ(repeatedName(responses), std::nullopt);
     MaterialResponses given(responses);
     given.apply(materials);
-    EXPECT_EQ(materials.list[0], sample().list[0]);
+    EXPECT_EQ(materials.list[0], someMaterials().list[0]);
     EXPECT_EQ(materials.list[1], (Material{"stone", 0.1F, 0.0F, 5.0F, 0.25F}));
     EXPECT_EQ(given.faultOf("stone"), std::nullopt);
     EXPECT_EQ(given.faultOf("stoen").value_or(""),

@@ -36,20 +36,13 @@ struct Scene {
     double texel = 0.0;  // object units
 };
 
-/// Front-back maps along +x, +y and +z of `axes`, whose texels are planes. The window leaves three texels around a box
-/// of the given half side.
-Scene threeMaps(const Shape& shape, double half, std::uint32_t size,
-                const glm::dmat3& axes = glm::dmat3(1.0)) {
+/// Three front-back maps of planes about a box of this half side.
+Scene sceneOf(const Shape& shape, double half, std::uint32_t size, const glm::dmat3& axes = glm::dmat3(1.0)) {
     Scene scene;
-    const double side = 2.0 * half * size / (size - 6);
-    scene.texel = side / size;
+    scene.collider =
+        threeMaps(shape, glm::dvec3(0.0), axes, half, size, MapFormat::kFrontBackFixed, Decode::kPlane);
     scene.collider.bounds = {glm::vec3(static_cast<float>(-half)), glm::vec3(static_cast<float>(half))};
-    for (int k = 0; k < 3; ++k) {
-        const glm::dmat3 look(axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]);
-        scene.collider.maps.push_back(makeMap(shape, centeredFrame({0, 0, 0}, look, glm::dvec3(side)),
-                                              MapFormat::kFrontBackFixed, Compare::kBoth, size, size));
-        scene.collider.maps.back().decode = Decode::kPlane;
-    }
+    scene.texel = double{scene.collider.maps[0].object_per_map.x} / size;
     return scene;
 }
 
@@ -103,7 +96,7 @@ Errors measure(const Scene& scene, const Distance& truth, double half) {
 
 TEST(NearestSurface, Sphere) {
     constexpr double kRadius = 0.9;
-    const Scene scene = threeMaps(*makeSphere({0, 0, 0}, kRadius), kRadius, 64);
+    const Scene scene = sceneOf(*makeSphere({0, 0, 0}, kRadius), kRadius, 64);
     const Errors errors = measure(
         scene, [&](const glm::dvec3& p) { return glm::length(p) - kRadius; }, 1.3);
     EXPECT_LT(errors.mean, 0.04);
@@ -136,20 +129,14 @@ TEST(NearestSurface, TorusAndItsHole) {
 /// Each map sees an edge between two texels, and corners stick out of all of them.
 TEST(NearestSurface, BoxSeenAskew) {
     const glm::dvec3 half(0.5, 0.35, 0.6);
-    Scene scene = threeMaps(*makeBox({0, 0, 0}, half), 0.8, 64, rotation({1.0, 2.0, -0.5}, 37.0));
+    Scene scene = sceneOf(*makeBox({0, 0, 0}, half), 0.8, 64, kTurned);
     scene.collider.bounds = {-glm::vec3(half), glm::vec3(half)};
     const Errors errors = measure(
         scene, [&](const glm::dvec3& p) { return boxDistance(p, half); }, 0.9);
     EXPECT_LT(errors.mean, 0.06);
     EXPECT_LT(errors.over_a_texel, 0.02);
     EXPECT_GT(errors.without_search, 0.3);
-}
-
-/// Off a convex edge the plane of either face is nearer than the edge is.
-TEST(NearestSurface, OffAnEdgeAPlaneIsTooNear) {
-    const glm::dvec3 half(0.5, 0.35, 0.6);
-    Scene scene = threeMaps(*makeBox({0, 0, 0}, half), 0.8, 64, rotation({1.0, 2.0, -0.5}, 37.0));
-    scene.collider.bounds = {-glm::vec3(half), glm::vec3(half)};
+    // Off a convex edge the plane of either face is nearer than the edge is.
     double worst = 0.0;
     double too_near = 0.0;  // by evaluate()
     int points = 0;
@@ -170,40 +157,15 @@ TEST(NearestSurface, OffAnEdgeAPlaneIsTooNear) {
     EXPECT_EQ(points, 303);
 }
 
-/// A slot in a block, open upwards.
-class Slot : public Shape {
-  public:
-    [[nodiscard]] std::vector<Hit> hits(const glm::dvec3& origin,
-                                        const glm::dvec3& direction) const override {
-        std::vector<Hit> found;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double side = axis == 2 || direction[axis] < 0.0 ? -1.0 : 1.0;
-            const double t = (side * kHalf[axis] - origin[axis]) / direction[axis];
-            const glm::dvec3 beyond = glm::abs(origin + t * direction) - kHalf;
-            if (t > 0.0 && std::max({axis == 0 ? 0.0 : beyond.x, axis == 1 ? 0.0 : beyond.y,
-                                     axis == 2 ? 0.0 : beyond.z}) <= 0.0) {
-                glm::dvec3 normal(0.0);
-                normal[axis] = -side;
-                found.push_back({t, normal});
-            }
-        }
-        return found;
-    }
-    [[nodiscard]] bool inside(const glm::dvec3& p) const override {
-        const glm::dvec3 beyond = glm::abs(p) - kHalf;
-        return std::max({beyond.x, beyond.y, p.z > 0.0 ? -1.0 : beyond.z}) > 0.0;
-    }
-    static constexpr glm::dvec3 kHalf{0.25, 0.8, 0.4};
-};
-
-TEST(NearestSurface, InASlotTheNearestOfFloorAndWallsCounts) {
-    Scene scene;
-    scene.collider.bounds = {{-1, -1, -1}, {1, 1, 1}};
-    DepthMap cube =
-        makeMap(Slot(), CubeFrame{{0, 0, 0.05}, glm::dmat3(1.0), glm::dvec3(1.0)}, Compare::kLess, 128);
-    cube.decode = Decode::kPlane;
-    cube.encloses = false;
-    scene.collider.maps.push_back(cube);
+/// A cube in the middle sees floor and walls at grazing angles beside their edges.
+TEST(NearestSurface, InABoxTheNearestOfItsWallsCounts) {
+    const glm::dvec3 half(0.25, 0.8, 0.4);
+    Collider collider;
+    collider.bounds = {-glm::vec3(half), glm::vec3(half)};
+    collider.maps = {makeMap(*makeBox({0, 0, 0}, half),
+                             CubeFrame{{0, 0, 0.05}, glm::dmat3(1.0), glm::dvec3(1.0)}, Compare::kGreater,
+                             128)};
+    collider.maps[0].decode = Decode::kPlane;
     std::mt19937 random(9);
     std::uniform_real_distribution<float> x(-0.24F, 0.24F);
     std::uniform_real_distribution<float> z(-0.39F, 0.1F);
@@ -211,13 +173,13 @@ TEST(NearestSurface, InASlotTheNearestOfFloorAndWallsCounts) {
     double without = 0.0;
     for (int i = 0; i < 5000; ++i) {
         const glm::vec3 p(x(random), 0.5F * x(random), z(random));
-        const double truth = std::min(0.25 - std::abs(double{p.x}), double{p.z} + 0.4);
-        const SurfaceSample nearest = nearestSurface(scene.collider, p);
-        ASSERT_GT(nearest.distance, 0.0F);
+        const double truth = boxDistance(glm::dvec3(p), half);
+        const SurfaceSample nearest = nearestSurface(collider, p);
+        ASSERT_LT(nearest.distance, 0.0F);
         worst = std::max(worst, std::abs(nearest.distance - truth));
-        without = std::max(without, std::abs(evaluate(scene.collider, p).distance - truth));
+        without = std::max(without, std::abs(evaluate(collider, p).distance - truth));
     }
-    EXPECT_LT(worst, 0.05) << "a fifth of half the slot";
+    EXPECT_LT(worst, 0.05) << "a fifth of half the box";
     EXPECT_GT(without, 0.1);
 }
 
@@ -275,7 +237,7 @@ TEST(NearestSurface, IsFiniteAndOnTheSideOfTheVoteWhateverTheMapsHold) {
 }
 
 TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
-    Scene scene = threeMaps(*makeSphere({0, 0, 0}, 0.5), 0.5, 16);
+    Scene scene = sceneOf(*makeSphere({0, 0, 0}, 0.5), 0.5, 16);
     for (DepthMap& map : scene.collider.maps) {
         map.encloses = false;
     }
@@ -294,7 +256,7 @@ TEST(NearestSurface, WhereMapsKnowNothingItSaysSo) {
 
 /// A point that every map calls outside, and no more, still has a distance.
 TEST(NearestSurface, FarOutsideOfAllVolumesTheDistanceIsFound) {
-    const Scene scene = threeMaps(*makeSphere({0, 0, 0}, 0.9), 0.9, 64);
+    const Scene scene = sceneOf(*makeSphere({0, 0, 0}, 0.9), 0.9, 64);
     for (const glm::vec3& p : {glm::vec3(3, 2, 1.5F), glm::vec3(-1.5F, 1.2F, -2), glm::vec3(10, -10, 5)}) {
         ASSERT_EQ(evaluate(scene.collider, p).distance, kFarOutside);
         EXPECT_NEAR(nearestSurface(scene.collider, p).distance, glm::length(p) - 0.9F, 0.1F * glm::length(p));

@@ -5,15 +5,15 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <iomanip>
 #include <iterator>
-#include <map>
-#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
-#include "formats/base/file_io.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
-#include "tests/formats/pinned_text.h"
 
 namespace relief::test {
 namespace {
@@ -46,7 +46,101 @@ std::string contents(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// "name 1 2 3"
+void addLine(std::ostream& text, const char* name, std::initializer_list<float> values) {
+    text << name;
+    for (const float value : values) {
+        text << ' ' << value;
+    }
+    text << '\n';
+}
+
+void addMaterials(std::ostream& text, const Materials& materials) {
+    for (const Material& one : materials.list) {
+        text << "material '" << one.name << "' " << shortest(one.restitution) << ' ' << shortest(one.friction)
+             << ' ' << shortest(one.lifetime_loss) << ' ' << shortest(one.area_share) << '\n';
+    }
+    const glm::vec3& origin = materials.origin;
+    addLine(text, "materials_origin", {origin.x, origin.y, origin.z});
+    text << "materials_size " << shortest(materials.size) << '\n';
+    for (const MaterialSides& pair : materials.sides) {
+        text << "sides " << int{pair.axis} << ' ' << int{pair.towards} << ' ' << int{pair.against} << '\n';
+    }
+    for (const MaterialNode& node : materials.nodes) {
+        text << "node " << node.head;
+        for (const std::uint8_t leaf : node.leaves) {
+            text << ' ' << int{leaf};
+        }
+        text << '\n';
+    }
+}
+
+void addMap(std::ostream& text, const DepthMap& map) {
+    text << "map format " << static_cast<int>(map.format) << " compare " << compareName(map.compare)
+         << " decode " << decodeName(map.decode) << " size " << map.width << ' ' << map.height << " encloses "
+         << map.encloses << " empty_is_outside " << map.empty_is_outside << '\n';
+    for (const glm::vec4& row : map.object_to_map.row) {
+        addLine(text, "object_to_map", {row.x, row.y, row.z, row.w});
+    }
+    addLine(text, "object_per_map", {map.object_per_map.x, map.object_per_map.y, map.object_per_map.z});
+    for (std::uint32_t row = 0; row < map.faceCount() * map.height; ++row) {
+        const std::uint32_t face = row / map.height;
+        text << "texels " << face << ' ' << row % map.height << std::hex << std::setfill('0');
+        for (std::uint32_t x = 0; x < map.width; ++x) {
+            text << ' ';
+            for (const std::byte byte : map.texelAt(face, x, row % map.height)) {
+                text << std::setw(2) << std::to_integer<unsigned>(byte);
+            }
+        }
+        text << std::dec << '\n';
+    }
+}
+
+void addAnswer(std::ostream& text, const Collider& collider, const glm::vec3& p) {
+    const FieldSample sample = evaluate(collider, p);
+    const InsideSample inside = evaluateInside(collider, p);
+    text << "at " << p.x << ' ' << p.y << ' ' << p.z << " map " << sample.map << " distance "
+         << (sample.map < 0 ? 0.0F : sample.distance) << " normal " << sample.normal.x << ' '
+         << sample.normal.y << ' ' << sample.normal.z << " inside " << inside.inside << " by " << inside.map
+         << '\n';
+    if (!collider.materials.empty()) {
+        text << "material " << materialAt(collider.materials, p, p) << '\n';
+    }
+}
+
+/// Every number of a collider, its texels in hexadecimal, row by row; and what it says of points in and about its bounds.
+/// Floats have nine digits, by which they are read back exactly.
+std::string pinnedText(const Collider& collider) {
+    const Provenance& from = collider.provenance;
+    const Bounds& bounds = collider.bounds;
+    std::ostringstream text;
+    text << std::setprecision(9) << "unit '" << collider.unit << "'\nmesh '" << from.mesh_name << "' "
+         << from.mesh_hash << " of " << from.triangles << " triangles\nby '" << from.tool_version << "' '"
+         << from.optionsText() << "'\n";
+    addLine(text, "bounds_min", {bounds.min.x, bounds.min.y, bounds.min.z});
+    addLine(text, "bounds_max", {bounds.max.x, bounds.max.y, bounds.max.z});
+    if (!collider.materials.empty()) {
+        addMaterials(text, collider.materials);
+    }
+    for (const DepthMap& map : collider.maps) {
+        addMap(text, map);
+    }
+    std::uint32_t state = 1;
+    for (int i = 0; i < 64; ++i) {
+        glm::vec3 p{0.0F};
+        for (int axis = 0; axis < 3; ++axis) {
+            state = state * 1664525U + 1013904223U;
+            // In the bounds, made larger by a quarter on every side; 16 bits are exact in a float.
+            const float share = 1.5F * (static_cast<float>(state >> 16U) / 65536.0F) - 0.25F;
+            p[axis] = bounds.min[axis] + share * bounds.size()[axis];
+        }
+        addAnswer(text, collider, p);
+    }
+    return text.str();
+}
+
 TEST(PinnedContainers, SayWhatTheySaid) {
+    EXPECT_EQ(containers().size(), 16U) << "none is removed";
     for (const fs::path& file : containers()) {
         SCOPED_TRACE(file.filename());
         const Result<Collider> collider = loadCollider(file);
@@ -69,33 +163,6 @@ TEST(PinnedContainers, SayWhatTheySaid) {
         }
         EXPECT_EQ(text.size(), expected.size());
     }
-}
-
-// Whoever removes one notices: every format with either decode, by every compression, in either version.
-TEST(PinnedContainers, AreOfEveryKind) {
-    std::map<std::string, std::set<std::string>> kinds;  // by version and compression
-    for (const fs::path& file : containers()) {
-        const Result<std::vector<std::byte>> bytes = readFile(file);
-        ASSERT_TRUE(bytes);
-        const Result<ContainerInfo> info = readContainerInfo(*bytes);
-        const Result<Collider> collider = readContainer(*bytes);
-        ASSERT_TRUE(info && collider);
-        const std::string version = std::to_string(info->major) + "." + std::to_string(info->minor);
-        EXPECT_TRUE(file.filename().string().starts_with(version + "-")) << file;
-        for (std::size_t i = 0; i < collider->maps.size(); ++i) {
-            const DepthMap& map = collider->maps[i];
-            kinds[version + " " + packingName(info->payloads[i].packing)].insert(
-                std::to_string(static_cast<int>(map.format)) + " " + decodeName(map.decode));
-        }
-    }
-    EXPECT_EQ(kinds["1.0 none"].size(), 10U);
-    EXPECT_EQ(kinds["1.0 zstd"].size(), 10U);
-    EXPECT_EQ(kinds["1.1 rows"].size(), 4U);
-    EXPECT_EQ(kinds["1.1 none"].size(), 6U);
-    EXPECT_EQ(kinds["1.3 rows"].size(), 4U);
-    EXPECT_EQ(kinds["1.3 none"].size(), 6U);
-    EXPECT_EQ(kinds["1.6 rows"].size(), 1U);
-    EXPECT_EQ(kinds.size(), 7U);
 }
 
 // What this version writes, it writes as ever: zstd's bytes depend on its own version.

@@ -44,14 +44,6 @@ TEST(RowSpans, GoFromTheFirstTexelToTheLast) {
     EXPECT_EQ(packed[16], std::byte{1});
 }
 
-TEST(RowSpans, OfOtherFormatsAllTexelsAreKept) {
-    DepthMap map;
-    map.format = MapFormat::kCube8;
-    map.width = map.height = 5;
-    map.texels.resize(map.texelBytes());
-    EXPECT_EQ(gpuBytes(map), 6U * 25U * 4U);
-}
-
 TEST(RowSpans, ComeBackAsTheyWere) {
     std::mt19937 random(5);
     for (int round = 0; round < 300; ++round) {

@@ -42,6 +42,20 @@ Collider oneMapOfEveryFormat() {
     return collider;
 }
 
+Materials someMaterials() {
+    Materials made;
+    made.list = {
+        {"oak", 0.5F, 0.25F, 0.0F, 0.5F}, {"stone", 1.0F, 0.0F, 2.0F, 0.25F}, {"", 1.0F, 0.0F, 0.0F, 0.25F}};
+    made.sides = {{4, 1, 2}};
+    made.origin = glm::vec3(-2.0F);
+    made.size = 4.0F;
+    made.nodes.resize(2);
+    made.nodes[0].head = 1U << 8U | 0x80U;
+    made.nodes[0].leaves = {3, 0, 0, 0, 0, 0, 0, 0};
+    made.nodes[1].leaves = {2, 1, 1, 1, 1, 1, 1, 1};
+    return made;
+}
+
 Collider readmeExample() {
     Collider collider;
     collider.bounds = {{-0.5F, -0.5F, -0.5F}, {0.5F, 0.5F, 0.5F}};

@@ -14,6 +14,10 @@ namespace relief::test {
 /// One map of every format, 8 texels wide at most, sparse enough for zstd to shrink each.
 [[nodiscard]] Collider oneMapOfEveryFormat();
 
+/// A cube of side 4 about the origin. Octant 7 is split: its octant 0 is of material 2, the others of 1; octant 0 is a pair of
+/// sides along x − y, the rest is of material 0.
+[[nodiscard]] Materials someMaterials();
+
 /// The worked example of formats/README.md.
 [[nodiscard]] Collider readmeExample();
 

@@ -1,10 +1,10 @@
-// Baked maps against closed forms: a box, a sphere, a torus and a plane, in every format, direction and
-// compare. What would break these: a wrong sign, scale, axis, face, border, rounding, or a normal that points
-// inwards.
+// Baked maps against closed forms: a box, a torus and a plane, in every format, direction and compare. What would break
+// these: a wrong sign, scale, axis, face, border, rounding, or a normal that points inwards.
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "bake/mesh/mesh_query.h"
+#include "formats/plane.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
@@ -31,73 +31,39 @@ double depthTolerance(MapFormat format, double depth) {
     return 0.0;
 }
 
+const glm::dvec3 kBoxCenter(0.3125, -0.25, 0.5);
+const glm::dvec3 kBoxHalf(1.0, 0.5, 0.75);
+
+/// Where a ray is inside a box about the origin.
 struct Span {
     double in = -1e300;
     double out = 1e300;
-    int axis_in = 0;
-    int axis_out = 0;
+    glm::dvec3 normal_in{0.0};
+    glm::dvec3 normal_out{0.0};
     [[nodiscard]] bool hit() const { return in < out; }
 };
 
-/// Where origin + t · direction is inside an axis-aligned box.
-Span slabs(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& low,
-           const glm::dvec3& high) {
+Span slabs(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& half) {
     Span span;
     for (int i = 0; i < 3; ++i) {
         if (direction[i] == 0.0) {
-            if (origin[i] < low[i] || origin[i] > high[i]) {
-                span.in = 1e300;
-            }
+            span.in = std::abs(origin[i]) > half[i] ? 1e300 : span.in;
             continue;
         }
-        const double a = (low[i] - origin[i]) / direction[i];
-        const double b = (high[i] - origin[i]) / direction[i];
-        if (std::min(a, b) > span.in) {
-            span.in = std::min(a, b);
-            span.axis_in = i;
+        glm::dvec3 normal(0.0);
+        normal[i] = direction[i] > 0.0 ? 1.0 : -1.0;
+        const double middle = -origin[i] / direction[i];
+        const double reach = half[i] / std::abs(direction[i]);
+        if (middle - reach > span.in) {
+            span.in = middle - reach;
+            span.normal_in = -normal;
         }
-        if (std::max(a, b) < span.out) {
-            span.out = std::max(a, b);
-            span.axis_out = i;
+        if (middle + reach < span.out) {
+            span.out = middle + reach;
+            span.normal_out = normal;
         }
     }
     return span;
-}
-
-/// The inverse of a map's T, from its floats alone: rows of T are orthogonal.
-glm::dvec3 toObject(const DepthMap& map, const glm::dvec3& in_map) {
-    glm::dvec3 p(0.0);
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec4 row = map.object_to_map.row[i];
-        const glm::dvec3 axis(row);
-        p += (in_map[i] - row.w) / glm::dot(axis, axis) * axis;
-    }
-    return p;
-}
-
-struct Ray {
-    glm::dvec3 origin;
-    glm::dvec3 direction;  // for one unit of depth
-};
-
-/// The ray of a texel as depth_map.h defines it, from the map's own floats.
-Ray texelRay(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y) {
-    const double s = (x + 0.5) / map.width;
-    const double t = (y + 0.5) / map.height;
-    if (map.projection() == Projection::kOrthographic) {
-        const glm::dvec3 origin = toObject(map, {s, t, 0.0});
-        return {origin, toObject(map, {s, t, 1.0}) - origin};
-    }
-    const glm::dvec3 d =
-        glm::normalize(glm::dvec3(cubeDirection({face, static_cast<float>(s), static_cast<float>(t)})));
-    const glm::dvec3 origin = toObject(map, glm::dvec3(0.0));
-    return {origin, toObject(map, d) - origin};
-}
-
-glm::dvec3 axisNormal(int axis, double sign) {
-    glm::dvec3 n(0.0);
-    n[axis] = sign;
-    return n;
 }
 
 void expectSurface(const std::optional<Surface>& surface, double depth, const glm::dvec3& normal,
@@ -109,36 +75,35 @@ void expectSurface(const std::optional<Surface>& surface, double depth, const gl
     EXPECT_GT(cosine, map.format == MapFormat::kFloat32 ? 1.0 - 1e-6 : std::cos(0.65 * 0.0174533));
 }
 
-/// Every texel of a map of an axis-aligned box.
-void checkBoxMap(const DepthMap& map, const glm::dvec3& low, const glm::dvec3& high) {
+/// Every texel of a map of the box. In its own frame the slabs give the truth.
+void checkBoxMap(const DepthMap& map, const glm::dmat3& axes = glm::dmat3(1.0)) {
+    const glm::dmat3 inverse = glm::transpose(axes);
+    const bool turned = axes != glm::dmat3(1.0);
+    const double slack = turned ? 2e-6 : 0.0;  // T's floats, on a slope
     int hits = 0;
     for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
         for (std::uint32_t y = 0; y < map.height; ++y) {
             for (std::uint32_t x = 0; x < map.width; ++x) {
                 SCOPED_TRACE(std::to_string(face) + ": " + std::to_string(x) + ", " + std::to_string(y));
                 const Texel texel = decodeTexel(map.format, map.texelAt(face, x, y));
-                const Ray ray = texelRay(map, face, x, y);
-                const Span span = slabs(ray.origin, ray.direction, low, high);
-                if (std::abs(span.out - span.in) < 1e-5) {
+                const TexelRay ray = texelRay(map, face, x, y);
+                const Span span =
+                    slabs(inverse * (ray.origin - kBoxCenter), inverse * ray.direction, kBoxHalf);
+                if (std::abs(span.out - span.in) < (turned ? 1e-4 : 1e-5)) {
                     continue;  // along an edge
                 }
                 if (!span.hit() || span.out < 0.0) {
-                    EXPECT_FALSE(texel.front);
-                    EXPECT_FALSE(texel.back);
+                    ASSERT_FALSE(texel.front || texel.back);
                     continue;
                 }
                 ++hits;
-                const glm::dvec3 normal_in =
-                    axisNormal(span.axis_in, ray.direction[span.axis_in] > 0.0 ? -1.0 : 1.0);
-                const glm::dvec3 normal_out =
-                    axisNormal(span.axis_out, ray.direction[span.axis_out] > 0.0 ? 1.0 : -1.0);
-                if (map.compare == Compare::kGreater) {
-                    expectSurface(texel.front, span.out, normal_out, map);
-                } else {
-                    expectSurface(texel.front, span.in, normal_in, map);
-                }
+                const auto expectEnd = [&](const std::optional<Surface>& surface, bool out) {
+                    expectSurface(surface, out ? span.out : span.in,
+                                  axes * (out ? span.normal_out : span.normal_in), map, slack);
+                };
+                expectEnd(texel.front, map.compare == Compare::kGreater);
                 if (map.compare == Compare::kBoth) {
-                    expectSurface(texel.back, span.out, normal_out, map);
+                    expectEnd(texel.back, true);
                 }
                 if (testing::Test::HasFailure()) {
                     return;  // one texel's story is enough
@@ -146,11 +111,8 @@ void checkBoxMap(const DepthMap& map, const glm::dvec3& low, const glm::dvec3& h
             }
         }
     }
-    EXPECT_GT(hits, 20);
+    EXPECT_GT(hits, turned ? 1000 : 20);
 }
-
-const glm::dvec3 kBoxCenter(0.3125, -0.25, 0.5);
-const glm::dvec3 kBoxHalf(1.0, 0.5, 0.75);
 
 TEST(BakeBox, OrthographicMapsAreExact) {
     const TriangleMesh mesh = makeBoxMesh(kBoxCenter, kBoxHalf);
@@ -160,23 +122,9 @@ TEST(BakeBox, OrthographicMapsAreExact) {
               "fixed8:compare=greater,dir=", "front-back:dir="}) {
             SCOPED_TRACE(head + direction);
             const DepthMap map = bakeMap(mesh, head + direction + ",size=37x24");
-            checkBoxMap(map, kBoxCenter - kBoxHalf, kBoxCenter + kBoxHalf);
+            checkBoxMap(map);
             EXPECT_TRUE(map.encloses);
             EXPECT_TRUE(map.empty_is_outside);
-        }
-    }
-}
-
-TEST(BakeBox, BorderIsEmptyAndTheInsideIsFull) {
-    const TriangleMesh mesh = makeBoxMesh(kBoxCenter, kBoxHalf);
-    for (const std::string direction : kDirections) {
-        const DepthMap map = bakeMap(mesh, "float:dir=" + direction + ",size=3x9");
-        for (std::uint32_t y = 0; y < map.height; ++y) {
-            for (std::uint32_t x = 0; x < map.width; ++x) {
-                const bool border = x == 0 || y == 0 || x == map.width - 1 || y == map.height - 1;
-                EXPECT_EQ(decodeTexel(map.format, map.texelAt(0, x, y)).front.has_value(), !border)
-                    << direction << " " << x << ", " << y;
-            }
         }
     }
 }
@@ -189,73 +137,18 @@ TEST(BakeBox, CubesAreExact) {
         SCOPED_TRACE(spec);
         const DepthMap map = bakeMap(mesh, spec);
         EXPECT_EQ(map.compare, spec == "cube:size=33,center=-2/1/1" ? Compare::kLess : Compare::kGreater);
-        checkBoxMap(map, kBoxCenter - kBoxHalf, kBoxCenter + kBoxHalf);
+        checkBoxMap(map);
     }
     // GREATER from outside keeps the far side.
-    checkBoxMap(bakeMap(mesh, "cube:size=33,center=-2/1/1,compare=greater"), kBoxCenter - kBoxHalf,
-                kBoxCenter + kBoxHalf);
-}
-
-TEST(BakeBox, TiltedBoxSeenAlongItsOwnAxes) {
-    // Seen along one of its axes, a tilted box is a rectangle with one depth, whatever the tilt.
-    const glm::dmat3 axes = rotation({1, 2, -0.5}, 33.0);
-    const TriangleMesh mesh = makeBoxMesh(kBoxCenter, kBoxHalf, axes);
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 d = axes[i];
-        const std::string direction =
-            std::to_string(d.x) + "/" + std::to_string(d.y) + "/" + std::to_string(d.z);  // six digits
-        const DepthMap map = bakeMap(mesh, "float:dir=" + direction);
-        EXPECT_TRUE(map.encloses);
-        const double extent = map.object_per_map.z;
-        EXPECT_NEAR(extent, 2.0 * kBoxHalf[i], 2.0 * 1.1e-4 * mesh.bounds.longestSide());
-        const double near_depth = (0.5 * extent - kBoxHalf[i]) / extent;
-        int hits = 0;
-        for (std::uint32_t y = 0; y < map.height; ++y) {
-            for (std::uint32_t x = 0; x < map.width; ++x) {
-                const Texel texel = decodeTexel(map.format, map.texelAt(0, x, y));
-                if (!texel.front) {
-                    continue;
-                }
-                ++hits;
-                EXPECT_NEAR(texel.front->depth, near_depth, 1e-5);
-                EXPECT_NEAR(glm::dot(glm::dvec3(texel.front->normal), d), -1.0, 1e-5);
-            }
-        }
-        EXPECT_GT(hits, 1000);
-    }
+    checkBoxMap(bakeMap(mesh, "cube:size=33,center=-2/1/1,compare=greater"));
 }
 
 TEST(BakeBox, TiltedBoxAlongAnObliqueDirection) {
-    // In the box's own frame the rays are oblique, and the slabs give the truth.
     const glm::dmat3 axes = rotation({-1, 0.3, 2}, 71.0);
-    const TriangleMesh mesh = makeBoxMesh(kBoxCenter, kBoxHalf, axes);
-    const DepthMap map = bakeMap(mesh, "front-back:dir=1/-2/0.7,size=80x50");
+    const DepthMap map =
+        bakeMap(makeBoxMesh(kBoxCenter, kBoxHalf, axes), "front-back:dir=1/-2/0.7,size=80x50");
     EXPECT_TRUE(map.encloses);
-    int hits = 0;
-    for (std::uint32_t y = 0; y < map.height; ++y) {
-        for (std::uint32_t x = 0; x < map.width; ++x) {
-            const Ray ray = texelRay(map, 0, x, y);
-            const glm::dmat3 inverse = glm::transpose(axes);
-            const Span span =
-                slabs(inverse * (ray.origin - kBoxCenter), inverse * ray.direction, -kBoxHalf, kBoxHalf);
-            if (std::abs(span.out - span.in) < 1e-4) {
-                continue;
-            }
-            const Texel texel = decodeTexel(map.format, map.texelAt(0, x, y));
-            ASSERT_EQ(texel.front.has_value(), span.hit());
-            ASSERT_EQ(texel.back.has_value(), span.hit());
-            if (span.hit()) {
-                ++hits;
-                const glm::dvec3 local = inverse * ray.direction;
-                const double slack = 2e-6;  // T's floats, on a slope
-                expectSurface(texel.front, span.in,
-                              axes[span.axis_in] * (local[span.axis_in] > 0 ? -1.0 : 1.0), map, slack);
-                expectSurface(texel.back, span.out,
-                              axes[span.axis_out] * (local[span.axis_out] > 0 ? 1.0 : -1.0), map, slack);
-            }
-        }
-    }
-    EXPECT_GT(hits, 1000);
+    checkBoxMap(map, axes);
 }
 
 TEST(BakeBox, RaysAlongEdgesTakeAFaceThatLooksAtThem) {
@@ -275,100 +168,15 @@ TEST(BakeBox, RaysAlongEdgesTakeAFaceThatLooksAtThem) {
     }
 }
 
-TEST(BakeSphere, DepthsLieBetweenTheSphereAndItsSagitta) {
-    const glm::dvec3 center(0.5, -0.25, 0.125);
-    constexpr double kRadius = 0.75;
-    const TriangleMesh mesh = makeIcosphere(center, kRadius, 5);
-    double longest_edge = 0.0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        longest_edge = std::max(longest_edge,
-                                static_cast<double>(glm::distance(mesh.positions[t.x], mesh.positions[t.y])));
-    }
-    // A triangle's circumradius is at most edge/√3 for near-equilateral ones; 0.65 leaves room.
-    const double reach = 0.65 * longest_edge;
-    const double inner = std::sqrt(kRadius * kRadius - reach * reach);
-    const double normal_angle = std::asin(reach / kRadius);
-    for (const std::string spec :
-         {"float:dir=+x", "float:dir=-y,compare=greater", "fixed8:dir=1/2/3",
-          "fixed8:dir=-3/1/1,compare=greater", "front-back:dir=-z", "front-back:dir=-1/-1/1", "cube",
-          "cube:center=0.7/-0.2/0.1", "cube:center=0.5/3/0"}) {
-        SCOPED_TRACE(spec);
-        const DepthMap map = bakeMap(mesh, spec);
-        int hits = 0;
-        for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
-            for (std::uint32_t y = 0; y < map.height; ++y) {
-                for (std::uint32_t x = 0; x < map.width; ++x) {
-                    const Ray ray = texelRay(map, face, x, y);
-                    const double unit = glm::length(ray.direction);
-                    const glm::dvec3 d = ray.direction / unit;
-                    const glm::dvec3 to_center = center - ray.origin;
-                    const double along = glm::dot(to_center, d);
-                    const double beside2 = glm::dot(to_center, to_center) - along * along;
-                    const Texel texel = decodeTexel(map.format, map.texelAt(face, x, y));
-                    const bool behind = along < -kRadius;
-                    if (beside2 > kRadius * kRadius || behind) {
-                        EXPECT_FALSE(texel.front);
-                        continue;
-                    }
-                    if (beside2 > inner * inner * 0.999) {
-                        continue;  // between the two spheres
-                    }
-                    const auto check = [&](const std::optional<Surface>& surface, double sign) {
-                        ASSERT_TRUE(surface);
-                        const double outer_depth =
-                            (along + sign * std::sqrt(kRadius * kRadius - beside2)) / unit;
-                        const double inner_depth = (along + sign * std::sqrt(inner * inner - beside2)) / unit;
-                        const double slack = depthTolerance(map.format, outer_depth);
-                        EXPECT_GT(surface->depth, std::min(outer_depth, inner_depth) - slack);
-                        EXPECT_LT(surface->depth, std::max(outer_depth, inner_depth) + slack);
-                        const glm::dvec3 radial =
-                            glm::normalize(ray.origin + double{surface->depth} * ray.direction - center);
-                        const double cosine = glm::dot(radial, glm::dvec3(surface->normal));
-                        EXPECT_GT(cosine, std::cos(normal_angle + 0.0115));
-                    };
-                    ++hits;
-                    check(texel.front, map.compare == Compare::kGreater ? 1.0 : -1.0);
-                    if (map.compare == Compare::kBoth) {
-                        check(texel.back, 1.0);
-                    }
-                    if (HasFailure()) {
-                        return;
-                    }
-                }
-            }
-        }
-        EXPECT_GT(hits, 500);
-    }
-}
-
 TEST(BakeTorus, AutomaticCubeComparesByWhereItsCentreIs) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.25, 96, 48);
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    ASSERT_TRUE(query);
-    EXPECT_FALSE(query->inside({0, 0, 0}));
-    EXPECT_TRUE(query->inside({1, 0, 0}));
-    EXPECT_TRUE(query->inside({0, -1.2F, 0}));
-    EXPECT_FALSE(query->inside({0, 0, 0.3F}));
-
     const DepthMap hole = bakeMap(mesh, "cube:size=65");
     EXPECT_EQ(hole.compare, Compare::kLess);
     EXPECT_TRUE(hole.empty_is_outside);
-    // Straight along +x, the tube begins at 0.75; the volume reaches 1.25 and its padding.
-    const Texel inner = decodeTexel(hole.format, hole.texelAt(0, 32, 32));
-    ASSERT_TRUE(inner.front);
-    EXPECT_NEAR(inner.front->depth * hole.object_per_map.x, 0.75, 2e-3);
-    EXPECT_NEAR(inner.front->normal.x, -1.0, 0.01);
-    EXPECT_FALSE(decodeTexel(hole.format, hole.texelAt(4, 32, 32)).front) << "along +z there is nothing";
     EXPECT_EQ(vote(hole, {0, 0, 0.1F})->distance, kFarOutside);
-    EXPECT_GT(vote(hole, {0.5F, 0, 0})->distance, 0.0F);
+    EXPECT_NEAR(vote(hole, {0.5F, 0, 0})->distance, 0.25, 2e-3);
     EXPECT_LT(vote(hole, {0.9F, 0, 0})->distance, 0.0F);
-
-    const DepthMap tube = bakeMap(mesh, "cube:size=65,center=1/0/0");
-    EXPECT_EQ(tube.compare, Compare::kGreater);
-    const Texel far_side = decodeTexel(tube.format, tube.texelAt(1, 32, 32));
-    ASSERT_TRUE(far_side.front);
-    EXPECT_NEAR(far_side.front->depth * tube.object_per_map.x, 2.25, 2e-3);
-    EXPECT_NEAR(far_side.front->normal.x, -1.0, 0.01);
+    EXPECT_EQ(bakeMap(mesh, "cube:size=65,center=1/0/0").compare, Compare::kGreater);
 }
 
 TEST(BakePlane, FlatMeshHasAVolumeAndFacesTheViewer) {
@@ -410,19 +218,16 @@ TEST(BakeWinding, InsideOutMeshesGiveTheSameMaps) {
             const DepthMap& a = ours.maps[i];
             const DepthMap& b = other.maps[i];
             EXPECT_EQ(a.object_to_map, b.object_to_map);
-            for (std::uint32_t face = 0; face < a.faceCount(); ++face) {
-                for (std::uint32_t y = 0; y < a.height; ++y) {
-                    for (std::uint32_t x = 0; x < a.width; ++x) {
-                        const Texel ta = decodeTexel(a.format, a.texelAt(face, x, y));
-                        const Texel tb = decodeTexel(b.format, b.texelAt(face, x, y));
-                        ASSERT_EQ(ta.front.has_value(), tb.front.has_value()) << specs[i];
-                        ASSERT_EQ(ta.back.has_value(), tb.back.has_value()) << specs[i];
-                        if (ta.front) {
-                            ASSERT_NEAR(ta.front->depth, tb.front->depth,
-                                        2.0 * depthTolerance(a.format, 1.0));
-                            ASSERT_GT(glm::dot(ta.front->normal, tb.front->normal), 0.999F) << specs[i];
-                        }
-                    }
+            for (std::uint32_t k = 0; k < a.faceCount() * a.width * a.height; ++k) {
+                const std::uint32_t face = k / (a.width * a.height);
+                const std::uint32_t y = k / a.width % a.height;
+                const Texel ta = decodeTexel(a.format, a.texelAt(face, k % a.width, y));
+                const Texel tb = decodeTexel(b.format, b.texelAt(face, k % a.width, y));
+                ASSERT_EQ(ta.front.has_value(), tb.front.has_value()) << specs[i];
+                ASSERT_EQ(ta.back.has_value(), tb.back.has_value()) << specs[i];
+                if (ta.front) {
+                    ASSERT_NEAR(ta.front->depth, tb.front->depth, 2.0 * depthTolerance(a.format, 1.0));
+                    ASSERT_GT(glm::dot(ta.front->normal, tb.front->normal), 0.999F) << specs[i];
                 }
             }
         }
@@ -507,14 +312,13 @@ TEST(BakeErrors, AreNamed) {
         BakeOptions options;
         options.maps = specs;
         options.resolution = resolution;
-        const Result<Baked> baked = bake(mesh, options);
-        return baked ? 0 : static_cast<int>(baked.error().code);
+        return bake(mesh, options).error().code;
     };
-    EXPECT_EQ(code({}, 0), static_cast<int>(ErrorCode::kUsage));
-    EXPECT_EQ(code({}, 16385), static_cast<int>(ErrorCode::kLimit));
-    EXPECT_EQ(code(std::vector<MapSpec>(1025), 8), static_cast<int>(ErrorCode::kLimit));
-    EXPECT_EQ(code({}, 16384), static_cast<int>(ErrorCode::kLimit)) << "2 GiB of texels";
-    EXPECT_EQ(code({*parseMapSpec("float:box=5/5/5/6/6/6")}, 8), static_cast<int>(ErrorCode::kFailure));
+    EXPECT_EQ(code({}, 0), ErrorCode::kUsage);
+    EXPECT_EQ(code({}, 16385), ErrorCode::kLimit);
+    EXPECT_EQ(code(std::vector<MapSpec>(1025), 8), ErrorCode::kLimit);
+    EXPECT_EQ(code({}, 16384), ErrorCode::kLimit) << "2 GiB of texels";
+    EXPECT_EQ(code({*parseMapSpec("float:box=5/5/5/6/6/6")}, 8), ErrorCode::kFailure);
 }
 
 TEST(BakeReportTest, WarnsOfWhatIsProbablyNotMeant) {

@@ -2,19 +2,23 @@
 // and the meaning of a texel, and no arithmetic.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
+#include "bake/plan/view.h"
 #include "bake/repair/hole_caps.h"
 #include "formats/plane.h"
 #include "runtime/depth_maps/gpu_mesh.h"
 #include "runtime/gl/gl_context.h"
 #include "tests/bake/meshes.h"
-#include "tests/bake/pipeline/map_agreement.h"
 #include "tests/runtime/depth_maps/read_texels.h"
 
 namespace relief::test {
@@ -26,8 +30,6 @@ namespace fs = std::filesystem;
 /// other none: rasterisers move vertices to a grid of 1/256 texel.
 constexpr double kEdge = 0.01;
 constexpr double kShare = 1e-3;  // of the texels whose depths may differ by more than a unit
-/// A best index is at most 0.65 degrees off, so that two of one surface are at most twice that apart.
-constexpr double kDegrees = 1.3;
 
 constexpr const char* kFormats[] = {"front-back:dir=-x", "front-back:dir=1/2/3"};
 
@@ -87,9 +89,65 @@ DepthMap bakeOne(const PreparedMesh& mesh, const MapSpec& spec) {
     return baked->collider.maps.front();
 }
 
-std::string where(const Disagreement& at) {
-    return "face " + std::to_string(at.face) + ", texel (" + std::to_string(at.x) + ", " +
-           std::to_string(at.y) + "), end " + std::to_string(at.end);
+/// One end of a texel: 0 is the front, 1 the back.
+struct TexelEnd {
+    std::uint32_t x;
+    std::uint32_t y;
+    int end;
+};
+
+std::optional<Surface> surfaceAt(const DepthMap& map, const TexelEnd& at) {
+    const Texel texel = decodeTexel(map.format, map.texelAt(0, at.x, at.y));
+    return at.end == 0 ? texel.front : texel.back;
+}
+
+/// Where two maps of one view differ.
+struct Agreement {
+    std::uint64_t both = 0;          ///< surfaces in both maps
+    std::vector<TexelEnd> depths;    ///< in both, but their depths are more than a code apart
+    std::vector<TexelEnd> coverage;  ///< in one alone
+};
+
+Agreement compareMaps(const DepthMap& a, const DepthMap& b) {
+    Agreement agreement;
+    for (std::uint32_t i = 0; i < 2 * a.width * a.height; ++i) {
+        const TexelEnd at{i / 2 % a.width, i / 2 / a.width, static_cast<int>(i % 2)};
+        const std::optional<Surface> of_a = surfaceAt(a, at);
+        const std::optional<Surface> of_b = surfaceAt(b, at);
+        if (of_a.has_value() != of_b.has_value()) {
+            agreement.coverage.push_back(at);
+        } else if (of_a) {
+            ++agreement.both;
+            if (std::abs(of_a->depth - of_b->depth) > 1.5F / 65534.0F) {
+                agreement.depths.push_back(at);
+            }
+        }
+    }
+    return agreement;
+}
+
+/// Distance from a texel's centre to the nearest edge of a triangle as the view sees it, in texels.
+double edgeDistance(const TriangleMesh& mesh, const View& view, const TexelEnd& at) {
+    const glm::dvec2 centre(at.x + 0.5, at.y + 0.5);
+    const auto project = [&](std::uint32_t vertex) {
+        const glm::dvec3 from = glm::dvec3(mesh.positions[vertex]) - view.origin;
+        const auto along = [&](int k) {
+            return glm::dot(from, view.axis[k]) / glm::dot(view.axis[k], view.axis[k]);
+        };
+        return glm::dvec2(along(0) * view.width, along(1) * view.height);
+    };
+    double nearest = std::numeric_limits<double>::max();
+    for (const glm::uvec3& t : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            const glm::dvec2 from = project(t[i]);
+            const glm::dvec2 edge = project(t[(i + 1) % 3]) - from;
+            const double square = glm::dot(edge, edge);
+            const double share =
+                square > 0.0 ? std::clamp(glm::dot(centre - from, edge) / square, 0.0, 1.0) : 0.0;
+            nearest = std::min(nearest, glm::length(centre - (from + share * edge)));
+        }
+    }
+    return nearest;
 }
 
 /// Of a mesh by its name.
@@ -103,13 +161,11 @@ class DrawnMapsGlTest : public testing::TestWithParam<const char*> {
     std::unique_ptr<GlContext> context_;
 };
 
-/// Texels whose plane is neither steep nor standing in both maps: the ray caster moves others behind the rays
-/// next to them, which the GPU does not look at.
-bool isFlat(const DepthMap& map, const Disagreement& at) {
-    const Texel texel = decodeTexel(map.format, map.texelAt(at.face, at.x, at.y));
-    const std::optional<Surface>& surface = at.end == 0 ? texel.front : texel.back;
-    const glm::dvec3 ray = texelRay(map, at.face, at.x, at.y).direction;
-    return surface && std::abs(glm::dot(glm::dvec3(surface->normal), ray)) / glm::length(ray) > 0.36;
+/// Texels whose plane is neither steep nor standing: the ray caster moves others behind the rays next to them, which the GPU
+/// does not look at.
+bool isFlat(const DepthMap& map, const TexelEnd& at) {
+    const glm::dvec3 ray = texelRay(map, 0, at.x, at.y).direction;
+    return std::abs(glm::dot(glm::dvec3(surfaceAt(map, at)->normal), ray)) / glm::length(ray) > 0.36;
 }
 
 TEST_P(DrawnMapsGlTest, TheyAreThoseOfOneRayATexel) {
@@ -121,10 +177,10 @@ TEST_P(DrawnMapsGlTest, TheyAreThoseOfOneRayATexel) {
         const DepthMap drawn = drawOne(mesh, spec);
         const DepthMap rays = bakeOne(mesh, spec);
         ASSERT_EQ(drawn.decode, Decode::kPlane);
-        const Agreement agreement = compareMaps(drawn, rays, kDegrees);
+        const Agreement agreement = compareMaps(drawn, rays);
         ASSERT_GT(agreement.both, 10000U);
         std::uint64_t flat = 0;
-        for (const Disagreement& at : agreement.depths) {
+        for (const TexelEnd& at : agreement.depths) {
             flat += isFlat(drawn, at) && isFlat(rays, at) ? 1 : 0;
         }
         EXPECT_LE(static_cast<double>(flat), std::max(2.0, kShare * static_cast<double>(agreement.both)));
@@ -132,10 +188,10 @@ TEST_P(DrawnMapsGlTest, TheyAreThoseOfOneRayATexel) {
         // The ray caster looks for silhouettes between texels' centres, and stores walls where it finds them:
         // what the GPU alone has lies on an edge.
         std::uint64_t checked = 0;
-        for (const Disagreement& at : agreement.coverage) {
-            const Texel texel = decodeTexel(drawn.format, drawn.texelAt(at.face, at.x, at.y));
-            if ((at.end == 0 ? texel.front : texel.back) && checked++ < 10) {
-                EXPECT_LT(edgeDistance(mesh, view, at.face, at.x, at.y), kEdge) << where(at);
+        for (const TexelEnd& at : agreement.coverage) {
+            if (surfaceAt(drawn, at) && checked++ < 10) {
+                EXPECT_LT(edgeDistance(mesh, view, at), kEdge)
+                    << "texel (" << at.x << ", " << at.y << "), end " << at.end;
             }
         }
     }

@@ -30,11 +30,12 @@ TEST(Silhouette, TellsWhatTheRowsOfABakedMapTake) {
                                               makeBoxMesh({0, 0, 0}, {1, 2, 3})};
     for (const TriangleMesh& mesh : meshes) {
         for (const char* direction : {"-z", "1/2/3"}) {
-            for (const char* size : {"3x3", "5x40", "40x40", "101x37", "5x1100"}) {
+            for (const char* size : {"3x3", "5x40", "40x40", "101x37"}) {
                 expectTold(mesh, std::string("front-back:dir=") + direction + ",size=" + size);
             }
         }
     }
+    expectTold(meshes[0], "front-back:dir=1/2/3,size=5x1100");
 }
 
 }  // namespace

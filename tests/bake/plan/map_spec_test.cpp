@@ -100,30 +100,22 @@ TEST(MapSpecParser, RefusesWithTheCure) {
         {"fixed8:depth=half", kUsage, "depth does nothing but for front-back"},
         {"front-back:depth=hlf", kUsage, "did you mean 'half'"},
         {"cube:decode=plan", kUsage, "did you mean 'plane'"},
-        {"fixd8", kUsage, "did you mean 'fixed8'"},
         {"frontback", kUsage, "did you mean 'front-back'"},
         {"FLOAT", kUsage, "unknown format"},
         {"float:", kUsage, "unknown key ''"},
         {"float:sise=4", kUsage, "did you mean 'size'"},
         {"float:size", kUsage, "size has no value"},
-        {"float:size=", kUsage, "N or WxH"},
         {"float:size=4,size=5", kUsage, "given twice"},
         {"float:size=0", kUsage, "at least 3"},
-        {"float:size=2", kUsage, "at least 3"},
         {"cube:size=0", kUsage, "at least 1"},
         {"cube:size=4x5", kUsage, "square"},
         {"float:size=-4", kUsage, "N or WxH"},
-        {"float:size=4x", kUsage, "N or WxH"},
-        {"float:size=4x5x6", kUsage, "N or WxH"},
         {"float:size=1e3", kUsage, "N or WxH"},
         {"float:size=16385", ErrorCode::kLimit, "16384"},
         {"float:size=8x99999999999999999999999999", ErrorCode::kLimit, "16384"},
-        {"float:dir=up", kUsage, "a/b/c"},
         {"float:dir=0/0/0", kUsage, "not 0/0/0"},
         {"float:dir=-0/0/-0", kUsage, "not 0/0/0"},
         {"float:dir=nan/0/1", kUsage, "a/b/c"},
-        {"float:dir=1/2", kUsage, "a/b/c"},
-        {"float:dir=1/2/inf", kUsage, "a/b/c"},
         {"float:dir=1e99/0/0", kUsage, "a/b/c"},
         {"cube:dir=+x", kUsage, "does nothing for a cube"},
         {"front-back:compare=less", kUsage, "leave compare out, or keep those of gaps by compare=gap"},
@@ -136,12 +128,9 @@ TEST(MapSpecParser, RefusesWithTheCure) {
         {"float:box=0/0/0/1/1", kUsage, "two corners"},
         {"float:box=0/0/0/0/1/1", kUsage, "x0 < x1"},
         {"float:box=tigt", kUsage, "tight"},
-        {"float:dir=+x,", kUsage, "unknown key"},
         {"float:dir=\x1b[31m", kUsage, "dir is"},
         {"cube:up=+y", kUsage, "does nothing for a cube"},
-        {"float:up=0/0/0", kUsage, "up is '0/0/0'"},
         {"float:up=high", kUsage, "up is 'high'"},
-        {"float:up=+x,up=+y", kUsage, "given twice"},
         {"float:dir=-z,up=+z", kUsage, "parallel"},
         {"float:up=-3/-2/-1,dir=3/2/1", kUsage, "parallel"},
         {"float:dir=1e-38/2e-38/3e-38,up=1e38/2e38/3.00001e38", kUsage, "parallel"},
@@ -154,19 +143,6 @@ TEST(MapSpecParser, RefusesWithTheCure) {
             << c.text << ": " << spec.error().message;
         EXPECT_EQ(spec.error().message.find_first_of("\n\x1b"), std::string::npos);
         EXPECT_EQ(spec.error().message.find("--map"), 0U);
-    }
-}
-
-TEST(MapSpecPaper, IsThreeOrthogonalFrontBacksAndACube) {
-    const std::vector<MapSpec> specs = paperMapSpecs();
-    ASSERT_EQ(specs.size(), 4U);
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(specs[static_cast<std::size_t>(i)].format, MapFormat::kFrontBackHalf);
-        EXPECT_EQ(specs[static_cast<std::size_t>(i)].direction[i], -1.0F);
-    }
-    EXPECT_EQ(specs[3].format, MapFormat::kCube8);
-    for (const MapSpec& spec : specs) {
-        EXPECT_EQ(spec.decode, Decode::kProjected);
     }
 }
 

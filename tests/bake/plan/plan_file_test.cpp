@@ -4,13 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <random>
-
 namespace relief::test {
 namespace {
-
-constexpr const char* kHead = "version = 1\n";
 
 TEST(PlanFile, ReadsWhatItWrites) {
     PlanFile plan;
@@ -39,29 +34,6 @@ TEST(PlanFile, ReadsWhatItWrites) {
     EXPECT_NE(text.find("\n# why"), std::string::npos) << "the reason stands above its map";
 }
 
-TEST(PlanFile, KeepsEveryBitOfAnyFloat) {
-    std::mt19937 random(3);
-    for (int repeat = 0; repeat < 500; ++repeat) {
-        const auto number = [&] {
-            for (;;) {
-                const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-                if (std::isfinite(value) && value != 0.0F) {
-                    return value;
-                }
-            }
-        };
-        PlanFile plan;
-        plan.maps.resize(1);
-        MapSpec& spec = plan.maps[0].spec;
-        spec.format = MapFormat::kCube8;
-        spec.width = spec.height = 4;
-        spec.center = glm::vec3(number(), number(), number());
-        const Result<PlanFile> back = parsePlan(planText(plan), "plan.toml");
-        ASSERT_TRUE(back) << planText(plan);
-        ASSERT_EQ(back->maps[0].spec, spec);
-    }
-}
-
 TEST(PlanFile, TakesWhatAPersonWrites) {
     const Result<PlanFile> plan = parsePlan(
         "version = 1  # no quality\n[[map]]\nsize = 12\nformat = 'front-back'\n[[map]]\nformat = 'cube'\n"
@@ -78,7 +50,7 @@ TEST(PlanFile, SaysWhatIsWrongAndWhere) {
         std::string text;
         const char* says;
     };
-    const std::string head = kHead;
+    const std::string head = "version = 1\n";
     const std::string map = "[[map]]\nformat = 'float'\nsize = 9\n";
     std::string many = head;
     for (int i = 0; i < 1025; ++i) {
@@ -88,32 +60,25 @@ TEST(PlanFile, SaysWhatIsWrongAndWhere) {
         {"", "p.toml:1:1: version is missing"},
         {"version = ", "p.toml:1:"},
         {"version = 2\n" + map, "p.toml:1:11: version = 2 is out of range"},
-        {"version = '1'\n" + map, "p.toml:1:11: version must be a whole number"},
         {head, "map is missing"},
         {head + "map = []", "at least one [[map]]"},
         {head + "map = 3", "p.toml:2:7: map must be tables"},
         {head + "map = [3]", "p.toml:2:8: map must be tables"},
         {head + "[map]\nformat = 'float'", "as in [[map]]"},
         {head + "qualty = 'best'\n" + map, "p.toml:2:1: unknown table 'qualty'; did you mean 'quality'"},
-        {head + "quality = 'bests'\n" + map, "p.toml:2:11: quality = 'bests' is unknown"},
         {head + "thickness = 0\n" + map, "p.toml:2:13: thickness = 0 is out of range"},
-        {head + "thickness = '1'\n" + map, "p.toml:2:13: thickness must be"},
         {head + "thickness = nan\n" + map, "p.toml:2:13: thickness = nan is out of range"},
-        {head + "quality = 3\n" + map, "p.toml:2:11: quality must be"},
         {head + "[[map]]\nsize = 9\n", "p.toml:2:1: a map needs format"},
         {head + "[[map]]\nformat = 'float'\n", "p.toml:2:1: a map needs size"},
-        {head + "[[map]]\nformat = 3\nsize = 9\n", "p.toml:3:10: map.format must be a string"},
         {head + "[[map]]\nformat = 'flat'\nsize = 9\n", "p.toml:3:10: unknown format 'flat'"},
         {head + map + "sise = 3\n", "p.toml:5:1: unknown key 'sise'; did you mean 'size'"},
         {head + map + "\"a\\u001bb\" = 3\n", "p.toml:5:1: unknown key"},
         {head + map + "dir = [0, 1, 0]\n", "p.toml:5:7: map.dir must be a string"},
         {head + map + "dir = '+x,size=5'\n", "p.toml:5:7: dir is"},
-        {head + map + "dir = '0/0/0'\n", "p.toml:5:7: dir is"},
         {head + map + "depth = 'half'\n", "p.toml:5:9: depth does nothing"},
         {head + map + "dir = '+x'\nup = '-x'\n", "p.toml:2:1: up is parallel"},
         {head + map + "size = 10\n", "p.toml:5:"},
         {head + "[[map]]\nformat = 'float'\nsize = -3\n", "p.toml:4:8: size is '-3'"},
-        {head + "[[map]]\nformat = 'float'\nsize = 2\n", "p.toml:4:8: size is 2"},
         {head + "[[map]]\nformat = 'float'\nsize = 9.5\n", "p.toml:4:8: map.size must be"},
         {head + "[[map]]\nformat = 'float'\nsize = 16385\n", "p.toml:4:8: size is 16385"},
         {many, "there are 1025 of [[map]]"},

@@ -125,11 +125,10 @@ TEST(ViewBox, EverySurfaceLiesStrictlyInside) {
                 } else {
                     EXPECT_GT(in_map.z, 6.2e-5F) << "the smallest normal half";
                     EXPECT_LT(in_map.z, 1.0F);
-                    EXPECT_GT(in_map.x * static_cast<float>(view.width), 1.0F);
-                    EXPECT_LT(in_map.x * static_cast<float>(view.width), static_cast<float>(view.width - 1));
-                    EXPECT_GT(in_map.y * static_cast<float>(view.height), 1.0F);
-                    EXPECT_LT(in_map.y * static_cast<float>(view.height),
-                              static_cast<float>(view.height - 1));
+                    const glm::vec2 size(view.width, view.height);
+                    const glm::vec2 at = glm::vec2(in_map) * size;
+                    EXPECT_GT(std::min(at.x, at.y), 1.0F);
+                    EXPECT_LT(std::max(at.x - size.x, at.y - size.y), -1.0F);
                 }
             }
         }

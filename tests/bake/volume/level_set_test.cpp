@@ -4,7 +4,6 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetMeasure.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <sstream>
 
 #include "tests/bake/meshes.h"
+#include "tests/bake/threads.h"
 
 namespace relief {
 namespace {
@@ -22,12 +22,13 @@ constexpr double kRadius = 0.7;
 constexpr std::uint32_t kVoxels = 64;
 constexpr double kVoxel = 2.0 * kRadius / kVoxels;
 
-Collider sphere() {
-    const PreparedMesh mesh(test::makeIcosphere(kCenter, kRadius, 6));
-    return test::bakeSpecs(mesh,
-                           {"front-back:dir=+x,decode=plane", "front-back:dir=+y,decode=plane",
-                            "front-back:dir=+z,decode=plane"},
-                           256);
+const Collider& sphere() {
+    static const Collider baked =
+        test::bakeSpecs(test::makeIcosphere(kCenter, kRadius, 6),
+                        {"front-back:dir=+x,decode=plane", "front-back:dir=+y,decode=plane",
+                         "front-back:dir=+z,decode=plane"},
+                        256);
+    return baked;
 }
 
 Result<std::vector<std::byte>> levelSetOf(const Collider& collider, std::uint32_t voxels) {
@@ -99,12 +100,11 @@ TEST(LevelSet, OfASphere) {
 }
 
 TEST(LevelSet, TheSameBytesInEveryRun) {
-    const Collider collider = sphere();
+    const Collider& collider = sphere();
     const auto bytes = levelSetOf(collider, kVoxels);
     ASSERT_TRUE(bytes.has_value());
     EXPECT_EQ(*bytes, *levelSetOf(collider, kVoxels));
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(*bytes, *levelSetOf(collider, kVoxels));
+    EXPECT_EQ(*bytes, test::onThreads(1, [&] { return *levelSetOf(collider, kVoxels); }));
     EXPECT_NE(*bytes, *levelSetOf(collider, kVoxels + 1));
 }
 
@@ -178,24 +178,16 @@ TEST(SurfaceMesh, OfASphereIsClosedAndLooksOutwards) {
 TEST(LevelSet, ASheetThinnerThanAVoxelIsRefused) {
     const PreparedMesh mesh(test::makeBoxMesh({0.0, 0.002, 0.0}, {1.0, 1e-4, 1.0}));
     const Collider sheet = test::bakeSpecs(mesh, {"front-back:dir=+y"}, 32);
-    const auto bytes = levelSetOf(sheet, 16);
-    ASSERT_FALSE(bytes.has_value());
-    EXPECT_NE(bytes.error().message.find("smaller voxels"), std::string::npos);
+    EXPECT_FALSE(levelSetOf(sheet, 16));
     EXPECT_EQ(levelSetOf(sheet, 4).error().code, ErrorCode::kLimit);
 }
 
 // A thick box, and a plate that no voxel's centre lies in: the box alone remains, and the rest is told of.
 TEST(LevelSet, SaysThatAThinPartIsMissing) {
-    TriangleMesh both = test::makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2});
-    const TriangleMesh plate = test::makeBoxMesh({0.0, 0.26, 0.0}, {0.5, 5e-3, 0.5});
-    const auto first = static_cast<std::uint32_t>(both.positions.size());
-    both.positions.insert(both.positions.end(), plate.positions.begin(), plate.positions.end());
-    for (const auto& triangle : plate.triangles) {
-        both.triangles.push_back({triangle[0] + first, triangle[1] + first, triangle[2] + first});
-    }
-    const PreparedMesh mesh(test::finished(both.positions, both.triangles));
     const Collider collider = test::bakeSpecs(
-        mesh, {"front-back:dir=+y,decode=plane", "front-back:dir=+x,decode=plane", "front-back:dir=+z"}, 128);
+        test::joined({test::makeBoxMesh({0.0, -0.25, 0.0}, {0.2, 0.25, 0.2}),
+                      test::makeBoxMesh({0.0, 0.26, 0.0}, {0.5, 5e-3, 0.5})}),
+        {"front-back:dir=+y,decode=plane", "front-back:dir=+x,decode=plane", "front-back:dir=+z"}, 128);
     const auto coarse = encodeGrids(collider, {20});
     ASSERT_TRUE(coarse.has_value()) << coarse.error().message;
     EXPECT_GT(coarse->missing, 0.3);
@@ -220,19 +212,14 @@ TEST(LevelSet, AnInsideWithoutEndIsRefused) {
     collider.maps[0].encloses = false;
     collider.bounds.min *= 0.5F;
     collider.bounds.max *= 0.5F;
-    const auto bytes = levelSetOf(collider, 16);
-    ASSERT_FALSE(bytes.has_value());
-    EXPECT_EQ(bytes.error().code, ErrorCode::kInvalidInput);
-    EXPECT_NE(bytes.error().message.find("not closed"), std::string::npos);
+    EXPECT_EQ(levelSetOf(collider, 16).error().code, ErrorCode::kInvalidInput);
 }
 
 TEST(LevelSet, TooFarForItsVoxelsIsRefused) {
     Collider collider = sphere();
     collider.bounds.min.x += 1e8F;
     collider.bounds.max.x = collider.bounds.min.x;
-    const auto bytes = levelSetOf(collider, 1024);
-    ASSERT_FALSE(bytes.has_value());
-    EXPECT_EQ(bytes.error().code, ErrorCode::kLimit);
+    EXPECT_EQ(levelSetOf(collider, 1024).error().code, ErrorCode::kLimit);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -57,8 +56,7 @@ void touch(std::size_t bytes) {
 
 // In a process of its own, as the heap of this one is in use.
 TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
-    const pid_t child = ::fork();
-    if (child == 0) {
+    const auto work = [] {
         prepareHeap(std::size_t{64} << 20);
         const std::unique_ptr<char[]> block(new char[24 << 20]);
         const bool large = flagsAt(block.get() + (12 << 20)).find(" hg ") != std::string::npos;
@@ -68,19 +66,14 @@ TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
         touch(kBytes);
         const bool kept = pageFaults() - before < 64;  // 6144 of 4 kB, if they were new
         ::_exit(kOwnHeap ? (large ? 0 : 1) + (kept ? 0 : 2) : 0);
-    }
-    ASSERT_GT(child, 0);
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status) & 1, 0) << "no large pages are asked for";
-    EXPECT_EQ(WEXITSTATUS(status) & 2, 0) << "what was freed went back to the system";
+    };
+    EXPECT_EXIT(work(), testing::ExitedWithCode(0), "")
+        << "1: no large pages are asked for; 2: what was freed went back to the system";
 }
 
 // Where less can be had, by ulimit -v say, the heap stays as it is, and serves.
 TEST(Heap, TakesNoMoreThanItMay) {
-    const pid_t child = ::fork();
-    if (child == 0) {
+    const auto work = [] {
         std::ifstream sizes("/proc/self/statm");
         std::uint64_t pages = 0;
         sizes >> pages;
@@ -92,12 +85,8 @@ TEST(Heap, TakesNoMoreThanItMay) {
         const bool grown = kOwnHeap && ::sbrk(0) != end;
         void* volatile block = std::malloc(std::size_t{1} << 20);
         ::_exit((limited ? 0 : 1) + (grown ? 2 : 0) + (block != nullptr ? 0 : 4));
-    }
-    ASSERT_GT(child, 0);
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 0)
+    };
+    EXPECT_EXIT(work(), testing::ExitedWithCode(0), "")
         << "1: no limit could be set; 2: the heap grew beyond it; 4: it serves no more";
 }
 

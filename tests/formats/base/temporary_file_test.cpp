@@ -1,7 +1,6 @@
 #include "formats/base/temporary_file.h"
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <csignal>
 #include <fstream>
@@ -46,8 +45,7 @@ TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {
 
 TEST_F(TemporaryFiles, ASignalThatEndsTheProgramRemovesThem) {
     for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
-        const pid_t child = ::fork();
-        if (child == 0) {
+        const auto work = [&] {
             ::signal(number, SIG_DFL);
             endCleanlyOnSignals();
             TemporaryFile file;
@@ -56,25 +54,20 @@ TEST_F(TemporaryFiles, ASignalThatEndsTheProgramRemovesThem) {
                 ::raise(number);
             }
             ::_exit(1);
-        }
-        int status = 0;
-        ASSERT_EQ(::waitpid(child, &status, 0), child);
-        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << number;
+        };
+        EXPECT_EXIT(work(), testing::KilledBySignal(number), "");
         EXPECT_TRUE(names().empty()) << number;
     }
 }
 
 TEST_F(TemporaryFiles, AnIgnoredSignalStaysIgnored) {
-    const pid_t child = ::fork();
-    if (child == 0) {
+    const auto work = [] {
         ::signal(SIGHUP, SIG_IGN);
         endCleanlyOnSignals();
         ::raise(SIGHUP);
         ::_exit(7);
-    }
-    int status = 0;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7);
+    };
+    EXPECT_EXIT(work(), testing::ExitedWithCode(7), "");
 }
 
 TEST_F(TemporaryFiles, ADescriptorsNameIsWrittenToTheDescriptor) {

@@ -2,10 +2,11 @@
 #include "formats/config/confined_path.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <string>
+
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
@@ -18,18 +19,12 @@ namespace fs = std::filesystem;
 class ScenePaths : public testing::Test {
   protected:
     void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "relief_paths_XXXXXX").native();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        base_ = pattern;
-        folder_ = base_ / "scenes";
         fs::create_directories(folder_ / "sub");
         fs::create_directories(base_ / "scenes_too");
         for (const char* name : {"scenes/a.relief", "scenes/sub/b.relief", "scenes_too/c.relief"}) {
             std::ofstream(base_ / name) << "x";
         }
     }
-    void TearDown() override { fs::remove_all(base_); }
-
     void link(const fs::path& target, const char* name) { fs::create_symlink(target, folder_ / name); }
     void expectInside(const std::string& text) {
         const auto path = resolveInside(folder_, text);
@@ -44,8 +39,9 @@ class ScenePaths : public testing::Test {
         EXPECT_EQ(path.error().message.find('\n'), std::string::npos);
     }
 
-    fs::path base_;
-    fs::path folder_;
+    test::TemporaryFolder temporary_;
+    fs::path base_ = temporary_.path();
+    fs::path folder_ = base_ / "scenes";
 };
 
 TEST_F(ScenePaths, FilesInTheFolderAndBelow) {
@@ -143,17 +139,14 @@ TEST_F(ScenePaths, ARootMayBeNamedToo) {
     EXPECT_FALSE(resolveInside(folder_, "in"));
 }
 
-TEST_F(ScenePaths, ARootIsAFolder) {
+TEST_F(ScenePaths, ARootIsAFolderAndADashIsAFile) {
+    EXPECT_EQ(*resolveInside("", "-"), fs::path("./-"));
     EXPECT_TRUE(checkRoot(folder_));
     for (const fs::path& none : {folder_ / "a.relief", folder_ / "none"}) {
         const auto checked = checkRoot(none);
         ASSERT_FALSE(checked);
         EXPECT_EQ(checked.error().code, ErrorCode::kIo);
     }
-}
-
-TEST_F(ScenePaths, ADashIsAFile) {
-    EXPECT_EQ(*resolveInside("", "-"), fs::path("./-"));
 }
 
 }  // namespace
