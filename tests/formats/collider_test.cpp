@@ -55,6 +55,24 @@ TEST(Rule2, AnyOutsideWinsThenTheSmallestPositiveOrTheLargestNegative) {
     EXPECT_EQ(distance({-1.0F, 0.0F}), 0.0F);
 }
 
+TEST(InsideBox, IsWhereAllVolumesThatEncloseMeet) {
+    Collider collider = colliderOf({-1.0F, -1.0F, -1.0F});
+    const auto place = [&](std::size_t map, const glm::dvec3& center, bool encloses) {
+        const DepthMap placed = test::emptyMap(test::centeredFrame(center, glm::dmat3(1.0), {4, 4, 4}),
+                                               MapFormat::kFloat32, Compare::kLess, 3, 3);
+        collider.maps[map].object_to_map = placed.object_to_map;
+        collider.maps[map].encloses = encloses;
+        collider.maps[map].empty_is_outside = true;
+    };
+    place(0, {0, 0, 0}, true);
+    place(1, {1, -1, 0}, true);
+    place(2, {9, 9, 9}, false);
+    const std::optional<Bounds> box = insideBox(collider);
+    ASSERT_TRUE(box);
+    EXPECT_EQ(box->min, glm::vec3(-1, -2, -2));
+    EXPECT_EQ(box->max, glm::vec3(2, 1, 2));
+}
+
 TEST(Rule2, OrderDoesNotMatter) {
     const Votes sets[] = {
         {-1.0F, -0.5F, -0.25F, -1.5F, std::nullopt, -0.75F},

@@ -300,6 +300,20 @@ TEST(Writer, RefusesUnknownCompressionLevels) {
     }
 }
 
+TEST(Validate, LimitsTheSizeOfAMapOnBothAxes) {
+    DepthMap map = oneMapOfEveryFormat().maps[0];
+    for (std::uint32_t DepthMap::*const side : {&DepthMap::width, &DepthMap::height}) {
+        DepthMap large = map;
+        large.*side = kMapSizeMax;
+        EXPECT_TRUE(validateFrame(large));
+        ++(large.*side);
+        ASSERT_FALSE(validateFrame(large));
+        EXPECT_EQ(validateFrame(large).error().code, ErrorCode::kLimit);
+        large.*side = kMapSizeMin - 1;
+        EXPECT_FALSE(validateFrame(large));
+    }
+}
+
 TEST(Validate, TakesFramesOfAnyHandednessAndScaleButNoShear) {
     DepthMap map = oneMapOfEveryFormat().maps[0];
     map.object_to_map.row[0] *= -1.0F;
