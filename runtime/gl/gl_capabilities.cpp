@@ -9,15 +9,16 @@
 namespace relief {
 namespace {
 
-/// libepoxy ends the process where a GL has no such function under any of its names.
-bool hasResetStatus() {
-    const int version = epoxy_gl_version();
-    if (epoxy_is_desktop_gl()) {
-        return version >= 45 || epoxy_has_gl_extension("GL_KHR_robustness") ||
-               epoxy_has_gl_extension("GL_ARB_robustness");
+/// GL_NO_ERROR if the GL does not tell. libepoxy ends the process if a GL lacks the function under the name called; names of
+/// KHR_robustness and EXT_robustness are aliases of the core's, that of ARB_robustness is not.
+GLenum resetStatus() {
+    const bool desktop = epoxy_is_desktop_gl();
+    if (epoxy_gl_version() >= (desktop ? 45 : 32) || epoxy_has_gl_extension("GL_KHR_robustness") ||
+        (!desktop && epoxy_has_gl_extension("GL_EXT_robustness"))) {
+        return glGetGraphicsResetStatus();
     }
-    return version >= 32 || epoxy_has_gl_extension("GL_KHR_robustness") ||
-           epoxy_has_gl_extension("GL_EXT_robustness");
+    return desktop && epoxy_has_gl_extension("GL_ARB_robustness") ? glGetGraphicsResetStatusARB()
+                                                                  : GL_NO_ERROR;
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ bool hasGlExtension(const char* name) {
 }
 
 bool gpuWasReset() {
-    return hasResetStatus() && glGetGraphicsResetStatus() != GL_NO_ERROR;
+    return resetStatus() != GL_NO_ERROR;
 }
 
 }  // namespace relief

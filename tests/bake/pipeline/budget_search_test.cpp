@@ -78,6 +78,12 @@ TEST(BudgetSearch, AnEasyPromiseCostsTheLeastBudget) {
     ASSERT_TRUE(found);
     EXPECT_EQ(found->chosen.budget, 32'000U);
     EXPECT_EQ(found->tries.size(), 1U);
+    // One that it just misses costs more.
+    const double promise = 0.75 * found->chosen.wrong_percent;
+    const Result<BudgetSearchResult> better = bakeForError(query, query, optionsFor(promise));
+    ASSERT_TRUE(better);
+    EXPECT_LE(better->chosen.wrong_percent, promise);
+    EXPECT_GT(better->chosen.budget, 32'000U);
 }
 
 TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {
