@@ -4,10 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <glm/glm.hpp>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -68,48 +66,6 @@ Numbers numbers(const Json& json, const char* name, Numbers otherwise) {
     return otherwise;
 }
 
-std::string percentDecoded(const std::string& text) {
-    std::string out;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '%') {
-            must(i + 2 < text.size() && std::isxdigit(text[i + 1]) && std::isxdigit(text[i + 2]), "%");
-            out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
-            i += 2;
-        } else {
-            out += text[i];
-        }
-    }
-    return out;
-}
-
-std::string base64Decoded(const std::string& text) {
-    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    must(text.size() % 4 == 0, "padding");
-    std::string out;
-    for (std::size_t i = 0; i < text.size(); i += 4) {
-        std::size_t group = 0;
-        std::size_t bytes = 3;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const bool end = text[i + k] == '=';
-            must(!end || (i + 4 == text.size() && k >= 2 && text.back() == '='), "an = within");
-            bytes -= end ? 1 : 0;
-            const std::size_t digit = end ? 0 : digits.find(text[i + k]);
-            must(digit != std::string::npos, "no digit of base64");
-            group = 64 * group + digit;
-        }
-        for (std::size_t k = 0; k < bytes; ++k) {
-            out += static_cast<char>(group >> (16 - 8 * k) & 255U);
-        }
-    }
-    return out;
-}
-
-std::string contentsOf(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    must(file.is_open() && std::filesystem::is_regular_file(path), "no file");
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 /// Appendix C of the specification.
 Numbers valueAt(const Numbers& times, const Numbers& values, const std::string& curve, bool rotation,
                 double seconds) {
@@ -159,36 +115,9 @@ Numbers valueAt(const Numbers& times, const Numbers& values, const std::string& 
 
 class Book {
   public:
-    explicit Book(const std::filesystem::path& path) : path_(path) {
-        std::string text = contentsOf(path);
-        if (text.starts_with("glTF")) {
-            std::uint32_t header[5];
-            must(text.size() >= 20, "short");
-            std::memcpy(header, text.data(), 20);
-            must(header[1] == 2 && header[2] <= text.size() && header[4] == 0x4E4F534A &&
-                     header[3] <= header[2] - 20 && header[3] % 4 == 0,
-                 "header");
-            if (20 + header[3] < header[2]) {
-                std::uint32_t chunk[2];
-                must(28 + header[3] <= header[2], "chunk");
-                std::memcpy(chunk, text.data() + 20 + header[3], 8);
-                must(chunk[1] == 0x004E4942 && 28 + header[3] + chunk[0] == header[2], "chunk");
-                binary_ = text.substr(28 + header[3], chunk[0]);
-                has_binary_ = true;
-            }
-            text = text.substr(20, header[3]);
-        }
-        std::vector<std::set<std::string>> keys;
-        document_ = Json::parse(text, [&keys](int /*depth*/, Json::parse_event_t event, Json& parsed) {
-            if (event == Json::parse_event_t::object_start) {
-                keys.emplace_back();
-            } else if (event == Json::parse_event_t::object_end) {
-                keys.pop_back();
-            } else if (event == Json::parse_event_t::key) {
-                must(keys.back().insert(parsed.get<std::string>()).second, "a key twice");
-            }
-            return true;
-        });
+    explicit Book(const GltfCase& file) : document_(file.document), binary_(file.buffer) {
+        binary_.resize(file.container == GltfContainer::kBinary ? (binary_.size() + 3) / 4 * 4
+                                                                : binary_.size());
         must(document_.is_object(), "no document");
     }
 
@@ -476,10 +405,12 @@ class Book {
         const std::size_t size = kind <= 5121 ? 1 : kind <= 5123 ? 2 : 4;
         const std::size_t stride = whole(view, "byteStride", size * components);
         must(stride >= size * components && (strided || stride == size * components), "stride");
-        const std::string buffer = bufferOf(whole(view.at("buffer")));
+        const std::size_t buffer = whole(view.at("buffer"));
+        const std::size_t most = whole(element(document_, "buffers", buffer).at("byteLength"));
+        must(buffer == 0 && most <= binary_.size(), "no such buffer, or a short one");
         const std::size_t from = whole(view, "byteOffset", 0);
         const std::size_t length = whole(view.at("byteLength"));
-        must(from + length <= buffer.size(), "a view behind its buffer");
+        must(from + length <= most, "a view behind its buffer");
         const std::size_t offset = whole(owner, "byteOffset", 0);
         must(count < 100000 && (count == 0 || offset + (count - 1) * stride + size * components <= length),
              "an accessor behind its view");
@@ -487,7 +418,7 @@ class Book {
         for (std::size_t i = 0; i < count * components; ++i) {
             const std::size_t at = from + offset + i / components * stride + i % components * size;
             std::uint32_t bits = 0;
-            std::memcpy(&bits, buffer.data() + at, size);
+            std::memcpy(&bits, binary_.data() + at, size);
             float real = 0;
             std::memcpy(&real, &bits, 4);
             values.push_back(kind == 5126   ? static_cast<double>(real)
@@ -498,49 +429,20 @@ class Book {
         return values;
     }
 
-    std::string bufferOf(std::size_t index) {
-        const Json& buffer = element(document_, "buffers", index);
-        const std::size_t length = whole(buffer.at("byteLength"));
-        std::string bytes = binary_;
-        if (buffer.contains("uri")) {
-            const std::string uri = buffer.at("uri").get<std::string>();
-            const std::size_t comma = uri.find(";base64,");
-            if (uri.starts_with("data:")) {
-                must(comma != std::string::npos, "no base64");
-                bytes = base64Decoded(uri.substr(comma + 8));
-            } else {
-                must(!uri.empty() && uri.find(':') == std::string::npos, "a scheme");
-                const std::filesystem::path relative = percentDecoded(uri);
-                for (const auto& part : relative) {
-                    must(part != ".." && part != "/", "outside");
-                }
-                bytes = contentsOf(path_.parent_path() / relative);
-            }
-        } else {
-            must(has_binary_ && index == 0, "no bytes");
-        }
-        must(bytes.size() >= length, "a short buffer");
-        bytes.resize(length);
-        return bytes;
-    }
-
-    std::filesystem::path path_;
     Json document_;
     std::string binary_;
-    bool has_binary_ = false;
     std::vector<int> parents_;
     std::vector<Corners> triangles_;
 };
 
 }  // namespace
 
-std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path,
-                                       const std::optional<GltfMoment>& moment) {
-    return Book(path).read(moment);
+std::vector<Corners> readGltfByTheBook(const GltfCase& file, const std::optional<GltfMoment>& moment) {
+    return Book(file).read(moment);
 }
 
-std::vector<double> gltfLengthsByTheBook(const std::filesystem::path& path) {
-    return Book(path).lengths();
+std::vector<double> gltfLengthsByTheBook(const GltfCase& file) {
+    return Book(file).lengths();
 }
 
 }  // namespace relief::test
