@@ -108,6 +108,73 @@ TEST(ImportUnits, FormatsWithUnitsAndAxesLandAtTheSamePlace) {
          {"zero.3ds", tetrahedron3ds(0.0F), "", kOwnAxis, kLowZ, kHighZ, ""}});
 }
 
+// --- formats that have no writer elsewhere ---
+
+template <class T>
+std::string packed(const std::vector<T>& values, bool big_endian = false) {
+    std::string text;
+    for (const T value : values) {
+        const std::string bytes(reinterpret_cast<const char*>(&value), sizeof(T));
+        text += big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
+    }
+    return text;
+}
+
+std::string chunk(const std::string& name, const std::string& data, bool big_endian = false) {
+    return name + packed<std::uint32_t>({static_cast<std::uint32_t>(data.size())}, big_endian) + data;
+}
+
+const std::vector<float> kCorners = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
+
+std::string tetrahedronB3d() {
+    const std::string mesh = packed<int>({-1}) + chunk("VRTS", packed<int>({0, 0, 0}) + packed(kCorners)) +
+                             chunk("TRIS", packed<int>({-1, 0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2}));
+    return chunk("BB3D", packed<int>({1}) + chunk("NODE", std::string("b\0", 2) +
+                                                              packed<float>({0, 0, 0, 1, 1, 1, 1, 0, 0, 0}) +
+                                                              chunk("MESH", mesh)));
+}
+
+std::string tetrahedronLwo() {
+    using Words = std::vector<std::uint16_t>;
+    const std::string faces = packed<std::uint16_t>({3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2}, true);
+    return chunk("FORM",
+                 "LWO2" + chunk("TAGS", std::string("Default\0", 8), true) +
+                     chunk("LAYR", std::string(18, '\0'), true) +
+                     chunk("PNTS", packed(kCorners, true), true) + chunk("POLS", "FACE" + faces, true) +
+                     chunk("PTAG", "SURF" + packed(Words{0, 0, 1, 0, 2, 0, 3, 0}, true), true) +
+                     chunk("SURF", std::string("Default\0\0\0", 10), true),
+                 true);
+}
+
+std::string tetrahedronSmd() {
+    std::string text = replaced(tetrahedronStl(), "endsolid t", "end");
+    text =
+        replaced(text, "solid t\n",
+                 "version 1\nnodes\n0 \"root\" -1\nend\nskeleton\ntime 0\n0 0 0 0 0 0 0\nend\ntriangles\n");
+    text = replaced(text, "facet normal 0 0 0\nouter loop\nvertex", "mat\n0");
+    text = replaced(text, "\nvertex", " 0 0 1 0 0\n0");
+    return replaced(text, "\nendloop\nendfacet", " 0 0 1 0 0");
+}
+
+TEST(ImportUnits, FormatsOfAssimpLieWhereTheirFilesHaveThem) {
+    const std::string x =
+        "xof 0303txt 0032\nMesh t {\n4;\n0;0;0;,\n1;0;0;,\n0;2;0;,\n0;0;3;;\n4;\n"
+        "3;0,2,1;,\n3;0,1,3;,\n3;1,2,3;,\n3;0,3,2;;\n}\n";
+    for (const auto& [name, text] :
+         {std::pair{"t.x", x}, std::pair{"t.b3d", tetrahedronB3d()}, std::pair{"t.lwo", tetrahedronLwo()}}) {
+        // z turned round, and up as the file has it.
+        expectPlaced({{name, text, "", kOwnAxis, {0, 0, -3}, {1, 2, 0}, ""},
+                      {name, text, "in", kOwnAxis, {0, 0, -3 * 0.0254F}, {0.0254F, 2 * 0.0254F, 0}},
+                      {name, text, "", UpAxis::kPlusZ, {0, 0, 0}, {1, 3, 2}, ""}});
+    }
+    // Decimal commas are points. An SMD is skinned, and looks for an animation.
+    const std::string smd = tetrahedronSmd();
+    expectPlaced({{"t.smd", smd, "", kOwnAxis, kLow, kHigh, "", 2},
+                  {"t.smd", smd, "cm", UpAxis::kPlusZ, 0.01F * kLowZ, 0.01F * kHighZ, "m", 2},
+                  {"t.smd", replaced(smd, " 3 ", " 3,5 "), "", kOwnAxis, kLow, {1, 2, 3.5F}, "", 2},
+                  {"t.dae", replaced(tetrahedronDae(""), " 3<", " 3,5<"), "", kOwnAxis, kLow, {1, 2, 3.5F}}});
+}
+
 TEST(ImportUnits, AnOptionWinsOverTheFileWithAWarning) {
     const std::string dae = tetrahedronDae("<unit meter=\"0.0254\"/><up_axis>Z_UP</up_axis>");
     expectPlaced({{"same.dae", dae, "in", UpAxis::kPlusZ, 0.0254F * kLowZ, 0.0254F * kHighZ},
