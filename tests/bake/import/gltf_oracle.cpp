@@ -211,10 +211,8 @@ class Book {
         const Place own = placeOf(node);
         const Place place = [above, own](const glm::dvec3& p) { return above(own(p)); };
         if (node.contains("mesh")) {
-            const Json* skin = nullptr;
-            if (node.contains("skin")) {
-                skin = &element(document_, "skins", whole(node.at("skin")));
-            }
+            const Json* skin =
+                node.contains("skin") ? &element(document_, "skins", whole(node.at("skin"))) : nullptr;
             const Json& mesh = element(document_, "meshes", whole(node.at("mesh")));
             const Numbers weights = node.value("weights", mesh.value("weights", Numbers(1000)));
             for (const Json& primitive : list(mesh, "primitives")) {
@@ -269,12 +267,11 @@ class Book {
             double all = 0;
             for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
                 must(weights[k] >= 0, "a weight");
+                all += weights[k];
                 if (weights[k] > 0 && by[k] >= static_cast<double>(places.size())) {
                     sum = glm::dvec3(std::nan(""));  // wrong where a triangle uses it
-                    all += weights[k];
                 } else if (weights[k] > 0) {
                     sum += weights[k] * places.at(static_cast<std::size_t>(by[k]))(points[i]);
-                    all += weights[k];
                 }
             }
             must(all > 1e-5, "no weight");
@@ -311,10 +308,8 @@ class Book {
         } else {
             std::transform(points.begin(), points.end(), points.begin(), place);
         }
-        std::vector<std::size_t> corners;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            corners.push_back(i);
-        }
+        std::vector<std::size_t> corners(points.size());
+        std::iota(corners.begin(), corners.end(), std::size_t{0});
         if (primitive.contains("indices")) {
             corners.clear();
             for (const double index : accessor(whole(primitive.at("indices")), Use::kIndices)) {
@@ -345,11 +340,10 @@ class Book {
         const std::string type = json.at("type");
         const std::map<std::string, std::size_t> counts = {
             {"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
-        must(use == Use::kKeys || type == (use == Use::kPositions  ? "VEC3"
-                                           : use == Use::kIndices  ? "SCALAR"
-                                           : use == Use::kMatrices ? "MAT4"
-                                                                   : "VEC4"),
-             "type");
+        const std::map<Use, std::string> types = {{Use::kPositions, "VEC3"}, {Use::kIndices, "SCALAR"},
+                                                  {Use::kMatrices, "MAT4"},  {Use::kJoints, "VEC4"},
+                                                  {Use::kWeights, "VEC4"},   {Use::kKeys, type}};
+        must(types.at(use) == type, "type");
         const std::size_t components = counts.at(type);
         const std::size_t kind = whole(json.at("componentType"));
         const std::size_t count = whole(json.at("count"));
@@ -384,16 +378,11 @@ class Book {
                 }
             }
         }
+        const std::map<std::size_t, double> largest = {
+            {5120, 127.0}, {5121, 255.0}, {5122, 32767.0}, {5123, 65535.0}, {5125, 4294967295.0}};
         for (double& value : values) {
-            if (use == Use::kIndices) {
-                must(value != (kind == 5121 ? 255.0 : kind == 5123 ? 65535.0 : 4294967295.0), "restart");
-            } else if (normalized) {
-                value = std::max(value / (kind == 5120   ? 127.0
-                                          : kind == 5121 ? 255.0
-                                          : kind == 5122 ? 32767.0
-                                                         : 65535.0),
-                                 -1.0);
-            }
+            must(use != Use::kIndices || value != largest.at(kind), "restart");
+            value = normalized ? std::max(value / largest.at(kind), -1.0) : value;
         }
         return values;
     }
