@@ -145,10 +145,7 @@ TEST(AnimatedImport, KeepsTheNamesOfMaterials) {
 }
 
 TEST(AnimatedImport, UnitAndAxisStandAboveAllNodes) {
-    ImportOptions options;
-    options.unit = "cm";
-    options.up = UpAxis::kPlusZ;
-    const AnimatedImport import = loaded(bendingBar(), options);
+    const AnimatedImport import = loaded(bendingBar(), {"cm", UpAxis::kPlusZ});
     const std::vector<glm::vec3> plain = at(loaded(bendingBar()).mesh, "bend", 0.7);
     const std::vector<glm::vec3> turned = at(import.mesh, "bend", 0.7);
     for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -241,10 +238,8 @@ TEST(AnimatedImport, PosesAreThoseOfTheBook) {
     }
     // Values of cubic rotations need be near unit length.
     for (const std::size_t key : {4U, 16U, 28U}) {
-        const glm::vec4 q(spins[key], spins[key + 1], spins[key + 2], spins[key + 3]);
-        for (std::size_t k = 0; k < 4; ++k) {
-            spins[key + k] /= glm::length(q);
-        }
+        const float square = std::inner_product(&spins[key], &spins[key] + 4, &spins[key], 0.0F);
+        std::for_each(&spins[key], &spins[key] + 4, [square](float& x) { x /= std::sqrt(square); });
     }
     swings.animate(1, "rotation", times, swings.floats("VEC4", spins), "CUBICSPLINE", "spin");
     swings.animate(2, "translation", times, swings.floats("VEC3", {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 2, 0, 4, 0,

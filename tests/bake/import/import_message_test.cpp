@@ -80,7 +80,7 @@ TEST(ImportMessage, EveryTruncationAndExtensionIsRefused) {
         EXPECT_FALSE(readImportMessage(cut)) << size;
     }
     std::vector<std::byte> longer = whole;
-    longer.push_back(std::byte{0});
+    longer.emplace_back();
     EXPECT_FALSE(readImportMessage(longer));
 }
 

@@ -34,10 +34,9 @@ class Levels : public testing::Test {
 
 glm::dvec3 placed(const LevelBody& body, const glm::dvec3& p) {
     const glm::dvec3 v(body.rotation[0], body.rotation[1], body.rotation[2]);
-    const double w = body.rotation[3];
     const glm::dvec3 t = 2.0 * glm::cross(v, p);
     return glm::dvec3(body.position[0], body.position[1], body.position[2]) +
-           body.scale * (p + w * t + glm::cross(v, t));
+           body.scale * (p + body.rotation[3] * t + glm::cross(v, t));
 }
 
 /// The corners that the level has, placed, are those of the same file as one mesh, in its order.
@@ -105,13 +104,10 @@ TEST_F(Levels, ShapesThatAPoseWouldChangeAreMeshesOfTheirOwn) {
 
 TEST_F(Levels, UnitsAndAxesAreThoseOfTheMeshes) {
     const fs::path path = write("l.obj", tetrahedronObj());
-    ImportOptions options;
-    options.unit = "cm";
-    options.up = UpAxis::kPlusZ;
+    const ImportOptions options = {"cm", UpAxis::kPlusZ};
     const Level read = level(path, options);
     ASSERT_EQ(read.meshes.size(), 1U);
-    EXPECT_EQ(read.bodies[0].scale, 1.0);
-    EXPECT_EQ(read.bodies[0].rotation[3], 1.0);
+    EXPECT_TRUE(read.bodies[0].scale == 1.0 && read.bodies[0].rotation[3] == 1.0);
     EXPECT_FLOAT_EQ(read.meshes[0].bounds.max.x, 0.01F);
     expectSameCorners(read, path, options);
 }
