@@ -1,6 +1,5 @@
-"""Random valid files of the text formats, written as people write them, and read twice: by relief-import, and by the readers
-below, which were written from the formats' grammars and share nothing with it. Every fourth case is a file with one word
-spoilt, which must be refused with its line.
+"""Random valid files of the text formats, written as people write them: relief-import must read the polygons that were written.
+Every fourth case is a file with one word spoilt, which must be refused with its line.
 
     text_cases.py BIN [--seed N] [--cases N]      by default 200 files of each format
 """
@@ -19,43 +18,38 @@ FORMATS = ["obj", "off", "stl"]
 # --- the tool ---
 
 
-class Imported:
-    """What relief-import answers (bake/import/import_message.h): triangles as nine floats each, or an error."""
+def answer_of(data):
+    """What relief-import answers (bake/import/import_message.h): triangles as three corners each, or the text of an error."""
+    at = 4
 
-    def __init__(self, data):
-        self.error = None
-        self.triangles = []
-        self.data, self.at = data[4:], 0
-        (code,) = struct.unpack_from("<I", data)
-        if code:
-            self.error = self.text()
-            return
-        self.text()  # the unit
-        self.length()  # unused vertices
-        for _ in range(3):  # warnings, files, their hashes
-            for _ in range(self.length()):
-                self.text()
-        for _ in range(self.length()):  # names of surfaces
-            self.at += 4
-            self.text()
-            self.text()
-            self.at += 8  # of its material: restitution and friction
-        positions = self.threes("<3f")
-        self.triangles = [[positions[k] for k in t] for t in self.threes("<3I")]
+    def take(size):
+        nonlocal at
+        at += size
+        return data[at - size : at]
 
-    def length(self):
-        self.at += 8
-        return struct.unpack_from("<Q", self.data, self.at - 8)[0]
+    def length():
+        return struct.unpack("<Q", take(8))[0]
 
-    def text(self):
-        size = self.length()
-        self.at += size
-        return self.data[self.at - size : self.at].decode()
+    def text():
+        return take(length()).decode()
 
-    def threes(self, kind):
-        count = self.length()
-        self.at += 12 * count
-        return list(struct.iter_unpack(kind, self.data[self.at - 12 * count : self.at]))
+    def threes(kind):
+        return list(struct.iter_unpack(kind, take(12 * length())))
+
+    if any(data[:4]):
+        return text()
+    text()  # the unit
+    length()  # unused vertices
+    for _ in range(3):  # warnings, files, their hashes
+        for _ in range(length()):
+            text()
+    for _ in range(length()):  # names of surfaces, with restitution and friction
+        take(4)
+        text()
+        text()
+        take(8)
+    positions = threes("<3f")
+    return [[positions[k] for k in t] for t in threes("<3I")]
 
 
 def imported(run, path):
@@ -76,63 +70,10 @@ def imported(run, path):
     done = subprocess.run(command, preexec_fn=place, pass_fds=(3, 4, 5, 6), timeout=60)
     answer = None
     if run.expect(done.returncode == 0, f"relief-import ended with {done.returncode}"):
-        answer = Imported(os.pread(result, os.fstat(result).st_size, 0))
+        answer = answer_of(os.pread(result, os.fstat(result).st_size, 0))
     for file in (mesh, result, folder, alive, alive_end, *files):
         os.close(file)
     return answer
-
-
-# --- the other readers: polygons as lists of positions ---
-
-
-def read_obj(text):
-    vertices, polygons = [], []
-    text = re.sub(r"\\[ \t]*\n", " ", re.sub(r"\r\n?", "\n", text))
-    for line in text.split("\n"):
-        words = line.split("#")[0].split()
-        if words[:1] == ["v"]:
-            numbers = [float(word) for word in words[1:]]
-            vertices.append([x / numbers[3] for x in numbers[:3]] if len(numbers) == 4 else numbers[:3])
-        elif words[:1] == ["f"]:
-            corners = [int(word.split("/")[0]) for word in words[1:]]
-            polygons.append([corner - 1 if corner > 0 else len(vertices) + corner for corner in corners])
-    return [[vertices[corner] for corner in polygon] for polygon in polygons]
-
-
-def read_off(text):
-    lines = [line.split("#")[0] for line in re.sub(r"\r\n?", "\n", text).split("\n")]
-    words = " ".join(lines).split()
-    name = words.pop(0).upper()
-    columns = 3 + 3 * ("N" in name) + 4 * ("C" in name) + 2 * ("ST" in name)
-    vertex_count, face_count = int(words[0]), int(words[1])
-    numbers = iter(words[3:])
-    vertices = [[float(next(numbers)) for _ in range(columns)][:3] for _ in range(vertex_count)]
-    # A face ends its line; colours stand behind it.
-    body = "\n".join(lines)
-    for _ in range(4 + vertex_count * columns):
-        body = re.sub(r"^\s*\S+", "", body, count=1)
-    polygons = []
-    for _ in range(face_count):
-        corners = []
-        match = re.match(r"\s*(\d+)", body)
-        body = body[match.end() :]
-        for _ in range(int(match[1])):
-            match_corner = re.match(r"\s*(\d+)", body)
-            corners.append(vertices[int(match_corner[1])])
-            body = body[match_corner.end() :]
-        body = body[body.find("\n") :] if "\n" in body else ""
-        polygons.append(corners)
-    return polygons
-
-
-def read_stl(text):
-    text = re.sub(r"(?im)^[ \t]*(end)?solid\b.*$", "", re.sub(r"\r\n?", "\n", text))
-    numbers = re.findall(r"(?i)\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
-    vertices = [[float(number) for number in vertex] for vertex in numbers]
-    return [vertices[i : i + 3] for i in range(0, len(vertices), 3)]
-
-
-READERS = {"obj": read_obj, "off": read_off, "stl": read_stl}
 
 
 # --- files at random ---
@@ -178,14 +119,18 @@ class Writer:
         self.put(word)
 
     def numbers(self, values, between=None):
-        for i, value in enumerate(values):
+        """Returns the values as they were rounded."""
+        written = [self.number(value) for value in values]
+        for i, word in enumerate(written):
             if i:
                 self.put((between or self.blank)())
-            self.word(self.number(value))
+            self.word(word)
+        return [float(word) for word in written]
 
 
 def polygons_of(random, most):
-    """Vertices, and polygons that are flat and convex, as lists of their indices; some far from the origin."""
+    """Vertices, and polygons that are flat and convex, as lists of their indices; some far from the origin. The writers below
+    return the polygons that a reader must find, as lists of positions."""
     vertices, polygons = [], []
     far = random.choice([0, 0, 10, 1.4e5])
     for _ in range(random.randint(1, 12)):
@@ -208,15 +153,15 @@ def write_obj(w, vertices, polygons):
     def gap():
         return w.random.choice([w.blank()] * 9 + [" \\" + (w.end or "\n") + w.blank(0)])
 
-    done = 0
+    written = []
     w.put(w.random.choice(["", "\ufeff", "# by hand" + (w.end or "\n")]))
     for polygon in polygons:
-        while done <= max(polygon):
+        while len(written) <= max(polygon):
             w.indent()
             w.put("v" + w.blank())
-            w.numbers(vertices[done] + w.random.choice([[], [], [1.0], [0.5, 0.25, 1.0]]), gap)
+            row = w.numbers(vertices[len(written)] + w.random.choice([[], [], [1.0], [0.5], [0.5, 0.25, 1.0]]), gap)
+            written.append([x / row[3] for x in row[:3]] if len(row) == 4 else row[:3])
             w.newline("#")
-            done += 1
         if w.random.random() < 0.3:
             w.put(w.random.choice(["g a b # c", "o thing", "usemtl red", "s off", "vt .5 .5", "vn 0 0 1", ""]))
             w.newline()
@@ -225,9 +170,10 @@ def write_obj(w, vertices, polygons):
         back = w.random.random() < 0.4
         for corner in polygon:
             w.put(gap())
-            w.word(str(corner - done if back else corner + 1))
+            w.word(str(corner - len(written) if back else corner + 1))
             w.put(w.random.choice(["", "", "/1", "//1", "/1/1"]))
         w.newline("#")
+    return [[written[corner] for corner in polygon] for polygon in polygons]
 
 
 def write_off(w, vertices, polygons):
@@ -237,9 +183,10 @@ def write_off(w, vertices, polygons):
     w.put(f"{len(vertices)}{w.blank()}{len(polygons)}{w.blank()}0")
     w.newline("#")
     more = 3 * ("N" in name) + 4 * ("C" in name) + 2 * ("ST" in name)
+    written = []
     for vertex in vertices:
         w.indent()
-        w.numbers(vertex + [0.5] * more)
+        written.append(w.numbers(vertex + [0.5] * more)[:3])
         w.newline("#")
     for polygon in polygons:
         w.indent()
@@ -249,6 +196,7 @@ def write_off(w, vertices, polygons):
             w.word(str(corner))
         w.put(w.random.choice(["", "", " 255 0 0", " .5 .5 .5 1"]))
         w.newline("#")
+    return [[written[corner] for corner in polygon] for polygon in polygons]
 
 
 def write_stl(w, vertices, polygons):
@@ -261,6 +209,11 @@ def write_stl(w, vertices, polygons):
     def line():
         w.put(gap()) if loose else w.newline()
 
+    def word(name, after=line):
+        w.put(w.blank(0) + case(name))
+        after()
+
+    written = []
     w.put(case("solid") + w.random.choice(["", " thing", " vertex of facets", " a b c"]))
     w.newline()
     for polygon in polygons:
@@ -269,22 +222,22 @@ def write_stl(w, vertices, polygons):
             w.newline()
             w.put(case("solid") + " vertex 1 2 3")
             w.newline()
-        w.put(w.blank(0) + case("facet") + gap() + case("normal") + gap())
+        word("facet", lambda: w.put(gap() + case("normal") + gap()))
         w.put(w.random.choice(["0 0 1", "nan nan nan", "-nan(ind) 1.#QNAN 0", "1e-3 .5 -.5"]))
         line()
-        w.put(case("outer") + gap() + case("loop"))
+        word("outer", lambda: w.put(gap() + case("loop")))
         line()
+        written.append([])
         for corner in polygon:
-            w.put(w.blank(0) + case("vertex") + gap())
-            w.numbers(vertices[corner], gap)
+            word("vertex", lambda: w.put(gap()))
+            written[-1].append(w.numbers(vertices[corner], gap))
             line()
-        w.put(case("endloop"))
-        line()
-        w.put(case("endfacet"))
-        line()
+        word("endloop")
+        word("endfacet")
     w.newline()
     w.put(case("endsolid") + w.random.choice(["", " thing"]))
     w.newline()
+    return written
 
 
 WRITERS = {"obj": write_obj, "off": write_off, "stl": write_stl}
@@ -338,7 +291,7 @@ def main():
         kind = FORMATS[number % len(FORMATS)]
         writer = Writer(run.random)
         vertices, polygons = polygons_of(run.random, 3 if kind == "stl" else 8)
-        WRITERS[kind](writer, vertices, polygons)
+        truth = WRITERS[kind](writer, vertices, polygons)
         text = writer.text
         spoilt = number // len(FORMATS) % 4 == 3
         if spoilt:
@@ -349,13 +302,13 @@ def main():
         mesh = imported(run, path)
         if mesh is None:
             continue
+        read = not isinstance(mesh, str)
         if spoilt:
-            error = mesh.error or ""
-            said = re.search(r"line (\d+): ", error)
-            run.expect(said and int(said[1]) == line_of(text, at) and ";" in error and "\n" not in error,
-                       f"{kind}: line {line_of(text, at)} is spoilt: {error or 'read'}")
-        elif run.expect(mesh.error is None, f"{kind}: {mesh.error}"):
-            different = difference(mesh.triangles, READERS[kind](text.lstrip("\ufeff")))
+            said = None if read else re.search(r"line (\d+): ", mesh)
+            run.expect(said and int(said[1]) == line_of(text, at) and ";" in mesh and "\n" not in mesh,
+                       f"{kind}: line {line_of(text, at)} is spoilt: {'read' if read else mesh}")
+        elif run.expect(read, f"{kind}: {mesh}"):
+            different = difference(mesh, truth)
             run.expect(different is None, f"{kind}: {different}: {text[:300]!r}")
     run.finish()
 

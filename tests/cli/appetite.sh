@@ -1,5 +1,5 @@
 # Small containers take little memory, whatever they claim; a refusal names the option that allows it. The limit of memory is
-# that of the process, by setrlimit. tests/cases/appetite_cases.py draws others, and meshes.
+# that of the process, by setrlimit. tests/cases/appetite_cases.py draws meshes.
 source "$RELIEF_SOURCE/tests/cli/lib.sh"
 export PYTHONPATH=$PYTHONPATH:$RELIEF_SOURCE/tests/cases
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -87,26 +88,25 @@ class MeshMaker {
         std::vector<glm::uvec3> triangles;
         glm::vec3 middle(0.0F);
         for (std::size_t i = last_first_; i < mesh_.triangles.size(); ++i) {
+            const auto first = static_cast<std::uint32_t>(positions.size());
+            triangles.emplace_back(first, first + 1, first + 2);
             for (int corner = 0; corner < 3; ++corner) {
                 positions.push_back(mesh_.positions[mesh_.triangles[i][corner]]);
                 middle += positions.back();
             }
-            const auto first = static_cast<std::uint32_t>(positions.size() - 3);
-            triangles.emplace_back(first, first + 1, first + 2);
         }
         if (positions.empty()) {
             return;
         }
         middle /= static_cast<float>(positions.size());
         const unsigned how = bytes.below(6);
-        const float shrink = std::array{1.0F, 1.0F, 0.5F, 0.999F, 0.99999F, 1.0F}[how];
+        const float scale = std::array{1.0F, 1.0F, 0.5F, 0.999F, 0.99999F, 1.0F}[how];
         for (glm::vec3& p : positions) {
-            p = how >= 2 && how <= 4 ? middle + shrink * (p - middle) : p + (how == 5 ? 1e-5F : 0.0F);
+            p = how >= 2 && how <= 4 ? middle + scale * (p - middle) : p + (how == 5 ? 1e-5F : 0.0F);
         }
-        if (how == 1 || bytes.below(2) == 1) {
-            for (glm::uvec3& t : triangles) {
-                std::swap(t.y, t.z);
-            }
+        const bool turned = how == 1 || bytes.below(2) == 1;
+        for (glm::uvec3& t : triangles) {
+            t = turned ? glm::uvec3(t.x, t.z, t.y) : t;
         }
         add(positions, triangles);
     }
@@ -178,24 +178,18 @@ class Oracle {
         const std::vector<std::uint32_t>& bodies = mesh_.bodies();
         int winding = 0;
         bool odd = false;
-        std::vector<std::uint32_t> crossed;  // by body, of an odd number of times
+        std::set<std::uint32_t> crossed;  // bodies, an odd number of times
         for (std::size_t i = 0; i < mesh_->triangles.size(); ++i) {
             const glm::uvec3& t = mesh_->triangles[i];
             const std::optional<int> way = crosses(p, positions_[t.x], positions_[t.y], positions_[t.z]);
             if (!way) {
                 return std::nullopt;
             }
-            if (*way == 0) {
-                continue;
-            }
-            odd = !odd;
+            odd = odd != (*way != 0);
             if (bodies.empty() || shells_ || bodies[i] == 0) {
                 winding += *way;
-            } else if (const auto at = std::find(crossed.begin(), crossed.end(), bodies[i]);
-                       at != crossed.end()) {
-                crossed.erase(at);
-            } else {
-                crossed.push_back(bodies[i]);
+            } else if (*way != 0 && crossed.erase(bodies[i]) == 0) {
+                crossed.insert(bodies[i]);
             }
         }
         return bodies.empty() && !shells_ ? odd : winding != 0 || !crossed.empty();
@@ -221,17 +215,11 @@ class Oracle {
             return std::nullopt;
         }
         // On which side of the triangle's plane p lies: the crossing is ahead on one of them.
-        Exact u;
-        Exact v;
-        Exact w;
-        for (std::size_t k = 0; k < 3; ++k) {
-            u[k] = a[k] - p[k];
-            v[k] = b[k] - p[k];
-            w[k] = c[k] - p[k];
-        }
-        const Int128 volume = Int128{u[0]} * (Int128{v[1]} * w[2] - Int128{v[2]} * w[1]) +
-                              Int128{v[0]} * (Int128{w[1]} * u[2] - Int128{w[2]} * u[1]) +
-                              Int128{w[0]} * (Int128{u[1]} * v[2] - Int128{u[2]} * v[1]);
+        const auto d = [&p](const Exact& corner, std::size_t k) { return Int128{corner[k] - p[k]}; };
+        const auto minor = [&](std::size_t i, std::size_t k) {
+            return d(b, i) * d(c, k) - d(b, k) * d(c, i);
+        };
+        const Int128 volume = d(a, 0) * minor(1, 2) + d(a, 1) * minor(2, 0) + d(a, 2) * minor(0, 1);
         return sign(volume) == most ? most : 0;
     }
 

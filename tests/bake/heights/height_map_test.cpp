@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <array>
 #include <cmath>
@@ -11,6 +12,7 @@
 
 #include "bake/picture/exr.h"
 #include "formats/base/file_io.h"
+#include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -18,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void expectFault(const Error& error, ErrorCode code, const char* words) {
+void expectError(const Error& error, const std::string& words, ErrorCode code) {
     EXPECT_EQ(error.code, code) << error.message;
     EXPECT_NE(error.message.find(words), std::string::npos) << error.message;
     EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
@@ -59,6 +61,11 @@ class HeightMaps : public testing::Test {
         return {ErrorCode::kFailure, "it was read"};
     }
 
+    static void refuses(const fs::path& path, const char* settings, const char* words,
+                        ErrorCode code = ErrorCode::kInvalidInput) {
+        expectError(errorOf(path, settings), words, code);
+    }
+
     static std::vector<float> heightsOf(const fs::path& path, const char* settings) {
         Result<HeightMap> map = HeightMap::open(path, parseHeightsSpec(settings).value());
         EXPECT_TRUE(map) << map.error().message;
@@ -86,23 +93,20 @@ TEST(HeightsSettings, AreReadAndWrittenBack) {
 }
 
 TEST(HeightsSettings, ThatMakeNoSenseAreRefusedWithACure) {
-    struct Case {
-        const char* text;
-        const char* words;
-    };
-    for (const Case& wrong :
-         {Case{"", "unknown key ''; use one of spacing, low"}, Case{"spacin=1", "did you mean 'spacing'?"},
-          Case{"spacing", "spacing is '' but must be a length"}, Case{"spacing=0", "a length from 0.000001"},
-          Case{"spacing=-1", "a length from"}, Case{"spacing=nan", "is 'nan' but must be"},
-          Case{"spacing=inf", "is 'inf' but must be"}, Case{"low=nan", "a number from -1e9 to 1e9"},
-          Case{"high=1e10", "a number from -1e9"}, Case{"low=5,high=1", "low is 5 but must be below high, 1"},
-          Case{"low=5,high=5", "must be below high"}, Case{"low=1,low=2", "low is given twice"},
-          Case{"hole=x", "hole is 'x'"}, Case{"width=1", "width is '1'"},
-          Case{"offset=1/2", "three numbers x/y/z"}, Case{"offset=1/2/inf", "three numbers"},
-          Case{"tile=66", "a multiple of 4"}, Case{"tile=8", "tile is '8'"}}) {
+    for (const Wrong& wrong :
+         {Wrong{"", "unknown key ''; use one of spacing, low"}, Wrong{"spacin=1", "did you mean 'spacing'?"},
+          Wrong{"spacing", "spacing is '' but must be a length"},
+          Wrong{"spacing=0", "a length from 0.000001"}, Wrong{"spacing=-1", "a length from"},
+          Wrong{"spacing=nan", "is 'nan' but must be"}, Wrong{"spacing=inf", "is 'inf' but must be"},
+          Wrong{"low=nan", "a number from -1e9 to 1e9"}, Wrong{"high=1e10", "a number from -1e9"},
+          Wrong{"low=5,high=1", "low is 5 but must be below high, 1"},
+          Wrong{"low=5,high=5", "must be below high"}, Wrong{"low=1,low=2", "low is given twice"},
+          Wrong{"hole=x", "hole is 'x'"}, Wrong{"width=1", "width is '1'"},
+          Wrong{"offset=1/2", "three numbers x/y/z"}, Wrong{"offset=1/2/inf", "three numbers"},
+          Wrong{"tile=66", "a multiple of 4"}, Wrong{"tile=8", "tile is '8'"}}) {
         const Result<HeightsSpec> spec = parseHeightsSpec(wrong.text);
         ASSERT_FALSE(spec) << wrong.text;
-        expectFault(spec.error(), ErrorCode::kUsage, wrong.words);
+        expectError(spec.error(), wrong.words, ErrorCode::kUsage);
         EXPECT_EQ(spec.error().message.find("--heights '"), 0U);
     }
 }
@@ -139,14 +143,12 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
     EXPECT_EQ(heights[5], 0.1F);
     EXPECT_TRUE(std::isnan(heights[2]));
     EXPECT_TRUE(std::isnan(heights[4]));
-    expectFault(errorOf(path, "low=0,high=1"), ErrorCode::kUsage,
-                "a.exr': --heights low is for images of whole numbers");
+    refuses(path, "low=0,high=1", "a.exr': --heights low is for images of whole numbers", ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
-    expectFault(errorOf(write("b.exr", *encodeExr(image)), "spacing=1"), ErrorCode::kUnsupported,
-                "several channels");
+    refuses(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
     image.channels = {{"Y", std::vector<float>(6, std::numeric_limits<float>::infinity())}};
-    expectFault(errorOf(write("c.exr", *encodeExr(image)), "spacing=1"), ErrorCode::kInvalidInput,
-                "height of inf, beyond 1e9; if it stands for a hole, save it as NaN");
+    refuses(write("c.exr", *encodeExr(image)), "spacing=1",
+            "height of inf, beyond 1e9; if it stands for a hole, save it as NaN");
     image.channels = {{"Y", {1.0F, -std::numeric_limits<float>::max(), 2.0F, 3.0F, 4.0F, 5.0F}}};
     const fs::path lowest = write("d.exr", *encodeExr(image));
     const std::string message = errorOf(lowest, "spacing=1").message;
@@ -159,17 +161,15 @@ TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
     const fs::path square = writeRaw("a.r16", std::vector<std::uint16_t>(49, 7));
     EXPECT_EQ(heightsOf(square, "low=0,high=1").size(), 49U);
     const fs::path cut = writeRaw("b.raw", std::vector<std::uint16_t>(48, 7));
-    expectFault(errorOf(cut, "low=0,high=1"), ErrorCode::kInvalidInput,
-                "b.raw': it has 96 bytes, which are no square of samples of 16 bits; give --heights width=N");
-    expectFault(errorOf(cut, "low=0,high=1,width=7"), ErrorCode::kInvalidInput, "no rows of 7 samples");
-    expectFault(errorOf(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1"),
-                ErrorCode::kInvalidInput, "99 bytes");
-    expectFault(errorOf(write("none.raw", {}), "low=0,high=1"), ErrorCode::kInvalidInput, "0 bytes");
-    expectFault(errorOf(square, "low=0"), ErrorCode::kUsage, "needs high=, the height of sample 65535");
-    expectFault(errorOf(square, "high=0"), ErrorCode::kUsage, "needs low=, the height of sample 0");
-    expectFault(errorOf(square, "low=0,high=1,hole=0.5"), ErrorCode::kUsage, "whole number from 0 to 65535");
-    expectFault(errorOf(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1"), ErrorCode::kUnsupported,
-                "name it .r16");
+    refuses(cut, "low=0,high=1",
+            "b.raw': it has 96 bytes, which are no square of samples of 16 bits; give --heights width=N");
+    refuses(cut, "low=0,high=1,width=7", "no rows of 7 samples");
+    refuses(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
+    refuses(write("none.raw", {}), "low=0,high=1", "0 bytes");
+    refuses(square, "low=0", "needs high=, the height of sample 65535", ErrorCode::kUsage);
+    refuses(square, "high=0", "needs low=, the height of sample 0", ErrorCode::kUsage);
+    refuses(square, "low=0,high=1,hole=0.5", "whole number from 0 to 65535", ErrorCode::kUsage);
+    refuses(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1", "name it .r16", ErrorCode::kUnsupported);
     EXPECT_EQ(heightsOf(folder_ / "a.bin", "low=0,high=1,width=2").size(), 4U);
 }
 
@@ -185,24 +185,23 @@ TEST_F(HeightMaps, GreyMayBeSavedInColourAndOpaque) {
     EXPECT_EQ(heightsOf(png(PNG_FORMAT_RGBA, {1, 1, 1, 255, 2, 2, 2, 255, 3, 3, 3, 255, 250, 250, 250, 255}),
                         whole),
               heights);
-    expectFault(errorOf(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 251, 250}), whole),
-                ErrorCode::kUnsupported, "c.png': it is in colour at column 1 of row 1; save it as grey");
-    expectFault(errorOf(png(PNG_FORMAT_RGB, {1, 1, 2, 2, 2, 2, 3, 3, 3, 4, 4, 4}), whole),
-                ErrorCode::kUnsupported, "in colour at column 0 of row 0");
-    expectFault(errorOf(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), whole),
-                ErrorCode::kUnsupported, "it is transparent at column 1 of row 0; save it");
+    refuses(png(PNG_FORMAT_RGB, {1, 1, 1, 2, 2, 2, 3, 3, 3, 250, 251, 250}), whole,
+            "c.png': it is in colour at column 1 of row 1; save it as grey", ErrorCode::kUnsupported);
+    refuses(png(PNG_FORMAT_RGB, {1, 1, 2, 2, 2, 2, 3, 3, 3, 4, 4, 4}), whole,
+            "in colour at column 0 of row 0", ErrorCode::kUnsupported);
+    refuses(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), whole,
+            "it is transparent at column 1 of row 0; save it", ErrorCode::kUnsupported);
 }
 
 TEST_F(HeightMaps, OfTheWrongSizeOrKindAreRefused) {
     const std::vector<std::byte> pixels(64);
-    expectFault(errorOf(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1"),
-                ErrorCode::kInvalidInput, "one.png': it has 1x1 samples; a height map has at least 2x2");
-    expectFault(errorOf(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1"),
-                ErrorCode::kInvalidInput, "1x9");
-    expectFault(errorOf(folder_ / "none.png", "low=0,high=1"), ErrorCode::kIo, "none.png");
+    refuses(writePng("one.png", PNG_FORMAT_GRAY, 1, 1, pixels), "low=0,high=1",
+            "one.png': it has 1x1 samples; a height map has at least 2x2");
+    refuses(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1", "1x9");
+    refuses(folder_ / "none.png", "low=0,high=1", "none.png", ErrorCode::kIo);
     const fs::path fine = writePng("fine.png", PNG_FORMAT_GRAY, 8, 8, pixels);
-    expectFault(errorOf(fine, "low=0,high=1,width=8"), ErrorCode::kUsage, "width is for raw samples");
-    expectFault(errorOf(fine, "low=0,high=1,hole=256"), ErrorCode::kUsage, "from 0 to 255");
+    refuses(fine, "low=0,high=1,width=8", "width is for raw samples", ErrorCode::kUsage);
+    refuses(fine, "low=0,high=1,hole=256", "from 0 to 255", ErrorCode::kUsage);
 }
 
 /// A file of which every part may be missing or changed; and one that claims 10⁹ samples.
@@ -237,18 +236,12 @@ TEST_F(HeightMaps, DamagedImagesAreRefusedInOneLine) {
         large[at] = large[at + 1] = large[at + 3] = std::byte{0};
         large[at + 2] = std::byte{0x80};
     }
-    std::uint32_t crc = 0xffffffffU;
-    for (std::size_t i = 12; i < 29; ++i) {
-        crc ^= std::to_integer<std::uint32_t>(large[i]);
-        for (int k = 0; k < 8; ++k) {
-            crc = (crc & 1U) != 0 ? 0xedb88320U ^ (crc >> 1U) : crc >> 1U;
-        }
-    }
+    const auto crc = ::crc32(0, reinterpret_cast<const Bytef*>(large.data()) + 12, 17);
     for (std::size_t i = 0; i < 4; ++i) {
-        large[29 + i] = static_cast<std::byte>(~crc >> (24U - 8U * i) & 0xffU);
+        large[29 + i] = static_cast<std::byte>(crc >> (24U - 8U * i) & 0xffU);
     }
-    expectFault(errorOf(write("large.png", large), "low=0,high=1"), ErrorCode::kLimit,
-                "large.png': it has 32768x32768 samples, and 268435456 are the most; cut it");
+    refuses(write("large.png", large), "low=0,high=1",
+            "large.png': it has 32768x32768 samples, and 268435456 are the most; cut it", ErrorCode::kLimit);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "tests/bake/import/animated_cases.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -19,13 +20,7 @@ std::string bytesOf(const std::vector<T>& values) {
 }  // namespace
 
 GltfScribe::GltfScribe()
-    : json({{"asset", {{"version", "2.0"}}},
-            {"scene", 0},
-            {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-            {"nodes", Json::array()},
-            {"meshes", Json::array()},
-            {"accessors", Json::array()},
-            {"bufferViews", Json::array()}}) {}
+    : json({{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", {0}}}})}}) {}
 
 std::size_t GltfScribe::accessor(const char* type, int component, std::size_t count, const std::string& data,
                                  bool normalized) {
@@ -107,17 +102,12 @@ GltfScribe bendingBar() {
     std::vector<float> positions;
     std::vector<int> joints;
     std::vector<int> weights;
-    for (int ring = 0; ring < 3; ++ring) {
+    for (std::size_t ring = 0; ring < 3; ++ring) {
         for (const auto& [x, z] : {std::pair(-0.5F, -0.5F), {0.5F, -0.5F}, {0.5F, 0.5F}, {-0.5F, 0.5F}}) {
             positions.insert(positions.end(), {x, static_cast<float>(ring), z});
             joints.insert(joints.end(), {0, 1, 0, 0});
-            weights.insert(weights.end(), {ring == 0   ? 255
-                                           : ring == 1 ? 128
-                                                       : 0,
-                                           ring == 0   ? 0
-                                           : ring == 1 ? 128
-                                                       : 255,
-                                           0, 0});
+            weights.insert(weights.end(),
+                           {std::array{255, 128, 0}.at(ring), std::array{0, 128, 255}.at(ring), 0, 0});
         }
     }
     std::vector<int> corners = {0, 1, 2, 0, 2, 3, 8, 10, 9, 8, 11, 10};

@@ -4,20 +4,15 @@
 #include <gtest/gtest.h>
 #include <linux/landlock.h>
 #include <linux/openat2.h>
-#include <linux/perf_event.h>
 #include <linux/seccomp.h>
-#include <netinet/in.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/ptrace.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
-#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,11 +20,11 @@
 #include <array>
 #include <csignal>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -46,6 +41,7 @@ constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
 constexpr std::size_t kPage = 4096;
 constexpr int kLeakedFd = 7;  ///< a file open for writing, which the real worker does not even have
 constexpr int kFiles = 8;
+constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
 
 constexpr int kDone = 0;     // exit codes of the worker: it could
 constexpr int kRefused = 1;  // and it could not, without being ended
@@ -65,8 +61,7 @@ class Place {
         int ends[2] = {-1, -1};
         ready_ = ::pipe2(ends, O_CLOEXEC) == 0 && ::ftruncate(files_[kImportMeshFd], kPage) == 0 &&
                  ::ftruncate(files_[kImportResultFd], kPage) == 0 &&
-                 ::fcntl(files_[kImportMeshFd], F_ADD_SEALS,
-                         F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0;
+                 ::fcntl(files_[kImportMeshFd], F_ADD_SEALS, kSeals) == 0;
         alive_ = ends[0];
         files_[kImportAliveFd] = ends[1];
         files_[kLeakedFd] = ::open((folder_.path() / "leaked").c_str(), O_RDWR | O_CLOEXEC);
@@ -88,17 +83,12 @@ class Place {
     }
     [[nodiscard]] fs::path path(const char* name) const { return folder_.path() / name; }
     [[nodiscard]] int result() const { return files_[kImportResultFd]; }
-    [[nodiscard]] std::string names() const {
-        std::string text;
-        std::vector<std::string> names;
+    [[nodiscard]] std::set<fs::path> names() const {
+        std::set<fs::path> names;
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path())) {
-            names.push_back(entry.path().filename());
+            names.insert(entry.path());
         }
-        std::sort(names.begin(), names.end());
-        for (const std::string& name : names) {
-            text += name + " ";
-        }
-        return text;
+        return names;
     }
     [[nodiscard]] std::string contents(const char* name) const {
         std::ifstream file(path(name));
@@ -157,11 +147,8 @@ struct Attempt {
     bool alone = true;           ///< can be done outside of the sandbox, here and by anybody
 };
 
-bool inSockets(int family, const sockaddr* address, socklen_t size) {
-    const int socket = static_cast<int>(raw(SYS_socket, family, SOCK_STREAM, 0));
-    // Refused by nobody who listens is a connection all the same: the call went out.
-    return socket >= 0 &&
-           (raw(SYS_connect, socket, address, size) == 0 || errno == ECONNREFUSED || errno == ENOENT);
+void* mapped(std::uint64_t size, int protection) {
+    return ::mmap(nullptr, size, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
 }
 
 bool sharesForWriting(int file) {
@@ -188,15 +175,8 @@ std::vector<Attempt> attempts(const Place& place) {
     const pid_t parent = ::getpid();
     static char byte = 'X';
     static iovec vector{&byte, 1};
-    static sockaddr_un local{};
-    local.sun_family = AF_UNIX;
-    std::strcpy(local.sun_path, "/tmp/nobody-listens-here");
-    static sockaddr_in internet{};
-    internet.sin_family = AF_INET;
-    internet.sin_port = 0x0900;
-    internet.sin_addr.s_addr = 0x0100007F;
-    static char program[] = "/bin/true";
-    static char* arguments[] = {program, nullptr};
+    static rlimit limit{0, 0};
+    static std::uint64_t how[11] = {0, 0, 0, 0, SIGCHLD};
     const auto forked = [](long child) {
         if (child == 0) {
             ::_exit(0);
@@ -217,132 +197,37 @@ std::vector<Attempt> attempts(const Place& place) {
         {"openat2 a folder", [=] { return opens(".", O_RDONLY | O_DIRECTORY); }},
         {"openat2 a device", [=] { return opens("/dev/zero", O_RDONLY); }},
         {"openat2 itself", [=] { return opens("/proc/self/mem", O_RDWR); }},
-        {"creat", [=] { return raw(SYS_creat, fresh.c_str(), 0600) >= 0; }},
-        {"open by handle", [=] { return raw(SYS_open_by_handle_at, AT_FDCWD, nullptr, O_RDONLY) >= 0; },
-         false},
-        {"memfd", [=] { return raw(SYS_memfd_create, "x", 0) >= 0; }},
-        // change files by name
-        {"unlink", [=] { return raw(SYS_unlink, outside.c_str()) == 0; }},
-        {"rename", [=] { return raw(SYS_rename, inside.c_str(), fresh.c_str()) == 0; }},
-        {"mkdir", [=] { return raw(SYS_mkdir, fresh.c_str(), 0700) == 0; }},
-        {"symlink", [=] { return raw(SYS_symlink, "/etc", fresh.c_str()) == 0; }},
-        {"link", [=] { return raw(SYS_link, outside.c_str(), fresh.c_str()) == 0; }},
-        {"mknod", [=] { return raw(SYS_mknod, fresh.c_str(), S_IFIFO | 0600, 0) == 0; }},
-        {"chmod", [=] { return raw(SYS_chmod, inside.c_str(), 0777) == 0; }},
-        {"truncate", [=] { return raw(SYS_truncate, inside.c_str(), 1) == 0; }},
-        {"utimensat", [=] { return raw(SYS_utimensat, AT_FDCWD, inside.c_str(), nullptr, 0) == 0; }},
-        {"setxattr", [=] { return raw(SYS_setxattr, inside.c_str(), "user.x", "x", 1, 0) == 0; }, false},
-        {"chdir", [=] { return raw(SYS_chdir, "/") == 0; }},
         // write where it was given no leave to: a file that leaked, its standard output, the mesh, the pipe
         {"write", [=] { return raw(SYS_write, kLeakedFd, &byte, 1) == 1; }},
         {"write to standard output", [=] { return raw(SYS_write, STDOUT_FILENO, &byte, 1) == 1; }},
         {"write to the pipe", [=] { return raw(SYS_write, kImportAliveFd, &byte, 1) == 1; }},
         {"writev", [=] { return raw(SYS_writev, kLeakedFd, &vector, 1) == 1; }},
-        {"pwrite", [=] { return raw(SYS_pwrite64, kLeakedFd, &byte, 1, 0) == 1; }},
-        {"pwritev2", [=] { return raw(SYS_pwritev2, kLeakedFd, &vector, 1, 0, 0, 0) == 1; }},
-        {"write to the mesh", [=] { return raw(SYS_pwrite64, kImportMeshFd, &byte, 1, 0) == 1; }, false},
         {"share the mesh", [=] { return sharesForWriting(kImportMeshFd); }, false},
         {"share a file", [=] { return sharesForWriting(kLeakedFd); }},
         {"ftruncate", [=] { return raw(SYS_ftruncate, kLeakedFd, 1) == 0; }},
         {"fallocate", [=] { return raw(SYS_fallocate, kLeakedFd, 0, 0, kPage) == 0; }},
         {"punch a hole", [=] { return raw(SYS_fallocate, kLeakedFd, 3, 0, kPage) == 0; }, false},
-        {"fchmod", [=] { return raw(SYS_fchmod, kLeakedFd, 0777) == 0; }},
-        {"sendfile", [=] { return raw(SYS_sendfile, kLeakedFd, kImportResultFd, nullptr, 1) == 1; }},
-        {"splice",
-         [=] { return raw(SYS_splice, kImportResultFd, nullptr, kImportAliveFd, nullptr, 1, 0) == 1; }},
-        {"copy_file_range",
-         [=] { return raw(SYS_copy_file_range, kLeakedFd, nullptr, kLeakedFd, nullptr, 0, 0) == 0; }},
-        {"dup", [=] { return raw(SYS_dup, kLeakedFd) >= 0; }},
-        {"dup onto the result", [=] { return raw(SYS_dup2, kLeakedFd, kImportResultFd) >= 0; }},
         {"fcntl dup", [=] { return raw(SYS_fcntl, kLeakedFd, F_DUPFD, 0) >= 0; }},
-        {"io_uring", [=] { return raw(SYS_io_uring_setup, 1, nullptr) >= 0; }, false},
-        // connect
-        {"socket", [=] { return raw(SYS_socket, AF_INET, SOCK_DGRAM, 0) >= 0; }},
-        {"socketpair",
-         [=] {
-             int ends[2] = {-1, -1};
-             return raw(SYS_socketpair, AF_UNIX, SOCK_STREAM, 0, ends) == 0;
-         }},
-        {"connect by name",
-         [=] { return inSockets(AF_UNIX, reinterpret_cast<const sockaddr*>(&local), sizeof(local)); }},
-        {"connect by address",
-         [=] { return inSockets(AF_INET, reinterpret_cast<const sockaddr*>(&internet), sizeof(internet)); }},
-        // exec
-        {"execve", [=] { return raw(SYS_execve, program, arguments, nullptr), false; }, false},
-        {"execveat", [=] { return raw(SYS_execveat, AT_FDCWD, program, arguments, nullptr, 0), false; },
-         false},
-        {"memory to run",
-         [=] {
-             return ::mmap(nullptr, kPage, PROT_READ | PROT_WRITE | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS,
-                           -1, 0) != MAP_FAILED;
-         }},
+        {"memory to run", [=] { return mapped(kPage, PROT_READ | PROT_WRITE | PROT_EXEC) != MAP_FAILED; }},
         {"memory made to run",
          [=] {
-             void* const pages =
-                 ::mmap(nullptr, kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-             return raw(SYS_mprotect, pages, kPage, PROT_READ | PROT_EXEC) == 0;
+             return raw(SYS_mprotect, mapped(kPage, PROT_READ | PROT_WRITE), kPage, PROT_READ | PROT_EXEC) ==
+                    0;
          }},
-        // fork
-        {"fork", [=] { return forked(raw(SYS_fork)); }},
+        // run code, or another process
         {"clone", [=] { return forked(raw(SYS_clone, SIGCHLD, 0, 0, 0, 0)); }},
         {"clone into a namespace",
          [=] { return forked(raw(SYS_clone, CLONE_NEWUSER | SIGCHLD, 0, 0, 0, 0)); }, false},
-        {"clone3",
-         [=] {
-             std::uint64_t how[11] = {0, 0, 0, 0, SIGCHLD};
-             return forked(raw(SYS_clone3, how, sizeof(how)));
-         },
+        {"clone3", [=] { return forked(raw(SYS_clone3, how, sizeof(how))); },
          false},  // some containers have none
         // its parent and other processes
-        {"ptrace the parent", [=] { return raw(SYS_ptrace, PTRACE_ATTACH, parent, 0, 0) == 0; }, false},
-        {"be traced", [=] { return raw(SYS_ptrace, PTRACE_TRACEME, 0, 0, 0) == 0; }},
-        {"kill the parent", [=] { return raw(SYS_kill, parent, 0) == 0; }},
-        {"kill all", [=] { return raw(SYS_kill, -parent, 0) == 0; }, false},
         {"tgkill the parent", [=] { return raw(SYS_tgkill, parent, parent, 0) == 0; }},
-        {"tkill the parent", [=] { return raw(SYS_tkill, parent, 0) == 0; }},
-        {"a descriptor of the parent", [=] { return raw(SYS_pidfd_open, parent, 0) >= 0; }},
-        {"the parent's memory",
-         [=] {
-             char there = 0;
-             iovec here{&there, 1};
-             return raw(SYS_process_vm_writev, parent, &here, 1, &vector, 1, 0) == 1;
-         },
-         false},
-        {"the parent's limits",
-         [=] {
-             rlimit limit{};
-             return raw(SYS_prlimit64, parent, RLIMIT_NOFILE, nullptr, &limit) == 0;
-         }},
-        {"the parent's priority", [=] { return raw(SYS_setpriority, PRIO_PROCESS, parent, 5) == 0; }, false},
+        {"the parent's limits", [=] { return raw(SYS_prlimit64, parent, RLIMIT_CPU, nullptr, &limit) == 0; }},
         // its own limits
-        {"raise a limit",
-         [=] {
-             const rlimit limit{0, 0};
-             return raw(SYS_prlimit64, 0, RLIMIT_CORE, &limit, nullptr) == 0;
-         }},
+        {"raise a limit", [=] { return raw(SYS_prlimit64, 0, RLIMIT_CORE, &limit, nullptr) == 0; }},
         {"become dumpable", [=] { return raw(SYS_prctl, PR_SET_DUMPABLE, 1) == 0; }},
         {"outlive the parent", [=] { return raw(SYS_prctl, PR_SET_PDEATHSIG, 0) == 0; }},
-        {"another filter", [=] { return raw(SYS_seccomp, SECCOMP_GET_ACTION_AVAIL, 0, &byte) == 0; }, false},
-        {"setuid", [=] { return raw(SYS_setuid, ::getuid()) == 0; }},
-        {"setsid", [=] { return raw(SYS_setsid) >= 0; }},
-        {"unshare", [=] { return raw(SYS_unshare, CLONE_NEWUSER) == 0; }, false},
-        {"mount", [=] { return raw(SYS_mount, "none", "/tmp", "tmpfs", 0, nullptr) == 0; }, false},
-        {"chroot", [=] { return raw(SYS_chroot, "/tmp") == 0; }, false},
-        {"personality", [=] { return raw(SYS_personality, 0xFFFFFFFF) >= 0; }},
-        // ways into the kernel
-        {"bpf", [=] { return raw(SYS_bpf, 0, nullptr, 0) >= 0; }, false},
-        {"perf",
-         [=] {
-             perf_event_attr counter{};
-             counter.size = sizeof(counter);
-             return raw(SYS_perf_event_open, &counter, 0, -1, -1, 0) >= 0;
-         },
-         false},
-        {"keys", [=] { return raw(SYS_keyctl, 0, -3, 1) >= 0; }, false},
-        {"faults in user space", [=] { return raw(SYS_userfaultfd, 1) >= 0; }, false},
-        {"shared memory", [=] { return raw(SYS_shmget, 0, kPage, 0600 | 01000) >= 0; }},
         {"terminal", [=] { return raw(SYS_ioctl, kLeakedFd, 0x5421, &byte) == 0; }},
-        {"inotify", [=] { return raw(SYS_inotify_init1, 0) >= 0; }},
     };
 }
 
@@ -356,12 +241,87 @@ bool kernelHasLandlock() {
     return ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) >= 1;
 }
 
+/// System calls that the filter allows, or answers with an error; those above try what of them could do harm.
+const std::set<long> kAnswered = {SYS_brk,
+                                  SYS_munmap,
+                                  SYS_mremap,
+                                  SYS_madvise,
+                                  SYS_mmap,
+                                  SYS_mprotect,
+                                  SYS_read,
+                                  SYS_readv,
+                                  SYS_pread64,
+                                  SYS_lseek,
+                                  SYS_close,
+                                  SYS_fstat,
+                                  SYS_poll,
+                                  SYS_ppoll,
+                                  SYS_futex,
+                                  SYS_set_robust_list,
+                                  SYS_rseq,
+                                  SYS_sched_yield,
+                                  SYS_sched_getaffinity,
+                                  SYS_rt_sigaction,
+                                  SYS_rt_sigprocmask,
+                                  SYS_rt_sigreturn,
+                                  SYS_restart_syscall,
+                                  SYS_getpid,
+                                  SYS_gettid,
+                                  SYS_exit,
+                                  SYS_exit_group,
+                                  SYS_clock_gettime,
+                                  SYS_gettimeofday,
+                                  SYS_clock_nanosleep,
+                                  SYS_nanosleep,
+                                  SYS_sysinfo,
+                                  SYS_uname,
+                                  SYS_getrandom,
+                                  SYS_prlimit64,
+                                  SYS_getrlimit,
+                                  SYS_clone3,
+                                  SYS_open,
+                                  SYS_openat,
+                                  SYS_stat,
+                                  SYS_lstat,
+                                  SYS_statx,
+                                  SYS_access,
+                                  SYS_faccessat,
+                                  SYS_faccessat2,
+                                  SYS_readlink,
+                                  SYS_readlinkat,
+                                  SYS_getcwd,
+                                  SYS_ioctl,
+                                  SYS_writev,
+                                  SYS_write};
+#ifdef RELIEF_SANITIZED
+const std::set<long> kOfSanitizers = {SYS_pipe, SYS_pipe2, SYS_sigaltstack, SYS_getrusage};
+#else
+const std::set<long> kOfSanitizers;
+#endif
+
+// Changes of files, sockets, other programs and processes, ways into the kernel: a number at a time.
+TEST(CompromisedWorker, EndsByEveryOtherSystemCall) {
+    ASSERT_TRUE(kernelHasSeccomp());
+    const Place place;
+    ASSERT_TRUE(place.ready());
+    for (const long call : {SYS_unlink, SYS_socket, SYS_execve, SYS_fork, SYS_ptrace, SYS_kill, SYS_dup}) {
+        ASSERT_FALSE(kAnswered.contains(call));
+    }
+    constexpr long kEnd = 470;  // of those that kernels have
+    for (long call = 0; call < kEnd; call = call == 334 ? 424 : call + 1) {
+        if (!kAnswered.contains(call) && !kOfSanitizers.contains(call)) {
+            EXPECT_EQ(ask(place, true, [call] { return raw(call, 0, 0, 0, 0, 0, 0) >= 0; }).signal, SIGSYS)
+                << call;
+        }
+    }
+}
+
 TEST(CompromisedWorker, ReachesNothing) {
     ASSERT_TRUE(kernelHasSeccomp());
     RecordProperty("landlock", kernelHasLandlock() ? "yes" : "no");
     const Place place;
     ASSERT_TRUE(place.ready());
-    const std::string names = place.names();
+    const std::set<fs::path> names = place.names();
     for (const Attempt& attempt : attempts(place)) {
         SCOPED_TRACE(attempt.name);
         if (!kernelHasLandlock() && std::string_view(attempt.name).starts_with("openat2 ")) {
@@ -397,29 +357,23 @@ TEST(CompromisedWorker, WouldReachAllThatWithoutTheSandbox) {
 TEST(CompromisedWorker, CanDoItsWork) {
     const Place place;
     ASSERT_TRUE(place.ready());
-    const auto can = [&](const std::function<bool()>& what) { return ask(place, true, what).code; };
-    EXPECT_EQ(can([] { return opens("inside", O_RDONLY); }), kDone);
-    EXPECT_EQ(can([] {
-                  pthread_t thread{};
-                  void* answer = nullptr;
-                  return ::pthread_create(
-                             &thread, nullptr, [](void* self) { return self; }, &answer) == 0 &&
-                         ::pthread_join(thread, &answer) == 0 && answer == &answer;
-              }),
-              kDone);
-    EXPECT_EQ(can([] {
-                  return sharesForWriting(kImportResultFd) && ::fallocate(kImportResultFd, 0, 0, 16) == 0 &&
-                         ::ftruncate(kImportResultFd, 16) == 0;
-              }),
-              kDone);
+    const auto can = [&](const std::function<bool()>& what) { return ask(place, true, what).code == kDone; };
+    EXPECT_TRUE(can([] { return opens("inside", O_RDONLY); }));
+    EXPECT_TRUE(can([] {
+        pthread_t thread{};
+        void* answer = nullptr;
+        return ::pthread_create(
+                   &thread, nullptr, [](void* self) { return self; }, &answer) == 0 &&
+               ::pthread_join(thread, &answer) == 0 && answer == &answer;
+    }));
+    EXPECT_TRUE(can([] {
+        return sharesForWriting(kImportResultFd) && ::fallocate(kImportResultFd, 0, 0, 16) == 0 &&
+               ::ftruncate(kImportResultFd, 16) == 0;
+    }));
     struct stat status {};
     EXPECT_EQ(::fstat(place.result(), &status), 0);
     EXPECT_EQ(status.st_size, 16);
-    EXPECT_EQ(can([] {
-                  return ::fcntl(kImportResultFd, F_ADD_SEALS,
-                                 F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0;
-              }),
-              kDone);
+    EXPECT_TRUE(can([] { return ::fcntl(kImportResultFd, F_ADD_SEALS, kSeals) == 0; }));
     const End aborted = ask(place, true, [] {
         ::abort();
         return false;
@@ -446,10 +400,7 @@ TEST(CompromisedWorker, HasTheLimitsOfTheKernel) {
                ::prctl(PR_GET_PDEATHSIG, &number) == 0 && number == SIGKILL;
     }));
 #ifndef RELIEF_SANITIZED
-    const auto maps = [](std::uint64_t size) {
-        return ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) !=
-               MAP_FAILED;
-    };
+    const auto maps = [](std::uint64_t size) { return mapped(size, PROT_READ | PROT_WRITE) != MAP_FAILED; };
     EXPECT_TRUE(holds([&] { return maps(kMemory / 2); }));
     EXPECT_EQ(ask(place, true, [&] { return maps(kMemory + 4096); }).code, kRefused);
 #endif

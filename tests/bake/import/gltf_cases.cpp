@@ -1,8 +1,9 @@
 #include "tests/bake/import/gltf_cases.h"
 
 #include <array>
-#include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
 #include <vector>
 
 #include "tests/bake/import/import_meshes.h"
@@ -19,19 +20,10 @@ std::string bytesOf(T value) {
     return bytes;
 }
 
+/// \param kind  componentType: numbers of 1, 1, 2, 2 and 4 bytes from 5120 on, and floats.
 std::string componentBytes(int kind, int value) {
-    switch (kind) {
-        case 5120:
-        case 5121:
-            return bytesOf(static_cast<std::uint8_t>(value));
-        case 5122:
-        case 5123:
-            return bytesOf(static_cast<std::uint16_t>(value));
-        case 5125:
-            return bytesOf(static_cast<std::uint32_t>(value));
-        default:
-            return bytesOf(static_cast<float>(value));
-    }
+    const std::size_t size = kind <= 5121 ? 1 : kind <= 5123 ? 2 : 4;
+    return kind == 5126 ? bytesOf(static_cast<float>(value)) : bytesOf(value).substr(0, size);
 }
 
 class Maker {
@@ -39,13 +31,8 @@ class Maker {
     explicit Maker(Dice& dice) : dice_(dice) {}
 
     GltfCase make() {
-        json_ = {{"asset", {{"version", "2.0"}, {"generator", "a test"}}},
-                 {"materials", Json::array({{{"name", "paint"}}, Json::object()})},
-                 {"buffers", Json::array()},
-                 {"bufferViews", Json::array()},
-                 {"accessors", Json::array()},
-                 {"meshes", Json::array()},
-                 {"nodes", Json::array()}};
+        json_["asset"] = {{"version", "2.0"}, {"generator", "a test"}};
+        json_["materials"] = Json::array({{{"name", "paint"}}, Json::object()});
         if (dice_.once(4)) {
             json_["asset"]["minVersion"] = "2.0";
         }
@@ -214,37 +201,22 @@ class Maker {
     Json place() {
         Json node = Json::object();
         if (dice_.once(3)) {
-            node["matrix"] = {dice_.from(-2, 3),
-                              dice_.from(-1, 1),
-                              0.25,
-                              0,
-                              0.5,
-                              2,
-                              dice_.from(-1, 1),
-                              0,
-                              0,
-                              -0.5,
-                              dice_.from(1, 2),
-                              0,
-                              dice_.from(-9, 9),
-                              dice_.from(-9, 9),
-                              3.5,
-                              1};
+            const int scale = dice_.from(-2, 3);
+            const int shear = dice_.from(-1, 1);
+            const int far = dice_.from(-9, 9);
+            node["matrix"] = {scale, shear, 0.25, 0, 0.5, 2, -shear, 0, 0, -0.5, 1.5, 0, far, -2, 3.5, 1};
             return node;
         }
         if (dice_.once(2)) {
             node["translation"] = {dice_.from(-20, 20), dice_.from(-20, 20), 0.125};
         }
         if (dice_.once(2)) {
-            std::array<double, 4> q{};
-            double square = 0;
-            for (double& x : q) {
-                x = dice_.from(-5, 5) + 0.5;
-                square += x * x;
+            glm::dvec4 q;
+            for (int k = 0; k < 4; ++k) {
+                q[k] = dice_.from(-5, 5) + 0.5;
             }
-            for (const double x : q) {
-                node["rotation"].push_back(x / std::sqrt(square));
-            }
+            q = glm::normalize(q);
+            node["rotation"] = {q.x, q.y, q.z, q.w};
         }
         if (dice_.once(2)) {
             node["scale"] = {dice_.from(1, 3), 0.5, dice_.once(3) ? -1 : 2};
@@ -294,20 +266,13 @@ class Maker {
 
 /// Another value, of any kind.
 Json otherValue(const Json& value, Dice& dice) {
-    const bool whole = value.is_number_integer();
-    const auto number = [&] { return value.get<int>(); };
-    const std::array<Json, 12> others = {nullptr,
-                                         "2",
-                                         -1,
-                                         0.5,
-                                         9007199254740993ULL,
-                                         Json::array(),
-                                         Json::object(),
-                                         true,
-                                         255,
-                                         whole ? Json(number() - 1) : Json(1e300),
-                                         whole ? Json(2 * number()) : Json(""),
-                                         whole ? Json(number() + 1) : Json(5126)};
+    if (value.is_number_integer() && dice.once(4)) {
+        const int number = value.get<int>();
+        return std::array{number - 1, number + 1, 2 * number}.at(dice.roll(3));
+    }
+    const std::array<Json, 12> others = {
+        nullptr, "2",   -1, 0.5, 9007199254740993ULL, Json::array(), Json::object(), true,
+        255,     1e300, "", 5126};
     return others.at(dice.roll(12));
 }
 
@@ -338,18 +303,13 @@ std::string mutateGltf(Json& document, Dice& dice) {
         std::advance(child, static_cast<std::ptrdiff_t>(dice.roll(at->size())));
         Json& next = *child;
         const bool end = !next.is_structured() || next.empty() || dice.once(4);
-        if (at->is_object()) {
-            path += "/" + child.key();
-        } else {
-            path += "/" + std::to_string(child - at->begin());
-        }
+        path += "/" + (at->is_object() ? child.key() : std::to_string(child - at->begin()));
         if (end && dice.once(5)) {
             at->erase(child);
             return path + " is gone";
         }
         if (end && at->is_array() && dice.once(3)) {
-            const Json again = next;
-            at->push_back(again);
+            at->push_back(Json(next));
             return path + " is there twice";
         }
         at = &next;

@@ -4,10 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <glm/glm.hpp>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -68,48 +66,6 @@ Numbers numbers(const Json& json, const char* name, Numbers otherwise) {
     return otherwise;
 }
 
-std::string percentDecoded(const std::string& text) {
-    std::string out;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '%') {
-            must(i + 2 < text.size() && std::isxdigit(text[i + 1]) && std::isxdigit(text[i + 2]), "%");
-            out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
-            i += 2;
-        } else {
-            out += text[i];
-        }
-    }
-    return out;
-}
-
-std::string base64Decoded(const std::string& text) {
-    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    must(text.size() % 4 == 0, "padding");
-    std::string out;
-    for (std::size_t i = 0; i < text.size(); i += 4) {
-        std::size_t group = 0;
-        std::size_t bytes = 3;
-        for (std::size_t k = 0; k < 4; ++k) {
-            const bool end = text[i + k] == '=';
-            must(!end || (i + 4 == text.size() && k >= 2 && text.back() == '='), "an = within");
-            bytes -= end ? 1 : 0;
-            const std::size_t digit = end ? 0 : digits.find(text[i + k]);
-            must(digit != std::string::npos, "no digit of base64");
-            group = 64 * group + digit;
-        }
-        for (std::size_t k = 0; k < bytes; ++k) {
-            out += static_cast<char>(group >> (16 - 8 * k) & 255U);
-        }
-    }
-    return out;
-}
-
-std::string contentsOf(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    must(file.is_open() && std::filesystem::is_regular_file(path), "no file");
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 /// Appendix C of the specification.
 Numbers valueAt(const Numbers& times, const Numbers& values, const std::string& curve, bool rotation,
                 double seconds) {
@@ -159,36 +115,9 @@ Numbers valueAt(const Numbers& times, const Numbers& values, const std::string& 
 
 class Book {
   public:
-    explicit Book(const std::filesystem::path& path) : path_(path) {
-        std::string text = contentsOf(path);
-        if (text.starts_with("glTF")) {
-            std::uint32_t header[5];
-            must(text.size() >= 20, "short");
-            std::memcpy(header, text.data(), 20);
-            must(header[1] == 2 && header[2] <= text.size() && header[4] == 0x4E4F534A &&
-                     header[3] <= header[2] - 20 && header[3] % 4 == 0,
-                 "header");
-            if (20 + header[3] < header[2]) {
-                std::uint32_t chunk[2];
-                must(28 + header[3] <= header[2], "chunk");
-                std::memcpy(chunk, text.data() + 20 + header[3], 8);
-                must(chunk[1] == 0x004E4942 && 28 + header[3] + chunk[0] == header[2], "chunk");
-                binary_ = text.substr(28 + header[3], chunk[0]);
-                has_binary_ = true;
-            }
-            text = text.substr(20, header[3]);
-        }
-        std::vector<std::set<std::string>> keys;
-        document_ = Json::parse(text, [&keys](int /*depth*/, Json::parse_event_t event, Json& parsed) {
-            if (event == Json::parse_event_t::object_start) {
-                keys.emplace_back();
-            } else if (event == Json::parse_event_t::object_end) {
-                keys.pop_back();
-            } else if (event == Json::parse_event_t::key) {
-                must(keys.back().insert(parsed.get<std::string>()).second, "a key twice");
-            }
-            return true;
-        });
+    explicit Book(const GltfCase& file) : document_(file.document), binary_(file.buffer) {
+        binary_.resize(file.container == GltfContainer::kBinary ? (binary_.size() + 3) / 4 * 4
+                                                                : binary_.size());
         must(document_.is_object(), "no document");
     }
 
@@ -282,10 +211,8 @@ class Book {
         const Place own = placeOf(node);
         const Place place = [above, own](const glm::dvec3& p) { return above(own(p)); };
         if (node.contains("mesh")) {
-            const Json* skin = nullptr;
-            if (node.contains("skin")) {
-                skin = &element(document_, "skins", whole(node.at("skin")));
-            }
+            const Json* skin =
+                node.contains("skin") ? &element(document_, "skins", whole(node.at("skin"))) : nullptr;
             const Json& mesh = element(document_, "meshes", whole(node.at("mesh")));
             const Numbers weights = node.value("weights", mesh.value("weights", Numbers(1000)));
             for (const Json& primitive : list(mesh, "primitives")) {
@@ -340,12 +267,11 @@ class Book {
             double all = 0;
             for (std::size_t k = 4 * i; k < 4 * i + 4; ++k) {
                 must(weights[k] >= 0, "a weight");
+                all += weights[k];
                 if (weights[k] > 0 && by[k] >= static_cast<double>(places.size())) {
                     sum = glm::dvec3(std::nan(""));  // wrong where a triangle uses it
-                    all += weights[k];
                 } else if (weights[k] > 0) {
                     sum += weights[k] * places.at(static_cast<std::size_t>(by[k]))(points[i]);
-                    all += weights[k];
                 }
             }
             must(all > 1e-5, "no weight");
@@ -382,10 +308,8 @@ class Book {
         } else {
             std::transform(points.begin(), points.end(), points.begin(), place);
         }
-        std::vector<std::size_t> corners;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            corners.push_back(i);
-        }
+        std::vector<std::size_t> corners(points.size());
+        std::iota(corners.begin(), corners.end(), std::size_t{0});
         if (primitive.contains("indices")) {
             corners.clear();
             for (const double index : accessor(whole(primitive.at("indices")), Use::kIndices)) {
@@ -416,11 +340,10 @@ class Book {
         const std::string type = json.at("type");
         const std::map<std::string, std::size_t> counts = {
             {"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
-        must(use == Use::kKeys || type == (use == Use::kPositions  ? "VEC3"
-                                           : use == Use::kIndices  ? "SCALAR"
-                                           : use == Use::kMatrices ? "MAT4"
-                                                                   : "VEC4"),
-             "type");
+        const std::map<Use, std::string> types = {{Use::kPositions, "VEC3"}, {Use::kIndices, "SCALAR"},
+                                                  {Use::kMatrices, "MAT4"},  {Use::kJoints, "VEC4"},
+                                                  {Use::kWeights, "VEC4"},   {Use::kKeys, type}};
+        must(types.at(use) == type, "type");
         const std::size_t components = counts.at(type);
         const std::size_t kind = whole(json.at("componentType"));
         const std::size_t count = whole(json.at("count"));
@@ -455,16 +378,11 @@ class Book {
                 }
             }
         }
+        const std::map<std::size_t, double> largest = {
+            {5120, 127.0}, {5121, 255.0}, {5122, 32767.0}, {5123, 65535.0}, {5125, 4294967295.0}};
         for (double& value : values) {
-            if (use == Use::kIndices) {
-                must(value != (kind == 5121 ? 255.0 : kind == 5123 ? 65535.0 : 4294967295.0), "restart");
-            } else if (normalized) {
-                value = std::max(value / (kind == 5120   ? 127.0
-                                          : kind == 5121 ? 255.0
-                                          : kind == 5122 ? 32767.0
-                                                         : 65535.0),
-                                 -1.0);
-            }
+            must(use != Use::kIndices || value != largest.at(kind), "restart");
+            value = normalized ? std::max(value / largest.at(kind), -1.0) : value;
         }
         return values;
     }
@@ -476,10 +394,12 @@ class Book {
         const std::size_t size = kind <= 5121 ? 1 : kind <= 5123 ? 2 : 4;
         const std::size_t stride = whole(view, "byteStride", size * components);
         must(stride >= size * components && (strided || stride == size * components), "stride");
-        const std::string buffer = bufferOf(whole(view.at("buffer")));
+        const std::size_t buffer = whole(view.at("buffer"));
+        const std::size_t most = whole(element(document_, "buffers", buffer).at("byteLength"));
+        must(buffer == 0 && most <= binary_.size(), "no such buffer, or a short one");
         const std::size_t from = whole(view, "byteOffset", 0);
         const std::size_t length = whole(view.at("byteLength"));
-        must(from + length <= buffer.size(), "a view behind its buffer");
+        must(from + length <= most, "a view behind its buffer");
         const std::size_t offset = whole(owner, "byteOffset", 0);
         must(count < 100000 && (count == 0 || offset + (count - 1) * stride + size * components <= length),
              "an accessor behind its view");
@@ -487,7 +407,7 @@ class Book {
         for (std::size_t i = 0; i < count * components; ++i) {
             const std::size_t at = from + offset + i / components * stride + i % components * size;
             std::uint32_t bits = 0;
-            std::memcpy(&bits, buffer.data() + at, size);
+            std::memcpy(&bits, binary_.data() + at, size);
             float real = 0;
             std::memcpy(&real, &bits, 4);
             values.push_back(kind == 5126   ? static_cast<double>(real)
@@ -498,49 +418,20 @@ class Book {
         return values;
     }
 
-    std::string bufferOf(std::size_t index) {
-        const Json& buffer = element(document_, "buffers", index);
-        const std::size_t length = whole(buffer.at("byteLength"));
-        std::string bytes = binary_;
-        if (buffer.contains("uri")) {
-            const std::string uri = buffer.at("uri").get<std::string>();
-            const std::size_t comma = uri.find(";base64,");
-            if (uri.starts_with("data:")) {
-                must(comma != std::string::npos, "no base64");
-                bytes = base64Decoded(uri.substr(comma + 8));
-            } else {
-                must(!uri.empty() && uri.find(':') == std::string::npos, "a scheme");
-                const std::filesystem::path relative = percentDecoded(uri);
-                for (const auto& part : relative) {
-                    must(part != ".." && part != "/", "outside");
-                }
-                bytes = contentsOf(path_.parent_path() / relative);
-            }
-        } else {
-            must(has_binary_ && index == 0, "no bytes");
-        }
-        must(bytes.size() >= length, "a short buffer");
-        bytes.resize(length);
-        return bytes;
-    }
-
-    std::filesystem::path path_;
     Json document_;
     std::string binary_;
-    bool has_binary_ = false;
     std::vector<int> parents_;
     std::vector<Corners> triangles_;
 };
 
 }  // namespace
 
-std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path,
-                                       const std::optional<GltfMoment>& moment) {
-    return Book(path).read(moment);
+std::vector<Corners> readGltfByTheBook(const GltfCase& file, const std::optional<GltfMoment>& moment) {
+    return Book(file).read(moment);
 }
 
-std::vector<double> gltfLengthsByTheBook(const std::filesystem::path& path) {
-    return Book(path).lengths();
+std::vector<double> gltfLengthsByTheBook(const GltfCase& file) {
+    return Book(file).lengths();
 }
 
 }  // namespace relief::test

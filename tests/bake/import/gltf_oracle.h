@@ -1,12 +1,13 @@
-// Another reader of glTF, as short as the specification allows and for small files: what bake/import is compared with.
+// Another reader of glTF, as short as the specification allows, for small files with one buffer: what bake/import is compared with.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
+
+#include "tests/bake/import/gltf_cases.h"
 
 namespace relief::test {
 
@@ -20,10 +21,10 @@ struct GltfMoment {
 /// All triangles of the file's scene, in the order in which the file has them, morphed by its weights.
 /// \param moment  nullopt: the nodes as the file has them.
 /// Throws std::exception for whatever is not as the specification says, as far as triangles hang on it.
-[[nodiscard]] std::vector<Corners> readGltfByTheBook(const std::filesystem::path& path,
+[[nodiscard]] std::vector<Corners> readGltfByTheBook(const GltfCase& file,
                                                      const std::optional<GltfMoment>& moment = {});
 
 /// Seconds that each animation lasts.
-[[nodiscard]] std::vector<double> gltfLengthsByTheBook(const std::filesystem::path& path);
+[[nodiscard]] std::vector<double> gltfLengthsByTheBook(const GltfCase& file);
 
 }  // namespace relief::test

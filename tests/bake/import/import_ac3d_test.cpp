@@ -59,37 +59,33 @@ TEST(Ac3d, SurfacesOfEveryKind) {
         "SURF 0x14\nmat 0\nrefs 10\n0 0 0 0 0\n1 0 1 0 1\n2 1 0 1 0\n3 1 1 1 1\n3 1 1\n2 1 0\n2 1 0\n3 1 "
         "1\n4 1 0\n5 1 1\n"
         "SURF 0x1\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nSURF 0x2\nmat 0\nrefs 2\n0 0 0\n1 0 0\nkids 0\n";
-    const Result<TriangleMesh> mesh = importText("a.ac", kHead + "OBJECT world\r\nkids 1\r\n" + strip);
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->triangles.size(), 4U);
+    const TriangleMesh mesh = imported("a.ac", kHead + "OBJECT world\r\nkids 1\r\n" + strip);
+    ASSERT_EQ(mesh.triangles.size(), 4U);
     double area = 0.0;
     for (std::uint32_t t = 0; t < 4; ++t) {
-        const auto [a, b, c] = cornersOf(*mesh, t);
+        const auto [a, b, c] = cornersOf(mesh, t);
         const glm::dvec3 normal = glm::cross(glm::dvec3(b - a), glm::dvec3(c - a));
         EXPECT_GT(normal.y, 0.5) << "triangle " << t;
         area += 0.5 * normal.y;
     }
     EXPECT_NEAR(area, 3.0, 1e-6);
-    EXPECT_TRUE(mesh->warnings.size() == 1 && warns(*mesh, "left out 2 lines"));
+    EXPECT_TRUE(mesh.warnings.size() == 1 && warns(mesh, "left out 2 lines"));
 }
 
 TEST(Ac3d, NamesAndMaterialsCanBeSelected) {
     ImportOptions options;
     options.names = {"red paint", "big tower"};
-    const Result<TriangleMesh> mesh =
-        importText("n.ac", kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower"), options);
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    EXPECT_EQ(mesh->marks, std::vector<std::uint8_t>(4, 2));
+    const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("big tower");
+    EXPECT_EQ(imported("n.ac", one, options).marks, std::vector<std::uint8_t>(4, 2));
 }
 
 TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
     const std::string one = kHead + "OBJECT world\nkids 1\n" + tetrahedron("t");
-    const Result<TriangleMesh> fewer =
-        importText("a.ac", kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
-    ASSERT_TRUE(fewer) << fewer.error().message;
-    EXPECT_EQ(fewer->warnings.size(), 2U);
-    EXPECT_TRUE(warns(*fewer, "it has 2 objects fewer than its 'kids' announce"));
-    EXPECT_TRUE(warns(*fewer, "1 of its objects are shown subdivided"));
+    const TriangleMesh fewer =
+        imported("a.ac", kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
+    EXPECT_EQ(fewer.warnings.size(), 2U);
+    EXPECT_TRUE(warns(fewer, "it has 2 objects fewer than its 'kids' announce"));
+    EXPECT_TRUE(warns(fewer, "1 of its objects are shown subdivided"));
     for (std::size_t length = kHead.size(); length + 8 < one.size(); length += 7) {
         ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "of " << length << " bytes";
     }
@@ -100,24 +96,17 @@ TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
     const auto with = [&](const std::string& from, const std::string& to) {
         return std::string(one).replace(one.find(from), from.size(), to);
     };
-    struct Case {
-        std::string text;
-        const char* words;
-        ErrorCode code = ErrorCode::kInvalidInput;
-    };
-    for (const Case& c :
-         {Case{with("1 0 0\n", "1 zero 0\n"), "line 10: 'zero'"},
-          Case{with("2 0 1\n", "4 0 1\n"), "the vertex '4', but its object has 4, from 0"},
-          Case{with("SURF 0x0", "SURF green"), "'green' is no number such as 0x20"},
-          Case{with("numvert 4", "numvert 5"), "no number"},
-          Case{with("numvert 4", "numvert 99999999999"), "", ErrorCode::kLimit},
-          Case{with("kids 1", "kids many"), "'many' is no number of kids"},
-          Case{with("refs 3", "refs 4000000000"), "line "}, Case{with("\nkids 0", "\n"), "no 'kids'"},
-          Case{kHead, "no triangles"}, Case{"AC4D\n", "does not begin with AC3D"},
-          Case{deep + tetrahedron("t"), "", ErrorCode::kLimit}}) {
-        SCOPED_TRACE(c.words);
-        expectRefused(importText("a.ac", c.text), c.words, c.code);
-    }
+    expectWrong("a.ac", {{with("1 0 0\n", "1 zero 0\n"), "line 10: 'zero'"},
+                         {with("2 0 1\n", "4 0 1\n"), "the vertex '4', but its object has 4, from 0"},
+                         {with("SURF 0x0", "SURF green"), "'green' is no number such as 0x20"},
+                         {with("numvert 4", "numvert 5"), "no number"},
+                         {with("numvert 4", "numvert 99999999999"), "", ErrorCode::kLimit},
+                         {with("kids 1", "kids many"), "'many' is no number of kids"},
+                         {with("refs 3", "refs 4000000000"), "line "},
+                         {with("\nkids 0", "\n"), "no 'kids'"},
+                         {kHead, "no triangles"},
+                         {"AC4D\n", "does not begin with AC3D"},
+                         {deep + tetrahedron("t"), "", ErrorCode::kLimit}});
 }
 
 }  // namespace

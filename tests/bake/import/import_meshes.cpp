@@ -9,6 +9,18 @@
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
+namespace {
+
+constexpr std::array<float, 12> kCorners = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
+constexpr std::array<std::uint16_t, 12> kFaces = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+
+template <class Values>
+std::string bytesOf(const Values& values) {
+    return {reinterpret_cast<const char*>(values.data()), sizeof(values[0]) * values.size()};
+}
+
+}  // namespace
+
 std::string tetrahedronObj() {
     return "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 }
@@ -24,25 +36,29 @@ std::string tetrahedronOff() {
 }
 
 std::string tetrahedronStl() {
-    const std::array<const char*, 4> corners = {"vertex 0 0 0\n", "vertex 1 0 0\n", "vertex 0 2 0\n",
-                                                "vertex 0 0 3\n"};
-    constexpr std::array<std::array<std::size_t, 3>, 4> kFaces = {
-        {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    constexpr std::array kWords = {"0 0 0", "1 0 0", "0 2 0", "0 0 3"};
     std::string text = "solid t\n";
-    for (const auto& face : kFaces) {
+    for (std::size_t i = 0; i < kFaces.size(); i += 3) {
         text += "facet normal 0 0 0\nouter loop\n";
-        for (const std::size_t corner : face) {
-            text += corners.at(corner);
+        for (std::size_t k = i; k < i + 3; ++k) {
+            text += std::string("vertex ") + kWords.at(kFaces[k]) + "\n";
         }
         text += "endloop\nendfacet\n";
     }
     return text + "endsolid t\n";
 }
 
+std::string tetrahedronBinaryStl(const std::string& header) {
+    std::string text = header + std::string(80 - header.size(), 'x') + bytesOf(std::array{std::uint32_t{4}});
+    for (std::size_t i = 0; i < kFaces.size(); ++i) {
+        text += std::string(i % 3 == 0 ? 12 : 0, '\0');
+        text.append(reinterpret_cast<const char*>(&kCorners.at(3U * kFaces[i])), 12);
+        text += i % 3 == 2 ? "\1\2" : "";
+    }
+    return text;
+}
+
 std::string tetrahedron3ds(float master_scale) {
-    const auto bytesOf = [](const auto& values) {
-        return std::string(reinterpret_cast<const char*>(values.data()), sizeof(values[0]) * values.size());
-    };
     const auto chunk = [&](std::uint16_t id, const std::string& contents) {
         const auto size = static_cast<std::uint32_t>(contents.size() + 6);
         std::string text(6, '\0');
@@ -50,13 +66,10 @@ std::string tetrahedron3ds(float master_scale) {
         std::memcpy(text.data() + 2, &size, 4);
         return text + contents;
     };
-    const std::array<std::uint16_t, 1> four = {4};
-    const std::array<float, 12> corners = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
+    const std::string four("\4\0", 2);
     const std::array<std::uint16_t, 16> faces = {0, 2, 1, 0, 0, 1, 3, 0, 1, 2, 3, 0, 0, 3, 2, 0};
-    const std::string mesh =
-        chunk(0x4110, bytesOf(four) + bytesOf(corners)) + chunk(0x4120, bytesOf(four) + bytesOf(faces));
-    const std::array<float, 1> scale = {master_scale};
-    const std::string scaled = master_scale == 1.0F ? "" : chunk(0x0100, bytesOf(scale));
+    const std::string mesh = chunk(0x4110, four + bytesOf(kCorners)) + chunk(0x4120, four + bytesOf(faces));
+    const std::string scaled = master_scale == 1.0F ? "" : chunk(0x0100, bytesOf(std::array{master_scale}));
     return chunk(0x4D4D, chunk(0x3D3D, scaled + chunk(0x4000, std::string("t\0", 2) + chunk(0x4100, mesh))));
 }
 
@@ -90,12 +103,7 @@ std::string tetrahedronFbx(int up, int sign, const std::string& unit) {
 }
 
 std::string tetrahedronBuffer() {
-    const std::array<float, 12> positions = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
-    const std::array<std::uint16_t, 12> indices = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
-    std::string buffer(sizeof(positions) + sizeof(indices), '\0');
-    std::memcpy(buffer.data(), positions.data(), sizeof(positions));
-    std::memcpy(buffer.data() + sizeof(positions), indices.data(), sizeof(indices));
-    return buffer;
+    return bytesOf(kCorners) + bytesOf(kFaces);
 }
 
 std::string tetrahedronGltf(const GltfParts& parts) {
@@ -107,6 +115,15 @@ std::string tetrahedronGltf(const GltfParts& parts) {
            R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},)"
            R"({"buffer":0,"byteOffset":48,"byteLength":24}],"buffers":[{"byteLength":72,"uri":")" +
            uri + R"("}]})";
+}
+
+std::string manyNodes(std::size_t count) {
+    GltfParts parts;
+    for (std::size_t i = 1; i < count; ++i) {
+        parts.nodes += R"(,{"mesh":0})";
+        parts.roots += "," + std::to_string(i);
+    }
+    return tetrahedronGltf(parts);
 }
 
 std::string base64(std::string_view bytes) {
@@ -144,11 +161,37 @@ Result<TriangleMesh> importTextInWorker(const std::string& name, std::string_vie
     return importMeshInWorker(folder.write(name, contents), options);
 }
 
+TriangleMesh imported(const std::string& name, std::string_view contents, const ImportOptions& options) {
+    Result<TriangleMesh> mesh = importText(name, contents, options);
+    EXPECT_TRUE(mesh) << name << ": " << mesh.error().message;
+    return mesh ? std::move(*mesh) : TriangleMesh();
+}
+
 void expectFault(const Error& error, const std::string& words, ErrorCode code) {
     EXPECT_EQ(error.code, code) << error.message;
     EXPECT_NE(error.message.find(words), std::string::npos) << error.message << "\ninstead of " << words;
     EXPECT_NE(error.message.find("; "), std::string::npos) << "no cure: " << error.message;
     EXPECT_EQ(error.message.find_first_of("\n\r\x1b"), std::string::npos) << error.message;
+}
+
+void expectWrong(const std::string& name, const std::vector<Wrong>& cases) {
+    for (const Wrong& wrong : cases) {
+        SCOPED_TRACE(wrong.words + " in " + wrong.text);
+        const Result<TriangleMesh> mesh = importText(name, wrong.text);
+        expectRefused(mesh, wrong.words, wrong.code);
+        EXPECT_TRUE(mesh || mesh.error().message.find(name) != std::string::npos);
+    }
+}
+
+void expectLiesRefused(const TriangleMesh& honest,
+                       const std::vector<std::function<void(TriangleMesh&)>>& lies,
+                       const std::function<bool(TriangleMesh)>& accepts) {
+    EXPECT_TRUE(accepts(honest));
+    for (std::size_t i = 0; i < lies.size(); ++i) {
+        TriangleMesh answer = honest;
+        lies[i](answer);
+        EXPECT_FALSE(accepts(std::move(answer))) << "lie " << i;
+    }
 }
 
 bool warns(const TriangleMesh& mesh, const std::string& words) {

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bake/import/mesh_import.h"
 
@@ -15,6 +17,7 @@ namespace relief::test {
 [[nodiscard]] std::string tetrahedronPly();
 [[nodiscard]] std::string tetrahedronOff();
 [[nodiscard]] std::string tetrahedronStl();
+[[nodiscard]] std::string tetrahedronBinaryStl(const std::string& header);
 /// \param master_scale  1 is none.
 [[nodiscard]] std::string tetrahedron3ds(float master_scale = 1.0F);
 /// \param asset  the elements <unit> and <up_axis>, or nothing.
@@ -33,6 +36,8 @@ struct GltfParts {
     std::string uri{};   ///< of the buffer; the bytes themselves by default
 };
 [[nodiscard]] std::string tetrahedronGltf(const GltfParts& parts = {});
+/// The tetrahedron in so many nodes.
+[[nodiscard]] std::string manyNodes(std::size_t count);
 /// The 72 bytes of its buffer.
 [[nodiscard]] std::string tetrahedronBuffer();
 [[nodiscard]] std::string base64(std::string_view bytes);
@@ -46,6 +51,10 @@ struct GltfParts {
 [[nodiscard]] Result<TriangleMesh> importTextInWorker(const std::string& name, std::string_view contents,
                                                       const ImportOptions& options = {});
 
+/// By importText; it must be read.
+[[nodiscard]] TriangleMesh imported(const std::string& name, std::string_view contents,
+                                    const ImportOptions& options = {});
+
 /// Of one line, with a cure, which holds these words.
 void expectFault(const Error& error, const std::string& words, ErrorCode code = ErrorCode::kInvalidInput);
 template <class T>
@@ -57,6 +66,18 @@ void expectRefused(const Result<T>& result, const std::string& words,
         expectFault(result.error(), words, code);
     }
 }
+/// A file that is refused, and words of its error.
+struct Wrong {
+    std::string text;
+    std::string words;
+    ErrorCode code = ErrorCode::kInvalidInput;
+};
+/// Files of this name, which their errors have.
+void expectWrong(const std::string& name, const std::vector<Wrong>& cases);
+/// What a worker answers that has been taken over. \param accepts  whether an answer is believed.
+void expectLiesRefused(const TriangleMesh& honest,
+                       const std::vector<std::function<void(TriangleMesh&)>>& lies,
+                       const std::function<bool(TriangleMesh)>& accepts);
 /// Whether one of its warnings holds these words.
 [[nodiscard]] bool warns(const TriangleMesh& mesh, const std::string& words);
 /// Negative where triangles look inwards.

@@ -58,24 +58,15 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
         EXPECT_EQ(read->warnings, raw.warnings);
         EXPECT_EQ(read->unused_vertices, raw.unused_vertices);
     }
-    const std::vector<std::function<void(TriangleMesh&)>> lies = {
-        [](TriangleMesh& lie) { lie.unused_vertices = std::numeric_limits<std::uint64_t>::max(); },
-        [](TriangleMesh& lie) {
-            lie.marks = {1, 2};
-        },                                            // a mark without a triangle
-        [](TriangleMesh& lie) { lie.labels = {2}; },  // a label without a name
-        [](TriangleMesh& lie) {
-            lie.labels = {0, 0};
-        },  // or without a triangle
-        [](TriangleMesh& lie) {
-            lie.labels = {0, 1};
+    expectLiesRefused(
+        raw,
+        {
+            [](TriangleMesh& lie) { lie.unused_vertices = std::numeric_limits<std::uint64_t>::max(); },
+            [](TriangleMesh& lie) { lie.marks.resize(2, 1); },   // a mark without a triangle
+            [](TriangleMesh& lie) { lie.labels = {2}; },         // a label without a name
+            [](TriangleMesh& lie) { lie.labels.resize(2, 0); },  // or without a triangle
         },
-    };
-    for (std::size_t i = 0; i < lies.size(); ++i) {
-        TriangleMesh lie = raw;
-        lies[i](lie);
-        EXPECT_FALSE(readImportMessage(bytesOf(lie))) << i;
-    }
+        [](const TriangleMesh& lie) { return readImportMessage(bytesOf(lie)).has_value(); });
     const Result<TriangleMesh> error = readImportMessage(bytesOf(fail(ErrorCode::kLimit, "two\nlines \x1b")));
     ASSERT_FALSE(error);
     EXPECT_EQ(error.error().code, ErrorCode::kLimit);
@@ -89,7 +80,7 @@ TEST(ImportMessage, EveryTruncationAndExtensionIsRefused) {
         EXPECT_FALSE(readImportMessage(cut)) << size;
     }
     std::vector<std::byte> longer = whole;
-    longer.push_back(std::byte{0});
+    longer.emplace_back();
     EXPECT_FALSE(readImportMessage(longer));
 }
 
@@ -121,29 +112,24 @@ TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
     const TemporaryFolder folder;
     const Result<ImportSource> source = ImportSource::open(folder.write("t.obj", tetrahedronObj()));
     ASSERT_TRUE(source);
-    ASSERT_TRUE(source->finish(rawTriangle(), kNames));
-    const std::vector<std::function<void(TriangleMesh&)>> lies = {
-        [](TriangleMesh& raw) { raw.unit = "parsec"; },
-        [](TriangleMesh& raw) { raw.dependencies = {"/etc/passwd"}; },
-        [](TriangleMesh& raw) { raw.dependencies = {"a/../../x"}; },
-        [](TriangleMesh& raw) { raw.dependencies = {""}; },
-        [](TriangleMesh& raw) { raw.dependencies = {std::string("a\0b", 3)}; },
-        [](TriangleMesh& raw) { raw.dependencies.clear(); },
-        [](TriangleMesh& raw) { raw.dependency_hashes = {"short"}; },
-        [](TriangleMesh& raw) { raw.triangles[0].z = 3; },
-        [](TriangleMesh& raw) { raw.triangles.clear(); },
-        [](TriangleMesh& raw) { raw.marks = {3}; },
-        [](TriangleMesh& raw) { raw.marks.clear(); },
-        [](TriangleMesh& raw) { raw.positions[1].x = std::numeric_limits<float>::quiet_NaN(); },
-    };
-    for (std::size_t i = 0; i < lies.size(); ++i) {
-        TriangleMesh raw = rawTriangle();
-        lies[i](raw);
-        const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
-        ASSERT_FALSE(mesh) << "lie " << i;
-        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(mesh.error().message.find("t.obj"), std::string::npos) << mesh.error().message;
-    }
+    expectLiesRefused(
+        rawTriangle(),
+        {[](TriangleMesh& raw) { raw.unit = "parsec"; },
+         [](TriangleMesh& raw) { raw.dependencies = {"/etc/passwd"}; },
+         [](TriangleMesh& raw) { raw.dependencies = {"a/../../x"}; },
+         [](TriangleMesh& raw) { raw.dependencies = {""}; },
+         [](TriangleMesh& raw) { raw.dependencies = {std::string("a\0b", 3)}; },
+         [](TriangleMesh& raw) { raw.dependencies.clear(); },
+         [](TriangleMesh& raw) { raw.dependency_hashes = {"short"}; },
+         [](TriangleMesh& raw) { raw.triangles[0].z = 3; }, [](TriangleMesh& raw) { raw.triangles.clear(); },
+         [](TriangleMesh& raw) { raw.marks = {3}; }, [](TriangleMesh& raw) { raw.marks.clear(); },
+         [](TriangleMesh& raw) { raw.positions[1].x = std::numeric_limits<float>::quiet_NaN(); }},
+        [&](TriangleMesh raw) {
+            const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
+            EXPECT_TRUE(mesh || mesh.error().code == ErrorCode::kInvalidInput);
+            EXPECT_TRUE(mesh || mesh.error().message.find("t.obj") != std::string::npos);
+            return mesh.has_value();
+        });
     EXPECT_FALSE(source->finish(rawTriangle())) << "marks that nobody asked for";
 }
 
@@ -157,10 +143,10 @@ TEST(ImportSource, FilesAreNamedAsTheyCanBeOpenedAndSorted) {
     raw.dependency_hashes = {std::string(32, 'f'), std::string(32, '0')};
     const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
     ASSERT_TRUE(mesh);
-    const std::vector<std::string> files = {path.string(), folder.path() / "a.mtl", folder.path() / "z.mtl"};
-    EXPECT_EQ(mesh->dependencies, files);
-    const std::vector<std::string> hashes = {mesh->content_hash, std::string(32, '0'), std::string(32, 'f')};
-    EXPECT_EQ(mesh->dependency_hashes, hashes);
+    using Words = std::vector<std::string>;
+    EXPECT_EQ(mesh->dependencies, Words({path, folder.path() / "a.mtl", folder.path() / "z.mtl"}));
+    EXPECT_EQ(mesh->dependency_hashes,
+              Words({mesh->content_hash, std::string(32, '0'), std::string(32, 'f')}));
     EXPECT_EQ(mesh->warnings, std::vector<std::string>{"t.obj: something"});
 }
 

@@ -30,16 +30,15 @@ struct Expected {
 void expectRead(const std::vector<Expected>& cases) {
     for (const Expected& c : cases) {
         SCOPED_TRACE(c.name);
-        const Result<TriangleMesh> mesh = importText(c.name, c.text);
-        ASSERT_TRUE(mesh) << mesh.error().message;
+        const TriangleMesh mesh = imported(c.name, c.text);
         Lines warnings;
-        for (const std::string& warning : mesh->warnings) {
+        for (const std::string& warning : mesh.warnings) {
             warnings.push_back(warning.substr(warning.find(": ") + 2));
         }
         EXPECT_EQ(warnings, c.warnings);
-        EXPECT_EQ(mesh->unused_vertices, c.unused_vertices);
-        EXPECT_EQ(mesh->triangles.size(), c.triangles);
-        EXPECT_LE(mesh->bounds.max.z, 3.0F) << "an unused vertex widens the box";
+        EXPECT_EQ(mesh.unused_vertices, c.unused_vertices);
+        EXPECT_EQ(mesh.triangles.size(), c.triangles);
+        EXPECT_LE(mesh.bounds.max.z, 3.0F) << "an unused vertex widens the box";
     }
 }
 
@@ -50,12 +49,9 @@ TEST(ImportParts, WordsForEachCount) {
         return warnings;
     };
     EXPECT_EQ(warning({.polygons = 1, .vertices = 3}), Lines());
-    EXPECT_EQ(warning({.polygons = 1, .lines = 1}), Lines{"left out 1 line: only polygons have a surface"});
     EXPECT_EQ(
-        warning({.polygons = 1, .lines = 2, .points = 1, .free_forms = 3}),
-        Lines{"left out 2 lines, 1 point and 3 free-form curves or surfaces: only polygons have a surface"});
-    EXPECT_EQ(warning({.polygons = 1, .meshes = 3, .unplaced = 2}),
-              Lines{"left out 2 of its 3 meshes: no node of its scene places them"});
+        warning({.polygons = 1, .lines = 1, .points = 1, .free_forms = 3}),
+        Lines{"left out 1 line, 1 point and 3 free-form curves or surfaces: only polygons have a surface"});
     // A tenth of the vertices may lie loose; those of lines are none of them.
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 90, .loose = 10}), Lines());
     EXPECT_EQ(warning({.polygons = 9, .vertices = 100, .unused = 11, .loose = 11}).size(), 1U);
@@ -139,12 +135,12 @@ TEST(ImportParts, LinesPointsAndFreeFormsAreCountedOrRefused) {
                 {"two.gltf", two, {"left out 1 of its 2 meshes: no node of its scene places them"}},
                 {"all.gltf", all, {}, 0, 8}});
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    expectRefused(importText("l.obj", corners + "l 1 2 3\n"), "no triangles, but 2 lines");
-    expectRefused(importText("p.obj", corners + "p 1 2 3\n"), "no triangles, but 3 points");
-    expectRefused(importText("v.obj", corners), "3 vertices but no faces");
-    expectRefused(importText("s.obj", corners + "v 1 1 0\n" + patch), "1 free-form curve or surface");
-    expectRefused(importText("p.gltf", gltf(part + "0")), "no triangles, but 4 points");
-    expectRefused(importText("l.gltf", gltf(part + "3")), "no triangles, but 3 lines");
+    expectWrong("l.obj", {{corners + "l 1 2 3\n", "no triangles, but 2 lines"},
+                          {corners + "p 1 2 3\n", "no triangles, but 3 points"},
+                          {corners, "3 vertices but no faces"},
+                          {corners + "v 1 1 0\n" + patch, "1 free-form curve or surface"}});
+    expectWrong("l.gltf", {{gltf(part + "0"), "no triangles, but 4 points"},
+                           {gltf(part + "3"), "no triangles, but 3 lines"}});
 }
 
 }  // namespace

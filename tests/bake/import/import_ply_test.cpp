@@ -66,38 +66,39 @@ class PlyWriter {
 constexpr const char* kBoxHeader =
     "element vertex 8\nproperty float x\nproperty uchar red\nproperty double y\nproperty float z";
 
-PlyWriter& putBoxCorners(PlyWriter& ply) {
-    for (int i = 0; i < 8; ++i) {
-        ply.put(static_cast<float>(i & 1)).put(std::uint8_t{7}).put(static_cast<double>(i & 2));
-        ply.put(i < 4 ? 0.0F : 3.0F).end();
-    }
-    return ply;
-}
-
 // Its sides in three strips, its ends in two. The first two are of odd length: a turn that outlives its strip would wind
 // the next inwards.
 const std::vector<std::int64_t> kBoxStrip = {0, 1, 4, 5,  6, 7, 2, -1, 2,  7, 3, -1, 2,
                                              3, 0, 1, -1, 0, 4, 2, 6,  -1, 1, 3, 5,  7};
 
-std::string boxOfTriangles() {
-    // The same triangles in the same order, each written out.
-    const std::vector<std::vector<std::int64_t>> triangles = {{0, 1, 4}, {4, 1, 5}, {4, 5, 6}, {6, 5, 7},
-                                                              {6, 7, 2}, {2, 7, 3}, {2, 3, 0}, {0, 3, 1},
-                                                              {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {5, 3, 7}};
-    PlyWriter ply("binary_little_endian");
-    ply.line(kBoxHeader).line("element face 12\nproperty list uchar int vertex_indices").line("end_header");
-    putBoxCorners(ply);
-    for (const std::vector<std::int64_t>& triangle : triangles) {
-        ply.list<std::uint8_t, std::int32_t>(triangle);
-    }
-    return ply.text();
-}
-
-std::string boxOfStrips(const std::string& encoding) {
+/// \param triangles  the same, in the same order, each written out.
+std::string boxOf(const std::string& encoding, bool triangles = false) {
     PlyWriter ply(encoding);
     ply.line("obj_info a box").line(kBoxHeader);
-    ply.line("element tristrips 1\nproperty list int int vertex_indices").line("end_header");
-    putBoxCorners(ply).list<std::int32_t, std::int32_t>(kBoxStrip).end();
+    ply.line(triangles ? "element face 12\nproperty list uchar int vertex_indices"
+                       : "element tristrips 1\nproperty list int int vertex_indices");
+    ply.line("end_header");
+    for (int i = 0; i < 8; ++i) {
+        ply.put(static_cast<float>(i & 1)).put(std::uint8_t{7}).put(static_cast<double>(i & 2));
+        ply.put(i < 4 ? 0.0F : 3.0F).end();
+    }
+    if (!triangles) {
+        return ply.list<std::int32_t, std::int32_t>(kBoxStrip).end().text();
+    }
+    for (const std::vector<std::int64_t>& triangle : std::vector<std::vector<std::int64_t>>{{0, 1, 4},
+                                                                                            {4, 1, 5},
+                                                                                            {4, 5, 6},
+                                                                                            {6, 5, 7},
+                                                                                            {6, 7, 2},
+                                                                                            {2, 7, 3},
+                                                                                            {2, 3, 0},
+                                                                                            {0, 3, 1},
+                                                                                            {0, 4, 2},
+                                                                                            {2, 4, 6},
+                                                                                            {1, 3, 5},
+                                                                                            {5, 3, 7}}) {
+        ply.list<std::uint8_t, std::int32_t>(triangle).end();
+    }
     return ply.text();
 }
 
@@ -105,16 +106,10 @@ Result<PolygonMesh> read(const std::string& text) {
     return readPly(std::as_bytes(std::span(text)));
 }
 
-/// Texts that are refused, and words of their errors.
-void expectWrong(const std::vector<std::pair<std::string, std::string>>& cases) {
-    for (const auto& [text, words] : cases) {
-        SCOPED_TRACE(text);
-        const Result<PolygonMesh> mesh = read(text);
-        ASSERT_FALSE(mesh);
-        EXPECT_EQ(mesh.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(mesh.error().message.find(words), std::string::npos) << mesh.error().message;
-        EXPECT_EQ(mesh.error().message.find('\n'), std::string::npos) << mesh.error().message;
-    }
+PolygonMesh polygons(const std::string& text) {
+    Result<PolygonMesh> mesh = read(text);
+    EXPECT_TRUE(mesh) << mesh.error().message;
+    return mesh ? std::move(*mesh) : PolygonMesh();
 }
 
 // Three corners in a plane, in text.
@@ -129,18 +124,14 @@ std::string strips(const std::string& element, const std::string& lists,
 }
 
 TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
-    const TemporaryFolder folder;
-    const Result<TriangleMesh> truth = importMesh(folder.write("triangles.ply", boxOfTriangles()));
-    ASSERT_TRUE(truth) << truth.error().message;
-    EXPECT_NEAR(signedVolume(*truth), 6.0, 1e-12);
-    const DepthMap expected = bakeMap(*truth, "float:dir=-z,size=32");
+    const TriangleMesh truth = imported("triangles.ply", boxOf(kEncodings[1], true));
+    const DepthMap expected = bakeMap(truth, "float:dir=-z,size=32");
     for (const char* encoding : kEncodings) {
         SCOPED_TRACE(encoding);
-        const Result<TriangleMesh> mesh =
-            importMeshInWorker(folder.write(std::string(encoding) + ".ply", boxOfStrips(encoding)));
+        const Result<TriangleMesh> mesh = importTextInWorker("strips.ply", boxOf(encoding));
         ASSERT_TRUE(mesh) << mesh.error().message;
-        EXPECT_EQ(mesh->positions, truth->positions);
-        EXPECT_EQ(mesh->triangles, truth->triangles);
+        EXPECT_EQ(mesh->positions, truth.positions);
+        EXPECT_EQ(mesh->triangles, truth.triangles);
         EXPECT_NEAR(signedVolume(*mesh), 6.0, 1e-12);
         EXPECT_EQ(mesh->unused_vertices, 0U);
         EXPECT_TRUE(mesh->warnings.empty());
@@ -169,46 +160,43 @@ TEST(ImportPly, StripsBeginEndAndTurn) {
             {"7 0 1 2 4294967295 3 1 2\n", {0, 1, 2, 3, 1, 2}, "element tristrips 1", "list uint uint"},
             {"7 0 1 2 -1 3 1 2\n", {0, 1, 2, 3, 1, 2}, "element tristrips 1", "list uint uint"}}) {
         SCOPED_TRACE(c.lists);
-        const Result<PolygonMesh> strip = read(strips(c.element, c.lists, c.type));
-        ASSERT_TRUE(strip) << strip.error().message;
-        EXPECT_EQ(strip->corners, c.corners);
+        EXPECT_EQ(polygons(strips(c.element, c.lists, c.type)).corners, c.corners);
     }
     // Faces beside them; a file may name its vertices last.
     const std::string both =
         "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_index\n"
         "element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n" +
         kHead.substr(kHead.find("element")) + "end_header\n3 0 1 2\n4 3 2 1 0 255\n" + kCorners;
-    const Result<PolygonMesh> mesh = read(both);
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    EXPECT_EQ(mesh->corners, (Corners{0, 1, 2, 3, 2, 1, 0}));
-    EXPECT_EQ(mesh->sizes, (std::vector<std::uint32_t>{3, 4}));
-    EXPECT_EQ(mesh->positions.size(), 4U);
-    EXPECT_EQ(mesh->positions[3], glm::vec3(1));
+    const PolygonMesh mesh = polygons(both);
+    EXPECT_EQ(mesh.corners, (Corners{0, 1, 2, 3, 2, 1, 0}));
+    EXPECT_EQ(mesh.sizes, (Corners{3, 4}));
+    ASSERT_EQ(mesh.positions.size(), 4U);
+    EXPECT_EQ(mesh.positions[3], glm::vec3(1));
 }
 
 TEST(ImportPly, HostileStripsAreRefused) {
     for (const char* list : {"3 0 1 4\n", "3 0 1 -2\n", "4 0 1 2 2147483647\n", "3 0 1 0.5\n", "3 0 1 nan\n",
                              "3 0 1 4294967295\n"}) {
-        expectWrong({{strips("element tristrips 1", list), "names the vertex"}});
+        expectWrong("p.ply", {{strips("element tristrips 1", list), "names the vertex"}});
     }
     const auto vertices = [](const std::string& count) {
         return replaced(strips("element tristrips 1", ""), "vertex 4", "vertex " + count);
     };
-    expectWrong({{strips("element tristrips 1", "-3 0 1 2\n"), "length that cannot be"},
-                 {strips("element tristrips 1", "2147483647 0 1 2\n"), "ends too early"},
-                 {strips("element tristrips 4000000000", "3 0 1 2\n"), "ends too early"},
-                 {strips("element tristrips 18446744073709551615", "3 0 1 2\n"), "ends too early"},
-                 {strips("element tristrips 18446744073709551616", "3 0 1 2\n"), "ends too early"},
-                 {strips("element tristrips -1", "3 0 1 2\n"), "not understood"},
-                 {strips("element tristrips 1", "3 0 one 2\n"), "line 14: 'one'"},
-                 {strips("element tristrips 1", "4 0 0 1 1\n"), "no faces"},
-                 {vertices("200000000"), "ends too early"}});
-    EXPECT_EQ(read(vertices("99999999999")).error().code, ErrorCode::kLimit);
+    expectWrong("p.ply", {{strips("element tristrips 1", "-3 0 1 2\n"), "length that cannot be"},
+                          {strips("element tristrips 1", "2147483647 0 1 2\n"), "ends too early"},
+                          {strips("element tristrips 4000000000", "3 0 1 2\n"), "ends too early"},
+                          {strips("element tristrips 18446744073709551615", "3 0 1 2\n"), "ends too early"},
+                          {strips("element tristrips 18446744073709551616", "3 0 1 2\n"), "ends too early"},
+                          {strips("element tristrips -1", "3 0 1 2\n"), "not understood"},
+                          {strips("element tristrips 1", "3 0 one 2\n"), "line 14: 'one'"},
+                          {strips("element tristrips 1", "4 0 0 1 1\n"), "no faces"},
+                          {vertices("200000000"), "ends too early"},
+                          {vertices("99999999999"), "", ErrorCode::kLimit}});
 }
 
 TEST(ImportPly, EveryTruncationIsRefused) {
     for (const char* encoding : kEncodings) {
-        const std::string whole = boxOfStrips(encoding);
+        const std::string whole = boxOf(encoding);
         ASSERT_TRUE(read(whole));
         // In text, the last number alone may lose digits; here it has one, with a space and the line's end behind it.
         const std::size_t last = encoding == std::string("ascii") ? whole.size() - 2 : whole.size();
@@ -220,27 +208,24 @@ TEST(ImportPly, EveryTruncationIsRefused) {
 
 TEST(ImportPly, BytesBehindTheLastElement) {
     // A line with a number too many shifts all that follows: four columns for three.
-    expectWrong({{strips("element face 1", "3 0 1 2 9\n", "list uchar int"), "does not end with its line"}});
-    const std::string binary = boxOfStrips("binary_little_endian");
+    expectWrong("p.ply",
+                {{strips("element face 1", "3 0 1 2 9\n", "list uchar int"), "does not end with its line"}});
+    const std::string binary = boxOf("binary_little_endian");
     for (const std::string& padding : {std::string("\n"), std::string("\r\n"), std::string(3, '\0')}) {
-        const Result<PolygonMesh> padded = read(binary + padding);
-        ASSERT_TRUE(padded) << padded.error().message;
-        EXPECT_TRUE(padded->warnings.empty());
+        EXPECT_TRUE(polygons(binary + padding).warnings.empty());
     }
-    const Result<PolygonMesh> mesh = read(binary + "more");
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->warnings.size(), 1U);
-    EXPECT_NE(mesh->warnings[0].find("4 bytes"), std::string::npos) << mesh->warnings[0];
+    const TriangleMesh more = imported("m.ply", binary + "more");
+    EXPECT_TRUE(more.warnings.size() == 1 && warns(more, "4 bytes"));
 }
 
 TEST(ImportPly, HeadersThatNobodyWrites) {
-    expectWrong({{"", "header does not end"},
-                 {"solid t\nend_header\n", "no PLY"},
-                 {"ply\nelement vertex 1\nend_header\n", "no format"},
-                 {"ply\nformat ascii 1.0\nend_header\n", "'vertex' once"},
-                 {kHead + "element vertex 1\nproperty float x\nend_header\n", "'vertex' once"}});
+    expectWrong("p.ply", {{"ply\nformat ascii 1.0\n", "header does not end"},
+                          {"solid t\nend_header\n", "no PLY"},
+                          {"ply\nelement vertex 1\nend_header\n", "no format"},
+                          {"ply\nformat ascii 1.0\nend_header\n", "'vertex' once"},
+                          {kHead + "element vertex 1\nproperty float x\nend_header\n", "'vertex' once"}});
     for (const char* z : {"float w", "float x", "float y", "list uchar float z"}) {
-        expectWrong({{replaced(kHead, "float z", z) + kFace + "end_header\n", "x, y and z"}});
+        expectWrong("p.ply", {{replaced(kHead, "float z", z) + kFace + "end_header\n", "x, y and z"}});
     }
 }
 
@@ -248,30 +233,29 @@ TEST(ImportPly, FacesOfOtherNamesAreRefusedOrNamed) {
     const std::string polygon = replaced(kFace, "face", "polygon");
     const std::string rest = "end_header\n" + kCorners + "3 0 1 2\n";
     expectWrong(
+        "p.ply",
         {{kHead + polygon + rest, "'polygon' is not read"},
          {kHead + "element tri_strips 1\nproperty list int int strip\n" + rest, "'tri_strips' is not read"},
          {kHead + "element cells 1\nproperty list uchar int vertexIndex\n" + rest, "'cells' is not read"},
          {kHead + replaced(kFace, "vertex_indices", "corners") + rest, "'face' has no list vertex_indices"}});
-    const Result<PolygonMesh> part = read(kHead + kFace + polygon + rest + "3 1 2 3\n");
-    ASSERT_TRUE(part) << part.error().message;
-    EXPECT_EQ(part->sizes.size(), 1U);
-    ASSERT_EQ(part->warnings.size(), 1U);
-    EXPECT_NE(part->warnings[0].find("'polygon' is not read"), std::string::npos) << part->warnings[0];
+    const PolygonMesh part = polygons(kHead + kFace + polygon + rest + "3 1 2 3\n");
+    EXPECT_EQ(part.sizes.size(), 1U);
+    ASSERT_EQ(part.warnings.size(), 1U);
+    EXPECT_NE(part.warnings[0].find("'polygon' is not read"), std::string::npos) << part.warnings[0];
     // What programs put beside their faces is no reason to warn.
-    const Result<PolygonMesh> whole =
-        read(kHead + kFace +
-             "property list uchar float texcoord\nproperty int material_index\nelement edge 1\n"
-             "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
-             "property list uchar int texture_vertex_indices\nelement material 1\nproperty float shininess\n"
-             "end_header\n" +
-             kCorners + "3 0 1 2 6 0 0 1 0 0 1 5\n0 1\n3 0 1 2\n0.5\n");
-    ASSERT_TRUE(whole) << whole.error().message;
-    EXPECT_TRUE(whole->warnings.empty()) << whole->warnings[0];
+    EXPECT_TRUE(polygons(kHead + kFace +
+                         "property list uchar float texcoord\nproperty int material_index\nelement edge 1\n"
+                         "property int vertex1\nproperty int vertex2\nelement multi_texture_face 1\n"
+                         "property list uchar int texture_vertex_indices\nelement material 1\n"
+                         "property float shininess\nend_header\n" +
+                         kCorners + "3 0 1 2 6 0 0 1 0 0 1 5\n0 1\n3 0 1 2\n0.5\n")
+                    .warnings.empty());
 }
 
 TEST(ImportPly, PointsAndEdgesAreNoSurface) {
     const std::string rest = "end_header\n" + kCorners;
     expectWrong(
+        "p.ply",
         {{kHead + rest, "it has 4 vertices but no faces; if it is a scan"},
          // Also of a cloud that is cut off: more points would not help.
          {kHead + "end_header\n0 0 0\n", "if it is a scan"},
@@ -282,27 +266,23 @@ TEST(ImportPly, PointsAndEdgesAreNoSurface) {
 }
 
 TEST(ImportPly, CoordinatesAreTheNearestFloats) {
-    const Result<PolygonMesh> mesh =
-        read(replaced(kHead, "vertex 4", "vertex 3") + kFace +
-             "end_header\n"
-             "0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    EXPECT_EQ(mesh->positions[0], glm::vec3(0.1F, 7.941797F, -0.927566F));
-    EXPECT_EQ(mesh->positions[1], glm::vec3(16777216.0F, 0.001F, std::numeric_limits<float>::max()));
+    const PolygonMesh mesh =
+        polygons(replaced(kHead, "vertex 4", "vertex 3") + kFace +
+                 "end_header\n0.1 7.941797 -0.927566\n16777217 1e-3 +3.4028235e38\n0 1 0\n3 0 1 2\n");
+    ASSERT_EQ(mesh.positions.size(), 3U);
+    EXPECT_EQ(mesh.positions[0], glm::vec3(0.1F, 7.941797F, -0.927566F));
+    EXPECT_EQ(mesh.positions[1], glm::vec3(16777216.0F, 0.001F, std::numeric_limits<float>::max()));
 }
 
 TEST(ImportPly, ConcavePolygonsStayConcave) {
     // An L of six corners, area 3: a fan round its first corner would have triangles turned over.
-    const TemporaryFolder folder;
-    const Result<TriangleMesh> mesh =
-        importMesh(folder.write("l.ply", replaced(kHead, "vertex 4", "vertex 6") + kFace +
-                                             "end_header\n"
-                                             "2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n6 0 1 2 3 4 5\n"));
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->triangles.size(), 4U);
+    const TriangleMesh mesh =
+        imported("l.ply", replaced(kHead, "vertex 4", "vertex 6") + kFace +
+                              "end_header\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n2 0 0\n6 0 1 2 3 4 5\n");
+    ASSERT_EQ(mesh.triangles.size(), 4U);
     double area = 0.0;
     for (std::uint32_t i = 0; i < 4; ++i) {
-        const TrianglePlane plane = planeOf(*mesh, i);
+        const TrianglePlane plane = planeOf(mesh, i);
         EXPECT_GT(plane.normal.z, 0.0);
         area += plane.normal.z / 2.0;
     }

@@ -16,17 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A level of one mesh in so many nodes.
-std::string manyNodes(std::size_t count) {
-    std::string nodes;
-    std::string roots;
-    for (std::size_t i = 0; i < count; ++i) {
-        nodes += std::string(i == 0 ? "" : ",") + R"({"mesh":0})";
-        roots += (i == 0 ? "" : ",") + std::to_string(i);
-    }
-    return tetrahedronGltf({.nodes = nodes, .roots = roots});
-}
-
 class Levels : public testing::Test {
   protected:
     fs::path write(const std::string& name, const std::string& text) { return temporary_.write(name, text); }
@@ -45,10 +34,9 @@ class Levels : public testing::Test {
 
 glm::dvec3 placed(const LevelBody& body, const glm::dvec3& p) {
     const glm::dvec3 v(body.rotation[0], body.rotation[1], body.rotation[2]);
-    const double w = body.rotation[3];
     const glm::dvec3 t = 2.0 * glm::cross(v, p);
     return glm::dvec3(body.position[0], body.position[1], body.position[2]) +
-           body.scale * (p + w * t + glm::cross(v, t));
+           body.scale * (p + body.rotation[3] * t + glm::cross(v, t));
 }
 
 /// The corners that the level has, placed, are those of the same file as one mesh, in its order.
@@ -116,13 +104,10 @@ TEST_F(Levels, ShapesThatAPoseWouldChangeAreMeshesOfTheirOwn) {
 
 TEST_F(Levels, UnitsAndAxesAreThoseOfTheMeshes) {
     const fs::path path = write("l.obj", tetrahedronObj());
-    ImportOptions options;
-    options.unit = "cm";
-    options.up = UpAxis::kPlusZ;
+    const ImportOptions options = {"cm", UpAxis::kPlusZ};
     const Level read = level(path, options);
     ASSERT_EQ(read.meshes.size(), 1U);
-    EXPECT_EQ(read.bodies[0].scale, 1.0);
-    EXPECT_EQ(read.bodies[0].rotation[3], 1.0);
+    EXPECT_TRUE(read.bodies[0].scale == 1.0 && read.bodies[0].rotation[3] == 1.0);
     EXPECT_FLOAT_EQ(read.meshes[0].bounds.max.x, 0.01F);
     expectSameCorners(read, path, options);
 }
@@ -228,42 +213,35 @@ TEST_F(Levels, NamesMarkTheTrianglesOfTheirNodes) {
 }
 
 TEST_F(Levels, AnswersOfAWorkerThatLiesAreRefused) {
-    const auto honest = [] {
-        TriangleMesh raw;
-        raw.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-        raw.triangles = {{0, 1, 2}};
-        raw.level_meshes = {{"m", 3, 1}};
-        raw.level_bodies = {{0, "n", {0, 0, 0}, {0, 0, 0, 1}, 1.0}};
-        return raw;
-    };
+    TriangleMesh honest;
+    honest.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    honest.triangles = {{0, 1, 2}};
+    honest.level_meshes = {{"m", 3, 1}};
+    honest.level_bodies = {{0, "n", {0, 0, 0}, {0, 0, 0, 1}, 1.0}};
     const Result<ImportSource> source = ImportSource::open(write("l.obj", "v 0 0 0\n"));
     ASSERT_TRUE(source);
-    EXPECT_TRUE(source->finishLevel(honest()));
-    EXPECT_FALSE(source->finish(honest())) << "a level that nobody wanted";
+    EXPECT_FALSE(source->finish(honest)) << "a level that nobody wanted";
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    const std::vector<std::function<void(TriangleMesh&)>> lies = {
-        [](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
-        [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
-        [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
-        [](TriangleMesh& raw) {
-            raw.level_meshes.push_back({"m", ~std::uint64_t{0}, 0});
-        },
-        [](TriangleMesh& raw) { raw.level_meshes.clear(); },
-        [](TriangleMesh& raw) { raw.level_bodies.clear(); },
-        [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
-        [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
-        [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
-        [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
-        [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
-        [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
-        [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
-        [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
-    };
-    for (std::size_t i = 0; i < lies.size(); ++i) {
-        TriangleMesh raw = honest();
-        lies[i](raw);
-        EXPECT_FALSE(source->finishLevel(std::move(raw))) << i;
-    }
+    expectLiesRefused(honest,
+                      {
+                          [](TriangleMesh& raw) { raw.level_meshes[0].positions = 2; },
+                          [](TriangleMesh& raw) { raw.level_meshes[0].triangles = 2; },
+                          [](TriangleMesh& raw) { raw.level_meshes[0].triangles = ~std::uint64_t{0}; },
+                          [](TriangleMesh& raw) {
+                              raw.level_meshes.push_back(LevelMesh{"m", ~std::uint64_t{0}, 0});
+                          },
+                          [](TriangleMesh& raw) { raw.level_meshes.clear(); },
+                          [](TriangleMesh& raw) { raw.level_bodies.clear(); },
+                          [](TriangleMesh& raw) { raw.level_bodies[0].mesh = 1; },
+                          [](TriangleMesh& raw) { raw.level_bodies[0].scale = 0.0; },
+                          [&](TriangleMesh& raw) { raw.level_bodies[0].scale = nan; },
+                          [&](TriangleMesh& raw) { raw.level_bodies[0].position[1] = nan; },
+                          [&](TriangleMesh& raw) { raw.level_bodies[0].rotation[1] = nan; },
+                          [](TriangleMesh& raw) { raw.level_bodies[0].rotation[3] = 0.5; },
+                          [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
+                          [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
+                      },
+                      [&](TriangleMesh raw) { return source->finishLevel(std::move(raw)).has_value(); });
 }
 
 }  // namespace

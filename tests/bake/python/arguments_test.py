@@ -27,14 +27,13 @@ def scene(tmp_path, collider):
     return tmp_path / "s.toml"
 
 
-@pytest.mark.parametrize("number", [2**32, 2**32 + 1, 2**63, 2**64 - 1])
-def test_indices_do_not_wrap_round(number):
+@pytest.mark.parametrize("number", [2**32 + 1, 2**64 - 1])
+def test_indices_do_not_wrap_round(number, collider):
     triangles = TRIANGLES.astype(np.uint64)
     triangles[2, 1] = number
-    with pytest.raises(relief.InputError, match=f"uses vertex {number} but there are 4"):
-        relief.bake(VERTICES, triangles)
-    with pytest.raises(relief.InputError, match=f"uses vertex {number}"):
-        relief.check(relief.bake(VERTICES, TRIANGLES, budget="20kB", no_check=True), VERTICES, triangles)
+    for use in (relief.bake, lambda *mesh: relief.check(collider, *mesh)):
+        with pytest.raises(relief.InputError, match=f"uses vertex {number} but there are 4"):
+            use(VERTICES, triangles)
 
 
 @pytest.mark.parametrize("vertices,triangles,error,words", [
@@ -60,10 +59,9 @@ def test_indices_do_not_wrap_round(number):
     (b"mesh.obj", TRIANGLES, ValueError, "shape"),
 ], ids=range(20))
 def test_meshes_that_are_none(vertices, triangles, error, words, collider):
-    with pytest.raises(error, match=words):
-        relief.bake(vertices, triangles)
-    with pytest.raises(error, match=words):
-        relief.check(collider, vertices, triangles)
+    for use in (relief.bake, lambda *mesh: relief.check(collider, *mesh)):
+        with pytest.raises(error, match=words):
+            use(vertices, triangles)
 
 
 def test_names_are_text(collider):

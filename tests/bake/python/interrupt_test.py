@@ -39,8 +39,8 @@ WORK = {
 
 
 def interrupt(program, wait):
-    """Runs the program, sends SIGINT a while after it says that it has begun; the seconds it took to obey, and the rest
-    of what it says, its errors and its exit status."""
+    """Runs the program, and sends SIGINT a while after it says that it has begun, which it must obey in time. Returns the rest of
+    what it says, its errors and its exit status."""
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert process.stdout.readline() == "begun\n", process.stderr.read()
@@ -48,9 +48,8 @@ def interrupt(program, wait):
         begun = time.perf_counter()
         process.send_signal(signal.SIGINT)
         first = process.stdout.readline()
-        took = time.perf_counter() - begun
-        said = first + process.stdout.read()
-        return took, said, process.stderr.read(), process.wait(60)
+        assert time.perf_counter() - begun < LIMIT
+        return first + process.stdout.read(), process.stderr.read(), process.wait(60)
     finally:
         process.kill()
 
@@ -59,9 +58,8 @@ def interrupt(program, wait):
 def test_work_ends_at_once_and_the_program_goes_on(name):
     work, before, wait = WORK[name]
     after = 'assert relief.bake("%s", budget="20kB", no_check=True).maps' % BUNNY if name == "baked" else "pass"
-    took, said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), wait)
+    said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), wait)
     assert (said, status) == ("interrupted\ngoes on\n", 0), errors
-    assert took < LIMIT
 
 
 def test_steps_end_between_two(tmp_path):
@@ -73,21 +71,19 @@ def test_steps_end_between_two(tmp_path):
     after = "assert 0 < s.time < 1e6 and len(s.ids) == s.alive; s.step(2)"
     for before, work, after in ((f"s = {begin}", "s.step(2**32 - 1)", after),
                                 ("", begin.replace("s.toml", "w.toml"), f"{begin}.step(2)")):
-        took, said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), 0.5)
+        said, errors, status = interrupt(PROGRAM.format(before=before, work=work, after=after), 0.5)
         assert (said, status) == ("interrupted\ngoes on\n", 0), errors
-        assert took < LIMIT
 
 
 def test_a_program_that_catches_nothing_ends_by_the_signal():
     program = f"import relief\nprint('begun', flush=True)\n{BAKE}"
-    took, said, errors, status = interrupt(program, 2)
-    assert status == -signal.SIGINT and errors.rstrip().endswith("KeyboardInterrupt") and took < LIMIT and said == ""
+    said, errors, status = interrupt(program, 2)
+    assert status == -signal.SIGINT and errors.rstrip().endswith("KeyboardInterrupt") and said == ""
 
 
 def test_a_handler_of_the_programs_own_is_called():
     program = ("import relief, signal\nsignal.signal(signal.SIGINT, lambda *_: print('mine', flush=True))\n"
                "c = []\nprint('begun', flush=True)\n"
                f'c.append(relief.bake("{BUNNY}", budget="2MB")); print(c[0].gpu_bytes > 1e6)')
-    took, said, errors, status = interrupt(program, 0.5)
+    said, errors, status = interrupt(program, 0.5)
     assert (said, status) == ("mine\nTrue\n", 0), errors
-    assert took < LIMIT
