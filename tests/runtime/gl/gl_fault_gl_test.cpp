@@ -163,9 +163,6 @@ class GlFaultTest : public GlTest {
   protected:
     void SetUp() override {
         GlTest::SetUp();
-        if (HasFatalFailure()) {
-            return;
-        }
         // Every entry point that is replaced below, through to the driver.
         collider_ = sphereCollider();
         auto textures = ColliderTextures::create(collider_);
@@ -195,13 +192,6 @@ class GlFaultTest : public GlTest {
         allocations = 0;
         failing_allocation = -1;
         pending_error = GL_NO_ERROR;
-    }
-    void TearDown() override {
-        textures_.reset();
-        frame_.reset();
-        mesh_.reset();
-        particles_.reset();
-        GlTest::TearDown();
     }
 
     static AirSettings air() {

@@ -1,4 +1,4 @@
-// The paths of a step: the same particles, whichever is taken, and the caller's image units as they were.
+// The paths of a step: the same particles, whichever is taken.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -300,42 +300,6 @@ TEST_P(StepPathGlTest, ManyBirthsAtOnceAreTheSame) {
         ASSERT_LT(glm::length(a.position - b.position), context_->software() ? 1e-30F : 1e-6F);
         ASSERT_LT(glm::length(a.velocity - b.velocity), context_->software() ? 1e-30F : 1e-6F);
     }
-}
-
-TEST_P(StepPathGlTest, TheCallersImageAndStorageUnitsAreKept) {
-    const GlTexture mine = makeImageTexture2D(GL_R32F, 4, 4);
-    glBindImageTexture(0, mine.name(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
-    glBindImageTexture(2, mine.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32F);
-    const GlBuffer storage = makeBuffer();
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, storage.name());
-    glBufferData(GL_SHADER_STORAGE_BUFFER, 1024, nullptr, GL_STATIC_DRAW);
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, storage.name(), 256, 512);
-    auto particles = ParticleSystem::create({.capacity = 10, .path = StepPath::kCompute});
-    ASSERT_TRUE(particles);
-    const auto textures = ColliderTextures::create(boxCollider());
-    ASSERT_TRUE(textures);
-    ASSERT_TRUE(particles->setCollider(&*textures));
-    ASSERT_TRUE(particles->setSweep(0.1F));  // whose tours use storage
-    const Birth birth{{0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 10.0F, 0};
-    particles->spawn(std::span(&birth, 1));
-    particles->step(kDt);
-    const auto unit = [](GLenum what, GLuint index) {
-        GLint value = -1;
-        glGetIntegeri_v(what, index, &value);
-        return value;
-    };
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_NAME, 0), static_cast<GLint>(mine.name()));
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_ACCESS, 0), GL_READ_ONLY);
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_FORMAT, 0), GL_R32F);
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_NAME, 1), 0);
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_NAME, 2), static_cast<GLint>(mine.name()));
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_ACCESS, 2), GL_READ_WRITE);
-    EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_BINDING, 0), static_cast<GLint>(storage.name()));
-    EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_START, 0), 256);
-    EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_SIZE, 0), 512);
-    GLint bound = 0;
-    glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &bound);
-    EXPECT_EQ(bound, static_cast<GLint>(storage.name()));
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(StepPathGlTest);

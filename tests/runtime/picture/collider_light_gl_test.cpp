@@ -45,11 +45,6 @@ void main() {
 
 class ColliderLightGlTest : public GlTest {
   protected:
-    void TearDown() override {
-        light_.reset();
-        textures_.reset();
-        GlTest::TearDown();
-    }
     void use(ColliderTextures textures, const Bounds& bounds, float texel) {
         light_.reset();
         textures_ = std::make_unique<ColliderTextures>(std::move(textures));

@@ -44,9 +44,6 @@ class MeshRendererGlTest : public GlTest {
   protected:
     void SetUp() override {
         GlTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) {
-            return;
-        }
         camera_.eye = {0.0F, 5.0F, 11.0F};
         camera_.target = {0.0F, 0.5F, 0.0F};
         camera_.fov = 40.0F;

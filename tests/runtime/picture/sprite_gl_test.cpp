@@ -23,9 +23,6 @@ class SpriteGlTest : public GlTest {
   protected:
     void SetUp() override {
         GlTest::SetUp();
-        if (HasFatalFailure()) {
-            return;
-        }
         color_ = makeTexture2D(GL_RGBA16F, kSide, kSide, GL_RGBA, GL_HALF_FLOAT);
         depth_ = makeTexture2D(GL_DEPTH_COMPONENT32F, kSide, kSide, GL_DEPTH_COMPONENT, GL_FLOAT);
         const std::array<GLuint, 1> colors{color_.name()};
@@ -43,15 +40,6 @@ class SpriteGlTest : public GlTest {
         style_.fade_in = 0.0F;
         style_.fade_out = 0.0F;
         style_.sprite = Sprite::kQuad;
-    }
-    void TearDown() override {
-        particles_.reset();
-        renderer_.reset();
-        atlas_.reset();
-        framebuffer_ = GlFramebuffer();
-        color_ = GlTexture();
-        depth_ = GlTexture();
-        GlTest::TearDown();
     }
 
     /// A sprite at the origin for each type, of lifetime 8, aged `age` seconds.

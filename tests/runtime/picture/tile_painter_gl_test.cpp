@@ -26,9 +26,6 @@ class TilePainterGlTest : public GlTest {
   protected:
     void SetUp() override {
         GlTest::SetUp();
-        if (HasFatalFailure()) {
-            return;
-        }
         collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 64);
         auto textures = ColliderTextures::create(collider_);
         ASSERT_TRUE(textures) << textures.error().message;
@@ -55,17 +52,6 @@ class TilePainterGlTest : public GlTest {
         style_.fade_out = 0.0F;
         style_.diameter = 0.05F;
         style_.opacity = 0.6F;
-    }
-    void TearDown() override {
-        sorter_.reset();
-        particles_.reset();
-        renderers_.clear();
-        collider_renderer_.reset();
-        textures_.reset();
-        framebuffer_ = GlFramebuffer();
-        color_ = GlTexture();
-        depth_ = GlTexture();
-        GlTest::TearDown();
     }
 
     [[nodiscard]] ColliderView view() const {
