@@ -131,10 +131,10 @@ class SharedGlContexts : public testing::Environment {
 template <class Param>
 class GlTestOf : public testing::TestWithParam<Param> {
   protected:
-    void SetUp() override {
-        context_ = SharedGlContexts::instance().use(apiOf(this->GetParam()));
+    /// The context is current before members of derived fixtures are made.
+    GlTestOf() : context_(SharedGlContexts::instance().use(apiOf(this->GetParam()))) {
         if (context_ == nullptr) {
-            throw std::runtime_error("no context");  // ends the test before a SetUp() built on this one goes on
+            throw std::runtime_error("no context");
         }
         this->RecordProperty("context", context_->description());
     }
@@ -144,7 +144,7 @@ class GlTestOf : public testing::TestWithParam<Param> {
         }
     }
 
-    const GlContext* context_ = nullptr;
+    const GlContext* context_;
 };
 
 using GlTest = GlTestOf<GlApi>;
