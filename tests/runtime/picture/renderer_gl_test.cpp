@@ -29,27 +29,17 @@ struct Rgb {
 
 class RendererGlTest : public GlTest {
   protected:
-    void SetUp() override {
-        GlTest::SetUp();
-        collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
-        textures_.emplace(required(ColliderTextures::create(collider_)));
+    RendererGlTest() {
         camera_.eye = {0.0F, 0.0F, 3.0F};
         camera_.target = {0.0F, 0.0F, 0.0F};
         camera_.fov = 30.0F;
         camera_.near_plane = 0.5F;
         camera_.far_plane = 50.0F;
-        frame_.emplace(required(Frame::create(kWidth, kHeight)));
-        collider_renderer_.emplace(required(ColliderRenderer::create(view())));
-        points_.emplace(required(ParticleRenderer::create(view())));
-        particles_.emplace(required(ParticleSystem::create({.capacity = 100})));
     }
-
-    [[nodiscard]] ColliderView view() const {
-        return {&*textures_, collider_.bounds, finestTexel(collider_)};
-    }
+    [[nodiscard]] ColliderView view() const { return {&textures_, collider_.bounds, finestTexel(collider_)}; }
 
     void drawCollider() {
-        const auto drawn = collider_renderer_->draw(camera_, style_, frame_->target());
+        const auto drawn = collider_renderer_.draw(camera_, style_, frame_.target());
         ASSERT_TRUE(drawn) << drawn.error().message;
     }
     Rgb pixel(const std::vector<std::uint8_t>& rgb, std::uint32_t x, std::uint32_t y) const {
@@ -64,24 +54,24 @@ class RendererGlTest : public GlTest {
     }
     void spawnAt(const glm::vec3& p) {
         const std::array<Birth, 1> births{Birth{p, glm::vec3(0.0F), 100.0F, 0}};
-        particles_->spawn(births);
-        particles_->step(1.0F);
+        particles_.spawn(births);
+        particles_.step(1.0F);
     }
 
-    Collider collider_;
+    const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
+    ColliderTextures textures_ = required(ColliderTextures::create(collider_));
     Camera camera_;
     ColliderStyle style_;
-    std::optional<ColliderTextures> textures_;
-    std::optional<Frame> frame_;
-    std::optional<ColliderRenderer> collider_renderer_;
-    std::optional<ParticleRenderer> points_;
-    std::optional<ParticleSystem> particles_;
+    Frame frame_ = required(Frame::create(kWidth, kHeight));
+    ColliderRenderer collider_renderer_ = required(ColliderRenderer::create(view()));
+    ParticleRenderer points_ = required(ParticleRenderer::create(view()));
+    ParticleSystem particles_ = required(ParticleSystem::create({.capacity = 100}));
 };
 
 TEST_P(RendererGlTest, ParticlesAreHiddenBehindAndShownInFront) {
     const ParticleStyle style{.diameter = 0.06F, .opacity = 1.0F};
     drawCollider();
-    const std::vector<std::uint8_t> bare = frame_->read();
+    const std::vector<std::uint8_t> bare = frame_.read();
     // In front, behind, half a diameter before and behind the surface, beside, and behind the eye.
     for (const auto& [place, shown] :
          {std::pair(glm::vec3(0.0F, 0.0F, 1.0F), true), std::pair(glm::vec3(0.0F, 0.0F, -1.0F), false),
@@ -90,8 +80,8 @@ TEST_P(RendererGlTest, ParticlesAreHiddenBehindAndShownInFront) {
         particles_ = required(ParticleSystem::create({.capacity = 4}));
         spawnAt(place);
         drawCollider();
-        points_->draw(*particles_, camera_, style, frame_->target());
-        const std::vector<std::uint8_t> rgb = frame_->read();
+        points_.draw(particles_, camera_, style, frame_.target());
+        const std::vector<std::uint8_t> rgb = frame_.read();
         if (!shown) {
             EXPECT_EQ(rgb, bare) << place.z;
             continue;
@@ -104,27 +94,27 @@ TEST_P(RendererGlTest, ParticlesAreHiddenBehindAndShownInFront) {
 
 TEST_P(RendererGlTest, TheDeadAreNotDrawn) {
     drawCollider();
-    const std::vector<std::uint8_t> bare = frame_->read();
+    const std::vector<std::uint8_t> bare = frame_.read();
     const std::array<Birth, 2> births{Birth{{0.6F, 0.3F, 0.5F}, glm::vec3(0.0F), 0.5F, 0},
                                       Birth{{0.0F, -90.0F, 0.0F}, glm::vec3(0.0F), 100.0F, 0}};
-    particles_->spawn(births);
-    particles_->step(1.0F);
-    ASSERT_EQ(particles_->counts().died, 1U);
-    ASSERT_EQ(particles_->extent(), 2U);
-    points_->draw(*particles_, camera_, {.diameter = 0.1F}, frame_->target());
-    EXPECT_EQ(frame_->read(), bare);
+    particles_.spawn(births);
+    particles_.step(1.0F);
+    ASSERT_EQ(particles_.counts().died, 1U);
+    ASSERT_EQ(particles_.extent(), 2U);
+    points_.draw(particles_, camera_, {.diameter = 0.1F}, frame_.target());
+    EXPECT_EQ(frame_.read(), bare);
 }
 
 TEST_P(RendererGlTest, OpacityFadesInAndOut) {
     const ParticleStyle style{.diameter = 0.2F, .opacity = 1.0F, .fade_in = 1.0F, .fade_out = 1.0F};
     const std::array<Birth, 1> births{Birth{{0.0F, 0.0F, 1.0F}, glm::vec3(0.0F), 4.0F, 0}};
-    particles_->spawn(births);
+    particles_.spawn(births);
     std::vector<int> brightness;
     for (int step = 0; step < 15; ++step) {  // ages 0.25 … 3.75
-        particles_->step(0.25F);
+        particles_.step(0.25F);
         drawCollider();
-        points_->draw(*particles_, camera_, style, frame_->target());
-        brightness.push_back(pixel(frame_->read(), kWidth / 2, kHeight / 2).b);
+        points_.draw(particles_, camera_, style, frame_.target());
+        brightness.push_back(pixel(frame_.read(), kWidth / 2, kHeight / 2).b);
     }
     EXPECT_LT(brightness[0] + 10, brightness[1]);
     EXPECT_LT(brightness[1] + 10, brightness[3]);
@@ -136,26 +126,26 @@ TEST_P(RendererGlTest, OpacityFadesInAndOut) {
 TEST_P(RendererGlTest, TheKeptPictureIsTheFreshOneAndFollowsEveryChange) {
     style_.ground = -0.5F;
     drawCollider();
-    const std::vector<std::uint8_t> first = frame_->read();
+    const std::vector<std::uint8_t> first = frame_.read();
     drawCollider();
-    EXPECT_EQ(frame_->read(), first);
+    EXPECT_EQ(frame_.read(), first);
     const Camera camera = camera_;
     camera_.eye.x += 0.2F;
     drawCollider();
-    EXPECT_NE(frame_->read(), first);
+    EXPECT_NE(frame_.read(), first);
     camera_ = camera;
     drawCollider();
-    EXPECT_EQ(frame_->read(), first);
+    EXPECT_EQ(frame_.read(), first);
     style_.background = {0.2F, 0.2F, 0.2F};
     drawCollider();
-    EXPECT_NE(frame_->read(), first);
+    EXPECT_NE(frame_.read(), first);
 }
 
 TEST_P(RendererGlTest, TheFloorIsShadedBelowTheCollider) {
     style_.ground = -0.5F;
     camera_.eye = {0.0F, 1.5F, 3.0F};
     drawCollider();
-    const std::vector<std::uint8_t> rgb = frame_->read();
+    const std::vector<std::uint8_t> rgb = frame_.read();
     const auto [x, y] = project({0.6F, -0.5F, -0.3F});     // where sunDirection() casts the sphere's shadow
     const auto [ox, oy] = project({-0.9F, -0.5F, -0.3F});  // in the open
     EXPECT_LT(pixel(rgb, x, y).b + 20, pixel(rgb, ox, oy).b);
@@ -190,17 +180,17 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         EXPECT_TRUE(renderer->draw(camera_, style_, frame->target()));
         check("ColliderRenderer::draw");
         const ParticleStyle style{.diameter = 0.1F};
-        EXPECT_TRUE(points->draw(*particles_, camera_, style, frame->target()));
+        EXPECT_TRUE(points->draw(particles_, camera_, style, frame->target()));
         check("ParticleRenderer::draw");
         auto tiles = ParticleRenderer::create(seen, StepPath::kCompute);
         check("ParticleRenderer::create, tiles");
         for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
             auto sorter = DepthSorter::create(2000, path);
             check("DepthSorter::create");
-            sorter->update(particles_->positions(), particles_->textureWidth(), particles_->extent(),
+            sorter->update(particles_.positions(), particles_.textureWidth(), particles_.extent(),
                            camera_.eye, DepthSorter::sequencePasses(2000));
             check("DepthSorter::update");
-            EXPECT_TRUE(tiles->draw(*particles_, camera_, style, frame->target(),
+            EXPECT_TRUE(tiles->draw(particles_, camera_, style, frame->target(),
                                     {&sorter->order(), sorter->count()}));
             check("ParticleRenderer::draw, tiles");
         }
@@ -211,7 +201,7 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         quads.atlas = &*atlas;
         quads.looks.resize(1);
         quads.looks[0].cell_first = 0;
-        EXPECT_TRUE(points->draw(*particles_, camera_, quads, frame->target(), {}, &renderer->depth()));
+        EXPECT_TRUE(points->draw(particles_, camera_, quads, frame->target(), {}, &renderer->depth()));
         check("ParticleRenderer::draw, quads");
         std::vector<std::uint8_t> both = frame->read();
         check("Frame::read");
