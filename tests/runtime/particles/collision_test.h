@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <span>
@@ -44,6 +45,14 @@ class CollisionTest : public StepGlTest {
     void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
     void setPose(const Pose& pose) { textures_->setPoses(std::span(&pose, 1)); }
     [[nodiscard]] std::vector<ParticleState> state() const { return required(particles_->readState()); }
+    /// `birth` makes each of them.
+    void spawnMany(std::uint32_t count, const std::function<Birth(std::uint32_t)>& birth) {
+        std::vector<Birth> births;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            births.push_back(birth(i));
+        }
+        ASSERT_EQ(particles_->spawn(births), count);
+    }
     void spawnOne(const Birth& birth) { ASSERT_EQ(particles_->spawn(std::span(&birth, 1)), 1U); }
     void step(int count = 1) {
         for (int i = 0; i < count; ++i) {

@@ -85,13 +85,10 @@ TEST_P(MaterialsGlTest, DropsNameTheSquareThatTheyHit) {
             ASSERT_EQ(textures_->materialNames().size(), 2U);
             ASSERT_TRUE(particles_->setEvents(EventOptions{}));
             Pcg32 random(11);
-            std::vector<Birth> births;
-            for (int i = 0; i < 4000; ++i) {
+            spawnMany(4000, [&](std::uint32_t) {
                 const glm::vec3 from = randomIn(random, {-0.39F, 0.21F, -0.29F}, {0.39F, 0.21F, 0.29F});
-                births.push_back({pose.position + pose.rotation * (pose.scale * from),
-                                  pose.rotation * glm::vec3(0.0F, -3.0F, 0.0F), 100.0F, 0});
-            }
-            ASSERT_EQ(particles_->spawn(births), births.size());
+                return Birth{toWorld(pose, from), pose.rotation * glm::vec3(0.0F, -3.0F, 0.0F), 100.0F};
+            });
             step();
             int counted = 0;
             for (const ParticleEvent& hit : takeEvents().events) {
@@ -121,14 +118,12 @@ TEST_P(MaterialsGlTest, HitsOnOneMaterialMayBeListedAlone) {
                                           {.deaths = true, .material = 1}};
     ASSERT_TRUE(particles_->setEvents(lists));
     Pcg32 random(12);
-    std::vector<Birth> births;
-    for (std::uint32_t i = 0; i < 3000; ++i) {
+    spawnMany(3000, [&](std::uint32_t i) {
         // On the board, beside it on the ground, and old ones that die.
         glm::vec3 from = randomIn(random, {-0.39F, 0.21F, -0.29F}, {0.39F, 0.21F, 0.29F});
         from = i % 3 == 0 ? glm::vec3(from.x + 1.0F, -0.04F, from.z) : from;
-        births.push_back({from, {0.0F, -3.0F, 0.0F}, i % 7 == 0 ? 0.5F * kDt : 100.0F, 0});
-    }
-    EXPECT_EQ(particles_->spawn(births), births.size());
+        return Birth{from, {0.0F, -3.0F, 0.0F}, i % 7 == 0 ? 0.5F * kDt : 100.0F};
+    });
     step();
     const StepEvents events = takeEvents();
     for (std::size_t list = 1; list < lists.size(); ++list) {
@@ -209,34 +204,25 @@ TEST_P(MaterialsGlTest, ResponsesMultiply) {
 // loses as much in each step.
 TEST_P(MaterialsGlTest, ContactsCostLife) {
     board_.materials.list = {{"black", 1.0F, 0.0F, 3.0F}, {"white", 1.0F, 0.0F, 500.0F}};
-    struct Case {
-        OnCollision reaction;
-        float type_loss;
-        int square;
-        int first_dead;  // step after which it is no longer there
-    };
-    const int whole = 600;  // steps of a life of ten seconds
-    for (const auto& [reaction, type_loss, square, dead] :
-         std::vector<Case>{{OnCollision::kStop, 0.0F, 0, whole - 180},
-                           {OnCollision::kStop, 1.0F, 0, whole - 240},
-                           {OnCollision::kStop, 0.0F, 1, 2},
-                           {OnCollision::kSlide, 0.0F, 0, 4}}) {
-        SCOPED_TRACE(dead);
+    constexpr int kLife = 600;  // steps of a life of ten seconds
+    const auto expectSteps = [&](OnCollision reaction, float type_loss, float square, int lived) {
+        SCOPED_TRACE(lived);
         make({.capacity = 4});
         collideWith(ColliderBody{&board_, {}});
         setType({.on_collision = reaction, .lifetime_loss = type_loss});
         ASSERT_TRUE(particles_->setForces({.gravity = {0.0F, -9.81F, 0.0F}}));
-        spawnOne({{0.5F * kSquare, 0.201F, (0.5F + static_cast<float>(square)) * kSquare},
-                  {0.0F, -1.0F, 0.0F},
-                  9.999F,
-                  0});
+        spawnOne({{0.5F * kSquare, 0.201F, (0.5F + square) * kSquare}, {0.0F, -1.0F, 0.0F}, 9.999F});
         int steps = 0;
-        while (steps < whole + 10 && (steps == 0 || !state().empty())) {
+        while (steps < kLife + 10 && (steps == 0 || !state().empty())) {
             step();
             ++steps;
         }
-        EXPECT_NEAR(steps, dead, 2);
-    }
+        EXPECT_NEAR(steps, lived, 2);
+    };
+    expectSteps(OnCollision::kStop, 0.0F, 0.0F, kLife - 180);
+    expectSteps(OnCollision::kStop, 1.0F, 0.0F, kLife - 240);
+    expectSteps(OnCollision::kStop, 0.0F, 1.0F, 2);
+    expectSteps(OnCollision::kSlide, 0.0F, 0.0F, 4);
 }
 
 RELIEF_INSTANTIATE_STEP_TESTS(MaterialsGlTest);

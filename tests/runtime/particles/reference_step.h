@@ -39,6 +39,12 @@ struct ReferenceState {
     /// or cube faces, to the edge of a volume, or to a vote of 0, so that another rounding may decide
     /// otherwise.
     bool ambiguous = false;
+    /// What it ran into, and the arrival there, if it is not caught.
+    int body = -2;
+    glm::vec3 normal{0.0F};
+    glm::vec3 touch{0.0F};    ///< place
+    glm::vec3 arrival{0.0F};  ///< velocity
+    float speed = 0.0F;       ///< towards the surface, relative to it
 };
 
 inline float dot(const glm::vec3& a, const glm::vec3& b) {
@@ -130,8 +136,8 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
     const float dt = settings.dt;
     const ParticleType& type = settings.type;
     const float drag = dragRate(settings.forces, type);
-    glm::vec3 v = (v_before + dt * (settings.forces.gravity + drag * settings.forces.wind)) *
-                  (1.0F / (1.0F + dt * drag));
+    const glm::vec3 gravity = type.gravity * settings.forces.gravity;
+    glm::vec3 v = (v_before + dt * (gravity + drag * settings.forces.wind)) * (1.0F / (1.0F + dt * drag));
     const glm::vec3 p_star = p + dt * v;
 
     ReferenceState out;
@@ -164,9 +170,14 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
             out.ambiguous = out.ambiguous || std::abs(vn) < 1e-5F;
         } else {
             out.contact = Contact::kCollided;
+            out.body = ahead.body;
+            out.normal = n;
+            out.touch = p_star - (vn < 0.0F ? std::min(ahead.distance / vn, dt) : 0.0F) * v;
+            out.arrival = v;
+            out.speed = std::max(-vn, 0.0F);
             const glm::vec3 along = relative - vn * n;
             const float threshold = type.friction_threshold;
-            const float still = 1e-3F * dt * glm::length(settings.forces.gravity);
+            const float still = 1e-3F * dt * glm::length(gravity);
             const float speed = dot(relative, relative);
             const float slide =
                 speed >= threshold * threshold ? (1.0F - type.friction) * (1.0F - body.friction) : 1.0F;
