@@ -1,5 +1,5 @@
-// The list of what happened in a step: closed forms, counts that must agree with the particles' own, both paths bit by
-// bit, and nothing of it where nobody asks.
+// The list of what happened in a step: closed forms, counts that must agree with the particles' own, and nothing of it
+// where nobody asks. step_path_gl_test.cpp compares the paths.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -337,36 +337,6 @@ TEST_P(EventsGlTest, TheListIsThereForShaders) {
 }
 
 RELIEF_INSTANTIATE_STEP_TESTS(EventsGlTest);
-
-class EventPathsGlTest : public GlTest {};
-
-// Both paths list the same events: on one processor bit by bit. A GPU rounds differently in them, and bounces drive such
-// particles apart; there they list as many, nearly.
-TEST_P(EventPathsGlTest, BothPathsGiveTheSameEvents) {
-    std::array<std::vector<ParticleEvent>, 2> listed;
-    for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
-        auto particles = required(ParticleSystem::create({.capacity = 20'000, .path = path}));
-        ASSERT_TRUE(particles.setSweep(0.03F));
-        ASSERT_TRUE(particles.setEvents(EventOptions{.lasting = true, .deaths = true}));
-        for (const StepEvents& step : played(particles, 200, 60, OnCollision::kBounce, true).events) {
-            auto& all = listed[path == StepPath::kCompute ? 1 : 0];
-            all.insert(all.end(), step.events.begin(), step.events.end());
-        }
-    }
-    EXPECT_GT(listed[0].size(), 1000U);
-    EXPECT_NEAR(static_cast<double>(listed[0].size()), static_cast<double>(listed[1].size()),
-                context_->software() ? 0.0 : 0.01 * static_cast<double>(listed[0].size()));
-    for (std::size_t i = 0; context_->software() && i < listed[0].size(); ++i) {
-        const ParticleEvent& a = listed[0][i];
-        const ParticleEvent& b = listed[1].at(i);
-        ASSERT_TRUE(a.id == b.id && a.index == b.index && a.type == b.type && a.time == b.time &&
-                    a.position == b.position && a.velocity == b.velocity && a.normal == b.normal &&
-                    a.speed == b.speed && a.body == b.body && a.hit == b.hit && a.lasts == b.lasts &&
-                    a.death == b.death);
-    }
-}
-
-RELIEF_INSTANTIATE_GL_TESTS(EventPathsGlTest);
 
 }  // namespace
 }  // namespace relief

@@ -1,4 +1,4 @@
-// The paths of a step: the same particles, whichever is taken.
+// The paths of a step: the same particles and events, whichever is taken.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -104,10 +104,15 @@ Collider sidesOf(int repeats) {
     return collider;
 }
 
+struct Played {
+    std::vector<ParticleState> state;
+    std::vector<ParticleEvent> events;
+};
+
 class StepPathGlTest : public GlTest {
   protected:
     /// Particles that are born in two goes, collide and die.
-    static std::vector<ParticleState> played(const Features& features, StepPath path, int steps) {
+    static Played played(const Features& features, StepPath path, int steps) {
         static const Collider kBox = boxCollider();
         static const Bodies kBodies;
         const Collider box = features.repeats > 0 ? sidesOf(features.repeats) : kBox;
@@ -137,6 +142,8 @@ class StepPathGlTest : public GlTest {
         if (features.collider) {
             EXPECT_TRUE(particles.setCollider(&textures));
         }
+        EXPECT_TRUE(particles.setEvents(EventOptions{.lasting = true, .deaths = true}));
+        Played run;
         Pcg32 random(5);
         std::vector<Birth> births;
         for (std::uint32_t i = 0; i < kParticles; ++i) {
@@ -158,8 +165,12 @@ class StepPathGlTest : public GlTest {
             }
             textures.setPoses(poses);
             particles.step(kDt);
+            EXPECT_TRUE(particles.requestEvents(0));
+            const StepEvents step = required(particles.waitEvents()).value();
+            run.events.insert(run.events.end(), step.events.begin(), step.events.end());
         }
-        return required(particles.readState());
+        run.state = required(particles.readState());
+        return run;
     }
 };
 
@@ -188,8 +199,8 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
     const int steps = bits ? 24 : 2;
     for (const Features& features : kAll) {
         SCOPED_TRACE(features.name);
-        const std::vector<ParticleState> fragment = played(features, StepPath::kFragment, steps);
-        const std::vector<ParticleState> compute = played(features, StepPath::kCompute, steps);
+        const auto [fragment, listed] = played(features, StepPath::kFragment, steps);
+        const auto [compute, other] = played(features, StepPath::kCompute, steps);
         ASSERT_EQ(fragment.size(), compute.size());
         ASSERT_GT(fragment.size(), kParticles / 4);
         std::size_t others = 0;
@@ -207,11 +218,22 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
             others += same ? 0 : 1;
         }
         EXPECT_LE(others, bits ? 0 : fragment.size() / 1000);
+        EXPECT_GT(listed.size(), 100U);
+        EXPECT_NEAR(static_cast<double>(listed.size()), static_cast<double>(other.size()),
+                    bits ? 0.0 : 0.01 * static_cast<double>(listed.size()));
+        for (std::size_t i = 0; bits && i < listed.size(); ++i) {
+            const ParticleEvent& a = listed[i];
+            const ParticleEvent& b = other.at(i);
+            ASSERT_TRUE(a.id == b.id && a.index == b.index && a.type == b.type && a.time == b.time &&
+                        a.position == b.position && a.velocity == b.velocity && a.normal == b.normal &&
+                        a.speed == b.speed && a.body == b.body && a.hit == b.hit && a.lasts == b.lasts &&
+                        a.death == b.death);
+        }
         EXPECT_GT(touched, 0U);
         if (features.collider) {  // and not the floor alone
             Features floor = features;
             floor.collider = false;
-            const std::vector<ParticleState> free = played(floor, StepPath::kFragment, steps);
+            const std::vector<ParticleState> free = played(floor, StepPath::kFragment, steps).state;
             ASSERT_EQ(free.size(), fragment.size());
             std::size_t met = 0;
             for (std::size_t i = 0; i < free.size(); ++i) {

@@ -1,4 +1,4 @@
-// Key-frames: straight lines between keys, and rows for the shader that say the same.
+// Key-frames: rows for the shader, and what is refused. sprite_gl_test.cpp draws them.
 #include "runtime/picture/particle_look.h"
 
 #include <gtest/gtest.h>
@@ -7,17 +7,6 @@
 
 namespace relief {
 namespace {
-
-TEST(ParticleLook, StraightLinesBetweenKeys) {
-    const AgeTrack<float> track{{0.25F, 1.0F}, {0.5F, 3.0F}, {1.0F, -1.0F}};
-    EXPECT_EQ(valueAt(track, 0.0F, 9.0F), 1.0F);
-    EXPECT_EQ(valueAt(track, 0.25F, 9.0F), 1.0F);
-    EXPECT_EQ(valueAt(track, 0.375F, 9.0F), 2.0F);
-    EXPECT_EQ(valueAt(track, 0.5F, 9.0F), 3.0F);
-    EXPECT_EQ(valueAt(track, 0.75F, 9.0F), 1.0F);
-    EXPECT_EQ(valueAt(track, 1.0F, 9.0F), -1.0F);
-    EXPECT_EQ(valueAt(AgeTrack<float>{}, 0.5F, 9.0F), 9.0F);
-}
 
 TEST(ParticleLook, EveryTrackMayHaveItsOwnAges) {
     ParticleLook look;
