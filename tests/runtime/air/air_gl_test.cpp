@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "runtime/air/air_block.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/particles/random.h"
-#include "tests/runtime/gl/caller_state.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/runtime/gl/query_program.h"
 
@@ -24,85 +24,61 @@ namespace {
 
 constexpr double kTolerance = 2e-5;
 constexpr GLsizei kWidth = 256;
-constexpr float kViscosity = 1.8e-5F;
-constexpr float kMass = 5e-10F;
 
 struct Sample {
     glm::vec3 air;
     glm::vec3 field;
-    float stokes;
+    float stokes = 0.0F;
 };
 
 /// Evaluates air.glsl at the points of a texture, one a texel.
 constexpr const char* kQuery = R"(
-uniform highp sampler2D u_points;    // xyz: object space; w: time
-uniform highp sampler2D u_velocity;  // xyz: the particle's velocity; w: its radius
-uniform float u_viscosity;
-uniform float u_mass;
+uniform highp sampler2D u_points;  // xyz: object space; w: time
 
 layout(location = 0) out vec4 o_air;    // xyz: airVelocity
-layout(location = 1) out vec4 o_field;  // xyz: fieldAcceleration; w: stokesRate
+layout(location = 1) out vec4 o_field;  // xyz: fieldAcceleration of a particle at a velocity of (1, 2, 3); w: stokesRate
 
 void main() {
     vec4 point = texelFetch(u_points, ivec2(gl_FragCoord.xy), 0);
-    vec4 particle = texelFetch(u_velocity, ivec2(gl_FragCoord.xy), 0);
     o_air = vec4(airVelocity(point.xyz, point.w), 0.0);
-    o_field = vec4(fieldAcceleration(point.xyz, particle.xyz, point.w),
-                   stokesRate(u_viscosity, particle.w, u_mass));
+    o_field = vec4(fieldAcceleration(point.xyz, vec3(1.0, 2.0, 3.0), point.w),
+                   stokesRate(1.8e-5, 1e-5 * (2.0 + point.w), 5e-10));
 }
 )";
 
 class AirGlTest : public GlTest {
   protected:
-    /// What the GPU says at points and times; `stokes` for radii of 1e-5 and up, by index.
     static std::vector<Sample> evaluate(const AirBlock& air, const std::vector<glm::vec4>& points) {
         const PassState state;
-        const auto program = makeQueryProgram("air/air.glsl", kQuery, air.defines());
-        EXPECT_TRUE(program) << program.error().message;
-        if (!program) {
-            return {};
-        }
+        const GlProgram program = required(makeQueryProgram("air/air.glsl", kQuery, air.defines()));
         const auto height = static_cast<GLsizei>((points.size() + kWidth - 1) / kWidth);
         std::vector<glm::vec4> padded(points);
         padded.resize(static_cast<std::size_t>(kWidth * height), glm::vec4(0.0F));
-        std::vector<glm::vec4> particles(padded.size());
-        for (std::size_t i = 0; i < particles.size(); ++i) {
-            particles[i] = glm::vec4(1.0F, 2.0F, 3.0F, radius(i));
-        }
         const auto texture = [&](const void* data) {
             return makeTexture2D(GL_RGBA32F, kWidth, height, GL_RGBA, GL_FLOAT, data);
         };
         const GlTexture input = texture(padded.data());
-        const GlTexture velocity = texture(particles.data());
         const GlTexture out_air = texture(nullptr);
         const GlTexture out_field = texture(nullptr);
-        const auto framebuffer = makeFramebuffer({out_air.name(), out_field.name()});
-        EXPECT_TRUE(framebuffer);
-        air.attach(*program, {});
-        program->use();  // without any air attach() does nothing
-        program->set("u_points", 0);
-        program->set("u_velocity", 1);
-        program->set("u_viscosity", kViscosity);
-        program->set("u_mass", kMass);
+        const GlFramebuffer framebuffer = required(makeFramebuffer({out_air.name(), out_field.name()}));
+        air.attach(program, {});
+        program.use();  // without any air attach() does nothing
+        program.set("u_points", 0);
         useTexture(0, input);
-        useTexture(1, velocity);
         air.bind({});
-        program->drawScreen(framebuffer->name(), kWidth, height);
-        const auto airs = readTextureFloats(out_air, kWidth, height);
-        const auto fields = readTextureFloats(out_field, kWidth, height);
-        EXPECT_TRUE(airs && fields);
+        program.drawScreen(framebuffer.name(), kWidth, height);
+        const std::vector<float> airs = required(readTextureFloats(out_air, kWidth, height));
+        const std::vector<float> fields = required(readTextureFloats(out_field, kWidth, height));
         std::vector<Sample> samples;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const float* a = &(*airs)[4 * i];
-            const float* f = &(*fields)[4 * i];
+            const float* a = &airs[4 * i];
+            const float* f = &fields[4 * i];
             samples.push_back({{a[0], a[1], a[2]}, {f[0], f[1], f[2]}, f[3]});
         }
         return samples;
     }
     static std::vector<Sample> evaluate(const AirSettings& settings, const std::vector<glm::vec4>& points) {
-        const auto air = AirBlock::create(settings);
-        EXPECT_TRUE(air) << air.error().message;
-        return air ? evaluate(*air, points) : std::vector<Sample>{};
+        return evaluate(required(AirBlock::create(settings)), points);
     }
     /// The noise's velocities at points and times.
     static std::vector<glm::dvec3> blown(const CurlNoise& noise, const std::vector<glm::vec4>& points) {
@@ -134,7 +110,6 @@ class AirGlTest : public GlTest {
         }
         return halves;
     }
-    static float radius(std::size_t i) { return 1e-5F + 1e-7F * static_cast<float>(i % 1000); }
 };
 
 std::vector<glm::vec4> randomPoints(std::size_t count, float reach, float seconds, std::uint64_t seed) {
@@ -184,8 +159,9 @@ AirSettings everything() {
     return air;
 }
 
-// None, each kind alone, all but each, and all: each compiles, and the whole is the sum of its parts.
-TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndWithTheOthers) {
+// None, each kind alone, all but each, and all: each compiles, and the whole is the sum of its parts. Of several attractors and
+// vortices each counts, with its own numbers.
+TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndAddsUp) {
     const AirSettings all = everything();
     const std::vector<glm::vec4> points = randomPoints(2000, 2.0F, 128.0F * 0.6F / 0.9F, 2);
     const auto some = [&](unsigned kinds) {
@@ -201,79 +177,51 @@ TEST_P(AirGlTest, EveryKindOfAirCompilesAloneAndWithTheOthers) {
         air.vortices.resize((kinds & 16U) != 0 ? all.vortices.size() : 0);
         return air;
     };
-    std::array<std::vector<Sample>, 5> alone;
-    for (unsigned kind = 0; kind < alone.size(); ++kind) {
-        alone[kind] = evaluate(some(1U << kind), points);
-        ASSERT_EQ(alone[kind].size(), points.size());
-    }
+    const auto expectSum = [&](const std::vector<Sample>& together,
+                               const std::vector<std::vector<Sample>>& parts) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            Sample sum{};
+            for (const std::vector<Sample>& part : parts) {
+                sum = {sum.air + part[i].air, sum.field + part[i].field};
+            }
+            ASSERT_NEAR(glm::length(together[i].air - sum.air), 0.0, kTolerance) << i;
+            ASSERT_NEAR(glm::length(together[i].field - sum.field), 0.0, kTolerance) << i;
+            const double stokes = 6.0 * 3.14159265358979 * 0.36 * (2.0 + static_cast<double>(points[i].w));
+            ASSERT_NEAR(static_cast<double>(together[i].stokes), stokes, 1e-6 * stokes);
+        }
+    };
     for (const unsigned kinds : {0U, 30U, 29U, 27U, 23U, 15U, 31U}) {
         SCOPED_TRACE(kinds);
-        const auto block = AirBlock::create(some(kinds));
-        ASSERT_TRUE(block) << block.error().message;
-        EXPECT_EQ(block->defines().empty(), kinds == 0) << "a scene without air must compile none of it";
-        EXPECT_EQ(block->defines().find("_CURL") != std::string::npos, (kinds & 4U) != 0);
-        const std::vector<Sample> together = evaluate(*block, points);
-        ASSERT_EQ(together.size(), points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            glm::vec3 air(0.0F);
-            glm::vec3 field(0.0F);
-            for (unsigned kind = 0; kind < alone.size(); ++kind) {
-                air += (kinds >> kind & 1U) != 0 ? alone[kind][i].air : glm::vec3(0.0F);
-                field += (kinds >> kind & 1U) != 0 ? alone[kind][i].field : glm::vec3(0.0F);
-            }
-            ASSERT_NEAR(glm::length(together[i].air - air), 0.0, kTolerance) << i;
-            ASSERT_NEAR(glm::length(together[i].field - field), 0.0, kTolerance) << i;
+        const AirBlock block = required(AirBlock::create(some(kinds)));
+        EXPECT_EQ(block.defines().empty(), kinds == 0) << "a scene without air must compile none of it";
+        EXPECT_EQ(block.defines().find("_CURL") != std::string::npos, (kinds & 4U) != 0);
+        std::vector<std::vector<Sample>> alone;
+        for (unsigned kind = 1; kind < 32; kind *= 2) {
+            alone.push_back(evaluate(some(kinds & kind), points));
         }
+        expectSum(evaluate(block, points), alone);
     }
-}
-
-// Each of several attractors and vortices counts, with its own numbers.
-TEST_P(AirGlTest, FieldsOfOneKindAddUp) {
-    const AirSettings all = everything();
-    const std::vector<glm::vec4> points = randomPoints(2000, 2.0F, 0.0F, 3);
-    std::vector<glm::vec3> sum(points.size(), glm::vec3(0.0F));
-    for (std::size_t one = 0; one < all.attractors.size(); ++one) {
-        AirSettings alone;
-        alone.attractors = {all.attractors[one]};
-        alone.vortices = {all.vortices[one]};
-        const std::vector<Sample> samples = evaluate(alone, points);
-        ASSERT_EQ(samples.size(), points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            sum[i] += samples[i].field;
-        }
+    std::vector<std::vector<Sample>> alone;
+    for (std::size_t i = 0; i < all.attractors.size(); ++i) {
+        AirSettings one;
+        one.attractors = {all.attractors[i]};
+        one.vortices = {all.vortices[i]};
+        alone.push_back(evaluate(one, points));
     }
-    const std::vector<Sample> together = evaluate(all, points);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        ASSERT_NEAR(glm::length(together[i].field - sum[i]), 0.0, kTolerance) << i;
-    }
+    expectSum(evaluate(some(24), points), alone);
 }
 
 TEST_P(AirGlTest, FlowIsExactOnTrilinearFieldsAndConstantOutside) {
-    for (const std::array<std::uint32_t, 3> size :
-         {std::array<std::uint32_t, 3>{9, 4, 5}, {2, 2, 2}, {6, 3, 1}, {1, 1, 1}, {1, 7, 1}}) {
-        auto flow = randomFlow(size, FlowOutside::kEdge);
-        const auto linear = [](const glm::vec3& p) {
-            return glm::vec3(1.0F + p.x - 2.0F * p.y + 0.5F * p.z, 3.0F * p.y + p.x * p.z,
-                             p.z - p.x + p.x * p.y * p.z);
-        };
-        const auto nodeAt = [&](glm::vec3 p, bool clamp_only) {
-            for (int a = 0; a < 3; ++a) {
-                const auto side = size[static_cast<std::size_t>(a)];
-                p[a] = std::clamp(p[a], flow->box_min[a], flow->box_max[a]);
-                p[a] = side == 1 && !clamp_only ? flow->box_min[a] : p[a];
-            }
-            return p;
-        };
+    const auto linear = [](const glm::vec3& p) {
+        return glm::vec3(1.0F + p.x - 2.0F * p.y + 0.5F * p.z, 3.0F * p.y + p.x * p.z,
+                         p.z - p.x + p.x * p.y * p.z);
+    };
+    for (const glm::uvec3& size : {glm::uvec3(9, 4, 5), {2, 2, 2}, {6, 3, 1}, {1, 1, 1}, {1, 7, 1}}) {
+        auto flow = randomFlow({size.x, size.y, size.z}, FlowOutside::kEdge);
         for (std::uint32_t i = 0; i < flow->nodes.size(); ++i) {
-            const std::uint32_t at[3] = {i % size[0], i / size[0] % size[1], i / (size[0] * size[1])};
-            glm::vec3 p = flow->box_min;
-            for (int a = 0; a < 3; ++a) {
-                const auto side = size[static_cast<std::size_t>(a)];
-                p[a] += side == 1 ? 0.0F
-                                  : (flow->box_max[a] - flow->box_min[a]) * static_cast<float>(at[a]) /
-                                        static_cast<float>(side - 1);
-            }
-            flow->nodes[i] = linear(p);
+            const glm::vec3 at(i % size.x, i / size.x % size.y, i / (size.x * size.y));
+            const glm::vec3 steps = glm::max(glm::vec3(size) - 1.0F, 1.0F);
+            flow->nodes[i] = linear(flow->box_min + (flow->box_max - flow->box_min) * at / steps);
         }
         AirSettings air;
         air.flow = flow;
@@ -284,13 +232,15 @@ TEST_P(AirGlTest, FlowIsExactOnTrilinearFieldsAndConstantOutside) {
         const std::vector<Sample> edge = evaluate(air, points);
         flow->outside = FlowOutside::kZero;
         const std::vector<Sample> zero = evaluate(air, points);
-        ASSERT_EQ(edge.size(), points.size());
         std::size_t outside = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const glm::vec3 p(points[i]);
-            const glm::vec3 expected = flow->gain * linear(nodeAt(p, false));
-            ASSERT_NEAR(glm::length(edge[i].air - expected), 0.0, 8e-6) << i;
-            const bool within = nodeAt(p, true) == p;
+            glm::vec3 node = glm::clamp(p, flow->box_min, flow->box_max);
+            const bool within = node == p;
+            for (int a = 0; a < 3; ++a) {
+                node[a] = size[a] == 1 ? flow->box_min[a] : node[a];
+            }
+            ASSERT_NEAR(glm::length(edge[i].air - flow->gain * linear(node)), 0.0, 8e-6) << i;
             outside += within ? 0 : 1;
             ASSERT_EQ(zero[i].air, within ? edge[i].air : glm::vec3(0.0F)) << i;
         }
@@ -310,7 +260,6 @@ TEST_P(AirGlTest, AttractorsFallOffAsTheySay) {
             AirSettings air;
             air.attractors = {{position, strength, kRadius, falloff, kReach}};
             const std::vector<Sample> gpu = evaluate(air, points);
-            ASSERT_EQ(gpu.size(), points.size());
             std::array<int, 3> zones{};
             for (std::size_t i = 0; i + 1 < points.size(); ++i) {
                 const glm::dvec3 d = glm::dvec3(position) - glm::dvec3(points[i]);
@@ -338,7 +287,6 @@ TEST_P(AirGlTest, VorticesTurnRightHandedRoundTheirAxis) {
         AirSettings air;
         air.vortices = {{center, axis, 4.0F, 0.6F, falloff}};
         const std::vector<Sample> gpu = evaluate(air, points);
-        ASSERT_EQ(gpu.size(), points.size());
         for (std::size_t i = 0; i + 1 < points.size(); ++i) {
             const glm::dvec3 a = glm::dvec3(axis) / 3.0;
             const glm::dvec3 d = glm::dvec3(points[i]) - glm::dvec3(center);
@@ -355,24 +303,10 @@ TEST_P(AirGlTest, VorticesTurnRightHandedRoundTheirAxis) {
     }
 }
 
-TEST_P(AirGlTest, StokesRateIsSixPiOnTheGpuToo) {
-    const std::vector<glm::vec4> points(1000, glm::vec4(0.0F));
-    const std::vector<Sample> gpu = evaluate(AirSettings{}, points);
-    ASSERT_EQ(gpu.size(), points.size());
-    for (std::size_t i = 0; i < gpu.size(); ++i) {
-        const double expected = 6.0 * 3.14159265358979 * static_cast<double>(kViscosity) *
-                                static_cast<double>(radius(i)) / static_cast<double>(kMass);
-        ASSERT_NEAR(static_cast<double>(gpu[i].stokes), expected, 1e-6 * expected);
-        ASSERT_EQ(gpu[i].air, glm::vec3(0.0F));
-        ASSERT_EQ(gpu[i].field, glm::vec3(0.0F));
-    }
-}
-
 TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
     AirSettings air = everything();
-    auto block = AirBlock::create(air);
-    ASSERT_TRUE(block) << block.error().message;
-    const std::string defines = block->defines();
+    AirBlock block = required(AirBlock::create(air));
+    const std::string defines = block.defines();
     const std::vector<glm::vec4> points = randomPoints(1000, 1.5F, 10.0F, 11);
     air.wind = {-2.0F, 0.0F, 1.0F};
     air.attractors.resize(1);
@@ -380,9 +314,9 @@ TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
     air.curl_noise->octaves = 1;
     AirSettings without_flow = air;
     without_flow.flow = nullptr;  // an update leaves the flow as it is
-    ASSERT_TRUE(block->update(without_flow));
-    EXPECT_EQ(block->defines(), defines);
-    const std::vector<Sample> updated = evaluate(*block, points);
+    ASSERT_TRUE(block.update(without_flow));
+    EXPECT_EQ(block.defines(), defines);
+    const std::vector<Sample> updated = evaluate(block, points);
     const std::vector<Sample> made = evaluate(air, points);
     ASSERT_EQ(updated.size(), made.size());
     for (std::size_t i = 0; i < made.size(); ++i) {
@@ -390,42 +324,10 @@ TEST_P(AirGlTest, UpdateChangesWhatTheSameProgramsSay) {
         ASSERT_NEAR(glm::length(updated[i].field - made[i].field), 0.0, kTolerance) << i;
     }
 
-    auto less = AirBlock::create(without_flow);
-    ASSERT_TRUE(less);
-    const auto refused = less->update(everything());
-    ASSERT_FALSE(refused) << "its programs know no vortices";
-    EXPECT_EQ(refused.error().code, ErrorCode::kUsage);
-}
-
-TEST_P(AirGlTest, WrongSettingsAndTooLargeFlowsAreRefused) {
-    AirSettings air;
+    AirBlock less = required(AirBlock::create(without_flow));
+    EXPECT_EQ(less.update(everything()).error().code, ErrorCode::kUsage) << "its programs know no vortices";
     air.attractors.resize(9);
-    auto refused = AirBlock::create(air);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::kUsage);
-    air.attractors.clear();
-    auto flow = std::make_shared<FlowField>();
-    flow->size = {513, 1, 1};
-    flow->nodes.resize(513);
-    air.flow = flow;
-    refused = AirBlock::create(air);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
-}
-
-TEST_P(AirGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
-    const AirSettings air = everything();
-    const std::vector<glm::vec4> points = randomPoints(500, 1.0F, 1.0F, 13);
-    const std::vector<Sample> plain = evaluate(air, points);
-    const CallerState caller;
-    const auto block = AirBlock::create(air);
-    ASSERT_TRUE(block);
-    caller.expectKept("create");
-    const std::vector<Sample> odd = evaluate(*block, points);
-    ASSERT_EQ(odd.size(), plain.size());
-    for (std::size_t i = 0; i < odd.size(); ++i) {
-        ASSERT_EQ(odd[i].air, plain[i].air);
-    }
+    EXPECT_EQ(AirBlock::create(air).error().code, ErrorCode::kUsage);
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(AirGlTest);
@@ -560,39 +462,20 @@ TEST_P(CurlNoiseGlTest, IsThatOfItsSeed) {
 constexpr int kCubeSide = 32;
 constexpr int kCube = kCubeSide * kCubeSide * kCubeSide;
 
-/// The largest of the correlations of a number of `a` with one of `b`, which lies by `offset` from it, in units of chance.
-double worstCorrelation(const std::vector<std::array<double, 6>>& a,
-                        const std::vector<std::array<double, 6>>& b, const glm::ivec3& offset) {
-    const auto wrapped = [](int at, int by) { return (at + by + kCubeSide) % kCubeSide; };
-    double sums[6][6] = {};
-    for (int i = 0; i < kCube; ++i) {
-        const int y = wrapped(i / kCubeSide % kCubeSide, offset.y);
-        const int z = wrapped(i / (kCubeSide * kCubeSide), offset.z);
-        const int j = wrapped(i % kCubeSide, offset.x) + kCubeSide * (y + kCubeSide * z);
-        for (std::size_t m = 0; m < 6; ++m) {
-            for (std::size_t n = 0; n < 6; ++n) {
-                sums[m][n] += a[static_cast<std::size_t>(i)][m] * b[static_cast<std::size_t>(j)][n];
-            }
-        }
-    }
-    double worst = 0.0;
-    for (std::size_t m = 0; m < 6; ++m) {
-        for (std::size_t n = 0; n < 6; ++n) {
-            const bool itself = &a == &b && offset == glm::ivec3(0) && m == n;
-            worst = std::max(worst, std::abs(sums[m][n] / 85.0 - (itself ? kCube : 0.0)));
-        }
-    }
-    return worst / std::sqrt(static_cast<double>(kCube));
-}
-
 // Between lattice points that are neighbours, between the six numbers of one, between patterns and between seeds
 // there is no correlation; and each number is as frequent as the others.
 TEST_P(CurlNoiseGlTest, DrawsIndependentNumbers) {
-    const auto cube = [](const CurlNoise& noise, int origin, float t) {
+    const auto at = [](glm::ivec3 p) {
+        p = (p + kCubeSide) % kCubeSide;
+        return static_cast<std::size_t>(p.x + kCubeSide * (p.y + kCubeSide * p.z));
+    };
+    const auto place = [](int i) {
+        return glm::ivec3(i % kCubeSide, i / kCubeSide % kCubeSide, i / (kCubeSide * kCubeSide));
+    };
+    const auto cube = [&](const CurlNoise& noise, int origin, float t) {
         std::vector<glm::ivec3> lattice;
         for (int i = 0; i < kCube; ++i) {
-            lattice.push_back(
-                origin + glm::ivec3(i % kCubeSide, i / kCubeSide % kCubeSide, i / (kCubeSide * kCubeSide)));
+            lattice.push_back(origin + place(i));
         }
         Numbers numbers = cornerNumbers(noise, lattice, t);
         for (auto& one : numbers) {
@@ -602,15 +485,33 @@ TEST_P(CurlNoiseGlTest, DrawsIndependentNumbers) {
     };
     const CurlNoise noise = unitLattice(9, true);
     const Numbers numbers = cube(noise, -kCubeSide / 2, 0.0F);
+    // The largest correlation with a number of `others`, which lies by `offset` from it, in units of chance.
+    const auto worst = [&](const Numbers& others, const glm::ivec3& offset) {
+        std::vector<std::size_t> there;
+        for (int i = 0; i < kCube; ++i) {
+            there.push_back(at(place(i) + offset));
+        }
+        double most = 0.0;
+        for (std::size_t pair = 0; pair < 36; ++pair) {
+            const std::size_t m = pair / 6;
+            const std::size_t n = pair % 6;
+            const bool itself = &others == &numbers && offset == glm::ivec3(0) && m == n;
+            double sum = itself ? -kCube : 0.0;
+            for (std::size_t i = 0; i < there.size(); ++i) {
+                sum += numbers[i][m] * others[there[i]][n] / 85.0;
+            }
+            most = std::max(most, std::abs(sum) / std::sqrt(static_cast<double>(kCube)));
+        }
+        return most;
+    };
     constexpr double kLuck = 5.5;   // of six hundred pairs
     for (int i = 0; i < 14; ++i) {  // the others are these the other way about
-        const glm::ivec3 offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        EXPECT_LT(worstCorrelation(numbers, numbers, offset), kLuck) << i;
+        EXPECT_LT(worst(numbers, {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}), kLuck) << i;
     }
     const glm::ivec3 here(0);
-    EXPECT_LT(worstCorrelation(numbers, cube(noise, -kCubeSide / 2, 1.0F), here), kLuck);
-    EXPECT_LT(worstCorrelation(numbers, cube(unitLattice(10), -kCubeSide / 2, 0.0F), here), kLuck);
-    EXPECT_LT(worstCorrelation(numbers, cube(noise, kCubeSide / 2, 0.0F), here), kLuck);
+    EXPECT_LT(worst(cube(noise, -kCubeSide / 2, 1.0F), here), kLuck);
+    EXPECT_LT(worst(cube(unitLattice(10), -kCubeSide / 2, 0.0F), here), kLuck);
+    EXPECT_LT(worst(cube(noise, kCubeSide / 2, 0.0F), here), kLuck);
     for (std::size_t m = 0; m < 6; ++m) {
         std::array<int, 16> frequency{};
         for (const auto& one : numbers) {
@@ -646,7 +547,6 @@ TEST_P(CurlNoiseGlTest, HasNoJumpAndNoKinkAtTheFacesOfSimplices) {
             points.insert(points.end(), {p, p + 1e-4F * n, p - 1e-4F * n, p + 0.01F * n, p - 0.01F * n});
         }
         const std::vector<glm::dvec3> v = blown(unitLattice(3), points);
-        ASSERT_EQ(v.size(), points.size());
         double bend = 0.0;
         for (std::size_t i = 0; i < v.size(); i += 5) {
             ASSERT_LT(glm::length(v[i + 1] - v[i + 2]), 0.01) << face;  // no derivative exceeds 30 or so

@@ -38,55 +38,43 @@ TEST(Air, WrongSettingsAreNamed) {
     ASSERT_TRUE(checkAir(good)) << checkAir(good).error().message;
     struct Case {
         const char* part;
-        ErrorCode code;
         std::function<void(AirSettings&)> spoil;
     };
     const float nan = std::nanf("");
-    const auto flowOf = [](FlowField flow) { return std::make_shared<FlowField>(std::move(flow)); };
-    const Case cases[] = {
-        {"wind", ErrorCode::kUsage, [&](AirSettings& a) { a.wind.y = nan; }},
-        {"viscosity", ErrorCode::kUsage, [](AirSettings& a) { a.viscosity = -1.0F; }},
-        {"9 attractors", ErrorCode::kUsage, [](AirSettings& a) { a.attractors.resize(9); }},
-        {"9 vortices", ErrorCode::kUsage, [](AirSettings& a) { a.vortices.resize(9); }},
-        {"attractor 2", ErrorCode::kUsage, [](AirSettings& a) { a.attractors[2].radius = 0.0F; }},
-        {"attractor 3", ErrorCode::kUsage, [](AirSettings& a) { a.attractors[3].falloff = 3; }},
-        {"attractor 4", ErrorCode::kUsage, [&](AirSettings& a) { a.attractors[4].strength = nan; }},
-        {"vortex 1", ErrorCode::kUsage, [](AirSettings& a) { a.vortices[1].axis = glm::vec3(0.0F); }},
-        {"vortex 7", ErrorCode::kUsage, [](AirSettings& a) { a.vortices[7].falloff = -1; }},
-        {"octaves", ErrorCode::kUsage, [](AirSettings& a) { a.curl_noise->octaves = 5; }},
-        {"scale", ErrorCode::kUsage, [](AirSettings& a) { a.curl_noise->scale = 0.0F; }},
-        {"drift", ErrorCode::kUsage, [](AirSettings& a) { a.curl_noise->drift = 1001.0F; }},
-        {"3 velocities", ErrorCode::kInvalidInput,
-         [&](AirSettings& a) {
-             a.flow = flowOf({.size = {2, 2, 1}, .nodes = std::vector<glm::vec3>(3)});
-         }},
-        {"empty", ErrorCode::kInvalidInput,
-         [&](AirSettings& a) {
-             a.flow = flowOf({.size = {2, 0, 1}, .nodes = {}});
-         }},
-        {"empty on the y axis", ErrorCode::kInvalidInput,
-         [&](AirSettings& a) {
-             a.flow = flowOf({.box_max = {1.0F, 0.0F, 1.0F}, .nodes = {glm::vec3(0.0F)}});
-         }},
-        {"at node 1, 0, 1 is not finite", ErrorCode::kInvalidInput,
-         [&](AirSettings& a) {
-             FlowField flow{.size = {2, 1, 2}, .nodes = std::vector<glm::vec3>(4, glm::vec3(0.0F))};
-             flow.nodes[3].z = nan;
-             a.flow = flowOf(std::move(flow));
-         }},
-        {"bytes", ErrorCode::kLimit,
-         [&](AirSettings& a) {
-             a.flow = flowOf({.size = {512, 512, 65}, .nodes = {}});
-         }},
-    };
-    for (const Case& one : cases) {
+    const auto expectNamed = [&](const Case& one, ErrorCode code) {
         AirSettings air = good;
         one.spoil(air);
         const auto checked = checkAir(air);
         ASSERT_FALSE(checked) << one.part;
-        EXPECT_EQ(checked.error().code, one.code) << one.part;
+        EXPECT_EQ(checked.error().code, code) << one.part;
         EXPECT_NE(checked.error().message.find(one.part), std::string::npos) << checked.error().message;
+    };
+    for (const Case& one : {Case{"wind", [&](AirSettings& a) { a.wind.y = nan; }},
+                            Case{"viscosity", [](AirSettings& a) { a.viscosity = -1.0F; }},
+                            Case{"9 attractors", [](AirSettings& a) { a.attractors.resize(9); }},
+                            Case{"9 vortices", [](AirSettings& a) { a.vortices.resize(9); }},
+                            Case{"attractor 2", [](AirSettings& a) { a.attractors[2].radius = 0.0F; }},
+                            Case{"attractor 3", [](AirSettings& a) { a.attractors[3].falloff = 3; }},
+                            Case{"attractor 4", [&](AirSettings& a) { a.attractors[4].strength = nan; }},
+                            Case{"vortex 1", [](AirSettings& a) { a.vortices[1].axis = glm::vec3(0.0F); }},
+                            Case{"vortex 7", [](AirSettings& a) { a.vortices[7].falloff = -1; }},
+                            Case{"octaves", [](AirSettings& a) { a.curl_noise->octaves = 5; }},
+                            Case{"scale", [](AirSettings& a) { a.curl_noise->scale = 0.0F; }},
+                            Case{"drift", [](AirSettings& a) { a.curl_noise->drift = 1001.0F; }}}) {
+        expectNamed(one, ErrorCode::kUsage);
     }
+    const auto expectFlowNamed = [&](const char* part, const FlowField& flow, ErrorCode code) {
+        expectNamed({part, [&](AirSettings& a) { a.flow = std::make_shared<FlowField>(flow); }}, code);
+    };
+    const std::vector<glm::vec3> still(4, glm::vec3(0.0F));
+    FlowField hole{.size = {2, 1, 2}, .nodes = still};
+    hole.nodes[3].z = nan;
+    expectFlowNamed("4 velocities", {.size = {2, 2, 2}, .nodes = still}, ErrorCode::kInvalidInput);
+    expectFlowNamed("empty", {.size = {2, 0, 1}, .nodes = {}}, ErrorCode::kInvalidInput);
+    expectFlowNamed("empty on the y axis", {.size = {2, 2, 1}, .box_max = {1.0F, 0.0F, 1.0F}, .nodes = still},
+                    ErrorCode::kInvalidInput);
+    expectFlowNamed("at node 1, 0, 1 is not finite", hole, ErrorCode::kInvalidInput);
+    expectFlowNamed("bytes", {.size = {512, 512, 65}, .nodes = {}}, ErrorCode::kLimit);
 }
 
 }  // namespace

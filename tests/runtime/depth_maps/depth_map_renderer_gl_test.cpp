@@ -16,7 +16,9 @@
 #include "formats/normal_index.h"
 #include "formats/plane.h"
 #include "runtime/gl/gl_functions.h"
+#include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/depth_maps/read_texels.h"
+#include "tests/runtime/gl/caller_state.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -48,15 +50,8 @@ Mesh sheet(const glm::vec2& low, const glm::vec2& high, std::uint32_t n,
 
 /// An axis-aligned box round the origin, normals outwards, each face one square.
 Mesh box(const glm::vec3& half) {
-    Mesh mesh;
-    for (int corner = 0; corner < 8; ++corner) {
-        mesh.positions.emplace_back((corner & 1) != 0 ? half.x : -half.x,
-                                    (corner & 2) != 0 ? half.y : -half.y,
-                                    (corner & 4) != 0 ? half.z : -half.z);
-    }
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
+    const AnimatedMesh mesh = movingBox(half);
+    return {mesh.positions, mesh.triangles};
 }
 
 /// Looks along +z through [−1, 1]³, so that map depth is (z + 1)/2.
@@ -77,22 +72,13 @@ DepthMap alongZ(std::uint32_t size) {
 class DepthMapRendererGlTest : public GlTest {
   protected:
     static GpuMesh upload(const Mesh& mesh) {
-        auto gpu_mesh = GpuMesh::create(mesh.positions, mesh.triangles);
-        if (!gpu_mesh) {
-            ADD_FAILURE() << gpu_mesh.error().message;
-            std::abort();
-        }
-        return std::move(*gpu_mesh);
+        return required(GpuMesh::create(mesh.positions, mesh.triangles));
     }
 
     static DepthMap render(GpuMesh& mesh, DepthMap map) {
-        const auto renderer = DepthMapRenderer::create(map.width, map.height);
-        if (!renderer) {
-            ADD_FAILURE() << renderer.error().message;
-            std::abort();
-        }
-        renderer->render(mesh, map);
-        map.texels = readTexels(*renderer);
+        const DepthMapRenderer renderer = required(DepthMapRenderer::create(map.width, map.height));
+        renderer.render(mesh, map);
+        map.texels = readTexels(renderer);
         return map;
     }
 };
@@ -247,23 +233,22 @@ TEST_P(DepthMapRendererGlTest, VerticesMoveAndTheSurfacesMotionIsKnown) {
     EXPECT_NE(moved.revision(), revision);
     EXPECT_TRUE(render(moved, frame).texels == render(made, frame).texels);
 
-    const auto renderer = DepthMapRenderer::create(16, 16);
-    ASSERT_TRUE(renderer) << renderer.error().message;
+    const DepthMapRenderer renderer = required(DepthMapRenderer::create(16, 16));
     for (const bool settled : {false, true}) {
         if (settled) {
             moved.settle();
         }
-        renderer->render(moved, frame);
+        renderer.render(moved, frame);
         const glm::vec3 want = settled ? glm::vec3(0.0F) : way;
         std::vector<float> motion[2];
         for (int i = 0; i < 2; ++i) {
             motion[i].resize(std::size_t{16} * 16 * 4);
-            glBindFramebuffer(GL_READ_FRAMEBUFFER, renderer->framebuffer());
+            glBindFramebuffer(GL_READ_FRAMEBUFFER, renderer.framebuffer());
             glReadBuffer(GL_COLOR_ATTACHMENT1 + static_cast<GLenum>(i));
             glReadPixels(0, 0, 16, 16, GL_RGBA, GL_FLOAT, motion[i].data());
         }
         glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-        const std::vector<std::byte> texels = readTexels(*renderer);
+        const std::vector<std::byte> texels = readTexels(renderer);
         int covered = 0;
         for (std::size_t i = 0; i < 256; ++i) {
             const Texel texel = decodeTexel(frame.format, std::span(texels).subspan(8 * i, 8));
@@ -324,6 +309,38 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
     EXPECT_GT(covered, 1500);
 }
 
+// What a plain state gives, a hostile one gives as well, and keeps.
+TEST_P(DepthMapRendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
+    const Mesh mesh = sheet({-0.8F, -0.7F}, {0.6F, 0.8F}, 3, [](float x, float y) { return 0.5F * x * y; });
+    const auto run = [&](const std::function<void(const char*)>& check) {
+        GpuMesh gpu_mesh = upload(mesh);
+        check("GpuMesh::create");
+        EXPECT_TRUE(gpu_mesh.setPositions(mesh.positions));
+        check("GpuMesh::setPositions");
+        const DepthMap map = render(gpu_mesh, alongZ(16));
+        check("DepthMapRenderer");
+        return map.texels;
+    };
+    const std::vector<std::byte> plain = run([](const char*) {});
+    EXPECT_NE(plain, std::vector<std::byte>(plain.size())) << "nothing was drawn";
+    const CallerState caller;
+    glDepthRangef(0.75F, 0.25F);
+    if (!isGles()) {
+        glProvokingVertex(GL_FIRST_VERTEX_CONVENTION);
+        glEnable(GL_DEPTH_CLAMP);
+    }
+    EXPECT_TRUE(run([&](const char* call) { caller.expectKept(call); }) == plain);
+    std::array<GLfloat, 2> range{};
+    glGetFloatv(GL_DEPTH_RANGE, range.data());
+    EXPECT_EQ(range, (std::array<GLfloat, 2>{0.75F, 0.25F}));
+    if (!isGles()) {
+        GLint provoking = 0;
+        glGetIntegerv(GL_PROVOKING_VERTEX, &provoking);
+        EXPECT_EQ(provoking, static_cast<GLint>(GL_FIRST_VERTEX_CONVENTION));
+        EXPECT_EQ(glIsEnabled(GL_DEPTH_CLAMP), GL_TRUE);
+    }
+}
+
 TEST_P(DepthMapRendererGlTest, WhatIsWrongIsRefused) {
     const Mesh good = box({0.5F, 0.5F, 0.5F});
     Mesh bad = good;
@@ -340,15 +357,15 @@ TEST_P(DepthMapRendererGlTest, WhatIsWrongIsRefused) {
     bad.positions[7].x = std::numeric_limits<float>::infinity();
     EXPECT_EQ(mesh.setPositions(bad.positions).error().code, ErrorCode::kInvalidInput);
     const GlBuffer buffer = makeBuffer();
-    EXPECT_EQ(mesh.setPositions(GLuint{0}).error().code, ErrorCode::kUsage);
-    EXPECT_EQ(mesh.setPositions(GLuint{12345}).error().code, ErrorCode::kUsage);
     glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
     glBufferData(GL_ARRAY_BUFFER, 96, nullptr, GL_STATIC_DRAW);
     glBindBuffer(GL_ARRAY_BUFFER, 0);
-    EXPECT_EQ(mesh.setPositions(buffer.name(), 4).error().code, ErrorCode::kUsage);
-    EXPECT_EQ(mesh.setPositions(buffer.name(), 2).error().code, ErrorCode::kUsage);
-    EXPECT_EQ(mesh.setPositions(buffer.name(), std::numeric_limits<std::size_t>::max() - 3).error().code,
-              ErrorCode::kUsage);
+    for (const auto& [name, offset] :
+         {std::pair(GLuint{0}, std::size_t{0}), std::pair(GLuint{12345}, std::size_t{0}),
+          std::pair(buffer.name(), std::size_t{4}), std::pair(buffer.name(), std::size_t{2}),
+          std::pair(buffer.name(), std::numeric_limits<std::size_t>::max() - 3)}) {
+        EXPECT_EQ(mesh.setPositions(name, offset).error().code, ErrorCode::kUsage) << offset;
+    }
 
     EXPECT_EQ(DepthMapRenderer::create(1U << 20, 16).error().code, ErrorCode::kLimit);
 }

@@ -4,49 +4,88 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "runtime/gl/compute_units.h"
+#include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/gl/pass_state.h"
 
 namespace relief {
 
-/// Sets everything that a pass sets, or that could spoil one, to something else.
+/// Sets everything that a pass sets, or that could spoil one, to something else: a careless pass draws nothing, or nonsense.
 class CallerState {
   public:
     CallerState() {
-        glBindBuffer(GL_UNIFORM_BUFFER, buffer_.name());
-        glBufferData(GL_UNIFORM_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
-        glBindBufferBase(GL_UNIFORM_BUFFER, 0, buffer_.name());
-        glBindBufferRange(GL_UNIFORM_BUFFER, 1, buffer_.name(), 1024, 512);
+        framebuffer_ = makeFramebuffer(std::array<GLuint, 1>{texture_.name()}).value();
+        program_ = makeScreenProgram("picture/resolve.frag").value();
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+        glUseProgram(program_.name());
+        glBindVertexArray(array_.name());
         glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, feedback_.name());
         glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, 256, nullptr, GL_STATIC_DRAW);
         glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, feedback_.name(), 64, 128);
-        glBindBuffer(GL_ARRAY_BUFFER, buffer_.name());
-        glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_.name());
-        glBindVertexArray(array_.name());
+        glBindBuffer(GL_UNIFORM_BUFFER, buffer_.name());
+        glBufferData(GL_UNIFORM_BUFFER, 4096, nullptr, GL_STATIC_DRAW);
+        glBindBufferRange(GL_UNIFORM_BUFFER, 0, buffer_.name(), 0, 1024);
+        glBindBufferRange(GL_UNIFORM_BUFFER, 1, buffer_.name(), 1024, 512);
+        for (const GLenum target : {GL_ARRAY_BUFFER, GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER,
+                                    GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER}) {
+            glBindBuffer(target, buffer_.name());
+        }
+        if (hasCompute()) {
+            image_ = makeImageTexture2D(GL_R32F, 4, 4);
+            glBindImageTexture(0, image_.name(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
+            glBindImageTexture(2, image_.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32F);
+            glBindBuffer(GL_DRAW_INDIRECT_BUFFER, buffer_.name());
+            glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer_.name());
+            glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 2, buffer_.name(), 1024, 512);
+        }
         glGenTextures(1, &volume_);
+        glGenSamplers(1, &sampler_);
         for (GLenum unit = 0; unit < PassState::kUnits; ++unit) {
             glActiveTexture(GL_TEXTURE0 + unit);
             glBindTexture(GL_TEXTURE_2D, texture_.name());
             glBindTexture(GL_TEXTURE_3D, volume_);
+            glBindSampler(unit, sampler_);
         }
-        glActiveTexture(GL_TEXTURE3);
-        for (const GLenum capability : kCapabilities) {
-            glEnable(capability);
+        glActiveTexture(GL_TEXTURE5);
+        for (const GLenum capability : capabilities()) {
+            if (capability != GL_PROGRAM_POINT_SIZE) {
+                glEnable(capability);
+            }
         }
-        glDepthMask(GL_FALSE);
-        glDepthFunc(GL_NEVER);
-        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-        glScissor(0, 0, 0, 0);
+        if (!isGles()) {
+            glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+            glPointParameteri(GL_POINT_SPRITE_COORD_ORIGIN, GL_LOWER_LEFT);
+            glPointSize(7.0F);
+        }
         glViewport(1, 2, 3, 4);
-        glPixelStorei(GL_UNPACK_ALIGNMENT, 8);
-        glPixelStorei(GL_UNPACK_ROW_LENGTH, 3);
+        glScissor(5, 6, 1, 1);
+        glStencilFunc(GL_NEVER, 1, 1);
+        glCullFace(GL_FRONT_AND_BACK);
+        glBlendFuncSeparate(GL_ZERO, GL_ZERO, GL_ONE, GL_DST_COLOR);
+        glBlendEquationSeparate(GL_FUNC_SUBTRACT, GL_MAX);
+        glDepthFunc(GL_NEVER);
+        glDepthMask(GL_FALSE);
+        glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE);
+        glClearColor(0.25F, 0.5F, 0.75F, 1.0F);
+        glPixelStorei(GL_PACK_ALIGNMENT, 8);
+        glPixelStorei(GL_PACK_ROW_LENGTH, 17);
+        glPixelStorei(GL_PACK_SKIP_ROWS, 3);
+        glPixelStorei(GL_PACK_SKIP_PIXELS, 5);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 2);
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, 9);
         glPixelStorei(GL_UNPACK_SKIP_IMAGES, 2);
         before_ = now();
     }
-    ~CallerState() { glDeleteTextures(1, &volume_); }
+    ~CallerState() {
+        glDeleteTextures(1, &volume_);
+        glDeleteSamplers(1, &sampler_);
+    }
     CallerState(const CallerState&) = delete;
     CallerState& operator=(const CallerState&) = delete;
 
@@ -56,57 +95,113 @@ class CallerState {
     }
 
   private:
-    static constexpr std::array<GLenum, 5> kCapabilities{GL_SCISSOR_TEST, GL_RASTERIZER_DISCARD, GL_BLEND,
-                                                         GL_CULL_FACE, GL_DEPTH_TEST};
+    using State = std::map<std::pair<GLenum, GLuint>, std::vector<GLint64>>;  // by name, and unit or block
 
-    static std::vector<GLint64> now() {
-        std::vector<GLint64> values;
-        const auto add = [&](GLenum what) {
-            std::array<GLint, 4> some{};
-            glGetIntegerv(what, some.data());
-            values.insert(values.end(), some.begin(), some.end());
+    static std::vector<GLenum> capabilities() {
+        std::vector<GLenum> names{GL_BLEND,           GL_DEPTH_TEST,         GL_CULL_FACE,
+                                  GL_SCISSOR_TEST,    GL_STENCIL_TEST,       GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                  GL_SAMPLE_COVERAGE, GL_RASTERIZER_DISCARD, GL_POLYGON_OFFSET_FILL};
+        if (!isGles()) {
+            names.insert(names.end(), {GL_COLOR_LOGIC_OP, GL_FRAMEBUFFER_SRGB, GL_PRIMITIVE_RESTART,
+                                       GL_PROGRAM_POINT_SIZE});
+        }
+        return names;
+    }
+
+    static State now() {
+        State state;
+        const auto add = [&](GLenum what, GLuint unit = 0) {
+            std::vector<GLint64>& values = state[{what, unit}];
+            values.resize(4);
+            glGetInteger64v(what, values.data());
         };
-        for (const GLenum what :
-             {GL_CURRENT_PROGRAM, GL_VERTEX_ARRAY_BINDING, GL_ARRAY_BUFFER_BINDING,
-              GL_PIXEL_UNPACK_BUFFER_BINDING, GL_UNIFORM_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_BINDING,
-              GL_DRAW_FRAMEBUFFER_BINDING, GL_READ_FRAMEBUFFER_BINDING, GL_VIEWPORT, GL_SCISSOR_BOX,
-              GL_DEPTH_WRITEMASK, GL_DEPTH_FUNC, GL_COLOR_WRITEMASK, GL_UNPACK_ALIGNMENT,
-              GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_IMAGES, GL_ACTIVE_TEXTURE}) {
+        const auto indexed = [&](GLuint index, std::initializer_list<GLenum> names) {
+            for (const GLenum what : names) {
+                glGetInteger64i_v(what, index, &state[{what, index}].emplace_back());
+            }
+        };
+        for (const GLenum what : {GL_CURRENT_PROGRAM,
+                                  GL_VERTEX_ARRAY_BINDING,
+                                  GL_ARRAY_BUFFER_BINDING,
+                                  GL_UNIFORM_BUFFER_BINDING,
+                                  GL_TRANSFORM_FEEDBACK_BUFFER_BINDING,
+                                  GL_PIXEL_PACK_BUFFER_BINDING,
+                                  GL_PIXEL_UNPACK_BUFFER_BINDING,
+                                  GL_COPY_READ_BUFFER_BINDING,
+                                  GL_COPY_WRITE_BUFFER_BINDING,
+                                  GL_DRAW_FRAMEBUFFER_BINDING,
+                                  GL_READ_FRAMEBUFFER_BINDING,
+                                  GL_VIEWPORT,
+                                  GL_SCISSOR_BOX,
+                                  GL_BLEND_SRC_RGB,
+                                  GL_BLEND_DST_RGB,
+                                  GL_BLEND_SRC_ALPHA,
+                                  GL_BLEND_DST_ALPHA,
+                                  GL_BLEND_EQUATION_RGB,
+                                  GL_BLEND_EQUATION_ALPHA,
+                                  GL_DEPTH_FUNC,
+                                  GL_DEPTH_WRITEMASK,
+                                  GL_COLOR_WRITEMASK,
+                                  GL_COLOR_CLEAR_VALUE,
+                                  GL_CULL_FACE_MODE,
+                                  GL_PACK_ALIGNMENT,
+                                  GL_PACK_ROW_LENGTH,
+                                  GL_PACK_SKIP_ROWS,
+                                  GL_PACK_SKIP_PIXELS,
+                                  GL_UNPACK_ALIGNMENT,
+                                  GL_UNPACK_ROW_LENGTH,
+                                  GL_UNPACK_SKIP_ROWS,
+                                  GL_UNPACK_SKIP_IMAGES,
+                                  GL_ACTIVE_TEXTURE,
+                                  GL_DITHER}) {
             add(what);
         }
-        for (const GLenum capability : kCapabilities) {
-            values.push_back(glIsEnabled(capability));
+        for (const GLenum capability : capabilities()) {
+            state[{capability, 0}] = {glIsEnabled(capability)};
         }
-        const auto indexed = [&](GLenum binding, GLenum start, GLenum size, GLuint index) {
-            GLint name = 0;
-            std::array<GLint64, 2> range{};
-            glGetIntegeri_v(binding, index, &name);
-            glGetInteger64i_v(start, index, &range[0]);
-            glGetInteger64i_v(size, index, &range[1]);
-            values.insert(values.end(), {GLint64{name}, range[0], range[1]});
-        };
-        indexed(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 0);
-        indexed(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 1);
-        indexed(GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_START,
-                GL_TRANSFORM_FEEDBACK_BUFFER_SIZE, 0);
+        if (!isGles()) {
+            add(GL_POINT_SPRITE_COORD_ORIGIN);
+            std::array<GLint, 2> modes{};
+            glGetIntegerv(GL_POLYGON_MODE, modes.data());
+            state[{GL_POLYGON_MODE, 0}] = {modes[0]};
+        }
+        for (const GLuint block : {0U, 1U}) {
+            indexed(block, {GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE});
+        }
+        indexed(0, {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_START,
+                    GL_TRANSFORM_FEEDBACK_BUFFER_SIZE});
+        if (hasCompute()) {
+            add(GL_DRAW_INDIRECT_BUFFER_BINDING);
+            add(GL_SHADER_STORAGE_BUFFER_BINDING);
+            for (GLuint unit = 0; unit < StorageUnits::kUnits; ++unit) {
+                indexed(unit, {GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                               GL_SHADER_STORAGE_BUFFER_SIZE, GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_ACCESS,
+                               GL_IMAGE_BINDING_FORMAT});
+            }
+        }
         GLint active = 0;
         glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
         for (GLenum unit = 0; unit < PassState::kUnits; ++unit) {
             glActiveTexture(GL_TEXTURE0 + unit);
-            add(GL_TEXTURE_BINDING_2D);
-            add(GL_TEXTURE_BINDING_3D);
-            add(GL_SAMPLER_BINDING);
+            for (const GLenum what : {GL_TEXTURE_BINDING_2D, GL_TEXTURE_BINDING_2D_ARRAY,
+                                      GL_TEXTURE_BINDING_3D, GL_SAMPLER_BINDING}) {
+                add(what, unit);
+            }
         }
         glActiveTexture(static_cast<GLenum>(active));
-        return values;
+        return state;
     }
 
     GlBuffer buffer_ = makeBuffer();
     GlBuffer feedback_ = makeBuffer();
     GlVertexArray array_ = makeVertexArray();
     GlTexture texture_ = makeTexture2D(GL_RGBA8, 4, 4, GL_RGBA, GL_UNSIGNED_BYTE);
+    GlTexture image_;
+    GlFramebuffer framebuffer_;
+    GlProgram program_;
     GLuint volume_ = 0;
-    std::vector<GLint64> before_;
+    GLuint sampler_ = 0;
+    State before_;
 };
 
 }  // namespace relief

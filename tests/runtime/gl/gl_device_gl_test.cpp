@@ -1,9 +1,14 @@
-// Platforms and devices that a context comes from, present and missing.
+// Platforms and devices that a context comes from, present and missing; and what goes without a context.
 #include "runtime/gl/gl_context.h"
 
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
+#include "runtime/collider/collider_textures.h"
+#include "runtime/particles/particle_system.h"
+#include "runtime/picture/depth_sort.h"
+#include "runtime/picture/frame.h"
+#include "runtime/picture/particle_renderer.h"
 #include "tests/runtime/gl/gl_test.h"
 
 namespace relief {
@@ -88,6 +93,23 @@ TEST_P(GlDeviceTest, ADriverThatCannotTellOfResetsStillGivesAContext) {
     epoxy_eglCreateContext = real_create_context;
     ASSERT_TRUE(context) << context.error().message;
     EXPECT_EQ(refused, 1) << "Mesa's llvmpipe knows the attribute, and it was asked for first";
+}
+
+TEST(NoContext, IsNamed) {
+    const auto expectNamed = [](const auto& result) {
+        ASSERT_FALSE(result);
+        EXPECT_EQ(result.error().code, ErrorCode::kUsage);
+        EXPECT_NE(result.error().message.find("no OpenGL context is current"), std::string::npos);
+    };
+    SharedGlContexts::instance().drop();
+    for (const bool had_one : {false, true}) {
+        ASSERT_TRUE(!had_one || GlContext::create());
+        expectNamed(ColliderTextures::create(Collider{}));
+        expectNamed(ParticleSystem::create());
+        expectNamed(DepthSorter::create(1024));
+        expectNamed(Frame::create(64, 64));
+        expectNamed(ParticleRenderer::create(std::nullopt));
+    }
 }
 
 }  // namespace

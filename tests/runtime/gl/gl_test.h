@@ -6,13 +6,24 @@
 
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 
 namespace relief {
+
+/// The value of a Result, without which the test cannot go on.
+template <class T>
+T required(Result<T> result) {
+    if (!result) {
+        ADD_FAILURE() << result.error().message;
+    }
+    return std::move(result).value();  // throws: the test ends
+}
 
 inline std::string glApiTestName(const testing::TestParamInfo<GlApi>& info) {
     return info.param == GlApi::kGles30 ? "Gles30" : "Gl33Core";
@@ -120,9 +131,11 @@ class SharedGlContexts : public testing::Environment {
 template <class Param>
 class GlTestOf : public testing::TestWithParam<Param> {
   protected:
-    void SetUp() override {
-        context_ = SharedGlContexts::instance().use(apiOf(this->GetParam()));
-        ASSERT_NE(context_, nullptr);
+    /// The context is current before members of derived fixtures are made.
+    GlTestOf() : context_(SharedGlContexts::instance().use(apiOf(this->GetParam()))) {
+        if (context_ == nullptr) {
+            throw std::runtime_error("no context");
+        }
         this->RecordProperty("context", context_->description());
     }
     void TearDown() override {
@@ -131,7 +144,7 @@ class GlTestOf : public testing::TestWithParam<Param> {
         }
     }
 
-    const GlContext* context_ = nullptr;
+    const GlContext* context_;
 };
 
 using GlTest = GlTestOf<GlApi>;

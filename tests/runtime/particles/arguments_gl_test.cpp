@@ -60,14 +60,12 @@ TEST_P(ArgumentsGlTest, NumbersThatAreNone) {
     spawnOne({{}, {}, 1000.0F, 0});
     for (const float wrong : {kNan, kInfinity, -kInfinity}) {
         for (int axis = 0; axis < 3; ++axis) {
-            Forces forces;
-            forces.gravity[axis] = wrong;
-            EXPECT_TRUE(refused(particles_->setForces(forces)));
-            forces = {};
-            forces.wind[axis] = wrong;
-            EXPECT_TRUE(refused(particles_->setForces(forces)));
-            EXPECT_TRUE(refusedBirth([&](Birth& birth) { birth.position[axis] = wrong; }));
-            EXPECT_TRUE(refusedBirth([&](Birth& birth) { birth.velocity[axis] = wrong; }));
+            glm::vec3 one(0.0F);
+            one[axis] = wrong;
+            EXPECT_TRUE(refused(particles_->setForces({.gravity = one})));
+            EXPECT_TRUE(refused(particles_->setForces({.wind = one})));
+            EXPECT_TRUE(refusedBirth([&](Birth& birth) { birth.position = one; }));
+            EXPECT_TRUE(refusedBirth([&](Birth& birth) { birth.velocity = one; }));
         }
         EXPECT_TRUE(refused(particles_->setForces({.drag = wrong})));
         EXPECT_TRUE(refused(particles_->setForces({.viscosity = wrong})));
@@ -142,9 +140,8 @@ TEST_P(ArgumentsGlTest, MoreMaterialsThanEventsCanTellApart) {
         colliders[0].materials.list.push_back({"a" + std::to_string(i)});
         colliders[1].materials.list.push_back({"b" + std::to_string(i)});
     }
-    for (int i = 0; i < 700; ++i) {
-        bodies.push_back(
-            {&colliders[static_cast<std::size_t>(i % 2)], {{static_cast<float>(i), 0.0F, 0.0F}}});
+    for (std::size_t i = 0; i < 700; ++i) {
+        bodies.push_back({&colliders[i % 2], {{static_cast<float>(i), 0.0F, 0.0F}}});
     }
     collideWith(ColliderTextures::create(bodies));
     EXPECT_TRUE(refused(particles_->setEvents(EventOptions{}), ErrorCode::kLimit));

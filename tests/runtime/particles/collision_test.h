@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <memory>
 #include <span>
@@ -33,23 +34,24 @@ inline glm::quat turn(const glm::vec3& axis, float angle) {
 class CollisionTest : public StepGlTest {
   protected:
     void make(const ParticleSystemOptions& options) {
-        auto made = ParticleSystem::create(onPath(options));
-        ASSERT_TRUE(made) << made.error().message;
-        particles_ = std::make_unique<ParticleSystem>(std::move(*made));
+        particles_ = std::make_unique<ParticleSystem>(required(ParticleSystem::create(onPath(options))));
     }
     void collideWith(Result<ColliderTextures> textures) {
-        ASSERT_TRUE(textures) << textures.error().message;
-        textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
+        textures_ = std::make_unique<ColliderTextures>(required(std::move(textures)));
         ASSERT_TRUE(particles_->setCollider(textures_.get()));
     }
     void collideWith(const Collider& collider) { collideWith(ColliderTextures::create(collider)); }
     void collideWith(const ColliderBody& body) { collideWith(ColliderTextures::create(std::span(&body, 1))); }
     void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
     void setPose(const Pose& pose) { textures_->setPoses(std::span(&pose, 1)); }
-    [[nodiscard]] std::vector<ParticleState> state() const {
-        auto read = particles_->readState();
-        EXPECT_TRUE(read);
-        return read.value_or(std::vector<ParticleState>{});
+    [[nodiscard]] std::vector<ParticleState> state() const { return required(particles_->readState()); }
+    /// `birth` makes each of them.
+    void spawnMany(std::uint32_t count, const std::function<Birth(std::uint32_t)>& birth) {
+        std::vector<Birth> births;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            births.push_back(birth(i));
+        }
+        ASSERT_EQ(particles_->spawn(births), count);
     }
     void spawnOne(const Birth& birth) { ASSERT_EQ(particles_->spawn(std::span(&birth, 1)), 1U); }
     void step(int count = 1) {
@@ -60,9 +62,7 @@ class CollisionTest : public StepGlTest {
     /// The events of the last step.
     StepEvents takeEvents(std::uint64_t tag = 0) {
         EXPECT_TRUE(particles_->requestEvents(tag));
-        auto events = particles_->waitEvents();
-        EXPECT_TRUE(events && *events);
-        return events && *events ? std::move(**events) : StepEvents{};
+        return required(particles_->waitEvents()).value();
     }
 
     std::unique_ptr<ColliderTextures> textures_;

@@ -24,7 +24,6 @@ struct ReferenceBody {
 };
 
 struct ReferenceSettings {
-    const Collider* collider = nullptr;  ///< in its own space; or
     std::vector<ReferenceBody> bodies;
     std::optional<float> ground;
     Forces forces;
@@ -40,6 +39,12 @@ struct ReferenceState {
     /// or cube faces, to the edge of a volume, or to a vote of 0, so that another rounding may decide
     /// otherwise.
     bool ambiguous = false;
+    /// What it ran into, and the arrival there, if it is not caught.
+    int body = -2;
+    glm::vec3 normal{0.0F};
+    glm::vec3 touch{0.0F};    ///< place
+    glm::vec3 arrival{0.0F};  ///< velocity
+    float speed = 0.0F;       ///< towards the surface, relative to it
 };
 
 inline float dot(const glm::vec3& a, const glm::vec3& b) {
@@ -87,26 +92,32 @@ struct ReferenceSolid {
     int body = -2;
 };
 
-/// Of the body as it is now, or as it was before the step.
-inline ReferenceSolid solidOf(const ReferenceBody& body, int number, const glm::vec3& p, bool before) {
-    const Pose& pose = before ? body.before : body.now;
+/// Of a body in a pose.
+inline ReferenceSolid solidOf(const ReferenceBody& body, int number, const Pose& pose, const glm::vec3& p) {
     const FieldSample field = evaluate(*body.collider, toObject(pose, p));
     return field.inside() ? ReferenceSolid{pose.scale * field.distance, pose.rotation * field.normal, number}
                           : ReferenceSolid{};
 }
 
 /// The union of all bodies and the floor; the deepest decides.
-inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3& p) {
-    ReferenceSolid best;
-    if (settings.collider != nullptr) {
-        best = solidOf({settings.collider, {}, {}, 1.0F, 0.0F}, 0, p, false);
-    }
+/// \param rivals  how many of them are as deep, within a hair.
+inline ReferenceSolid solidAt(const ReferenceSettings& settings, const glm::vec3& p, int* rivals = nullptr) {
+    std::vector<ReferenceSolid> all(1);
     for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
-        const ReferenceSolid solid = solidOf(settings.bodies[i], static_cast<int>(i), p, false);
-        best = solid.distance < best.distance ? solid : best;
+        all.push_back(solidOf(settings.bodies[i], static_cast<int>(i), settings.bodies[i].now, p));
     }
-    if (settings.ground && p.y - *settings.ground < best.distance) {
-        best = {p.y - *settings.ground, glm::vec3(0.0F, 1.0F, 0.0F), -1};
+    if (settings.ground) {
+        all.push_back({p.y - *settings.ground, glm::vec3(0.0F, 1.0F, 0.0F), -1});
+    }
+    ReferenceSolid best = all.front();
+    for (const ReferenceSolid& one : all) {
+        best = one.distance < best.distance ? one : best;
+    }
+    const float hair = kVolumeHair * (2.0F + std::abs(settings.ground.value_or(0.0F)));
+    for (const ReferenceSolid& one : all) {
+        if (rivals != nullptr && std::abs(one.distance - best.distance) < hair) {
+            ++*rivals;
+        }
     }
     return best;
 }
@@ -116,10 +127,8 @@ inline bool wasInside(const ReferenceSettings& settings, const ReferenceSolid& s
     if (solid.body < 0) {
         return p.y < *settings.ground;
     }
-    if (settings.collider != nullptr) {
-        return evaluate(*settings.collider, p).inside();
-    }
-    return solidOf(settings.bodies[static_cast<std::size_t>(solid.body)], 0, p, true).distance < 0.0F;
+    const ReferenceBody& body = settings.bodies[static_cast<std::size_t>(solid.body)];
+    return solidOf(body, 0, body.before, p).distance < 0.0F;
 }
 
 inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm::vec3& p,
@@ -127,46 +136,30 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
     const float dt = settings.dt;
     const ParticleType& type = settings.type;
     const float drag = dragRate(settings.forces, type);
-    glm::vec3 v = (v_before + dt * (settings.forces.gravity + drag * settings.forces.wind)) *
-                  (1.0F / (1.0F + dt * drag));
+    const glm::vec3 gravity = type.gravity * settings.forces.gravity;
+    glm::vec3 v = (v_before + dt * (gravity + drag * settings.forces.wind)) * (1.0F / (1.0F + dt * drag));
     const glm::vec3 p_star = p + dt * v;
 
     ReferenceState out;
     out.position = p_star;
-    const ReferenceSolid ahead = solidAt(settings, p_star);
-    if (settings.collider != nullptr) {
-        out.ambiguous = isAmbiguous(*settings.collider, p_star) || isAmbiguous(*settings.collider, p);
-    }
+    // Which of two bodies is deeper, and on which side of the floor.
+    int rivals = 0;
+    const ReferenceSolid ahead = solidAt(settings, p_star, &rivals);
+    out.ambiguous = ahead.distance < 0.0F && rivals > 1;
     for (const ReferenceBody& body : settings.bodies) {
         out.ambiguous = out.ambiguous || isAmbiguous(*body.collider, toObject(body.now, p_star)) ||
                         isAmbiguous(*body.collider, toObject(body.before, p));
     }
-    // Which of two bodies is deeper, and on which side of the floor.
-    const float hair = kVolumeHair * (2.0F + std::abs(settings.ground.value_or(0.0F)));
-    int inside = 0;
-    for (std::size_t i = 0; i < settings.bodies.size(); ++i) {
-        const float distance = solidOf(settings.bodies[i], static_cast<int>(i), p_star, false).distance;
-        inside += std::abs(distance - ahead.distance) < hair ? 1 : 0;
-    }
     if (settings.ground) {
-        inside += std::abs(p_star.y - *settings.ground - ahead.distance) < hair ? 1 : 0;
-        inside += settings.collider != nullptr &&
-                          std::abs(evaluate(*settings.collider, p_star).distance - ahead.distance) < hair
-                      ? 1
-                      : 0;
+        const float hair = kVolumeHair * (2.0F + std::abs(*settings.ground));
         out.ambiguous = out.ambiguous || std::abs(p_star.y - *settings.ground) < hair ||
                         std::abs(p.y - *settings.ground) < hair;
     }
-    out.ambiguous = out.ambiguous || (ahead.distance < 0.0F && inside > 1);
     if (ahead.distance < 0.0F) {
         const glm::vec3 n = ahead.normal;
-        ReferenceBody body;
-        if (ahead.body >= 0 && !settings.bodies.empty()) {
-            body = settings.bodies[static_cast<std::size_t>(ahead.body)];
-        }
-        const glm::vec3 carried = body.collider == nullptr
-                                      ? glm::vec3(0.0F)
-                                      : (p_star - toWorld(body.before, toObject(body.now, p_star))) / dt;
+        const ReferenceBody body =
+            ahead.body >= 0 ? settings.bodies[static_cast<std::size_t>(ahead.body)] : ReferenceBody{};
+        const glm::vec3 carried = (p_star - toWorld(body.before, toObject(body.now, p_star))) / dt;
         const glm::vec3 relative = v - carried;
         const float vn = dot(relative, n);
         if (wasInside(settings, ahead, p)) {
@@ -177,9 +170,14 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
             out.ambiguous = out.ambiguous || std::abs(vn) < 1e-5F;
         } else {
             out.contact = Contact::kCollided;
+            out.body = ahead.body;
+            out.normal = n;
+            out.touch = p_star - (vn < 0.0F ? std::min(ahead.distance / vn, dt) : 0.0F) * v;
+            out.arrival = v;
+            out.speed = std::max(-vn, 0.0F);
             const glm::vec3 along = relative - vn * n;
             const float threshold = type.friction_threshold;
-            const float still = 1e-3F * dt * glm::length(settings.forces.gravity);
+            const float still = 1e-3F * dt * glm::length(gravity);
             const float speed = dot(relative, relative);
             const float slide =
                 speed >= threshold * threshold ? (1.0F - type.friction) * (1.0F - body.friction) : 1.0F;

@@ -18,9 +18,9 @@ inline GlApi apiOf(const StepCase& step) {
 }
 
 inline std::string stepTestName(const testing::TestParamInfo<StepCase>& info) {
-    return info.param.path == StepPath::kCompute ? "ComputeGl43"
-           : info.param.api == GlApi::kGles30    ? "Gles30"
-                                                 : "Gl33Core";
+    const bool gles = info.param.api == GlApi::kGles30;
+    return info.param.path == StepPath::kCompute ? (gles ? "ComputeGles31" : "ComputeGl43")
+                                                 : (gles ? "Gles30" : "Gl33Core");
 }
 
 class StepGlTest : public GlTestOf<StepCase> {
@@ -32,7 +32,7 @@ class StepGlTest : public GlTestOf<StepCase> {
     }
 };
 
-// Compute in OpenGL ES is step_path_gl_test.cpp's: the same bits as fragments there.
+// Compute in OpenGL ES is step_path_gl_test.cpp's, the same bits as fragments there, and depth_sort_gl_test.cpp's.
 #define RELIEF_INSTANTIATE_STEP_TESTS(suite)                                                  \
     INSTANTIATE_TEST_SUITE_P(Paths, suite,                                                    \
                              testing::Values(StepCase{GlApi::kGl33Core, StepPath::kFragment}, \

@@ -1,4 +1,4 @@
-// The paths of a step: the same particles, whichever is taken, and the caller's image units as they were.
+// The paths of a step: the same particles and events, whichever is taken.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -104,29 +104,29 @@ Collider sidesOf(int repeats) {
     return collider;
 }
 
+struct Played {
+    std::vector<ParticleState> state;
+    std::vector<ParticleEvent> events;
+};
+
 class StepPathGlTest : public GlTest {
   protected:
     /// Particles that are born in two goes, collide and die.
-    static std::vector<ParticleState> played(const Features& features, StepPath path, int steps) {
+    static Played played(const Features& features, StepPath path, int steps) {
         static const Collider kBox = boxCollider();
         static const Bodies kBodies;
         const Collider box = features.repeats > 0 ? sidesOf(features.repeats) : kBox;
-        auto textures = features.bodies > 0 ? ColliderTextures::create(kBodies.first(features.bodies))
-                                            : ColliderTextures::create(box);
-        EXPECT_TRUE(textures);
-        auto made = ParticleSystem::create({.capacity = kParticles + 100,
-                                            .integrator = features.integrator,
-                                            .epoch_seconds = 0.3,
-                                            .path = path});
-        EXPECT_TRUE(made) << made.error().message;
-        ParticleSystem& particles = *made;
+        ColliderTextures textures =
+            required(features.bodies > 0 ? ColliderTextures::create(kBodies.first(features.bodies))
+                                         : ColliderTextures::create(box));
+        ParticleSystem particles = required(ParticleSystem::create({.capacity = kParticles + 100,
+                                                                    .integrator = features.integrator,
+                                                                    .epoch_seconds = 0.3,
+                                                                    .path = path}));
         EXPECT_EQ(particles.path(), path);
         EXPECT_TRUE(particles.setForces({{0.1F, -3.0F, 0.0F}, {0.4F, 0.0F, -0.3F}, 0.5F}));
         EXPECT_TRUE(particles.setGround(-0.19F));  // above some: they touch it in the first step
-        ParticleType type;
-        type.restitution = 0.5F;
-        type.friction = 0.2F;
-        type.radius = features.radius;
+        const ParticleType type{.radius = features.radius, .restitution = 0.5F, .friction = 0.2F};
         std::vector<ParticleType> types{type};
         if (features.masks) {
             types.push_back(type);
@@ -140,8 +140,10 @@ class StepPathGlTest : public GlTest {
             EXPECT_TRUE(particles.setAir(air));
         }
         if (features.collider) {
-            EXPECT_TRUE(particles.setCollider(&*textures));
+            EXPECT_TRUE(particles.setCollider(&textures));
         }
+        EXPECT_TRUE(particles.setEvents(EventOptions{.lasting = true, .deaths = true}));
+        Played run;
         Pcg32 random(5);
         std::vector<Birth> births;
         for (std::uint32_t i = 0; i < kParticles; ++i) {
@@ -157,16 +159,18 @@ class StepPathGlTest : public GlTest {
             if (i == steps / 2) {
                 particles.spawn({births.begin() + half, births.end()});
             }
-            std::vector<Pose> poses;
+            std::vector<Pose> poses(static_cast<std::size_t>(features.bodies));
             for (int body = 0; body < features.bodies; ++body) {
-                poses.push_back(Bodies::pose(body, i));
+                poses[static_cast<std::size_t>(body)] = Bodies::pose(body, i);
             }
-            textures->setPoses(poses);
+            textures.setPoses(poses);
             particles.step(kDt);
+            EXPECT_TRUE(particles.requestEvents(0));
+            const StepEvents step = required(particles.waitEvents()).value();
+            run.events.insert(run.events.end(), step.events.begin(), step.events.end());
         }
-        auto state = particles.readState();
-        EXPECT_TRUE(state);
-        return state.value_or(std::vector<ParticleState>{});
+        run.state = required(particles.readState());
+        return run;
     }
 };
 
@@ -183,11 +187,7 @@ constexpr Features kAll[] = {
     {.name = "a body", .bodies = 1},
     {.name = "bodies, one without maps", .bodies = 5},
     {.name = "bodies, swept", .sweep = 0.02F, .bodies = 3},
-    {.name = "bodies, swept Verlet with masks",
-     .integrator = Integrator::kVerlet,
-     .sweep = 0.02F,
-     .bodies = 3,
-     .masks = true},
+    {"bodies, swept Verlet with masks", Integrator::kVerlet, true, 0.0F, 0.02F, false, 3, true},
     {.name = "bodies and balls, swept", .radius = 0.02F, .sweep = 0.03F, .bodies = 2},
 };
 
@@ -199,8 +199,8 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
     const int steps = bits ? 24 : 2;
     for (const Features& features : kAll) {
         SCOPED_TRACE(features.name);
-        const std::vector<ParticleState> fragment = played(features, StepPath::kFragment, steps);
-        const std::vector<ParticleState> compute = played(features, StepPath::kCompute, steps);
+        const auto [fragment, listed] = played(features, StepPath::kFragment, steps);
+        const auto [compute, other] = played(features, StepPath::kCompute, steps);
         ASSERT_EQ(fragment.size(), compute.size());
         ASSERT_GT(fragment.size(), kParticles / 4);
         std::size_t others = 0;
@@ -218,11 +218,22 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
             others += same ? 0 : 1;
         }
         EXPECT_LE(others, bits ? 0 : fragment.size() / 1000);
+        EXPECT_GT(listed.size(), 100U);
+        EXPECT_NEAR(static_cast<double>(listed.size()), static_cast<double>(other.size()),
+                    bits ? 0.0 : 0.01 * static_cast<double>(listed.size()));
+        for (std::size_t i = 0; bits && i < listed.size(); ++i) {
+            const ParticleEvent& a = listed[i];
+            const ParticleEvent& b = other.at(i);
+            ASSERT_TRUE(a.id == b.id && a.index == b.index && a.type == b.type && a.time == b.time &&
+                        a.position == b.position && a.velocity == b.velocity && a.normal == b.normal &&
+                        a.speed == b.speed && a.body == b.body && a.hit == b.hit && a.lasts == b.lasts &&
+                        a.death == b.death);
+        }
         EXPECT_GT(touched, 0U);
         if (features.collider) {  // and not the floor alone
             Features floor = features;
             floor.collider = false;
-            const std::vector<ParticleState> free = played(floor, StepPath::kFragment, steps);
+            const std::vector<ParticleState> free = played(floor, StepPath::kFragment, steps).state;
             ASSERT_EQ(free.size(), fragment.size());
             std::size_t met = 0;
             for (std::size_t i = 0; i < free.size(); ++i) {
@@ -236,24 +247,19 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
 // Whether lanes go on by themselves: else the test above says nothing of it.
 TEST_P(StepPathGlTest, ToursAreForSweepsOfASingleCollider) {
     const auto tours = [](const Result<ColliderTextures>& textures, StepFeatures features) {
-        EXPECT_TRUE(textures);
         features.collider = &*textures;
-        const auto pass = StepPass::create(features);
-        EXPECT_TRUE(pass);
-        return pass->usesStorage();
+        return required(StepPass::create(features)).usesStorage();
     };
-    const Bodies bodies;
+    const auto many = [](std::size_t maps) {
+        Collider box = boxCollider();
+        box.maps.resize(maps, box.maps.front());
+        return ColliderTextures::create(box);
+    };
     const auto box = ColliderTextures::create(boxCollider());
-    const auto body = ColliderTextures::create(bodies.first(1));
-    Collider many = boxCollider();
-    many.maps.resize(64, many.maps.front());
-    const auto most = ColliderTextures::create(many);
-    many.maps.resize(65, many.maps.front());
-    const auto more = ColliderTextures::create(many);
     EXPECT_TRUE(tours(box, {.sweep = true, .compute = true}));
-    EXPECT_FALSE(tours(body, {.sweep = true, .compute = true}));
-    EXPECT_TRUE(tours(most, {.sweep = true, .compute = true}));
-    EXPECT_FALSE(tours(more, {.sweep = true, .compute = true}));
+    EXPECT_TRUE(tours(many(64), {.sweep = true, .compute = true}));
+    EXPECT_FALSE(tours(many(65), {.sweep = true, .compute = true}));
+    EXPECT_FALSE(tours(ColliderTextures::create(Bodies().first(1)), {.sweep = true, .compute = true}));
     EXPECT_FALSE(tours(box, {.compute = true}));
     EXPECT_FALSE(tours(box, {.sweep = true, .radius = true, .compute = true}));
     EXPECT_FALSE(tours(box, {.sweep = true}));
@@ -270,8 +276,7 @@ TEST_P(StepPathGlTest, ManyBirthsAtOnceAreTheSame) {
     constexpr std::uint32_t kMany = 300'000;
     std::vector<std::vector<ParticleState>> states;
     for (const StepPath path : {StepPath::kFragment, StepPath::kCompute}) {
-        auto particles = ParticleSystem::create({.capacity = kMany, .path = path});
-        ASSERT_TRUE(particles) << particles.error().message;
+        ParticleSystem particles = required(ParticleSystem::create({.capacity = kMany, .path = path}));
         Pcg32 random(7);
         for (const bool lasting : {false, true}) {
             std::vector<Birth> births(kMany);
@@ -281,61 +286,20 @@ TEST_P(StepPathGlTest, ManyBirthsAtOnceAreTheSame) {
                 birth.lifetime = lasting || random.next() % 2 == 0 ? 10.0F : kDt;
                 birth.type = random.next() % 3;
             }
-            EXPECT_EQ(particles->spawn(births) == kMany, !lasting);
-            particles->step(2.0F * kDt);
+            EXPECT_EQ(particles.spawn(births) == kMany, !lasting);
+            particles.step(2.0F * kDt);
         }
-        auto state = particles->readState();
-        ASSERT_TRUE(state);
-        states.push_back(std::move(*state));
+        states.push_back(required(particles.readState()));
     }
     ASSERT_EQ(states[0].size(), kMany);
     ASSERT_EQ(states[1].size(), kMany);
     for (std::uint32_t i = 0; i < kMany; ++i) {
         const ParticleState& a = states[0][i];
         const ParticleState& b = states[1][i];
-        ASSERT_EQ(a.id, b.id);
-        ASSERT_EQ(a.type, b.type);
-        ASSERT_EQ(a.age, b.age);
-        ASSERT_EQ(a.lifetime, b.lifetime);
+        ASSERT_TRUE(a.id == b.id && a.type == b.type && a.age == b.age && a.lifetime == b.lifetime) << i;
         ASSERT_LT(glm::length(a.position - b.position), context_->software() ? 1e-30F : 1e-6F);
         ASSERT_LT(glm::length(a.velocity - b.velocity), context_->software() ? 1e-30F : 1e-6F);
     }
-}
-
-TEST_P(StepPathGlTest, TheCallersImageAndStorageUnitsAreKept) {
-    const GlTexture mine = makeImageTexture2D(GL_R32F, 4, 4);
-    glBindImageTexture(0, mine.name(), 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32F);
-    glBindImageTexture(2, mine.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32F);
-    const GlBuffer storage = makeBuffer();
-    glBindBuffer(GL_SHADER_STORAGE_BUFFER, storage.name());
-    glBufferData(GL_SHADER_STORAGE_BUFFER, 1024, nullptr, GL_STATIC_DRAW);
-    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, storage.name(), 256, 512);
-    auto particles = ParticleSystem::create({.capacity = 10, .path = StepPath::kCompute});
-    ASSERT_TRUE(particles);
-    const auto textures = ColliderTextures::create(boxCollider());
-    ASSERT_TRUE(textures);
-    ASSERT_TRUE(particles->setCollider(&*textures));
-    ASSERT_TRUE(particles->setSweep(0.1F));  // whose tours use storage
-    const Birth birth{{0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 10.0F, 0};
-    particles->spawn(std::span(&birth, 1));
-    particles->step(kDt);
-    const auto unit = [](GLenum what, GLuint index) {
-        GLint value = -1;
-        glGetIntegeri_v(what, index, &value);
-        return value;
-    };
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_NAME, 0), static_cast<GLint>(mine.name()));
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_ACCESS, 0), GL_READ_ONLY);
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_FORMAT, 0), GL_R32F);
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_NAME, 1), 0);
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_NAME, 2), static_cast<GLint>(mine.name()));
-    EXPECT_EQ(unit(GL_IMAGE_BINDING_ACCESS, 2), GL_READ_WRITE);
-    EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_BINDING, 0), static_cast<GLint>(storage.name()));
-    EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_START, 0), 256);
-    EXPECT_EQ(unit(GL_SHADER_STORAGE_BUFFER_SIZE, 0), 512);
-    GLint bound = 0;
-    glGetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &bound);
-    EXPECT_EQ(bound, static_cast<GLint>(storage.name()));
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(StepPathGlTest);

@@ -13,6 +13,7 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "shaders/picture/constants.h"
+#include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/runtime/gl/query_program.h"
@@ -45,28 +46,18 @@ void main() {
 
 class ColliderLightGlTest : public GlTest {
   protected:
-    void TearDown() override {
-        light_.reset();
-        textures_.reset();
-        GlTest::TearDown();
-    }
     void use(ColliderTextures textures, const Bounds& bounds, float texel) {
         light_.reset();
         textures_ = std::make_unique<ColliderTextures>(std::move(textures));
-        auto light = ColliderLight::create({textures_.get(), bounds, texel});
-        ASSERT_TRUE(light) << light.error().message;
-        light_.emplace(std::move(*light));
+        light_.emplace(required(ColliderLight::create({textures_.get(), bounds, texel})));
     }
     void use(const Collider& collider) {
-        auto textures = ColliderTextures::create(collider);
-        ASSERT_TRUE(textures) << textures.error().message;
-        use(std::move(*textures), collider.bounds, finestTexel(collider));
+        use(required(ColliderTextures::create(collider)), collider.bounds, finestTexel(collider));
     }
     /// As particles get it, the mean over their random numbers.
     std::vector<Light> at(const std::vector<glm::vec3>& points) {
         const PassState state;
-        const auto updated = light_->update();
-        EXPECT_TRUE(updated) << updated.error().message;
+        EXPECT_TRUE(light_->update());
         std::vector<glm::vec4> texels;
         for (const glm::vec3& p : points) {
             texels.emplace_back(p, 0.0F);
@@ -74,22 +65,17 @@ class ColliderLightGlTest : public GlTest {
         const auto count = static_cast<GLsizei>(points.size());
         const GlTexture input = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT, texels.data());
         const GlTexture output = makeTexture2D(GL_RGBA32F, count, 1, GL_RGBA, GL_FLOAT);
-        const auto target = makeFramebuffer(std::array<GLuint, 1>{output.name()});
-        const auto program = makeQueryProgram("picture/particle_light.glsl", kQuery);
-        EXPECT_TRUE(target && program);
-        const GlVertexArray array = makeVertexArray();
-        light_->attach(*program, 1);
-        program->set("u_points", 0);
+        const GlFramebuffer target = required(makeFramebuffer({output.name()}));
+        const GlProgram program = required(makeQueryProgram("picture/particle_light.glsl", kQuery));
+        light_->attach(program, 1);
+        program.set("u_points", 0);
         light_->bind(1);
         useTexture(0, input);
-        glBindFramebuffer(GL_FRAMEBUFFER, target->name());
-        glViewport(0, 0, count, 1);
-        glBindVertexArray(array.name());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        const auto values = readTextureFloats(output, count, 1);
+        program.drawScreen(target.name(), count, 1);
+        const std::vector<float> values = required(readTextureFloats(output, count, 1));
         std::vector<Light> lights;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            lights.push_back({(*values)[4 * i], (*values)[4 * i + 1]});
+            lights.push_back({values[4 * i], values[4 * i + 1]});
         }
         return lights;
     }
@@ -230,9 +216,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
     Bounds bounds;
     bounds.add(glm::vec3(-1.5F, -0.5F, -0.5F));
     bounds.add(glm::vec3(1.5F, 0.5F, 0.5F));
-    auto textures = ColliderTextures::create(std::span(&body, 1));
-    ASSERT_TRUE(textures) << textures.error().message;
-    use(std::move(*textures), bounds, finestTexel(ball));
+    use(required(ColliderTextures::create(std::span(&body, 1))), bounds, finestTexel(ball));
     // Behind each place of the ball, seen from the sun, and right below it.
     const auto lightUnder = [&](float x) {
         const glm::vec3 place(x, 0.0F, 0.0F);
@@ -256,46 +240,23 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
 
 TEST_P(ColliderLightGlTest, LightFollowsABodyThatDeforms) {
     // A slab that grows to both sides.
-    const auto slab = [](float half) {
-        std::vector<glm::vec3> corners;
-        for (int i = 0; i < 8; ++i) {
-            corners.emplace_back((i & 1) != 0 ? half : -half, (i & 2) != 0 ? 0.1F : -0.1F,
-                                 (i & 4) != 0 ? 0.5F : -0.5F);
-        }
-        return corners;
-    };
-    const std::array<glm::uvec3, 12> triangles{{{0, 2, 1},
-                                                {1, 2, 3},
-                                                {4, 5, 6},
-                                                {5, 7, 6},
-                                                {0, 1, 4},
-                                                {1, 5, 4},
-                                                {2, 6, 3},
-                                                {3, 6, 7},
-                                                {0, 4, 2},
-                                                {2, 4, 6},
-                                                {1, 3, 5},
-                                                {3, 7, 5}}};
+    const auto slab = [](float half) { return movingBox({half, 0.1F, 0.5F}); };
     Bounds box;
     box.add(glm::vec3(-1.2F, -0.3F, -0.7F));
     box.add(glm::vec3(1.2F, 0.3F, 0.7F));
-    auto frames = liveFrames(box, 128);
-    ASSERT_TRUE(frames) << frames.error().message;
-    auto live = LiveCollider::create(slab(0.3F), triangles, *frames);
-    ASSERT_TRUE(live) << live.error().message;
+    LiveCollider live = required(
+        LiveCollider::create(slab(0.3F).positions, slab(0.3F).triangles, required(liveFrames(box, 128))));
     ColliderBody body;
-    body.collider = &live->frames();
+    body.collider = &live.frames();
     body.live = true;
-    auto textures = ColliderTextures::create(std::span(&body, 1));
-    ASSERT_TRUE(textures) << textures.error().message;
-    use(std::move(*textures), box, finestTexel(live->frames()));
-    ASSERT_TRUE(live->update(*textures_, 0));
+    use(required(ColliderTextures::create(std::span(&body, 1))), box, finestTexel(live.frames()));
+    ASSERT_TRUE(live.update(*textures_, 0));
     const glm::vec3 behind = glm::vec3(0.8F, 0.0F, 0.0F) - 0.5F * sunDirection();
     const glm::vec3 below(0.8F, -0.4F, 0.0F);
     EXPECT_EQ(at(behind).sun, 1.0F);
     EXPECT_GT(at(below).sky, 0.7F);
-    ASSERT_TRUE(live->setPositions(slab(1.1F)));
-    ASSERT_TRUE(live->update(*textures_, 0));
+    ASSERT_TRUE(live.setPositions(slab(1.1F).positions));
+    ASSERT_TRUE(live.update(*textures_, 0));
     EXPECT_EQ(at(behind).sun, 0.0F);
     EXPECT_LT(at(below).sky, 0.5F);
 }

@@ -49,60 +49,56 @@ PictureMesh sphereMesh(std::uint32_t around, std::uint32_t rings) {
 
 class ColliderMeshGlTest : public GlTest {
   protected:
-    /// A window depth texture as view distances.
-    std::vector<float> distances(const GlTexture& depth, GLsizei width, GLsizei height,
-                                 const Camera& camera) {
-        const GlTexture copy = makeTexture2D(GL_RGBA32F, width, height, GL_RGBA, GL_FLOAT);
-        const std::array<GLuint, 1> colors{copy.name()};
-        const auto framebuffer = makeFramebuffer(colors);
-        const auto program = makeProgram("base/quad.vert", "picture/copy_view.frag");
-        EXPECT_TRUE(framebuffer && program);
-        const GlVertexArray array = makeVertexArray();
+    /// A picture of the sphere, drawn from its mesh or from its maps; its depths as view distances.
+    struct Picture {
+        std::vector<std::uint8_t> rgb;
+        std::vector<float> distances;
+    };
+    [[nodiscard]] Picture draw(const Camera& camera, const ColliderStyle& style, const ColliderMesh* mesh) {
+        ColliderRenderer renderer =
+            required(ColliderRenderer::create({&textures_, collider_.bounds, finestTexel(collider_)}, mesh));
+        EXPECT_TRUE(renderer.draw(camera, style, target_));
+        Picture picture{frame_.read(), {}};
+        const GlTexture copy = makeTexture2D(GL_RGBA32F, target_.width, target_.height, GL_RGBA, GL_FLOAT);
+        const GlFramebuffer framebuffer = required(makeFramebuffer({copy.name()}));
+        const GlProgram program = required(makeScreenProgram("picture/copy_view.frag"));
         {
             const PassState state;
-            glBindFramebuffer(GL_FRAMEBUFFER, framebuffer->name());
-            glViewport(0, 0, width, height);
-            glUseProgram(program->name());
-            glActiveTexture(GL_TEXTURE0);
-            glBindTexture(GL_TEXTURE_2D, depth.name());
-            glBindVertexArray(array.name());
-            glDrawArrays(GL_TRIANGLES, 0, 3);
+            program.use();
+            useTexture(0, renderer.depth());
+            program.drawScreen(framebuffer.name(), target_.width, target_.height);
         }
-        const auto texels = readTextureFloats(copy, width, height);
-        EXPECT_TRUE(texels);
+        const std::vector<float> texels = required(readTextureFloats(copy, target_.width, target_.height));
         const glm::vec2 map = camera.depthOfDistance();
-        std::vector<float> out;
-        for (std::size_t i = 0; i < texels->size(); i += 4) {
-            const float d = (*texels)[i];
-            out.push_back(d < 1.0F ? map.y / (d - map.x) : std::numeric_limits<float>::infinity());
+        for (std::size_t i = 0; i < texels.size(); i += 4) {
+            picture.distances.push_back(texels[i] < 1.0F ? map.y / (texels[i] - map.x)
+                                                         : std::numeric_limits<float>::infinity());
         }
-        return out;
+        return picture;
     }
+    [[nodiscard]] std::size_t pixel(GLsizei x, GLsizei y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(target_.width) +
+               static_cast<std::size_t>(x);
+    }
+    static Camera cameraAt(const glm::vec3& eye) {
+        Camera camera;
+        camera.eye = eye;
+        camera.near_plane = 0.5F;
+        camera.far_plane = 50.0F;
+        return camera;
+    }
+
+    const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 128);
+    ColliderTextures textures_ = required(ColliderTextures::create(collider_));
+    ColliderMesh mesh_ = required(ColliderMesh::create(sphereMesh(128, 64)));
+    Frame frame_ = required(Frame::create(kWidth, kHeight));
+    const RenderTarget target_ = frame_.target();
 };
 
 TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
-    const Collider collider = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 128);
-    const auto textures = ColliderTextures::create(collider);
-    ASSERT_TRUE(textures) << textures.error().message;
-    const ColliderView view{&*textures, collider.bounds, finestTexel(collider)};
-    const auto mesh = ColliderMesh::create(sphereMesh(128, 64));
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    auto from_maps = ColliderRenderer::create(view);
-    auto from_mesh = ColliderRenderer::create(view, &*mesh);
-    ASSERT_TRUE(from_maps && from_mesh);
-    auto frame = Frame::create(kWidth, kHeight);
-    ASSERT_TRUE(frame);
-    Camera camera;
-    camera.eye = {0.0F, 0.0F, kDistance};
-    camera.near_plane = 0.5F;
-    camera.far_plane = 50.0F;
-    const RenderTarget target = frame->target();
-    ASSERT_TRUE(from_maps->draw(camera, {}, target));
-    const std::vector<std::uint8_t> maps_rgb = frame->read();
-    const std::vector<float> maps_depth = distances(from_maps->depth(), target.width, target.height, camera);
-    ASSERT_TRUE(from_mesh->draw(camera, {}, target));
-    const std::vector<std::uint8_t> mesh_rgb = frame->read();
-    const std::vector<float> mesh_depth = distances(from_mesh->depth(), target.width, target.height, camera);
+    const Camera camera = cameraAt({0.0F, 0.0F, kDistance});
+    const auto [maps_rgb, maps_depth] = draw(camera, {}, nullptr);
+    const auto [mesh_rgb, mesh_depth] = draw(camera, {}, &mesh_);
     EXPECT_NE(maps_rgb, mesh_rgb) << "drawn from the maps both times";
     EXPECT_GT(maps_rgb[3 * (kWidth * (kHeight / 2 - 5) + kWidth / 2 - 5)], 60)
         << "the side towards the sun is lit";
@@ -111,15 +107,14 @@ TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
     // by r(1 - cos(π/64)) = 0.0006 at most. A texel of the maps has one depth, so that where the surface
     // leans by 45° or less they may be off by a texel and a step of the ray, 2.5 texels of 1/126.
     const float texel = 1.0F / 126.0F;
-    const double scale = 0.5 * target.height / camera.tanHalfFov();
+    const double scale = 0.5 * target_.height / camera.tanHalfFov();
     const double edge = scale * std::tan(std::asin(kRadius / kDistance));
     int covered = 0;
-    for (GLsizei y = 0; y < target.height; ++y) {
-        for (GLsizei x = 0; x < target.width; ++x) {
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(target.width) +
-                                  static_cast<std::size_t>(x);
-            const double px = x + 0.5 - 0.5 * target.width;
-            const double py = y + 0.5 - 0.5 * target.height;
+    for (GLsizei y = 0; y < target_.height; ++y) {
+        for (GLsizei x = 0; x < target_.width; ++x) {
+            const std::size_t i = pixel(x, y);
+            const double px = x + 0.5 - 0.5 * target_.width;
+            const double py = y + 0.5 - 0.5 * target_.height;
             const double away = std::hypot(px, py);
             if (std::abs(away - edge) > 1.0) {
                 ASSERT_EQ(std::isfinite(mesh_depth[i]), away < edge) << x << " " << y;
@@ -149,36 +144,19 @@ TEST_P(ColliderMeshGlTest, ASphereLooksTheSameFromMeshAndMaps) {
 }
 
 TEST_P(ColliderMeshGlTest, TheFloorHidesWhatLiesBelowIt) {
-    const Collider collider = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 64);
-    const auto textures = ColliderTextures::create(collider);
-    ASSERT_TRUE(textures);
-    const auto mesh = ColliderMesh::create(sphereMesh(64, 32));
-    ASSERT_TRUE(mesh);
-    auto renderer = ColliderRenderer::create({&*textures, collider.bounds, finestTexel(collider)}, &*mesh);
-    ASSERT_TRUE(renderer);
-    auto frame = Frame::create(kWidth, kHeight);
-    ASSERT_TRUE(frame);
-    Camera camera;
-    camera.eye = {0.0F, 1.5F, 3.0F};
-    camera.near_plane = 0.5F;
-    camera.far_plane = 50.0F;
+    const Camera camera = cameraAt({0.0F, 1.5F, 3.0F});
     ColliderStyle style;
     style.ground = 0.0F;
-    const RenderTarget target = frame->target();
-    ASSERT_TRUE(renderer->draw(camera, style, target));
-    const std::vector<float> depth = distances(renderer->depth(), target.width, target.height, camera);
+    const std::vector<float> depth = draw(camera, style, &mesh_).distances;
     // Below the middle the eye sees the floor before the sphere's lower half: where a ray is at height 0 it
     // is there.
-    const int x = target.width / 2;
-    const int y = target.height / 2 - static_cast<int>(0.17 * target.height);
-    const float up = (2.0F * (static_cast<float>(y) + 0.5F) / static_cast<float>(target.height) - 1.0F) *
+    const int y = target_.height / 2 - static_cast<int>(0.17 * target_.height);
+    const float up = (2.0F * (static_cast<float>(y) + 0.5F) / static_cast<float>(target_.height) - 1.0F) *
                      camera.tanHalfFov();
     const glm::vec3 d = camera.forward() + up * camera.up();
     const float floor = -camera.eye.y / d.y;
     ASSERT_GT(camera.eye.z + floor * d.z, kRadius) << "the ray meets the floor before the sphere";
-    EXPECT_NEAR(depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(target.width) +
-                      static_cast<std::size_t>(x)],
-                floor, 1e-3F);
+    EXPECT_NEAR(depth[pixel(target_.width / 2, y)], floor, 1e-3F);
 }
 
 TEST_P(ColliderMeshGlTest, HostileMeshesAreRefused) {

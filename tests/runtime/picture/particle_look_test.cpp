@@ -1,4 +1,4 @@
-// Key-frames: straight lines between keys, and rows for the shader that say the same.
+// Key-frames: rows for the shader, and what is refused. sprite_gl_test.cpp draws them.
 #include "runtime/picture/particle_look.h"
 
 #include <gtest/gtest.h>
@@ -7,51 +7,6 @@
 
 namespace relief {
 namespace {
-
-TEST(ParticleLook, StraightLinesBetweenKeys) {
-    const AgeTrack<float> track{{0.25F, 1.0F}, {0.5F, 3.0F}, {1.0F, -1.0F}};
-    EXPECT_EQ(valueAt(track, 0.0F, 9.0F), 1.0F);
-    EXPECT_EQ(valueAt(track, 0.25F, 9.0F), 1.0F);
-    EXPECT_EQ(valueAt(track, 0.375F, 9.0F), 2.0F);
-    EXPECT_EQ(valueAt(track, 0.5F, 9.0F), 3.0F);
-    EXPECT_EQ(valueAt(track, 0.75F, 9.0F), 1.0F);
-    EXPECT_EQ(valueAt(track, 1.0F, 9.0F), -1.0F);
-    EXPECT_EQ(valueAt(AgeTrack<float>{}, 0.5F, 9.0F), 9.0F);
-}
-
-TEST(ParticleLook, TracksOfDifferentAgesShareARow) {
-    ParticleLook look;
-    look.size = {{0.0F, 1.0F}, {1.0F, 2.0F}};
-    look.opacity = {{0.5F, 1.0F}, {0.75F, 0.0F}};
-    look.color = {{0.0F, glm::vec3(0.0F)}, {1.0F, glm::vec3(1.0F)}};
-    look.cell_first = 3;
-    look.cell_last = 5;
-    look.turn = 0.5F;
-    look.spin = 2.0F;
-    look.stretch = 0.125F;
-    look.lit = false;
-    const std::vector<ParticleLook> looks{ParticleLook{}, look};
-    const auto texels = packLooks(looks, {0.1F, glm::vec3(1.0F), 0.9F, 0.2F, 0.3F});
-    ASSERT_TRUE(texels) << texels.error().message;
-    ASSERT_EQ(texels->width, 3U + 2U * 4U) << "four ages";
-    ASSERT_EQ(texels->texels.size(), 2 * texels->width);
-    // The defaults, as one key.
-    const glm::vec4* row = texels->texels.data();
-    EXPECT_EQ(row[0], glm::vec4(0.0F, 0.0F, -1.0F, 0.0F));
-    EXPECT_EQ(row[1], glm::vec4(1.0F, 0.2F, 0.3F, 1.0F));
-    EXPECT_EQ(row[2], glm::vec4(0.0F));
-    EXPECT_EQ(row[3], glm::vec4(0.0F, 0.1F, 0.9F, 0.0F));
-    EXPECT_EQ(row[4], glm::vec4(1.0F, 1.0F, 1.0F, 0.0F));
-    row += texels->width;
-    EXPECT_EQ(row[0], glm::vec4(0.5F, 2.0F, 3.0F, 3.0F));
-    EXPECT_EQ(row[1], glm::vec4(0.0F, 0.2F, 0.3F, 4.0F));
-    EXPECT_EQ(row[2], glm::vec4(0.125F, 0.0F, 0.0F, 0.0F));
-    EXPECT_EQ(row[3], glm::vec4(0.0F, 1.0F, 1.0F, 0.0F));
-    EXPECT_EQ(row[5], glm::vec4(0.5F, 1.5F, 1.0F, 0.0F));
-    EXPECT_EQ(row[6], glm::vec4(0.5F, 0.5F, 0.5F, 0.0F)) << "half of the light, not of sRGB";
-    EXPECT_EQ(row[7], glm::vec4(0.75F, 1.75F, 0.0F, 0.0F));
-    EXPECT_EQ(row[9], glm::vec4(1.0F, 2.0F, 0.0F, 0.0F));
-}
 
 TEST(ParticleLook, EveryTrackMayHaveItsOwnAges) {
     ParticleLook look;
