@@ -34,9 +34,7 @@ class PosedSolid {
         for (const glm::vec3& p : mesh.positions) {
             mesh.bounds.add(p);
         }
-        Result<MeshQuery> query = MeshQuery::build(PreparedMesh(std::move(mesh)));
-        EXPECT_TRUE(query);
-        query_ = std::make_unique<MeshQuery>(std::move(*query));
+        query_ = std::make_unique<MeshQuery>(MeshQuery::build(PreparedMesh(std::move(mesh))).value());
     }
     /// By two of three lines.
     [[nodiscard]] bool inside(const glm::vec3& p) const {
@@ -69,16 +67,10 @@ class AnimatedAccuracyGlTest : public GlTest {
     void measure(const AnimatedMesh& mesh, double frames_a_second,
                  const AnimatedColliderOptions& options = {}) {
         const auto shared = std::make_shared<const AnimatedMesh>(mesh);
-        auto made = AnimatedCollider::create(shared, options);
-        ASSERT_TRUE(made) << made.error().message;
-        AnimatedCollider& animated = *made;
-        ColliderBody body;
-        body.collider = &animated.frames();
-        body.live = true;
-        auto textures = ColliderTextures::create({&body, 1});
-        ASSERT_TRUE(textures) << textures.error().message;
-        auto query = FieldQuery::create(*textures);
-        ASSERT_TRUE(query) << query.error().message;
+        AnimatedCollider animated = AnimatedCollider::create(shared, options).value();
+        const ColliderBody body{.collider = &animated.frames(), .live = true};
+        ColliderTextures textures = ColliderTextures::create({&body, 1}).value();
+        const FieldQuery query = FieldQuery::create(textures).value();
         for (const MeshClip& clip : mesh.clips) {
             double sum = 0.0;
             double worst = 0.0;
@@ -87,17 +79,16 @@ class AnimatedAccuracyGlTest : public GlTest {
                 const MeshPose pose = poseAt(mesh, clip, time);
                 ASSERT_TRUE(animated.setPose(pose));
                 const Pose placed = animated.placed({});
-                textures->setPoses({&placed, 1});
-                ASSERT_TRUE(animated.update(*textures, 0));
+                textures.setPoses({&placed, 1});
+                ASSERT_TRUE(animated.update(textures, 0));
                 const PosedSolid solid(posed(mesh, pose), mesh.triangles);
                 const std::vector<glm::vec3> points =
                     pointsNear(solid.mesh().positions, solid.mesh().triangles, kPoints,
                                solid.mesh().bounds.longestSide(), static_cast<std::uint32_t>(frames));
-                const auto samples = query->evaluate(points);
-                ASSERT_TRUE(samples);
+                const std::vector<FieldSample> samples = query.evaluate(points).value();
                 std::size_t wrong = 0;
                 for (std::size_t i = 0; i < kPoints; ++i) {
-                    wrong += (*samples)[i].inside() == solid.inside(points[i]) ? 0 : 1;
+                    wrong += samples[i].inside() == solid.inside(points[i]) ? 0 : 1;
                 }
                 const double share = static_cast<double>(wrong) / static_cast<double>(kPoints);
                 EXPECT_LE(share, kWrongMax) << clip.name << " at " << time;
@@ -118,11 +109,7 @@ TEST_P(AnimatedAccuracyGlTest, FewPointsAreOnTheWrongSide) {
         measure(bendingTube(), 5.0, {.resolution = 768, .room = {}});
         return;
     }
-    const auto collider = loadCollider(file);
-    ASSERT_TRUE(collider) << collider.error().message;
-    const auto mesh = readAnimatedMesh(collider->animation);
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    measure(*mesh, 30.0);
+    measure(readAnimatedMesh(loadCollider(file).value().animation).value(), 30.0);
 }
 
 }  // namespace

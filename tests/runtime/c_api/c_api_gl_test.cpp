@@ -400,24 +400,15 @@ TEST_F(CApi, AFailedSetOrSpawnChangesNothing) {
 // A world of four boxes is what C++ makes of the same bodies, bit for bit, while one of them moves and once it rests.
 TEST_F(CApi, AWorldIsThatOfItsBodies) {
     ASSERT_EQ(relief_world_body_count(stage_.world), kItems);
-    std::uint32_t found[] = {9, 9};
-    EXPECT_EQ(relief_world_find(stage_.world, "box 3", found, 2), 1U);
-    EXPECT_EQ(found[0], 3U);
-    EXPECT_EQ(found[1], 9U) << "beyond what there is";
-    EXPECT_EQ(relief_world_find(stage_.world, "box 4", found, 2), 0U);
-    EXPECT_NE(std::string(relief_error()).find("'box 4'"), std::string::npos) << relief_error();
-    World tiles = loadWorldFile(stage_.worldPath()).value();
-    tiles.bodies[1].node = tiles.bodies[3].node = "box 0";
-    const std::filesystem::path path = stage_.worldPath().string() + ".tiles.json";
-    const std::string text = worldText(tiles);
-    ASSERT_TRUE(writeFile(path, std::as_bytes(std::span(text))));
-    relief_world* const cut = relief_world_load(path.c_str());
-    EXPECT_EQ(relief_world_find(cut, "box 0", found, 2), 3U);
+    std::uint32_t found[] = {9, 9, 9};
+    EXPECT_EQ(relief_world_find(stage_.world, "box 0", found, 1), 2U);
     EXPECT_EQ(found[0], 0U);
-    EXPECT_EQ(found[1], 1U);
-    EXPECT_EQ(relief_world_find(cut, "box 0", nullptr, 0), 3U);
-    relief_world_free(cut);
-    std::filesystem::remove(path);
+    EXPECT_EQ(found[1], 9U) << "beyond the room";
+    EXPECT_EQ(relief_world_find(stage_.world, "box 0", found, 3), 2U);
+    EXPECT_EQ(found[1], 3U);
+    EXPECT_EQ(found[2], 9U) << "beyond what there is";
+    EXPECT_EQ(relief_world_find(stage_.world, "box 4", found, 2), 0U);
+    expectError("'box 4'");
     EXPECT_STREQ(relief_world_node(stage_.world, 2), "box 2");
     relief_pose pose;
     ASSERT_EQ(relief_world_pose(stage_.world, 1, &pose), 0);
@@ -433,10 +424,8 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     const float points[] = {0.0F, 0.1F, 0.0F, 2.0F, 0.3F, 0.0F, 6.0F, 0.5F, 0.0F};
     relief_sample samples[3];
     relief_world_query(stage_.world, points, 3, samples);
-    EXPECT_NEAR(samples[0].distance, -0.1F, 1e-4F);
-    EXPECT_NEAR(samples[1].distance, -0.1F, 1e-4F);
-    EXPECT_NEAR(samples[2].distance, 0.3F, 1e-4F);
     for (std::int32_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(samples[i].distance, i == 2 ? 0.3F : -0.1F, 1e-4F);
         EXPECT_EQ(samples[i].map, i == 2 ? 3 : i) << "the body";
         EXPECT_NEAR(samples[i].normal[1], 1.0F, 1e-3F);
     }
@@ -449,8 +438,7 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     ASSERT_TRUE(system.setTypes(std::span(&type, 1)));
     ASSERT_TRUE(system.setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F, 0.0F}));
     relief_particles* particles = relief_particles_create(stage_.world_textures, &stage_.options);
-    relief_picture* picture = relief_picture_create(stage_.world_textures, nullptr);
-    ASSERT_TRUE(particles != nullptr && picture != nullptr) << relief_error();
+    ASSERT_NE(particles, nullptr) << relief_error();
     std::vector<Birth> births;
     for (std::size_t i = 0; i < kItems; ++i) {
         relief_birth& birth = stage_.births[i];
@@ -463,14 +451,12 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     std::vector<Pose> poses = worldPoses(loaded.world);
     const std::uint32_t body = 3;
     for (int step = 0; step < 180; ++step) {
-        if (step < 60) {  // it goes aside, and nothing is below the last particle
-            poses[body].position.x += 0.05F;
-            const relief_pose to{{poses[body].position.x, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
-            ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, &body, &to, 1), 0) << relief_error();
-        } else {
-            ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, nullptr, nullptr, 0), 0)
-                << relief_error();
-        }
+        const bool moves = step < 60;  // it goes aside, and nothing is below the last particle
+        poses[body].position.x += moves ? 0.05F : 0.0F;
+        const relief_pose to{{poses[body].position.x, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
+        ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, moves ? &body : nullptr,
+                                            moves ? &to : nullptr, moves ? 1 : 0),
+                  0);
         textures.setPoses(poses);
         ASSERT_EQ(relief_particles_step(particles, 1.0F / 60.0F), 0) << relief_error();
         ASSERT_TRUE(system.step(1.0F / 60.0F));
@@ -479,79 +465,62 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
     const auto states = system.readState().value();
     ASSERT_EQ(states.size(), kItems);
     for (std::size_t i = 0; i < kItems; ++i) {
-        EXPECT_EQ(std::memcmp(stage_.states[i].position, &states[i].position, sizeof(states[i].position)), 0)
-            << i;
+        EXPECT_EQ(std::memcmp(stage_.states[i].position, &states[i].position, sizeof(states[i].position)), 0);
         EXPECT_EQ(stage_.states[i].collisions, states[i].collisions) << i;
         EXPECT_EQ(stage_.states[i].collisions > 0, i != body) << "a body that has moved aside stops nothing";
     }
-    EXPECT_EQ(relief_picture_draw(picture, particles, nullptr, &stage_.view), 0) << relief_error();
-    relief_picture_free(picture);
     relief_particles_free(particles);
 }
 
-// What rains on a character that bends stays outside of its posed mesh, beside the boxes of a world.
+// What falls on a character that bends stays outside of its posed mesh, beside the boxes of a world.
 TEST_F(CApi, ACharacterBends) {
-    const AnimatedMesh mesh = bendingTube(24, 24);
-    Collider container = loadCollider(stage_.good<const char*>("path")).value();
-    container.animation = writeAnimatedMesh(mesh);
-    const std::vector<std::byte> bytes = writeContainer(container).value();
-    relief_collider* collider = relief_collider_read(bytes.data(), bytes.size());
-    relief_animation* animation = relief_animation_create(collider);
-    ASSERT_NE(animation, nullptr) << relief_error();
-    relief_collider_free(collider);
-    ASSERT_EQ(relief_animation_clip_count(animation), 2U);
-    EXPECT_STREQ(relief_animation_clip_name(animation, 0), "bend");
-    EXPECT_EQ(relief_animation_clip_seconds(animation, 0), 2.0F);
-    EXPECT_EQ(relief_animation_joint_count(animation), 2U);
-    EXPECT_STREQ(relief_animation_joint_name(animation, 1), "middle");
-    EXPECT_EQ(relief_animation_weight_count(animation), 1U);
+    const AnimatedMesh mesh = bendingTube(8, 6);  // the stage's
+    ASSERT_EQ(relief_animation_clip_count(stage_.animation), 2U);
+    EXPECT_STREQ(relief_animation_clip_name(stage_.animation, 0), "bend");
+    EXPECT_EQ(relief_animation_clip_seconds(stage_.animation, 0), 2.0F);
+    EXPECT_EQ(relief_animation_joint_count(stage_.animation), 2U);
+    EXPECT_STREQ(relief_animation_joint_name(stage_.animation, 1), "middle");
+    EXPECT_EQ(relief_animation_weight_count(stage_.animation), 1U);
 
     const relief_pose pose{{0.0F, 0.0F, 3.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
-    const std::int64_t added = relief_world_add(stage_.world, animation, &pose, 192, nullptr);
+    const std::int64_t added = relief_world_add(stage_.world, stage_.animation, &pose, 192, nullptr);
     ASSERT_EQ(added, static_cast<std::int64_t>(kItems)) << relief_error();
     EXPECT_EQ(relief_world_body_count(stage_.world), kItems + 1);
     const auto body = static_cast<std::uint32_t>(added);
-    relief_pose read{};
-    ASSERT_EQ(relief_world_pose(stage_.world, body, &read), 0);
-    EXPECT_EQ(read.position[2], 3.0F);
+    ASSERT_EQ(relief_world_pose(stage_.world, body, &stage_.pose), 0);
+    EXPECT_EQ(stage_.pose.position[2], 3.0F);
     EXPECT_STREQ(relief_world_node(stage_.world, body), "");
     relief_world_bounds(stage_.world, stage_.low, stage_.high);
     EXPECT_GE(stage_.high[1], 2.0F);
     relief_textures* textures = relief_textures_create_world(stage_.world);
     ASSERT_NE(textures, nullptr) << relief_error();
-    relief_animation_free(animation);
 
-    stage_.options.capacity = 4096;
+    stage_.options.capacity = 512;
     stage_.options.gravity[1] = -3.0F;
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
-    ASSERT_NE(particles, nullptr) << relief_error();
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-    std::vector<relief_birth> births(4000);
-    for (relief_birth& birth : births) {
-        birth.position[0] = -1.4F + 1.8F * unit(random);
-        birth.position[1] = 2.2F + 1.5F * unit(random);
-        birth.position[2] = 2.6F + 0.8F * unit(random);
-        birth.lifetime = 9.0F;
+    // In the plane in which it bends, above its upper half as it lies down.
+    std::vector<relief_birth> births(500);
+    for (std::size_t i = 0; i < births.size(); ++i) {
+        births[i] = {{-1.2F + 0.002F * static_cast<float>(i), 2.2F, 3.0F}, {}, 9.0F, 0};
     }
-    EXPECT_EQ(relief_particles_spawn(particles, births.data(), births.size()), births.size());
+    ASSERT_EQ(relief_particles_spawn(particles, births.data(), births.size()), births.size())
+        << relief_error();
     double time = 0.0;
-    for (int step = 0; step < 80; ++step) {
+    for (int step = 0; step < 60; ++step) {
         time += 1.0 / 60.0;
         ASSERT_EQ(relief_textures_play(textures, body, "bend", time), 0) << relief_error();
         ASSERT_EQ(relief_textures_set_poses(textures, nullptr, nullptr, 0), 0) << relief_error();
         ASSERT_EQ(relief_particles_step(particles, 1.0F / 60.0F), 0) << relief_error();
     }
     std::vector<relief_particle> states(births.size());
-    const std::int64_t alive = relief_particles_read(particles, states.data(), states.size());
-    ASSERT_EQ(alive, static_cast<std::int64_t>(births.size()));
+    ASSERT_EQ(relief_particles_read(particles, states.data(), states.size()), 500);
     const std::vector<glm::vec3> positions = posed(mesh, poseAt(mesh, mesh.clips[0], time));
     std::size_t inside = 0;
     std::size_t hit = 0;
     for (const relief_particle& one : states) {
         hit += one.collisions > 0 ? 1 : 0;
         const glm::dvec3 p(one.position[0], one.position[1], one.position[2] - 3.0F);
-        inside += p.y > -0.5 && windingNumber(positions, mesh.triangles, p) > 0.5 ? 1 : 0;
+        inside += windingNumber(positions, mesh.triangles, p) > 0.5 ? 1 : 0;
     }
     EXPECT_GT(hit, 200U);
     EXPECT_LE(inside, 4U);
@@ -569,7 +538,7 @@ TEST_F(CApi, ACharacterBends) {
     relief_textures_free(textures);
 }
 
-// Colliders near a ball are there in full detail, and one that is missing is told once.
+// A collider comes when a ball reaches it, and one that is missing is told once.
 TEST_F(CApi, AWorldIsStreamed) {
     std::mt19937 random(5);
     const test::TemporaryFolder folder;
@@ -582,35 +551,31 @@ TEST_F(CApi, AWorldIsStreamed) {
         EXPECT_TRUE(writeFile(folder.path() / name, bytes));
         return WorldFile{name, xxh3_128Hex(bytes), collider.gpuBytes()};
     };
-    for (const char* name : {"a", "b"}) {
-        const WorldFile fine = write(std::string(name) + ".relief");
-        world.colliders.push_back(
-            {fine, name, {glm::vec3(0.0F), glm::vec3(1.0F)}, write(std::string(name) + "-coarse.relief")});
-        world.bodies.push_back({.collider = static_cast<std::uint32_t>(world.bodies.size()), .node = name});
-        world.bodies.back().position.x = 10.0F * static_cast<float>(world.bodies.size());
+    for (const std::uint32_t i : {0U, 1U}) {
+        world.colliders.push_back({write("fine " + std::to_string(i)),
+                                   "",
+                                   {glm::vec3(0.0F), glm::vec3(1.0F)},
+                                   write("coarse " + std::to_string(i))});
+        world.bodies.push_back(
+            {.collider = i, .position = {10.0F + 10.0F * static_cast<float>(i), 0.0F, 0.0F}});
     }
     const std::string path = folder.write("world.json", worldText(world)).string();
-    std::filesystem::remove(folder.path() / "b.relief");
+    std::filesystem::remove(folder.path() / "fine 1");
 
     relief_textures* textures = relief_textures_stream_world(path.c_str(), 1U << 20U);
     ASSERT_NE(textures, nullptr) << relief_error();
-    relief_ball ball{{0.0F, 0.0F, 0.0F}, 1.0F};
-    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 0) << "nothing is wanted there";
-    ball.center[0] = 10.0F;
+    relief_ball ball{{10.0F, 0.0F, 0.0F}, 1.0F};
     EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 0);
     EXPECT_STREQ(relief_textures_warning(textures), "");
     ball.radius = 30.0F;
     EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 1), 1);
-    EXPECT_NE(std::string(relief_textures_warning(textures)).find("b.relief"), std::string::npos);
+    EXPECT_NE(std::string(relief_textures_warning(textures)).find("fine 1"), std::string::npos);
     EXPECT_STREQ(relief_textures_warning(textures), "");
-    for (int i = 0; i < 3; ++i) {
-        EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 0), 1);
-    }
+    EXPECT_EQ(relief_textures_stream(textures, &ball, 1, 0), 1);
     const std::uint32_t body = 1;
     EXPECT_EQ(relief_textures_set_poses(textures, &body, stage_.poses, 1), 0) << relief_error();
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
-    ASSERT_NE(particles, nullptr) << relief_error();
-    EXPECT_EQ(relief_particles_step(particles, 0.01F), 0);
+    EXPECT_EQ(relief_particles_step(particles, 0.01F), 0) << relief_error();
     relief_particles_free(particles);
     relief_textures_free(textures);
     ball.radius = 0.0F;
@@ -622,7 +587,7 @@ TEST_F(CApi, AWorldIsStreamed) {
 TEST_F(CApi, PosesAndWorldsThatCannotBeAreRefused) {
     const auto refused = [&](relief_textures* textures, const std::string& what) {
         EXPECT_EQ(relief_textures_set_poses(textures, stage_.bodies, stage_.poses, kItems), -1) << what;
-        EXPECT_NE(std::string(relief_error()).find(what), std::string::npos) << relief_error();
+        expectError(what);
         stage_.fill();
     };
     stage_.bodies[kWrong] = kItems;
@@ -632,7 +597,6 @@ TEST_F(CApi, PosesAndWorldsThatCannotBeAreRefused) {
     refused(stage_.textures, "single collider");
     EXPECT_EQ(relief_picture_create(stage_.world_textures, stage_.collider), nullptr);
     EXPECT_EQ(relief_world_load("no such world.json"), nullptr);
-    EXPECT_NE(std::string(relief_error()).find("no such world.json"), std::string::npos);
     EXPECT_EQ(relief_world_load(stage_.good<const char*>("path")), nullptr) << "a container is no world";
 }
 

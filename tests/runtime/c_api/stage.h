@@ -33,6 +33,11 @@ namespace relief::c_api {
 inline constexpr std::size_t kItems = 4;  // births, points, …
 inline constexpr std::size_t kWrong = 2;  // the one of them that is made wrong
 
+/// The last error names this.
+inline void expectError(const std::string& part) {
+    EXPECT_NE(std::string(relief_error()).find(part), std::string::npos) << relief_error();
+}
+
 /// A collider, textures, particles, a picture and a world that work, and memory for all that is read and written.
 class Stage {
   public:
@@ -259,14 +264,14 @@ class Stage {
     [[nodiscard]] const std::filesystem::path& worldPath() const { return world_path_; }
 
   private:
-    /// As many boxes as there are items, two units apart; the second is turned and twice as large.
+    /// As many boxes as there are items, two units apart; the second is turned and twice as large, the last named as the first.
     void writeWorld(const Collider& box) {
         World file;
         file.colliders = {
             {{path_.filename().string(), xxh3_128Hex(bytes_), box.gpuBytes()}, "box", box.bounds, {}}};
         for (std::uint32_t i = 0; i < kItems; ++i) {
             file.bodies.push_back({.collider = 0,
-                                   .node = "box " + std::to_string(i),
+                                   .node = "box " + std::to_string(i % 3),
                                    .position = {2.0F * static_cast<float>(i), 0.0F, 0.0F}});
         }
         file.bodies[1].rotation = {0.0F, 0.6F, 0.0F, 0.8F};

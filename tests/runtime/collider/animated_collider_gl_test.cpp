@@ -59,20 +59,20 @@ class AnimatedColliderGlTest : public CollisionTest {
         ASSERT_TRUE(set) << set.error().message;
         show();
     }
-    void particlesOf(const ParticleType& type) {
+    /// A particle at rest once a clip of a box has met it.
+    ParticleState metBy(const char* clip, const glm::vec3& half, const glm::vec3& position,
+                        const ParticleType& type) {
+        makeAnimated(shared(movingBox(half)));
         make({.capacity = 16});
         setType(type);
-        ASSERT_TRUE(particles_->setCollider(textures_.get()));
-    }
-    /// Until the one particle has collided.
-    void playUntilMet(const char* clip, int steps) {
-        bool met = false;
-        for (int step = 1; step <= steps && !met; ++step) {
+        EXPECT_TRUE(particles_->setCollider(textures_.get()));
+        spawnOne({position, glm::vec3(0.0F), 100.0F, 0});
+        for (int step = 1; step <= 12 && (step == 1 || state().at(0).collisions == 0); ++step) {
             showPose(clipPose(animated_->mesh(), clip, static_cast<double>(static_cast<float>(step) * kDt)));
             particles_->step(kDt);
-            met = state().at(0).collisions > 0;
         }
-        ASSERT_TRUE(met);
+        EXPECT_EQ(state().at(0).contact, Contact::kCollided);
+        return state().at(0);
     }
     std::optional<AnimatedCollider> animated_;
     Pose pose_;
@@ -140,33 +140,16 @@ TEST_P(AnimatedColliderGlTest, InsideIsThatOfThePosedMesh) {
     }
 }
 
-// Closed form: a box goes along +x with 1 unit a second, by its clip, and meets a particle at rest. All the motion is that of
-// the box of its maps.
+// Closed forms. A box goes along +x with 1 unit a second: all the motion is that of the box of its maps. Another turns about y
+// with a right angle a second, and its middle stays: the motion is that of its texels, ω × p at p, which carries the end +x
+// towards −z.
 TEST_P(AnimatedColliderGlTest, AClipThrowsWhatItMeets) {
-    const SharedMesh mesh = shared(movingBox({0.2F, 0.3F, 0.3F}));
-    makeAnimated(mesh);
-    particlesOf({.restitution = 0.5F});
-    spawnOne({{0.3F, 0.05F, 0.1F}, glm::vec3(0.0F), 100.0F, 0});
-    playUntilMet("go", 12);
-    const ParticleState after = state().at(0);
-    EXPECT_EQ(after.contact, Contact::kCollided);
-    EXPECT_NEAR(after.velocity.x, 1.5F, 0.02F);
-    EXPECT_NEAR(after.velocity.y, 0.0F, 1e-3F);
-}
-
-// Closed form: the box turns about y with a right angle a second. Its middle stays, so the motion is that of its texels: at
-// (x, y, z) it is ω × p.
-TEST_P(AnimatedColliderGlTest, ATurnThrowsByItsMotionThere) {
-    const SharedMesh mesh = shared(movingBox({0.5F, 0.3F, 0.05F}));
-    makeAnimated(mesh);
-    particlesOf({});
-    // Turning by +y carries the end +x towards −z.
-    spawnOne({{0.4F, 0.05F, -0.083F}, glm::vec3(0.0F), 100.0F, 0});
-    playUntilMet("turn", 6);
-    const ParticleState after = state().at(0);
-    EXPECT_EQ(after.contact, Contact::kCollided);
+    const ParticleState pushed = metBy("go", {0.2F, 0.3F, 0.3F}, {0.3F, 0.05F, 0.1F}, {.restitution = 0.5F});
+    EXPECT_NEAR(pushed.velocity.x, 1.5F, 0.02F);
+    EXPECT_NEAR(pushed.velocity.y, 0.0F, 1e-3F);
+    const ParticleState swung = metBy("turn", {0.5F, 0.3F, 0.05F}, {0.4F, 0.05F, -0.083F}, {});
     const float speed = 0.4F * static_cast<float>(std::acos(0.0));
-    EXPECT_NEAR(after.velocity.z, -speed, 0.08F * speed);
+    EXPECT_NEAR(swung.velocity.z, -speed, 0.08F * speed);
 }
 
 using AnimatedArgumentsGlTest = AnimatedColliderGlTest;

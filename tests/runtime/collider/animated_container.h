@@ -3,8 +3,20 @@
 
 #include "formats/collider.h"
 #include "runtime/collider/animated_collider.h"
+#include "tests/formats/animation/animated_meshes.h"
 
 namespace relief {
+
+/// A tube whose upper half, by triangles, is of another material.
+inline AnimatedMesh dressedTube(const char* lower, const char* upper) {
+    AnimatedMesh mesh = bendingTube(12, 8);
+    mesh.materials = {lower, upper};
+    for (const glm::uvec3& t : mesh.triangles) {
+        const float y = mesh.positions[t.x].y + mesh.positions[t.y].y + mesh.positions[t.z].y;
+        mesh.triangle_materials.push_back(y > 3.0F ? 1 : 0);
+    }
+    return mesh;
+}
 
 /// Its maps at rest are empty: what plays draws its own.
 inline Collider animatedContainer(const AnimatedMesh& mesh) {

@@ -125,9 +125,10 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
     return samples;
 }
 
-/// The field of textures that are there already.
-inline std::vector<FieldSample> fieldOf(const ColliderTextures& textures, std::span<const glm::vec3> points) {
-    const auto query = FieldQuery::create(textures);
+/// The field of textures that are there already. \param defines  lines for the shader.
+inline std::vector<FieldSample> fieldOf(const ColliderTextures& textures, std::span<const glm::vec3> points,
+                                        const std::string& defines = {}) {
+    const auto query = FieldQuery::create(textures, defines);
     EXPECT_TRUE(query) << query.error().message;
     auto samples = query->evaluate(points);
     EXPECT_TRUE(samples) << samples.error().message;

@@ -22,4 +22,13 @@ inline World threeBodies() {
     return world;
 }
 
+/// Another tile of a body, in the same place, which becomes body `at`.
+inline void addTile(World& world, std::size_t of, const char* file, std::size_t at) {
+    WorldBody tile = world.bodies[of];
+    world.colliders.push_back(world.colliders[tile.collider]);
+    world.colliders.back().file = file;
+    tile.collider = static_cast<std::uint32_t>(world.colliders.size() - 1);
+    world.bodies.insert(world.bodies.begin() + static_cast<std::ptrdiff_t>(at), tile);
+}
+
 }  // namespace relief::test

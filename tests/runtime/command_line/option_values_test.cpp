@@ -39,23 +39,28 @@ void define(CLI::App& app, Values& values) {
     app.add_option("--text", values.text);
 }
 
-Values taken(const std::string& option, const std::string& word) {
+Result<Values> parsed(const std::vector<std::string>& arguments) {
     CLI::App app("", "tool");
     Values values;
     define(app, values);
-    const Result<bool> parsed = parseCommandLine(app, {option, word});
-    EXPECT_TRUE(parsed && *parsed) << option << ' ' << word << ": " << (parsed ? "" : parsed.error().message);
-    return values;
+    const Result<bool> read = parseCommandLine(app, arguments);
+    return read ? Result<Values>(values) : forward(read);
 }
 
+Values taken(const std::string& option, const std::string& word) {
+    const Result<Values> values = parsed({option, word});
+    EXPECT_TRUE(values) << option << ' ' << word << ": " << values.error().message;
+    return values.value_or(Values{});
+}
+
+/// The error of a command line.
+std::string error(const std::vector<std::string>& arguments) {
+    const Result<Values> values = parsed(arguments);
+    EXPECT_TRUE(values || values.error().code == ErrorCode::kUsage);
+    return values ? "" : values.error().message;
+}
 std::string refused(const std::string& option, const std::string& word) {
-    CLI::App app("", "tool");
-    Values values;
-    define(app, values);
-    const Result<bool> parsed = parseCommandLine(app, {option + "=" + word});
-    EXPECT_FALSE(parsed) << option << ' ' << word;
-    EXPECT_TRUE(!parsed && parsed.error().code == ErrorCode::kUsage);
-    return parsed ? "" : parsed.error().message;
+    return error({option + "=" + word});
 }
 
 TEST(OptionValues, AreTakenExactly) {
@@ -73,19 +78,16 @@ TEST(OptionValues, AreTakenExactly) {
 }
 
 TEST(OptionValues, SayWhatToWriteInstead) {
-    const std::string must = "but must be a whole number from 1 to 4000000000";
-    for (const char* word :
-         {"0", "-1", "0x10", "1e3", " 1", "4000000001", "99999999999999999999999", "one"}) {
-        EXPECT_EQ(refused("--count", word), "--count is '" + std::string(word) + "' " + must);
-    }
-    for (const char* word : {"nan", "inf", "-0.1", "361", "0x1p3", "1e39", "much"}) {
-        EXPECT_EQ(refused("--degrees", word),
-                  "--degrees is '" + std::string(word) + "' but must be degrees, 0 to 360");
-    }
-    for (const char* word : {"-1", "%", "nan%", "1%%", "few"}) {
-        EXPECT_EQ(refused("--share", word),
-                  "--share is '" + std::string(word) + "' but must be a share in percent, such as 1.5");
-    }
+    const auto allRefused = [](const std::string& option, std::initializer_list<const char*> words,
+                               const std::string& must) {
+        for (const std::string word : words) {
+            EXPECT_EQ(refused(option, word), option + " is '" + word + "' but must be " + must);
+        }
+    };
+    allRefused("--count", {"0", "-1", "0x10", "1e3", " 1", "4000000001", "99999999999999999999999", "one"},
+               "a whole number from 1 to 4000000000");
+    allRefused("--degrees", {"nan", "inf", "-0.1", "361", "0x1p3", "1e39", "much"}, "degrees, 0 to 360");
+    allRefused("--share", {"-1", "%", "nan%", "1%%", "few"}, "a share in percent, such as 1.5");
     EXPECT_EQ(refused("--max-memory", "1XB"),
               "--max-memory is '1XB' but must be a number of bytes, such as 1MB or 512KiB");
     EXPECT_EQ(refused("--color", "green"), "--color is 'green' but must be red or blue");
@@ -93,15 +95,6 @@ TEST(OptionValues, SayWhatToWriteInstead) {
               "--fruit is 'aple' but must be one of apple, pear, plum; did you mean 'apple'?");
     EXPECT_EQ(refused("--fruit", "1"), "--fruit is '1' but must be one of apple, pear, plum");
     EXPECT_EQ(refused("--letter", "xy"), "--letter is 'xy' but must be a letter");
-}
-
-/// The error of a command line.
-std::string error(const std::vector<std::string>& arguments) {
-    CLI::App app("", "tool");
-    Values values;
-    define(app, values);
-    const Result<bool> parsed = parseCommandLine(app, arguments);
-    return parsed ? "" : parsed.error().message;
 }
 
 TEST(CommandLine, WhatCannotBeReadIsNamedWithACure) {

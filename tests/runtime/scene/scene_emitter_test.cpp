@@ -21,15 +21,12 @@ TEST(SceneEmitter, WhatMovesIt) {
         "[[emitter.key]]\ntime = 1\nposition = [1, 2, 3]\n"
         "[[emitter.key]]\ntime = 2\nangle = 90\n";
     const SceneEmitter rests = good("");
-    EXPECT_FALSE(rests.moves());
     const SceneEmitter moves = good("point = [1, 0, 0]\nattach = 0\ninherit = 0.5\n" + keys);
+    EXPECT_FALSE(rests.moves());
     EXPECT_TRUE(moves.moves());
-    EXPECT_EQ(moves.attach, 0U);
-    EXPECT_EQ(moves.inherit, 0.5F);
     ASSERT_EQ(moves.keys.size(), 2U);
     EXPECT_EQ(moves.keys[0].pose.position, glm::vec3(1, 2, 3));
     EXPECT_EQ(moves.keys[1].time, 2.0);
-
     SceneCollider collider;
     collider.pose.position = {0.0F, 7.0F, 0.0F};
     auto motions = emitterMotions(std::span(&moves, 1), std::span(&collider, 1));
@@ -44,67 +41,36 @@ TEST(SceneEmitter, WhatMovesIt) {
 }
 
 TEST(SceneEmitter, Shapes) {
-    EXPECT_EQ(good("").shape, EmitterShape::kBox);
-    EXPECT_EQ(good("shape = \"box\"\n").shape, EmitterShape::kBox);
     const SceneEmitter point = good("shape = \"point\"\npoint = [1, 2, 3]\n");
     EXPECT_EQ(point.shape, EmitterShape::kBox);
     EXPECT_EQ(point.box_min, glm::vec3(1, 2, 3));
     EXPECT_EQ(point.box_max, glm::vec3(1, 2, 3));
-    const SceneEmitter sphere = good("shape = \"sphere\"\ncenter = [1, 2, 3]\nradius = 4\n");
-    EXPECT_EQ(sphere.shape, EmitterShape::kSphere);
-    EXPECT_EQ(sphere.center, glm::vec3(1, 2, 3));
-    EXPECT_EQ(sphere.radius, 4.0F);
-    EXPECT_EQ(good("shape = \"shell\"\ncenter = [1, 2, 3]\nradius = 0\n").shape, EmitterShape::kShell);
     const SceneEmitter disc = good("shape = \"disc\"\ncenter = [1, 2, 3]\nradius = 4\nnormal = [1, 0, 0]\n");
     EXPECT_EQ(disc.shape, EmitterShape::kDisc);
+    EXPECT_EQ(disc.center, glm::vec3(1, 2, 3));
+    EXPECT_EQ(disc.radius, 4.0F);
     EXPECT_EQ(disc.normal, glm::vec3(1, 0, 0));
-    for (const char* keys : {"points = \"p.ply\"\n", "shape = \"points\"\npoints = \"p.ply\"\n"}) {
-        const SceneEmitter points = good(keys);
-        EXPECT_EQ(points.shape, EmitterShape::kPoints);
-        EXPECT_EQ(points.points_file, std::filesystem::path("dir/p.ply"));
-    }
 }
 
-TEST(SceneEmitter, Moments) {
-    const SceneEmitter emitter = good("start = 1.5\nburst = 10\nburst_every = 0.5\nrate = 0\nduration = 3\n");
-    EXPECT_EQ(emitter.start, 1.5);
-    EXPECT_EQ(emitter.burst_every, 0.5);
-    EXPECT_EQ(emitter.duration, 3.0);
-    EXPECT_TRUE(emitter.spread);
-    EXPECT_FALSE(good("spread = false\n").spread);
-}
-
-TEST(SceneEmitter, AimAndSpeed) {
-    const SceneEmitter plain = good("direction = [0, 2, 0]\ncone = 20\nspeed = 3\n");
-    ASSERT_TRUE(plain.aim);
-    EXPECT_EQ(*plain.aim->direction, glm::vec3(0, 2, 0));
-    EXPECT_EQ(plain.aim->cone_degrees, 20.0F);
-    EXPECT_EQ(plain.aim->speed_min, 3.0F);
-    EXPECT_EQ(plain.aim->speed_max, 3.0F);
-    const SceneEmitter span = good("direction = [0, 2, 0]\nspeed = [1, 4]\n");
-    EXPECT_EQ(span.aim->speed_min, 1.0F);
-    EXPECT_EQ(span.aim->speed_max, 4.0F);
-    const SceneEmitter normal = good("direction = [0, 2, 0]\nspeed = { mean = 2, deviation = 0.5 }\n");
-    EXPECT_EQ(normal.aim->speed_min, 2.0F);
-    EXPECT_EQ(normal.aim->speed_deviation, 0.5F);
+TEST(SceneEmitter, MomentsAndSpeeds) {
+    const SceneEmitter timed =
+        good("start = 1.5\nburst = 10\nburst_every = 0.5\nduration = 3\nspread = false\n");
+    EXPECT_EQ(timed.start, 1.5);
+    EXPECT_EQ(timed.burst, 10U);
+    EXPECT_EQ(timed.burst_every, 0.5);
+    EXPECT_EQ(timed.duration, 3.0);
+    EXPECT_FALSE(timed.spread);
+    const EmitterAim span = *good("direction = [0, 2, 0]\ncone = 20\nspeed = [1, 4]\n").aim;
+    EXPECT_EQ(*span.direction, glm::vec3(0, 2, 0));
+    EXPECT_EQ(span.cone_degrees, 20.0F);
+    EXPECT_EQ(span.speed_min, 1.0F);
+    EXPECT_EQ(span.speed_max, 4.0F);
+    const EmitterAim normal = *good("direction = [0, 2, 0]\nspeed = { mean = 2, deviation = 0.5 }\n").aim;
+    EXPECT_EQ(normal.speed_min, 2.0F);
+    EXPECT_EQ(normal.speed_deviation, 0.5F);
     EXPECT_TRUE(good("shape = \"shell\"\ncenter = [0, 0, 0]\nradius = 1\nspeed = 1\n").aim);
     EXPECT_FALSE(good("velocity = [1, 0, 0]\n").aim);
-}
-
-TEST(SceneEmitter, TypesByIndexAndByName) {
-    EXPECT_EQ(good("type = 15\n").type, 15U);
-    const std::string types = "[[type]]\nname = \"snow\"\n[[type]]\nname = \"smoke\"\n";
-    EXPECT_EQ(good("type = \"smoke\"\n" + types).type, 1U);
-    EXPECT_EQ(good("type = 1\n" + types).type, 1U);
-}
-
-TEST(SceneEmitter, SeveralTables) {
-    const Scene scene = goodScene(kSceneHead + "[[emitter]]\nrate = 10\n[[emitter]]\nburst = 5\nseed = 7\n");
-    ASSERT_EQ(scene.emitters.size(), 2U);
-    EXPECT_EQ(scene.emitters[0].rate, 10.0);
-    EXPECT_EQ(scene.emitters[1].burst, 5U);
-    EXPECT_EQ(scene.emitters[1].seed, 7U);
-    EXPECT_EQ(goodScene(kSceneHead).emitters.size(), 1U);
+    EXPECT_EQ(good("type = \"b\"\n[[type]]\nname = \"a\"\n[[type]]\nname = \"b\"\n").type, 1U);
 }
 
 TEST(SceneEmitter, DefaultsOfSeveral) {
@@ -125,7 +91,7 @@ TEST(SceneEmitter, DefaultsOfSeveral) {
 
     const std::string full =
         kSceneHead + "[particles]\ncapacity = 10\n[[emitter]]\nrate = 100\n[[emitter]]\n";
-    EXPECT_EQ(withDefaults(goodScene(full), unitBounds()).error().code, ErrorCode::kInvalidInput);
+    EXPECT_FALSE(withDefaults(goodScene(full), unitBounds()));
 }
 
 TEST(SceneSpawn, EveryKeyIsRead) {
@@ -135,9 +101,7 @@ TEST(SceneSpawn, EveryKeyIsRead) {
                   "[[spawn]]\non = \"collision\"\nof = \"drop\"\ntype = \"splash\"\ncount = [2, 5]\n"
                   "most = 70\nlifetime = [0.5, 2]\ninherit = 0.25\nspeed = [1, 3]\nkick = 0.5\n"
                   "cone = 20\nmin_speed = 0.75\nseed = 6\n[[spawn]]\non = \"death\"\nspeed = 2\n"
-                  "[[spawn]]\non = \"collision\"\nof = 1\n");
-    ASSERT_EQ(scene.spawns.size(), 3U);
-    const SceneSpawn& first = scene.spawns[0];
+                  "[[spawn]]\non = \"collision\"\n");
     SpawnSettings wanted;
     wanted.of = 0;
     wanted.type = 1;
@@ -152,15 +116,13 @@ TEST(SceneSpawn, EveryKeyIsRead) {
     wanted.kick = 0.5F;
     wanted.cone_degrees = 20.0F;
     wanted.min_speed = 0.75F;
-    EXPECT_TRUE(SpawnSettings(first) == wanted);
-    EXPECT_EQ(first.seed, 6U);
+    EXPECT_TRUE(SpawnSettings(scene.spawns.at(0)) == wanted);
+    EXPECT_EQ(scene.spawns[0].seed, 6U);
     SpawnSettings death;
     death.on = SpawnOn::kDeath;
     death.speed_min = death.speed_max = 2.0F;
-    EXPECT_TRUE(SpawnSettings(scene.spawns[1]) == death);
-    EXPECT_EQ(scene.spawns[2].of, 1U);
-    EXPECT_EQ(scene.spawns[2].cone_degrees, 60.0F);
-    EXPECT_EQ(makeSpawners(scene.spawns, {}).size(), 3U);
+    EXPECT_TRUE(SpawnSettings(scene.spawns.at(1)) == death);
+    EXPECT_EQ(scene.spawns.at(2).cone_degrees, 60.0F);
 }
 
 TEST(SceneEmitter, MadeEmittersGiveBirth) {
@@ -186,15 +148,8 @@ TEST(SceneEmitter, MadeEmittersGiveBirth) {
     EXPECT_EQ(births[0].lifetime, 2.0F);
 
     EXPECT_TRUE(make("points = \"points.csv\"\nspeed = 1\ndirection = [0, 1, 0]\n"));
-    for (const auto& [keys, code] :
-         {std::pair("points = \"points.csv\"\nspeed = 1\n", ErrorCode::kInvalidInput),
-          {"points = \"none.csv\"\n", ErrorCode::kIo}}) {
-        const auto refused = make(keys);
-        ASSERT_FALSE(refused) << keys;
-        EXPECT_EQ(refused.error().code, code);
-        EXPECT_NE(refused.error().message.find("scene.toml:4:10: emitter.points: "), std::string::npos)
-            << refused.error().message;
-    }
+    expectErrorOf(make("points = \"points.csv\"\nspeed = 1\n"), "scene.toml:4:10: emitter.points: ", "");
+    EXPECT_EQ(make("points = \"none.csv\"\n").error().code, ErrorCode::kIo);
 }
 
 }  // namespace

@@ -20,9 +20,6 @@ TEST(SceneLooks, EveryKey) {
         "1]]\n"
         "rotation = [[0.25, -3]]\nturn = 1\nspin = 2\ncell = [3, 7]\nlit = false\n[[type]]\ncell = 6\nfade = "
         "[1, 2]\nstretch = 0.25\n");
-    EXPECT_EQ(scene.render.sprite, Sprite::kQuad);
-    EXPECT_EQ(scene.render.blend, Blend::kAdditive);
-    EXPECT_EQ(scene.render.soft, 0.5F);
     EXPECT_EQ(scene.render.atlas, std::filesystem::path("dir/a.png"));
     EXPECT_EQ(scene.render.atlas_columns, 4U);
     EXPECT_EQ(scene.render.atlas_rows, 2U);
@@ -47,7 +44,6 @@ TEST(SceneLooks, EveryKey) {
     EXPECT_EQ(scene.types[1].look, second);
     EXPECT_EQ(scene.types[2].look.cell_last, 6U);
     EXPECT_EQ(scene.types[2].look.fade_out, 2.0F);
-    EXPECT_EQ(scene.types[2].look.stretch, 0.25F);
 }
 
 TEST(SceneCamera, KeysAreFollowedAndFilledFromTheCamera) {

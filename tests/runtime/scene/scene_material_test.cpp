@@ -48,10 +48,7 @@ TEST(SceneMaterial, UnknownNamesAreErrors) {
     for (const auto& [more, what] :
          {std::pair("[[material]]\nname = \"stave\"\n", "material[0].name = 'stave'"),
           {"[[spawn]]\non = \"collision\"\nmaterial = \"ice\"\n", "spawn[0].material = 'ice'"}}) {
-        const auto loaded = loadAll(folder.write("scene.toml", kHead + more), {});
-        ASSERT_FALSE(loaded);
-        EXPECT_NE(loaded.error().message.find(std::string("scene.toml:3:1: ") + what), std::string::npos)
-            << loaded.error().message;
+        expectErrorOf(loadAll(folder.write("scene.toml", kHead + more), {}), "scene.toml:3:1: ", what);
         // A scene that another one becomes as it plays.
         const auto plays = loadAll(folder.write("plays.toml", kHead), {});
         const auto changed = parseScene(kHead + more, "scene.toml");

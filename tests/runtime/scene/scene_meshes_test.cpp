@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "runtime/scene/scene_world.h"
 #include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
@@ -17,22 +15,14 @@ namespace fs = std::filesystem;
 
 class DrawnMeshesTest : public testing::Test {
   protected:
-    void SetUp() override {
-        for (const char* name : {"floor.obj", "door.ply", "own.obj"}) {
-            add(name);
+    DrawnMeshesTest() {
+        for (const char* name : {"floor.obj", "own.obj"}) {
+            folder_.write(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         }
-    }
-
-    void add(const std::string& name) const {
-        std::ofstream out(folder_.path() / name);
-        if (fs::path(name).extension() == ".ply") {
-            out << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-                   "float z\n"
-                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 "
-                   "0\n3 0 1 2\n";
-        } else {
-            out << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-        }
+        folder_.write("door.ply",
+                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                      "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     }
 
     /// A scene of a world, as loadAll() would make it, without its containers.
@@ -81,11 +71,7 @@ TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
 
 TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
     World world = namedWorld();
-    world.colliders.push_back(world.colliders[0]);  // another tile of the floor
-    world.colliders.back().file = "floor-1.relief";
-    WorldBody tile = world.bodies[0];
-    tile.collider = static_cast<std::uint32_t>(world.colliders.size() - 1);
-    world.bodies.push_back(tile);
+    test::addTile(world, 0, "floor-1.relief", world.bodies.size());
     EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 3U);
     world.bodies.back().position.x += 10.0F;  // elsewhere it is another body
     EXPECT_EQ(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"))->places.size(), 4U);
@@ -95,16 +81,12 @@ TEST_F(DrawnMeshesTest, NamesThatAreNoFilesAreErrors) {
     for (const char* name : {"", ".", "..", "../door", "a/b", "a\\b"}) {
         World world = namedWorld();
         world.colliders[1].mesh = name;
-        const auto meshes = loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"));
-        ASSERT_FALSE(meshes) << name;
-        EXPECT_EQ(meshes.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(meshes.error().message.find("scene.toml:5:"), std::string::npos) << meshes.error().message;
+        expectErrorOf(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n")), "scene.toml:5:", "");
     }
     World world = namedWorld();
     world.colliders[1].mesh = "window";
-    const auto meshes = loadDrawnMeshes(loaded(world, "world = \"world.json\"\n"));
-    ASSERT_FALSE(meshes);
-    EXPECT_NE(meshes.error().message.find("'window.ply'"), std::string::npos) << meshes.error().message;
+    EXPECT_NE(loadDrawnMeshes(loaded(world, "world = \"world.json\"\n")).error().message.find("'window.ply'"),
+              std::string::npos);
 }
 
 TEST(SceneWeather, ChangesEvenlyBetweenItsTimes) {

@@ -10,20 +10,14 @@ namespace {
 
 TEST(SceneMistakes, OfTheFile) {
     expectMistakes("", {{"", "1:1", "collider.file"},
-                        {"[time]\ndt = 0.1\n", "1:1", "collider.file"},
-                        {"[collider]\n", "1:1", "collider.file"},
-                        {"[[collider]]\nscale = 1\n", "1:1", "collider.file"},
                         {"[[collider]]\nfile = \"a\"\n[[collider]]\n", "3:1", "collider.file"},
                         {"[collider]\nfile = \"\"\n", "2:8", "file"},
-                        {"[collider]\nfile = 3\n", "2:8", "collider.file"},
                         {"[collider]\nfile = \"a\\u0000b\"\n", "2:8", "zero byte"},
                         {"[collider]\nfile = \"/z/a.relief\"\n", "2:8", "'/z/a.relief'"},
                         {"[collider]\nfile = \"b/../../dirt/a\"\n", "2:8", "'b/../../dirt/a'"},
                         {"collider = []\n", "1:12", "collider"},
-                        {"collider = 3\n", "1:12", "collider"},
                         {"emitter = [{}, 1]\n" + kSceneHead, "1:11", "emitter"},
                         {"steps = 4\n" + kSceneHead, "1:1", "'steps'"},
-                        {kSceneHead + "[collisions]\n", "3:2", "'collision'"},
                         // The first mistake of the file is the one that is reported.
                         {kSceneHead + "[time]\nzeta = 1\nalpha = 1\n", "4:1", "'time.zeta'"},
                         {kSceneHead + "[attractor]\nstrength = 1\n", "3:1", "[[attractor]]"}});
@@ -38,12 +32,7 @@ TEST(SceneMistakes, OfTheSyntax) {
                                      {std::string(100'000, '['), 1},
                                      {"a = " + std::string(100'000, '['), 1},
                                      {"a" + std::string(".a", 3) + " = {" + std::string(5000, '{'), 1}}) {
-        const auto scene = sceneOf(text);
-        ASSERT_FALSE(scene);
-        EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-        EXPECT_TRUE(scene.error().message.starts_with("dir/scene.toml:" + std::to_string(line) + ":"))
-            << scene.error().message;
-        EXPECT_EQ(scene.error().message.find('\n'), std::string::npos);
+        expectErrorOf(sceneOf(text), "dir/scene.toml:" + std::to_string(line) + ":", "");
     }
 }
 
@@ -101,10 +90,8 @@ TEST(SceneMistakes, OfPlacesAndWaysOfColliders) {
     const std::string key = "[[collider.key]]\ntime = 1\n";
     expectMistakes(kSceneHead, {{"axis = [0, 1, 0]\n", "3:8", "collider.angle"},
                                 {"axis = [0, 0, 0]\nangle = 3\n", "3:8", "collider.axis"},
-                                {"position = [1, 2, 1e10]\n", "3:19", "position"},
                                 {key, "3:1", "collider.key"},
                                 {key + key, "6:8", "does not rise"},
-                                {key + "[[collider.key]]\nposition = [0, 0, 0]\n", "5:1", "time"},
                                 {key + "axis = [1, 0, 0]\n" + key, "5:8", "collider.key.angle"},
                                 {key + "scale = 2\n" + key, "5:1", "collider.key.scale"}});
 }
@@ -114,21 +101,16 @@ TEST(SceneMistakes, OfCollidersThatDeformOrPlay) {
     expectMistakes(
         "", {{"[collider]\nmesh = \"a.obj\"\n", "2:8", "collider.deform"},
              {"[collider]\nmesh = \"a.obj\"\nfile = \"b.relief\"\n" + wobble, "2:8", "exclude each other"},
-             {"[collider]\nmesh = \"a.obj\"\ndeform = 3\n", "3:10", "collider.deform"},
              {"[collider]\nmesh = \"a.obj\"\ndeform = { amplitude = 1 }\n", "3:10", "frequency"},
-             {"[collider]\nmesh = \"a.obj\"\ndeform = { frequency = 1, sped = 1 }\n", "3:27", "sped"},
              {"[collider]\nmesh = \"a.obj\"\n" + wobble + "[render]\nmesh = \"b.obj\"\n", "5:8",
               "collider.mesh"}});
     expectMistakes(kSceneHead, {{wobble, "3:10", "collider.mesh"},
                                 {"resolution = 64\n", "3:14", "collider.mesh"},
-                                {"play = { clip = \"a\", resolution = 8 }\n", "3:35", "resolution"},
-                                {"play = { clip = \"a\", sped = 1 }\n", "3:22", "sped"},
                                 {"[[collider.material]]\nname = \"a\"\ncolor = [1, 1, 1]\n", "3:1", "play"}});
 }
 
 TEST(SceneMistakes, OfCollidersOfAWorld) {
     expectMistakes("", {{"[[collider]]\nnode = \"door\"\n", "2:8", "world"},
-                        {"world = 3\n", "1:9", "world"},
                         {"world = \"/etc/world.json\"\n", "1:9", "world"}});
     expectMistakes("world = \"w.json\"\n[collider]\nnode = ",
                    {{"\"door\"\nfriction = 0\n", "4:12", "collider.friction"},
@@ -140,16 +122,13 @@ TEST(SceneMistakes, OfTypesAndMaterials) {
     expectMistakes(kSceneHead,
                    {{"[[type]]\nname = \"\"\n", "4:8", "type.name"},
                     {"[[type]]\nname = \"a\"\n[[type]]\nname = \"a\"\n", "6:8", "type"},
-                    {"[[type]]\non_collision = \"slid\"\n", "4:16", "'slide'"},
                     {"[[type]]\nstretch = 0.1\n", "4:11", "render.sprite"},
-                    {"[[material]]\nfriction = 1\n", "3:1", "name"},
                     {"[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "material"},
                     {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
     expectMistakes(
         "[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
         {{"[[type]]\ncollides = 0\n", "6:12", "numbers of colliders"},
          {"[[type]]\ncollides = [2]\n", "6:13", "choose 0 to 1"},
-         {"[[type]]\ncollides = [-1]\n", "6:13", "out of range"},
          {"[[type]]\ncollides = [1.5]\n", "6:13", "numbers of colliders"},
          {"[[type]]\ncollides = [\"floor\"]\n", "6:13", "ground"},
          {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "takes away"}});
@@ -172,9 +151,6 @@ TEST(SceneMistakes, OfLooksAndPictures) {
                     {"[render]\natlas = \"a.png\"\n", "4:9", "[[type]]"},
                     {"[[type]]\ncell = 0\n", "4:8", "render.atlas"},
                     {atlas + "[[type]]\ncell = 4\n", "7:8", "0 to 3"},
-                    {atlas + "[[type]]\ncell = [2, 1]\n", "7:8", "swap"},
-                    {"[[type]]\nsize = \"1\"\n", "4:8", "type.size"},
-                    {"[[type]]\nsize = -1\n", "4:8", "out of range"},
                     {"[[type]]\nsize = []\n", "4:8", "type.size"},
                     {"[[type]]\nsize = [0, 1]\n", "4:8", "type.size"},
                     {"[[type]]\nsize = [[0, 1], 2]\n", "4:17", "type.size"},
@@ -184,7 +160,6 @@ TEST(SceneMistakes, OfLooksAndPictures) {
                     {"[[type]]\nsize = [" + keys + "]\n", "4:8", "255"},
                     {"[[type]]\nopacity = [[0, 1], [1, 2]]\n", "4:24", "choose 0 to 1"},
                     {"[[type]]\ncolor = [1, 1]\n", "4:9", "[r, g, b]"},
-                    {"[[type]]\ncolor = 1\n", "4:9", "[r, g, b]"},
                     {"[[type]]\ncolor = [[0, 1, 1]]\n", "4:10", "[r, g, b]"},
                     {"[render]\nfog = 5\n", "4:7", "render.meshes"},
                     {"[render]\n[[render.weather]]\nsnow = 1\n", "4:1", "render.meshes"},
@@ -196,12 +171,10 @@ TEST(SceneMistakes, OfTheCamera) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
     expectMistakes(kSceneHead, {{"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "4:7", "camera.target"},
                                 {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "aside"},
-                                {"[[camera.key]]\ntime = 1\n", "3:1", "camera.key.eye"},
                                 {key + key, "7:8", "does not rise"},
                                 {key + "target = [1, 0, 3]\n", "5:7", "aside"},
                                 {key + "target = [1, 2, 3]\n", "5:7", "aside"},
-                                {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"},
-                                {"[camera]\nkey = 3\n", "4:7", "[[camera.key]]"}});
+                                {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"}});
 }
 
 TEST(SceneMistakes, OfEmitters) {
@@ -213,7 +186,6 @@ TEST(SceneMistakes, OfEmitters) {
          {"burst = 10\n[particles]\ncapacity = 9\n", "4:9", "particles.capacity"},
          {"attach = 0\n", "4:10", "emitter.point"},
          {"point = [1, 0, 0]\nattach = 1\n", "5:10", "1 colliders"},
-         {"point = [1, 0, 0]\nattach = \"0\"\n", "5:10", "unknown"},
          {"inherit = 1\n", "4:11", "emitter.attach or emitter.key"},
          {key, "4:1", "emitter.key"},
          {key + key, "7:8", "does not rise"},
@@ -232,11 +204,8 @@ TEST(SceneMistakes, OfEmitters) {
          {sphere + "box_min = [0, 1, 0]\nbox_max = [1, 1, 1]\n", "7:11", "emitter.box_min"},
          {"shape = \"box\"\npoint = [0, 0, 0]\n", "5:9", "emitter.point"},
          {"point = [0, 0, 0]\npoints = \"p\"\n", "4:9", "emitter.point"},
-         {"direction = [0, 0, 0]\n", "4:13", "no direction"},
          {"direction = [0, 1, 0]\nspeed = [2]\n", "5:9", "two [least, most]"},
          {"direction = [0, 1, 0]\nspeed = { deviation = 1 }\n", "5:9", "mean"},
-         {"direction = [0, 1, 0]\nspeed = { mean = 1, deviation = -1 }\n", "5:33", "out of range"},
-         {"direction = [0, 1, 0]\nspeed = { mean = 1, devation = 1 }\n", "5:21", "'deviation'"},
          {"cone = 20\n", "4:8", "emitter.direction"},
          {"point = [0, 0, 0]\nspeed = 20\n", "5:9", "emitter.direction"},
          {"velocity = [1, 0, 0]\ndirection = [0, 1, 0]\n", "4:12", "exclude each other"}});
@@ -251,10 +220,7 @@ TEST(SceneMistakes, OfNamesOfTypes) {
                                                 {"type = \"smok\"\n" + types, "4:8", "'smoke'"},
                                                 {"type = 2\n" + types, "4:8", "2 types"}});
     expectMistakes(kSceneHead + types + "[[spawn]]\n",
-                   {{"count = 2", "7:1", "spawn.on"},
-                    {"on = \"death\"\nof = \"snwo\"", "9:6", "'snow'"},
-                    {"on = \"death\"\ntype = 2", "9:8", "2 types"},
-                    {"on = \"death\"\ncount = [5, 2]", "9:9", "swap"},
+                   {{"on = \"death\"\ntype = 2", "9:8", "2 types"},
                     {"on = \"death\"\nmin_speed = 1", "9:13", "does nothing"},
                     {"on = \"death\"\ncone = 10", "9:8", "does nothing"}});
 }
@@ -269,8 +235,6 @@ TEST(SceneMistakes, OfSurfacesThatGiveBirth) {
                     {"material = \"\"\n", "6:12", "emitter.material"},
                     {"center = [0, 0, 0]\n", "6:10", "emitter.center"},
                     {"[[emitter.key]]\ntime = 0\n[[emitter.key]]\ntime = 1\n", "6:1", "emitter.mesh"},
-                    {"touching = {}\n", "6:12", "emitter.touching.within"},
-                    {"touching = { within = 0 }\n", "6:23", "out of range"},
                     {"touching = { within = 1, material = 3 }\n", "6:37", "list of names"},
                     {"touching = { within = 1, material = [\"earth\", 3] }\n", "6:47", "list of names"},
                     {"touching = { within = 1, material = [] }\n", "6:37", "has no name"},

@@ -22,17 +22,6 @@ const std::string kCollider = "[[collider]]\nfile = \"tube.relief\"\n";
 const std::string kPlayed = kCollider + "play = { clip = \"bend\", start = 0.5 }\n";
 const std::string kSurface = "[[emitter]]\nshape = \"surface\"\n";
 
-/// The tube, whose upper half, by triangles, is "skin" and whose lower one "cloth".
-AnimatedMesh dressedTube() {
-    AnimatedMesh mesh = bendingTube(12, 8);
-    mesh.materials = {"cloth", "skin"};
-    for (const glm::uvec3& t : mesh.triangles) {
-        const float y = mesh.positions[t.x].y + mesh.positions[t.y].y + mesh.positions[t.z].y;
-        mesh.triangle_materials.push_back(y > 3.0F ? 1 : 0);
-    }
-    return mesh;
-}
-
 double areaOf(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec3>& triangles) {
     double area = 0.0;
     for (const glm::uvec3& t : triangles) {
@@ -60,28 +49,19 @@ class SceneSurface : public testing::Test {
         return loaded ? loaded->emitters.at(0).settings().surface.area() : 0.0;
     }
     void expectRefused(const std::string& text, const std::string& place, const std::string& words) {
-        const auto loaded = load(text);
-        ASSERT_FALSE(loaded) << text;
-        const std::string& message = loaded.error().message;
-        EXPECT_EQ(loaded.error().code, ErrorCode::kInvalidInput) << message;
-        EXPECT_NE(message.find("scene.toml:" + place + ": "), std::string::npos) << message;
-        EXPECT_NE(message.find(words), std::string::npos) << message;
-        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        expectErrorOf(load(text), "scene.toml:" + place + ": ", words);
     }
 
-    const AnimatedMesh mesh_ = dressedTube();
+    const AnimatedMesh mesh_ = dressedTube("cloth", "skin");
     const test::TemporaryFolder folder_;
 };
 
-TEST_F(SceneSurface, IsTheColliderAsItIsPosed) {
+TEST_F(SceneSurface, IsThatOfTheColliderByGroupsAndMaterials) {
     const std::vector<glm::vec3> bent = posed(mesh_, poseAt(mesh_, mesh_.clips[0], 0.5));
     EXPECT_NEAR(area(kPlayed + kSurface + "attach = 0\n"), areaOf(bent, mesh_.triangles), 1e-6);
     EXPECT_NEAR(area(kCollider + kSurface + "attach = 0\n"), areaOf(mesh_.positions, mesh_.triangles), 1e-6)
         << "at rest";
     EXPECT_GT(std::abs(areaOf(bent, mesh_.triangles) - areaOf(mesh_.positions, mesh_.triangles)), 1e-3);
-}
-
-TEST_F(SceneSurface, GroupsAndMaterialsAreCountedExactly) {
     double skin = 0.0;
     double upper = 0.0;
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
@@ -119,7 +99,7 @@ TEST_F(SceneSurface, MayBeThatOfAMeshFile) {
     EXPECT_NE(std::find(files.begin(), files.end(), folder_.path() / "cube.obj"), files.end());
 }
 
-TEST_F(SceneSurface, OfAColliderWithoutAMesh) {
+TEST_F(SceneSurface, OfCollidersWithoutABakedMesh) {
     const glm::dvec3 half(0.5, 0.3, 0.2);
     ASSERT_TRUE(saveCollider(folder_.path() / "box.relief",
                              analytic::frontBackCollider(analytic::box(-half, half), 128)));
@@ -129,9 +109,6 @@ TEST_F(SceneSurface, OfAColliderWithoutAMesh) {
         load(box + box + "position = [3, 0, 0]\n" + kSurface + "attach = 0\n" + kSurface + "attach = 1\n");
     ASSERT_TRUE(two) << two.error().message;
     EXPECT_EQ(two->emitters[0].settings().surface.area(), two->emitters[1].settings().surface.area());
-}
-
-TEST_F(SceneSurface, OfAColliderThatWobbles) {
     folder_.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     const std::string wobbles =
         "[[collider]]\nmesh = \"ball.obj\"\ndeform = { amplitude = 0.1, frequency = 1 }\n";

@@ -35,6 +35,17 @@ inline Bounds unitBounds() {
     return bounds;
 }
 
+/// \param names  the key, or what else tells the error from others at its place.
+template <class T>
+void expectErrorOf(const Result<T>& result, const std::string& place, const std::string& names) {
+    ASSERT_FALSE(result) << place << " " << names;
+    const std::string& message = result.error().message;
+    EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
+    EXPECT_NE(message.find(place), std::string::npos) << message;
+    EXPECT_NE(message.find(names), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
 struct SceneMistake {
     std::string text;
     std::string place;  ///< line and column of its error, "3:1"
@@ -45,13 +56,7 @@ struct SceneMistake {
 inline void expectMistakes(const std::string& head, const std::vector<SceneMistake>& mistakes) {
     for (const auto& [text, place, names] : mistakes) {
         SCOPED_TRACE(head + text);
-        const auto scene = sceneOf(head + text);
-        ASSERT_FALSE(scene);
-        const std::string& message = scene.error().message;
-        EXPECT_EQ(scene.error().code, ErrorCode::kInvalidInput);
-        EXPECT_TRUE(message.starts_with("dir/scene.toml:" + place + ": ")) << message;
-        EXPECT_NE(message.find(names), std::string::npos) << message;
-        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        expectErrorOf(sceneOf(head + text), "dir/scene.toml:" + place + ": ", names);
     }
 }
 

@@ -98,17 +98,5 @@ TEST(StreamPlan, APartAtATimeIsTheWholeOfTheFirstPoints) {
     EXPECT_TRUE(parts.wanted().empty()) << "nothing without points";
 }
 
-TEST(StreamPlan, FollowsBodiesThatMove) {
-    const Bounds box{glm::vec3(-1.0F), glm::vec3(1.0F)};
-    StreamPlan plan({{0, box, {}}, {1, box, {}}}, 2);
-    const PointOfInterest here{{0.0F, 0.0F, 0.0F}, 5.0F};
-    plan.setPose(1, {{20.0F, 0.0F, 0.0F}});
-    plan.lookAtAll({&here, 1});
-    EXPECT_EQ(plan.wanted().size(), 1U);
-    plan.setPose(1, {{5.5F, 0.0F, 0.0F}});
-    plan.lookAtAll({&here, 1});
-    EXPECT_EQ(plan.wanted().size(), 2U);
-}
-
 }  // namespace
 }  // namespace relief

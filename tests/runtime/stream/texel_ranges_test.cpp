@@ -43,10 +43,5 @@ TEST(TexelRanges, GivesTheFirstGapThatFitsAndJoinsWhatComesBack) {
     EXPECT_GT(refused, 1000);
 }
 
-TEST(TexelRanges, NoRoomIsNoRoom) {
-    TexelRanges none(7, 0);
-    EXPECT_FALSE(none.take(1));
-}
-
 }  // namespace
 }  // namespace relief

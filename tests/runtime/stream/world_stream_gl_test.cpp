@@ -80,6 +80,8 @@ class WorldStreamGlTest : public GlTest {
                                         "",
                                         fine_[i].bounds,
                                         WorldFile{name + " coarse", "", coarse_[i].gpuBytes()}});
+            coarse_bytes_ += coarse_[i].gpuBytes();
+            largest_ = std::max(largest_, fine_[i].gpuBytes());
             for (int k = 0; k < 3; ++k) {
                 const auto turn = static_cast<float>(i + 10 * static_cast<std::size_t>(k));
                 bodies_.push_back({&coarse_[i],
@@ -87,10 +89,6 @@ class WorldStreamGlTest : public GlTest {
                                     glm::angleAxis(turn, glm::vec3(0.0F, 0.6F, 0.8F)),
                                     0.8F + 0.1F * static_cast<float>(k)}});
             }
-        }
-        for (std::size_t i = 0; i < kColliders; ++i) {
-            coarse_bytes_ += coarse_[i].gpuBytes();
-            largest_ = std::max(largest_, fine_[i].gpuBytes());
         }
         Pcg32 places(9);
         for (std::uint32_t i = 0; i < 4000; ++i) {
@@ -100,19 +98,24 @@ class WorldStreamGlTest : public GlTest {
         }
     }
 
-    [[nodiscard]] std::vector<const Collider*> coarseOnes() const {
-        std::vector<const Collider*> all;
+    Result<std::unique_ptr<WorldStream>> make(const StreamOptions& options) {
+        std::vector<const Collider*> coarse;
         for (const Collider& collider : coarse_) {
-            all.push_back(&collider);
+            coarse.push_back(&collider);
         }
-        return all;
-    }
-    void open(const StreamOptions& options) {
         auto source = std::make_unique<TestSource>(fine_);
         source_ = source.get();
-        auto made = WorldStream::create(world_, bodies_, coarseOnes(), std::move(source), options);
+        return WorldStream::create(world_, bodies_, coarse, std::move(source), options);
+    }
+    void open(const StreamOptions& options) {
+        auto made = make(options);
         ASSERT_TRUE(made) << made.error().message;
         stream_ = *std::move(made);
+    }
+    void updates(int count, const std::vector<PointOfInterest>& points) {
+        for (int i = 0; i < count; ++i) {
+            ASSERT_TRUE(stream_->update(points));
+        }
     }
     /// Compares the field with that of textures in which these colliders are fine and the others coarse.
     void expectFine(const std::vector<std::size_t>& fine) {
@@ -131,10 +134,9 @@ class WorldStreamGlTest : public GlTest {
         std::size_t near = 0;
         for (std::size_t i = 0; i < points_.size(); ++i) {
             near += expected[i].distance < kFarOutside ? 1 : 0;
-            different += std::memcmp(&expected[i].distance, &found[i].distance, sizeof(float)) != 0 ||
-                                 expected[i].normal != found[i].normal
-                             ? 1
-                             : 0;
+            const bool same = std::memcmp(&expected[i].distance, &found[i].distance, sizeof(float)) == 0 &&
+                              expected[i].normal == found[i].normal;
+            different += same ? 0 : 1;
         }
         EXPECT_EQ(different, 0U);
         EXPECT_GT(near, 500U);
@@ -222,10 +224,7 @@ TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     // The first to go is the largest, so that its place is enough for any other.
     std::vector<std::size_t> by_size{0, 1, 2, 3, 4, 5};
     std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].gpuBytes(); });
-    const std::size_t old = by_size[0];
-    const std::size_t first = by_size[1];
-    const std::size_t second = by_size[2];
-    const std::size_t late = by_size[3];
+    const std::size_t old = by_size[0], first = by_size[1], second = by_size[2], late = by_size[3];
     const std::uint64_t room =
         coarse_bytes_ + fine_[old].gpuBytes() + fine_[first].gpuBytes() + fine_[second].gpuBytes();
     open({.gpu_bytes = room});
@@ -243,9 +242,7 @@ TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     EXPECT_EQ(stream_->counts().wanted, kColliders);
     EXPECT_GE(stream_->counts().present, 2U);
     source_->asked.clear();
-    for (int i = 0; i < 10; ++i) {
-        EXPECT_TRUE(stream_->update({&all, 1}));
-    }
+    updates(10, {all});
     EXPECT_TRUE(source_->asked.empty());
 }
 
@@ -291,48 +288,33 @@ TEST_P(WorldStreamBooksGlTest, WhatIsBrokenIsNamedOnceAndItsCoarseMapsStay) {
     EXPECT_EQ(stream_->counts().failed, 1U);
     fine_[3] = colliderOf(test::patchesOf({{1, 1, 1}, 0}, {PatchRecord::flat(true, {0, 1, 0}, -1.0F)}));
     static_cast<void>(finish({3}));
-    const std::vector<std::string> warnings = stream_->takeWarnings();
-    ASSERT_EQ(warnings.size(), 1U);
-    EXPECT_NE(warnings[0].find("'thing 3'"), std::string::npos) << warnings[0];
+    EXPECT_NE(stream_->takeWarnings().at(0).find("'thing 3'"), std::string::npos);
     expectFine({1});
 }
 
 TEST_P(WorldStreamBooksGlTest, WhatIsLateWaitsForNobodyAndMayNoLongerBeWanted) {
     open({});
-    const PointOfInterest here = at(1);
-    const PointOfInterest there = at(4);
-    const auto update = [&](const PointOfInterest& point) { ASSERT_TRUE(stream_->update({&point, 1})); };
     source_->holds_back = true;
-    for (int i = 0; i < 5; ++i) {
-        update(here);
-    }
+    updates(5, {at(1)});
     EXPECT_EQ(source_->asked, std::vector<std::size_t>{1});
-    update(there);
+    updates(1, {at(4)});
     source_->holds_back = false;
-    for (int i = 0; i < 5; ++i) {
-        update(there);
-    }
+    updates(5, {at(4)});
     EXPECT_EQ(source_->asked, (std::vector<std::size_t>{1, 4}));
     expectFine({4});
 }
 
 TEST_P(WorldStreamBooksGlTest, SoManyAreUnderWayAtOnce) {
-    const std::vector<PointOfInterest> points{at(0), at(1), at(2), at(3), at(4)};
     for (const std::size_t most : {1U, 4U}) {
         open({.under_way = most});
         source_->holds_back = true;
-        for (int i = 0; i < 5; ++i) {
-            ASSERT_TRUE(stream_->update(points));
-        }
+        updates(5, {at(0), at(1), at(2), at(3), at(4)});
         EXPECT_EQ(source_->asked.size(), most);
     }
 }
 
 TEST_P(WorldStreamBooksGlTest, TooLittleMemoryIsSaid) {
-    auto made = WorldStream::create(world_, bodies_, coarseOnes(), std::make_unique<TestSource>(fine_),
-                                    {.gpu_bytes = coarse_bytes_ - 1});
-    ASSERT_FALSE(made);
-    EXPECT_EQ(made.error().code, ErrorCode::kLimit);
+    EXPECT_EQ(make({.gpu_bytes = coarse_bytes_ - 1}).error().code, ErrorCode::kLimit);
     open({.gpu_bytes = coarse_bytes_ + largest_ - 8});
     EXPECT_EQ(stream_->takeWarnings().size(), 1U);
     EXPECT_EQ(stream_->counts().failed, 1U);
@@ -368,12 +350,10 @@ Collider tileOf(int column, int row, std::uint32_t side) {
         records.push_back(codes.texel(k));
     }
     Collider tile;
-    tile.unit = "m";
-    tile.provenance.tool_version = "test";
     tile.maps = {test::patchesOf({{1, 1, 1}, 0}, records)};
-    for (int axis = 0; axis < 3; ++axis) {
-        tile.maps[0].object_to_map.row[axis] = glm::vec4(0.0F);
-        tile.maps[0].object_to_map.row[axis][axis] = 1.0F / kTile;
+    tile.maps[0].object_to_map = {};
+    for (glm::vec4& row : tile.maps[0].object_to_map.row) {
+        row /= kTile;
     }
     tile.maps[0].object_per_map = glm::vec3(kTile);
     tile.bounds = {glm::vec3(0.0F), glm::vec3(kTile)};
@@ -386,16 +366,13 @@ double coarseHill(double x, double z, int column, int row) {
     const double z0 = double{kStride} * row;
     const double s = (x - x0) / double{kTile};
     const double t = (z - z0) / double{kTile};
-    const double lower = (1.0 - s) * hill(x0, z0) + s * hill(x0 + double{kTile}, z0);
-    const double upper =
-        (1.0 - s) * hill(x0, z0 + double{kTile}) + s * hill(x0 + double{kTile}, z0 + double{kTile});
-    return (1.0 - t) * lower + t * upper;
+    const auto along = [&](double at) { return std::lerp(hill(x0, at), hill(x0 + double{kTile}, at), s); };
+    return std::lerp(along(z0), along(z0 + double{kTile}), t);
 }
 
 /// Writes the tiles and their world. \return its path.
 fs::path writeTiles(const fs::path& folder) {
     World world;
-    world.unit = "m";
     const auto write = [&](const Collider& collider, const std::string& name) {
         const auto bytes = writeContainer(collider);
         EXPECT_TRUE(bytes) << bytes.error().message;
