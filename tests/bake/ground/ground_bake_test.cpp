@@ -2,13 +2,12 @@
 #include "bake/ground/ground_bake.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <map>
 #include <random>
 
 #include "tests/bake/ground/height_grids.h"
-#include "tests/runtime/particles/reference_step.h"
+#include "tests/bake/threads.h"
 #include "tests/seeds.h"
 
 namespace relief::test {
@@ -62,8 +61,7 @@ TEST_F(GroundBakes, NoPointNearASeamIsWrongBeyondTheBound) {
         int wrong = 0;
         int close = 0;
         for (int i = 0; i < 120'000; ++i) {
-            const bool tight = i % 2 == 0;
-            const double away = tight ? 1e-6 * 300.0 : 0.05;
+            const double away = i % 2 == 0 ? 1e-6 * 300.0 : 0.05;
             const glm::dvec2 at = nearSeam(random, away / spacing, 2);
             const double about = i % 4 < 2 ? 3.0 * bound : 5.0;
             const double surface = *surfaceAt(grid, at.x, at.y) + 12.0;
@@ -81,23 +79,6 @@ TEST_F(GroundBakes, NoPointNearASeamIsWrongBeyondTheBound) {
         }
         EXPECT_EQ(wrong, 0) << spacing;
         EXPECT_LT(close, 40'000);
-    }
-}
-
-TEST_F(GroundBakes, TilesAreTheSameGroundAsOneCollider) {
-    writeHills(200, 200);
-    const Result<Collider> whole = readContainer(bake("hills.raw", spec("spacing=0.5")).container);
-    ASSERT_TRUE(whole);
-    const WorldField field = bakeWorld("spacing=0.5,tile=64");
-    std::mt19937 random(seedFrom(32));
-    std::uniform_real_distribution<float> share(0.0F, 1.0F);
-    for (int i = 0; i < 50'000; ++i) {
-        // Places that both hold exactly, seams among them.
-        const glm::vec3 p(std::floor(796.0F * share(random)) / 8.0F,
-                          std::floor(800.0F * share(random)) / 32.0F - 5.0F,
-                          std::floor(796.0F * share(random)) / 8.0F);
-        ASSERT_EQ(field.evaluate(p).inside(), evaluate(*whole, p).inside())
-            << p.x << " " << p.y << " " << p.z;
     }
 }
 
@@ -158,59 +139,12 @@ TEST_F(GroundBakes, CoarseTilesHoldSmallHolesAndFineOnesDoNot) {
     }
 }
 
-/// Rain on seams, with bounces and friction: none falls through, and none is thrown up.
-TEST_F(GroundBakes, DropsThatFallOnSeamsNeitherFallThroughNorJump) {
-    const HeightGrid grid = writeHills(64 * 3 + 1, 64 * 3 + 1);
-    const WorldField field = bakeWorld("tile=64");
-    ReferenceSettings settings;
-    for (std::size_t i = 0; i < field.world().bodies.size(); ++i) {
-        ReferenceBody body;
-        body.collider = &field.colliderOf(i);
-        body.before.position = body.now.position = field.world().bodies[i].position;
-        settings.bodies.push_back(body);
-    }
-    settings.forces.gravity = {0.0F, -9.81F, 0.0F};
-    settings.type.restitution = 0.3F;
-    settings.type.friction = 0.2F;
-    settings.dt = 1.0F / 120.0F;
-    std::mt19937 random(seedFrom(33));
-    int caught = 0;
-    int collided = 0;
-    for (int drop = 0; drop < 300; ++drop) {
-        const glm::dvec2 at = nearSeam(random, drop % 2 == 0 ? 0.05 : 1e-6, 2);
-        glm::vec3 p(at.x, *surfaceAt(grid, at.x, at.y) + 1.5, at.y);
-        glm::vec3 v(0.0F);
-        float energy = 9.81F * p.y;
-        for (int step = 0; step < 240; ++step) {
-            const ReferenceState after = referenceStep(settings, p, v);
-            caught += after.contact == Contact::kCaught ? 1 : 0;
-            collided += after.contact == Contact::kCollided ? 1 : 0;
-            p = after.position;
-            v = after.velocity;
-            const std::optional<double> surface = surfaceAt(grid, p.x, p.z);
-            if (!surface) {
-                break;  // it has slid off the ground's end
-            }
-            ASSERT_GT(double{p.y}, *surface - 0.1) << "drop " << drop << " step " << step;
-            const float now = 9.81F * p.y + 0.5F * dot(v, v);
-            // A step's own error of a free fall: g² dt² / 2 for each step, and less.
-            ASSERT_LT(now, energy + 0.05F) << "drop " << drop << " step " << step;
-            energy = std::min(energy, now) + 0.0034F;
-        }
-    }
-    EXPECT_GT(collided, 3000);
-    EXPECT_LT(caught, collided / 20);
-}
-
 TEST_F(GroundBakes, ThreadsDoNotChangeAByteAndAnotherBakeLeavesNothingBehind) {
     writeHills(150, 150);
     static_cast<void>(bakeWorld("tile=64"));
     const auto first = worldFiles();
     EXPECT_EQ(first.size(), 10U);
-    {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
-        static_cast<void>(bakeWorld("tile=64"));
-    }
+    static_cast<void>(onThreads(1, [&] { return bakeWorld("tile=64").world().bodies.size(); }));
     EXPECT_EQ(worldFiles(), first);
     EXPECT_TRUE(tiles_.removed.empty());
     static_cast<void>(bakeWorld("tile=128"));
@@ -230,18 +164,6 @@ TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
         EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
         EXPECT_EQ(none.error().message.find("none.raw: "), 0U) << none.error().message;
     }
-}
-
-TEST_F(GroundBakes, TheContainerRecordsItsSettingsAndNoPath) {
-    writeHills(33, 33);
-    const Result<Collider> whole = readContainer(bake("hills.raw", spec("spacing=2,tile=64")).container);
-    ASSERT_TRUE(whole);
-    EXPECT_EQ(whole->unit, "m");
-    EXPECT_EQ(whole->provenance.mesh_name, "hills.raw");
-    EXPECT_EQ(whole->provenance.mesh_hash.size(), 32U);
-    EXPECT_EQ(whole->provenance.triangles, 2048U);
-    EXPECT_EQ(whole->provenance.optionsText(), "--heights spacing=2,low=-20,high=44");
-    EXPECT_EQ(whole->bounds.max.x, 64.0F);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "bake/ground/ground_tree.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <functional>
 #include <random>
@@ -89,23 +88,21 @@ TEST(GroundTree, ASlopeKeepsToItsPlaneWithNormalsAndDepths) {
     }
 }
 
-TEST(GroundTree, AConeHillsAndAStepKeepToTheBound) {
-    const HeightGrid cone = gridOf(130, 101, [](double x, double z) {
-        return 60.0 - 0.9 * std::sqrt((x - 64.3) * (x - 64.3) + (z - 50.1) * (z - 50.1));
-    });
-    EXPECT_EQ(wrongPoints(cone, {}), 0);
-    EXPECT_EQ(wrongPoints(gridOf(150, 131, hills), {}), 0);
-    EXPECT_EQ(wrongPoints(gridOf(70, 66, [](double x, double) { return x < 33.5 ? 0.0 : 2.5; }), {}), 0);
-}
-
-TEST(GroundTree, AnySpacingPlaceAndHeightKeepsToTheBound) {
-    const GroundPlace place{0.3, {-700.25, 41.0, 12.5}};
-    EXPECT_EQ(
-        wrongPoints(gridOf(97, 61, [](double x, double z) { return 0.3 * hills(x, z) + 8000.0; }), place), 0);
-    EXPECT_EQ(wrongPoints(gridOf(97, 61, [](double x, double z) { return 50.0 * hills(x, z); }), {50.0, {}}),
-              0);
-    EXPECT_EQ(wrongPoints(gridOf(2, 2, [](double x, double z) { return x + 0.5 * z; }), {}), 0);
-    EXPECT_EQ(wrongPoints(gridOf(2, 300, [](double x, double z) { return x + 0.1 * z; }), {}), 0);
+TEST(GroundTree, ShapesSpacingsPlacesAndHeightsKeepToTheBound) {
+    const auto cone = [](double x, double z) { return 60.0 - 0.9 * std::hypot(x - 64.3, z - 50.1); };
+    const auto step = [](double x, double) { return x < 33.5 ? 0.0 : 2.5; };
+    const std::pair<HeightGrid, GroundPlace> cases[] = {
+        {gridOf(130, 101, cone), {}},
+        {gridOf(150, 131, hills), {}},
+        {gridOf(70, 66, step), {}},
+        {gridOf(97, 61, [](double x, double z) { return 0.3 * hills(x, z) + 8000.0; }),
+         {0.3, {-700.25, 41.0, 12.5}}},
+        {gridOf(97, 61, [](double x, double z) { return 50.0 * hills(x, z); }), {50.0, {}}},
+        {gridOf(2, 2, [](double x, double z) { return x + 0.5 * z; }), {}},
+        {gridOf(2, 300, [](double x, double z) { return x + 0.1 * z; }), {}}};
+    for (const auto& [grid, place] : cases) {
+        EXPECT_EQ(wrongPoints(grid, place), 0) << grid.columns << " x " << grid.rows;
+    }
 }
 
 TEST(GroundTree, NoVariationIsExactWhereverItLies) {
@@ -220,27 +217,6 @@ TEST(GroundTree, GroundIsSolidDownToATwentiethBelowItsLowestPointAndNoSideIsInsi
     EXPECT_GE(vote(ground.map, {150.0F, lowest - 1.0F, 100.01F})->distance, 0.0F);
     EXPECT_EQ(vote(ground.map, {-0.01F, lowest - 1.0F, 50.0F})->distance, kFarOutside);
     EXPECT_EQ(vote(ground.map, {10.0F, 200.0F, 50.0F})->distance, kFarOutside);
-}
-
-TEST(GroundTree, ThreadsDoNotChangeIt) {
-    HeightGrid grid = gridOf(300, 277, hills);
-    grid.heights[5000] = kHole;
-    grid.heights[6000] = 400.0F;
-    DepthMap one;
-    {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
-        one = checked(grid).map;
-    }
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 5);
-    EXPECT_EQ(checked(grid).map, one);
-}
-
-TEST(GroundTree, ALeafTakesThirtyTwoBytesAndCellsAboveEachOtherEightMore) {
-    const Ground ground =
-        checked(gridOf(1025, 1025, [](double x, double z) { return 20.0 * hills(0.05 * x, 0.05 * z); }));
-    const double per_leaf = static_cast<double>(ground.map.texels.size()) / (256.0 * 256.0);
-    EXPECT_GT(per_leaf, 32.0);
-    EXPECT_LT(per_leaf, 56.0);
 }
 
 TEST(GroundTree, HeightsThatNoTreeHoldsAreRefusedBeforeTheyTakeMemory) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/bake/meshes.h"
+#include "tests/bake/points.h"
 #include "tests/bake/threads.h"
 
 namespace relief::test {
@@ -76,7 +77,7 @@ TEST(BrickVolume, BytesAreThoseOfNodesAndIndex) {
     EXPECT_EQ(levels.indexBytes(), 2U * (4U + 64U));
 }
 
-TEST(BrickVolume, BudgetIsKeptAndUsed) {
+TEST(BrickVolume, BudgetIsKeptAndUsedOnAnyNumberOfThreads) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.3, 96, 48));
     for (const BrickLayout& layout : layouts()) {
         for (const std::uint64_t bytes : {30'000U, 250'000U}) {
@@ -85,40 +86,14 @@ TEST(BrickVolume, BudgetIsKeptAndUsed) {
             // A few dozen large bricks come in leaps.
             EXPECT_GE(volume.bytes(), bytes - (volume.bricks() < 100 ? bytes / 2 : bytes / 10))
                 << volume.text();
+            EXPECT_NEAR(volume.at({2.3F, 0.0F, 0.0F}).distance, 1.0, 1e-2) << "beyond the box, by the way";
         }
-    }
-}
-
-TEST(BrickVolume, PlateThinnerThanAVoxelVanishes) {
-    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1e-6}, rotation({1, 2, 3}, 33.0)));
-    const BrickVolume volume = BrickVolume::withVoxels(query, {.cells = 3}, 0.1);
-    EXPECT_EQ(volume.bricks(), 0U);
-    EXPECT_GT(volume.at({0, 0, 0}).distance, 0.0F);
-}
-
-TEST(BrickVolume, PointsBeyondTheBoxAreOutsideByTheirWay) {
-    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}));
-    const BrickVolume volume = BrickVolume::withVoxels(query, {.cells = 3}, 0.05);
-    EXPECT_NEAR(volume.at({1.5F, 0.0F, 0.0F}).distance, 0.5, 1e-3);
-    EXPECT_NEAR(volume.at({0.0F, -3.0F, 0.0F}).distance, 2.0, 1e-3);
-    EXPECT_LT(volume.at({0.0F, 0.0F, 0.0F}).distance, 0.0F);
-}
-
-TEST(BrickVolume, IsTheSameForAnyNumberOfThreads) {
-    const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.3, 48, 24));
-    AccuracyOptions options;
-    options.samples = 5000;
-    const TruthSamples samples = sampleTruth(query, options);
-    for (const BrickLayout& layout : layouts()) {
-        const auto distances = [&] {
-            const BrickVolume volume = BrickVolume::build(query, layout, 50'000);
-            std::vector<float> of_points;
-            for (const TruthPoint& point : samples.near) {
-                of_points.push_back(volume.at(point.position).distance);
-            }
-            return of_points;
-        };
-        EXPECT_EQ(onThreads(1, distances), onThreads(3, distances));
+        const auto build = [&] { return BrickVolume::build(query, layout, 20'000); };
+        const BrickVolume alone = onThreads(1, build);
+        const BrickVolume many = build();
+        for (const glm::vec3& p : pointsIn(query.mesh().bounds, 2000)) {
+            ASSERT_EQ(many.at(p).distance, alone.at(p).distance);
+        }
     }
 }
 

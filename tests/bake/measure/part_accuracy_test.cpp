@@ -59,6 +59,14 @@ TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
     EXPECT_EQ(worst.wrong.false_inside, 0.0);
     EXPECT_NEAR(worst.sigma, 0.005 * 9.0, 1e-6);
 
+    PartOptions options;
+    options.detail = 9.5;
+    const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
+    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "below the detail";
+    EXPECT_EQ(coarse.countOf(PartVerdict::kSmall), 1U);
+    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, ""), 5.0);
+    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m"), 0.1);
+
     // Filled up, as a texel of 20 m would do it.
     Bounds swollen = pillar.bounds;
     swollen.min -= glm::vec3(10.0F, 0.0F, 10.0F);
@@ -68,18 +76,6 @@ TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
     EXPECT_GT(filled.parts.front().wrong.false_inside, 40.0);
 }
 
-TEST(PartAccuracy, PartsBelowTheDetailDoNotCount) {
-    const TriangleMesh slab = makeBoxMesh(kSlabCenter, kSlabHalf);
-    const ShapedMesh shape = shaped(joined({slab, makeBoxMesh(kPillarCenter, kPillarHalf)}));
-    PartOptions options;
-    options.detail = 9.5;
-    const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
-    EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U);
-    EXPECT_EQ(coarse.countOf(PartVerdict::kSmall), 1U);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, ""), 5.0);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m"), 0.1);
-}
-
 TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
     const TriangleMesh outer = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const TriangleMesh sheet = moved(makePlane(0.1F, 2), [](const glm::dvec3& p) { return 0.5 * p; });
@@ -87,7 +83,6 @@ TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
     const PartsAccuracy found = measured(shape, fieldOfBoxes({outer.bounds}));
     EXPECT_EQ(found.countOf(PartVerdict::kHeld), 1U);
     EXPECT_EQ(found.countOf(PartVerdict::kHidden), 1U);
-    EXPECT_EQ(found.countOf(PartVerdict::kLost), 0U);
 }
 
 TEST(PartAccuracy, AShellIsWrongBeyondTheThicknessThatWasAskedFor) {
@@ -130,13 +125,12 @@ TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {
     // By a texel that is given, a large part takes no more than it.
     EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0, true), 1.0);
     EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8, true), 0.2);
-    // A box alone has the default that it always had: a texel and a half, of 0.4 to 4 % of its side.
-    Bounds cube;
-    cube.add(glm::vec3(0.0F));
-    cube.add(glm::vec3(1.0F));
-    EXPECT_NEAR(partThickness(defaultThickness(cube, 1'000'000), 1.0), 1.5 * std::sqrt(36.0 / 1e6), 1e-9);
-    EXPECT_DOUBLE_EQ(partThickness(defaultThickness(cube, 1'000'000'000), 1.0), 0.004);
-    EXPECT_NEAR(partThickness(defaultThickness(cube, 1'000), 1.0), 0.04, 1e-9);
+    // A box alone: a texel and a half, of 0.4 to 4 % of its side.
+    const Bounds cube{glm::vec3(0.0F), glm::vec3(1.0F)};
+    for (const auto& [texels, expected] :
+         {std::pair{1'000'000U, 1.5 * std::sqrt(36.0 / 1e6)}, {1'000'000'000U, 0.004}, {1'000U, 0.04}}) {
+        EXPECT_NEAR(partThickness(defaultThickness(cube, texels), 1.0), expected, 1e-9);
+    }
 }
 
 TEST(PartAccuracy, NodesAndMaterialsAreTheirPartsByArea) {
@@ -150,9 +144,6 @@ TEST(PartAccuracy, NodesAndMaterialsAreTheirPartsByArea) {
     mesh.labels.resize(36, 1);
     const ShapedMesh shape = shaped(mesh);
     ASSERT_EQ(shape.parts.parts.size(), 3U);
-    EXPECT_EQ(shape.parts.parts[1].node, "tower");
-    EXPECT_EQ(shape.parts.parts[2].material, "wood");
-
     const PartsAccuracy found = measured(shape, fieldOfBoxes({big.bounds, hut.bounds}));
     EXPECT_EQ(found.parts.front().part, 1U);
     ASSERT_EQ(found.groups.size(), 4U);
@@ -168,19 +159,18 @@ TEST(PartAccuracy, NodesAndMaterialsAreTheirPartsByArea) {
 
 TEST(PartAccuracy, IsTheSameForAnyNumberOfThreads) {
     std::vector<TriangleMesh> boxes;
-    std::vector<Bounds> kept;
     for (int i = 0; i < 40; ++i) {
         boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(0.1 + 0.03 * i)));
-        if (i % 3 != 0) {
-            kept.push_back(boxes.back().bounds);
-        }
     }
     const ShapedMesh shape = shaped(joined(boxes));
     PartOptions options;
     options.parts_max = 30;
     options.points_all = 3000;
-    const PartsAccuracy all = measured(shape, fieldOfBoxes(kept), options);
-    const PartsAccuracy again = onThreads(1, [&] { return measured(shape, fieldOfBoxes(kept), options); });
+    const auto measure = [&] {
+        return measured(shape, fieldOfBoxes({boxes[5].bounds, boxes[30].bounds}), options);
+    };
+    const PartsAccuracy all = measure();
+    const PartsAccuracy again = onThreads(1, measure);
     EXPECT_EQ(all.countOf(PartVerdict::kRest), 10U);
     ASSERT_EQ(all.parts.size(), again.parts.size());
     for (std::size_t i = 0; i < all.parts.size(); ++i) {

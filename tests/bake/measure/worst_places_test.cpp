@@ -80,19 +80,26 @@ TEST(WorstPlaces, AreWhereAMapWasTamperedWith) {
     EXPECT_GT(found.places[0].share_percent + found.places[1].share_percent, 30.0);
 }
 
-TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexel) {
+TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexelOnAnyNumberOfThreads) {
     const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 128, 64);
-    const Measured found = measured(torus, bakeSpecs(torus, threeViews("12")));
+    const Collider collider = bakeSpecs(torus, threeViews("12"));
+    const Measured found = measured(torus, collider);
+    const Measured alone = onThreads(1, [&] { return measured(torus, collider); });
     ASSERT_EQ(found.places.size(), 3U);
-    for (const WorstPlace& place : found.places) {
+    ASSERT_EQ(alone.places.size(), 3U);
+    std::uint64_t before = ~std::uint64_t{0};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const WorstPlace& place = found.places[i];
         EXPECT_EQ(place.cause, WrongCause::kTexel) << wordOf(place.cause);
         ASSERT_GE(place.map, 0);
         EXPECT_GT(place.texel, 0.05);
         EXPECT_GT(place.size(), 0.0);
         EXPECT_LT(place.size(), 0.25 * 2.6);
+        EXPECT_LE(place.points, before);
+        before = place.points;
+        EXPECT_EQ(place.position, alone.places[i].position);
+        EXPECT_EQ(place.points, alone.places[i].points);
     }
-    EXPECT_GE(found.places[0].points, found.places[1].points);
-    EXPECT_GE(found.places[1].points, found.places[2].points);
 }
 
 TEST(WorstPlaces, OfACavityAreUnseenAndACubeInItCuresThem) {
@@ -128,13 +135,7 @@ TEST(WorstPlaces, BehindAPlateAreBehindASilhouette) {
     EXPECT_NEAR(double{found.places[0].position.y}, 0.01, 0.011);
 }
 
-TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
-    const TriangleMesh sheet = makePlane(0.0F, 8);
-    const Measured flat =
-        measured(sheet, bakeSpecs(sheet, {"fixed8:dir=-y,size=32", "fixed8:dir=+y,size=32"}));
-    if (!flat.places.empty()) {
-        EXPECT_EQ(flat.places[0].cause, WrongCause::kSheet) << wordOf(flat.places[0].cause);
-    }
+TEST(WorstPlaces, OfAnOpenShellAreCalledSo) {
     // A sphere that has lost its cap: most rays still find its inside, but the view from above looks in.
     const TriangleMesh sphere =
         without(makeIcosphere({0, 0, 0}, 1.0, 4), [](const glm::dvec3& p) { return p.y > 0.8; });
@@ -143,29 +144,6 @@ TEST(WorstPlaces, OfASheetAndOfAnOpenShellAreCalledSo) {
     ASSERT_FALSE(open.places.empty());
     EXPECT_EQ(open.places[0].cause, WrongCause::kOpen) << wordOf(open.places[0].cause);
     EXPECT_EQ(open.places[0].map, 0);
-}
-
-TEST(WorstPlaces, AreTheSameForAnyNumberOfThreads) {
-    const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 64, 32);
-    const Collider collider = bakeSpecs(torus, threeViews("16"));
-    const auto placesOn = [&](int threads) {
-        return onThreads(threads, [&] { return measured(torus, collider, 5000).places; });
-    };
-    const std::vector<WorstPlace> first = placesOn(1);
-    const std::vector<WorstPlace> places = placesOn(7);
-    ASSERT_EQ(places.size(), first.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        EXPECT_EQ(places[i].position, first[i].position);
-        EXPECT_EQ(places[i].points, first[i].points);
-        EXPECT_EQ(places[i].cause, first[i].cause);
-        EXPECT_EQ(places[i].map, first[i].map);
-    }
-}
-
-TEST(WorstPlaces, ThereAreNoneWhereNothingIsWrong) {
-    // One sample, far from all edges of the box.
-    const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 0.5, 2});
-    EXPECT_TRUE(measured(box, bakeSpecs(box, threeViews("32")), 1).places.empty());
 }
 
 TEST(Sights, AWallAlongTheLinesOfSightIsSeenByPlanesAlone) {

@@ -132,29 +132,8 @@ TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
     EXPECT_NEAR(glm::dot(glm::cross((*axes)[0], (*axes)[1]), (*axes)[2]), 1.0, 1e-6) << "right-handed";
 }
 
-TEST(OrientedBox, AxesOfSpaceAreExact) {
-    const auto axes = orientedBoxAxes(verticesOf(makeBoxMesh({0.1, 0.2, 0.3}, {3, 1, 2})));
-    ASSERT_TRUE(axes);
-    EXPECT_EQ(glm::abs((*axes)[0]), glm::dvec3(1, 0, 0));
-    EXPECT_EQ(glm::abs((*axes)[1]), glm::dvec3(0, 0, 1));
-    EXPECT_EQ(glm::abs((*axes)[2]), glm::dvec3(0, 1, 0));
-}
-
-TEST(OrientedBox, SameBitsEveryTime) {
-    const TriangleMesh mesh = makeIcosphere({1, 2, 3}, 1.5, 4);
-    const std::vector<glm::dvec3> points = verticesOf(mesh);
-    EXPECT_LE(points.size(), 146U);
-    const auto first = orientedBoxAxes(points);
-    ASSERT_TRUE(first);
-    for (int repeat = 0; repeat < 3; ++repeat) {
-        EXPECT_EQ(verticesOf(mesh), points);
-        EXPECT_EQ(*orientedBoxAxes(points), *first);
-    }
-}
-
 TEST(OrientedBox, WithoutVolumeThereIsNone) {
     EXPECT_FALSE(orientedBoxAxes({}));
-    EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(3, glm::dvec3(1, 2, 3))));
     EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(100, glm::dvec3(1, 2, 3))));
     EXPECT_FALSE(orientedBoxAxes(verticesOf(makePlane(3.0F, 10))));
     std::vector<glm::dvec3> line;
@@ -174,16 +153,14 @@ TEST(OrientedBox, WithoutVolumeThereIsNone) {
     // Hardly any volume, of any size: whatever comes back, nothing breaks.
     for (const double thickness : {1e-2, 1e-4, 1e-6, 1e-9, 1e-15}) {
         for (const double size : {1e-30, 1.0, 1e30}) {
-            for (const std::size_t count : {std::size_t{4}, std::size_t{8}, std::size_t{50}}) {
-                std::vector<glm::dvec3> thin(count);
-                for (glm::dvec3& p : thin) {
-                    p = size * (kTurned *
-                                glm::dvec3(unit(random), std::round(unit(random)), thickness * unit(random)));
-                }
-                if (const auto axes = orientedBoxAxes(thin)) {
-                    for (std::size_t i = 0; i < 3; ++i) {
-                        EXPECT_NEAR(glm::length((*axes)[i]), 1.0, 1e-9);
-                    }
+            std::vector<glm::dvec3> thin(20);
+            for (glm::dvec3& p : thin) {
+                p = size *
+                    (kTurned * glm::dvec3(unit(random), std::round(unit(random)), thickness * unit(random)));
+            }
+            if (const auto axes = orientedBoxAxes(thin)) {
+                for (std::size_t i = 0; i < 3; ++i) {
+                    EXPECT_NEAR(glm::length((*axes)[i]), 1.0, 1e-9);
                 }
             }
         }
@@ -192,20 +169,17 @@ TEST(OrientedBox, WithoutVolumeThereIsNone) {
 
 TEST(OrientedBox, PlannedViewsLookAlongTheWallsOfATurnedPart) {
     const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 0.6, 0.3}, kTurned);
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    ASSERT_TRUE(query);
+    const MeshQuery query = queryOf(mesh);
     AccuracyOptions accuracy;
     accuracy.samples = 30'000;
-    const TruthSamples truth = sampleTruth(*query, accuracy);
+    const TruthSamples truth = sampleTruth(query, accuracy);
     double wrong[2] = {};
     for (const bool oriented_box : {false, true}) {
         PlanOptions options;
         options.budget_bytes = 16'000;
         options.views.oriented_box = oriented_box;
-        const Result<Plan> plan = planViews(*query, options);
+        const Result<Plan> plan = planViews(query, options);
         ASSERT_TRUE(plan) << plan.error().message;
-        BakeOptions bake_options;
-        bake_options.maps = specsOf(*plan);
         if (oriented_box) {
             // The first view, which serves most, looks along a wall and is turned with the others.
             const MapSpec& first = plan->maps.front().spec;
@@ -214,18 +188,13 @@ TEST(OrientedBox, PlannedViewsLookAlongTheWallsOfATurnedPart) {
             ASSERT_TRUE(view);
             EXPECT_GT(largestCosine(view->axis[0], kTurned), 1.0 - 1e-6);
         }
-        std::string directions;
-        for (const PlannedMap& map : plan->maps) {
-            directions += std::to_string(largestCosine(map.spec.direction, kTurned)) + " ";
-        }
-        RecordProperty(oriented_box ? "cosines_with" : "cosines_without", directions);
+        BakeOptions bake_options;
+        bake_options.maps = specsOf(*plan);
         const Result<Baked> baked = bake(mesh, bake_options);
         ASSERT_TRUE(baked);
         wrong[oriented_box ? 1 : 0] = measureField(truth, fieldOf(baked->collider)).near.total();
     }
     EXPECT_LT(wrong[1], 0.85 * wrong[0]);
-    RecordProperty("wrong_percent_without", std::to_string(wrong[0]));
-    RecordProperty("wrong_percent_with", std::to_string(wrong[1]));
 }
 
 }  // namespace

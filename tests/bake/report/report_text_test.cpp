@@ -21,10 +21,9 @@ TEST(SizeReport, AForgottenUnitIsNamedWithWhatItWouldMake) {
     EXPECT_FALSE(forgottenUnit(Bounds()));
     const auto person = forgottenUnit(box(50, 180, 30));
     ASSERT_TRUE(person);
-    EXPECT_EQ(
-        *person,
-        "no unit is named, and the box is 50 x 180 x 30: with --unit cm 0.5 x 1.8 x 0.3 m, with --unit mm "
-        "0.05 x 0.18 x 0.03 m; say which, or --unit m if these are metres");
+    EXPECT_NE(person->find("with --unit cm 0.5 x 1.8 x 0.3 m, with --unit mm 0.05 x 0.18 x 0.03 m"),
+              std::string::npos)
+        << *person;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake.h"
 #include "tests/bake/plan_views.h"
+#include "tests/bake/points.h"
 #include "tests/bake/shaped.h"
 #include "tests/bake/voxels.h"
 #include "tests/seeds.h"
@@ -28,24 +29,6 @@ ShapedMesh shaped(const TriangleMesh& mesh, ShapeAs as = ShapeAs::kAuto, double 
 TriangleMesh makeOpenBox() {
     return without(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)),
                    [](const glm::dvec3& p) { return p.y > 0.99; });
-}
-
-/// A tube round the y axis, of radius 0.7 from y = −1 to 1, closed below.
-TriangleMesh makeCup() {
-    constexpr int kSides = 64;
-    std::vector<glm::vec3> positions = {{0, -1, 0}};
-    std::vector<glm::uvec3> triangles;
-    for (int i = 0; i < kSides; ++i) {
-        const double a = 2.0 * std::numbers::pi * i / kSides;
-        positions.emplace_back(0.7 * std::cos(a), -1.0, 0.7 * std::sin(a));
-        positions.emplace_back(0.7 * std::cos(a), 1.0, 0.7 * std::sin(a));
-    }
-    for (std::uint32_t i = 0; i < kSides; ++i) {
-        const std::uint32_t a = 1 + 2 * i;
-        const std::uint32_t b = 1 + 2 * ((i + 1) % kSides);
-        triangles.insert(triangles.end(), {{a, a + 1, b}, {b, a + 1, b + 1}, {0, a, b}});
-    }
-    return finished(positions, triangles);
 }
 
 /// A profile of radii and heights turned round the y axis, open where it does not begin or end on it.
@@ -66,6 +49,11 @@ TriangleMesh makeTurned(const std::vector<glm::dvec2>& profile) {
         }
     }
     return finished(positions, triangles);
+}
+
+/// A tube round the y axis, closed below.
+TriangleMesh makeCup() {
+    return makeTurned({{0.0, -1.0}, {0.7, -1.0}, {0.7, 1.0}});
 }
 
 /// Open below, at y = −0.3; its brim, from radius 0.7 to 1, has no sight of that hole from within.
@@ -104,14 +92,9 @@ void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBor
     const MeshQuery open = queryOf(sheet);
     const MeshQuery shell = queryOf(shape.mesh);
     EXPECT_TRUE(shell.watertight());
-    MersenneRandom random(7);
     int inside = 0;
     int outside = 0;
-    const glm::dvec3 low = sheet.bounds.min;
-    const glm::dvec3 size = sheet.bounds.size();
-    for (int i = 0; i < 200'000; ++i) {
-        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
-        const glm::vec3 p = low - 0.1 + (size + 0.2) * share;
+    for (const glm::vec3& p : pointsIn(sheet.bounds, 200'000)) {
         const double distance = open.closest(p).distance;
         if (at_border(p)) {
             continue;
@@ -159,30 +142,14 @@ TEST(Shape, ASolidStaysAsItIs) {
     const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
     const ShapedMesh shape = shaped(ball);
     expectKinds(shape.report, 1, 0, 0, 0);
-    EXPECT_EQ(shape.mesh->triangles, ball.triangles);
-    EXPECT_EQ(shape.mesh->positions, ball.positions);
-    EXPECT_EQ(shape.report.thickness, 0.0);
+    EXPECT_TRUE(shape.mesh->triangles == ball.triangles && shape.mesh->positions == ball.positions);
     EXPECT_TRUE(asWords(shape.report).empty() && !thicknessOf(shape.report));
-}
-
-TEST(Shape, AMissingTriangleIsAHole) {
-    const TriangleMesh ball = makeIcosphere(glm::dvec3(0.0), 1.0, 3);
-    const TriangleMesh holed = finished(ball.positions, {ball.triangles.begin() + 1, ball.triangles.end()});
-    const ShapedMesh shape = shaped(holed);
-    expectKinds(shape.report, 0, 1, 0, 0);
-    EXPECT_TRUE(queryOf(shape.mesh).inside(glm::vec3(0.0F)));
-    EXPECT_EQ(shape.mesh->sourceTriangles(), holed.triangles.size());
-    EXPECT_EQ(shape.mesh->closed_holes, 1U);
-}
-
-TEST(Shape, WhatIsSeenFromBothSidesIsASheet) {
-    for (const TriangleMesh& mesh : {makeOpenBox(), makeCup(), makePlane(0.0F, 1)}) {
-        const ShapedMesh shape = shaped(mesh);
-        expectKinds(shape.report, 0, 0, 1, 0);
-        EXPECT_EQ(shape.report.thickness, kThickness);
-        EXPECT_TRUE(asWords(shape.report).empty());
-        EXPECT_EQ(formText(thicknessOf(shape.report).value()), "0.05");
-    }
+    // A missing triangle is a hole.
+    const ShapedMesh holed =
+        shaped(finished(ball.positions, {ball.triangles.begin() + 1, ball.triangles.end()}));
+    expectKinds(holed.report, 0, 1, 0, 0);
+    EXPECT_TRUE(queryOf(holed.mesh).inside(glm::vec3(0.0F)));
+    EXPECT_EQ(holed.mesh->closed_holes, 1U);
 }
 
 // A vessel's mouth faces up, and a bell, a shade or a box turned over shows all of its inside.
@@ -236,6 +203,7 @@ TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
     expectKinds(shape.report, 0, 0, 1, 0);
+    EXPECT_EQ(formText(thicknessOf(shape.report).value()), "0.05");
     EXPECT_EQ(shape.report.coincident_triangles, plane.triangles.size());
     const MeshQuery query = queryOf(shape.mesh);
     EXPECT_TRUE(query.inside({0.1F, 0.02F, 0.2F}));
@@ -257,8 +225,6 @@ TEST(Shape, CopiesOfASolidAndNearOnesAreOneSolid) {
     };
     const std::vector<Case> cases = {
         {"twice", joined({ball, ball}), all, 0},
-        {"with its back", joined({ball, reversed(ball)}), all, 0},
-        {"four times", joined({ball, ball, reversed(ball), ball}), 3 * all, 0},
         {"half of it twice", joined({ball, half}), half.triangles.size(), 0},
         {"grown by a millionth", joined({ball, scaled(ball, 1.0 + 1e-6)}), 0, 1},
         {"shrunk, first in the file", joined({scaled(ball, 1.0 - 5e-5), ball}), 0, 1},
@@ -275,12 +241,9 @@ TEST(Shape, CopiesOfASolidAndNearOnesAreOneSolid) {
         EXPECT_EQ(shape.report.near_copies, c.near);
         EXPECT_EQ(shape.mesh->warnings.size(), c.near > 0 ? 1U : 0U);
         const MeshQuery query = queryOf(shape.mesh);
-        MersenneRandom random(3);
-        for (int i = 0; i < 3000; ++i) {
-            const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
-            const glm::dvec3 p = 2.4 * share - 1.2;
+        for (const glm::vec3& p : pointsIn(ball.bounds, 3000)) {
             // Of near copies not at the surface.
-            if (c.near == 0 || truth.inside(0.9998 * p) == truth.inside(1.0002 * p)) {
+            if (c.near == 0 || truth.inside(0.9998F * p) == truth.inside(1.0002F * p)) {
                 ASSERT_EQ(query.inside(p), truth.inside(p));
             }
         }
@@ -344,32 +307,18 @@ TEST(Shape, CopiesOfSolidsOfCubesAreTheseSolids) {
 
 TEST(Shape, PanelsThatDoNotMeetEncloseTogether) {
     // The faces of a cube, each a little smaller than it should be.
-    const TriangleMesh cube = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
-    std::vector<glm::vec3> positions;
-    std::vector<glm::uvec3> triangles;
+    std::vector<TriangleMesh> panels;
     for (int axis = 0; axis < 3; ++axis) {
-        for (const float side : {-1.0F, 1.0F}) {
-            const auto first = static_cast<std::uint32_t>(positions.size());
-            for (const glm::vec2 corner :
-                 {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
-                glm::vec3 p(0.0F);
-                p[axis] = side;
-                p[(axis + 1) % 3] = 0.9995F * corner.x;
-                p[(axis + 2) % 3] = 0.9995F * corner.y;
-                positions.push_back(p);
-            }
-            triangles.insert(triangles.end(), {glm::uvec3(0, 1, 2) + first, glm::uvec3(0, 2, 3) + first});
+        for (const double side : {-1.50075, 1.50075}) {
+            panels.push_back(makePanel(axis, side));
         }
     }
-    const ShapedMesh shape = shaped(finished(positions, triangles));
+    const ShapedMesh shape = shaped(joined(panels));
     expectKinds(shape.report, 0, 1, 0, 0);
     const MeshQuery query = queryOf(shape.mesh);
-    const MeshQuery whole = queryOf(cube);
-    MersenneRandom random(3);
+    const MeshQuery whole = queryOf(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.50075)));
     int differ = 0;
-    for (int i = 0; i < 20'000; ++i) {
-        const glm::dvec3 share{random.uniform(), random.uniform(), random.uniform()};
-        const glm::vec3 p = 2.4 * share - 1.2;
+    for (const glm::vec3& p : pointsIn(whole.mesh().bounds, 20'000)) {
         differ += query.inside(p) != whole.inside(p) ? 1 : 0;
     }
     EXPECT_LT(differ, 20);
@@ -406,20 +355,6 @@ TEST(Shape, AHeightFieldIsTheGroundBelowIt) {
     }
 }
 
-TEST(Shape, NoDropFallsThroughATerrain) {
-    const ShapedMesh shape = shaped(makeHeights(hills));
-    const Collider collider = plannedBake(shape, 262'144);
-    EXPECT_LT(wrongPercent(shape, collider), 2.2);
-    MersenneRandom random(9);
-    int fallen = 0;
-    for (int i = 0; i < 20'000; ++i) {
-        const double x = 1.99 * random.uniform() - 0.995;
-        const double z = 1.99 * random.uniform() - 0.995;
-        fallen += isStopped(collider, {x, 0.5, z}, {0, -1, 0}, 0.02, random.uniform(), 1.0) ? 0 : 1;
-    }
-    EXPECT_EQ(fallen, 0);
-}
-
 TEST(Shape, ASmallOrSlantedSheetIsNoTerrain) {
     // An overhang, and a sheet whose outline is a disc.
     const TriangleMesh overhang = makeHeights([](double x, double) { return x < 0.0 ? 0.0 : 0.3; });
@@ -432,9 +367,6 @@ TEST(Shape, ASmallOrSlantedSheetIsNoTerrain) {
 }
 
 TEST(Shape, AsOverrulesWhatRaysSee) {
-    const TriangleMesh box = makeOpenBox();
-    EXPECT_TRUE(queryOf(shaped(box, ShapeAs::kSolid).mesh).inside(glm::vec3(0.0F)));
-    expectKinds(shaped(box, ShapeAs::kSolid).report, 0, 1, 0, 0);
     // A room: the walls of a closed box.
     const ShapedMesh room = shaped(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0)), ShapeAs::kShell);
     expectKinds(room.report, 0, 0, 1, 0);
@@ -446,37 +378,32 @@ TEST(Shape, AsOverrulesWhatRaysSee) {
     EXPECT_FALSE(queryOf(ground.mesh).inside({0.3F, 0.01F, 0.2F}));
 }
 
-/// A sheet in the plane of the other two axes, a thin box, and a single triangle.
-class Flat : public testing::TestWithParam<int> {};
-
-TEST_P(Flat, IsBakedFaceOn) {
-    const int axis = GetParam();
-    const auto facing = [&](const glm::dvec3& p) {
-        glm::dvec3 q;
-        q[axis] = p.y;
-        q[(axis + 1) % 3] = p.z;
-        q[(axis + 2) % 3] = p.x;
-        return q;
-    };
-    TriangleMesh triangle;
-    triangle.positions = {{-1, 0, -1}, {1, 0, -0.8F}, {0.2F, 0, 1}};
-    triangle.triangles = {{0, 1, 2}};
-    for (const TriangleMesh& mesh : {makePlane(0.0F, 1), makePlane(0.0F, 16),
-                                     makeBoxMesh(glm::dvec3(0.0), {1.0, 1e-5, 1.0}), triangle}) {
-        const ShapedMesh shape = shaped(moved(mesh, facing), ShapeAs::kAuto, 0.02);
-        const Collider collider = plannedBake(shape, 65'536);
-        EXPECT_LT(wrongPercent(shape, collider), 1.0) << shape.report.text();
-        // No map looks along it.
-        for (const DepthMap& map : collider.maps) {
-            if (map.projection() == Projection::kOrthographic) {
-                EXPECT_GT(std::abs(map.object_to_map.row[2][axis]),
-                          0.1F * glm::length(glm::vec3(map.object_to_map.row[2])));
+/// A sheet, a thin box and a single triangle, across each axis.
+TEST(Shape, FlatMeshesAreBakedFaceOn) {
+    const TriangleMesh triangle = finished({{-1, 0, -1}, {1, 0, -0.8F}, {0.2F, 0, 1}}, {{0, 1, 2}});
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto facing = [&](const glm::dvec3& p) {
+            glm::dvec3 q;
+            q[axis] = p.y;
+            q[(axis + 1) % 3] = p.z;
+            q[(axis + 2) % 3] = p.x;
+            return q;
+        };
+        for (const TriangleMesh& mesh :
+             {makePlane(0.0F, 16), makeBoxMesh(glm::dvec3(0.0), {1.0, 1e-5, 1.0}), triangle}) {
+            const ShapedMesh shape = shaped(moved(mesh, facing), ShapeAs::kAuto, 0.02);
+            const Collider collider = plannedBake(shape, 65'536);
+            EXPECT_LT(wrongPercent(shape, collider), 1.0) << shape.report.text();
+            // No map looks along it.
+            for (const DepthMap& map : collider.maps) {
+                if (map.projection() == Projection::kOrthographic) {
+                    EXPECT_GT(std::abs(map.object_to_map.row[2][axis]),
+                              0.1F * glm::length(glm::vec3(map.object_to_map.row[2])));
+                }
             }
         }
     }
 }
-
-INSTANTIATE_TEST_SUITE_P(Axes, Flat, testing::Values(0, 1, 2));
 
 /// What takes at least two steps through a shell does not get through it, from either side.
 TEST(Shape, NothingSlowerThanAHalfOfItsThicknessPassesAShell) {
@@ -491,7 +418,6 @@ TEST(Shape, NothingSlowerThanAHalfOfItsThicknessPassesAShell) {
     };
     const std::vector<Target> targets = {
         {"sheet", makePlane(0.0F, 1), {-0.97, 0, -0.97}, {0.97, 0, 0.97}, {0, 1, 0}},
-        {"floor of a box without lid", makeOpenBox(), {-0.97, -1, -0.97}, {0.97, -1, 0.97}, {0, 1, 0}},
         {"wall of a box without lid", makeOpenBox(), {1, -0.97, -0.97}, {1, 0.97, 0.97}, {1, 0, 0}},
         {"bottom of a cup", makeCup(), {-0.45, -1, -0.45}, {0.45, -1, 0.45}, {0, 1, 0}},
     };

@@ -65,39 +65,5 @@ TEST(Encode, WritesWhatEncodeTexelWrites) {
     }
 }
 
-TEST(Trace, RowsOfAnyRangeAreTheSameRows) {
-    // Stripes of big maps must not change a thing, nor sizes that no packet of 4×4 divides.
-    const TriangleMesh mesh = makeTorusMesh(1.0, 0.3, 50, 30);
-    const Result<RayScene> scene = RayScene::build(mesh);
-    ASSERT_TRUE(scene);
-    for (const std::string text : {"float:size=43x37,dir=1/2/3", "cube:size=37"}) {
-        const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 8);
-        const Result<View> view = makeView(*spec, mesh);
-        ASSERT_TRUE(view);
-        const std::uint32_t face = view->faceCount() - 1;
-        std::vector<Hit> whole(std::size_t{view->width} * 37);
-        const ScanConverter scan(*scene, *view);
-        scan.scan({face, 0, 37}, whole, {});
-        std::size_t hits = 0;
-        for (const std::uint32_t step : {1U, 5U, 8U}) {
-            for (std::uint32_t y = 0; y < 37; y += step) {
-                const RowRange rows{face, y, std::min(y + step, 37U)};
-                std::vector<Hit> part(std::size_t{rows.end - rows.begin} * view->width);
-                scan.scan(rows, part, {});
-                for (std::size_t i = 0; i < part.size(); ++i) {
-                    const Hit& other = whole[std::size_t{y} * view->width + i];
-                    ASSERT_EQ(part[i].empty(), other.empty());
-                    if (!part[i].empty()) {
-                        ++hits;
-                        ASSERT_EQ(part[i].triangle(), other.triangle());
-                        ASSERT_EQ(part[i].depth(), other.depth());
-                    }
-                }
-            }
-        }
-        EXPECT_GT(hits, 100U);
-    }
-}
-
 }  // namespace
 }  // namespace relief::test

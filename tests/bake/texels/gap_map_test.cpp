@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <random>
 #include <vector>
 
 #include "bake/measure/accuracy.h"
@@ -14,6 +13,7 @@
 #include "bake/plan/gap_grid.h"
 #include "formats/validate.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/points.h"
 
 namespace relief::test {
 namespace {
@@ -51,17 +51,20 @@ DepthMap gapMap(const TriangleMesh& mesh, const std::string& spec, const IsKnown
     return map;
 }
 
+/// Solids that overlap are one.
+MeshQuery unionOf(const TriangleMesh& mesh) {
+    return queryOf(PreparedMesh::unionOf(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0)));
+}
+
 const IsKnown kNothingKnown = [](const glm::vec3&) { return false; };
 
 TEST(GapMap, KnowsHowFarTheEndsOfTheLongestGapAre) {
     const DepthMap map = gapMap(plates(), "front-back:dir=-z,size=34,compare=gap", kNothingKnown);
     EXPECT_FALSE(map.encloses);
     EXPECT_FALSE(map.empty_is_outside);
-    std::mt19937 random(3);
-    std::uniform_real_distribution<float> across(-0.93F, 0.93F);
-    std::uniform_real_distribution<float> deep(0.01F, 3.24F);
+    MersenneRandom random(3);
     for (int i = 0; i < 5000; ++i) {
-        const glm::vec3 p(across(random), across(random), deep(random));
+        const glm::vec3 p(glm::dvec3(0.0, 0.0, 1.625) + glm::dvec3(0.93, 0.93, 1.615) * inCube(random));
         const std::optional<Vote> said = vote(map, p);
         ASSERT_TRUE(said);
         const float expected = std::min(p.z - 1.0F, 2.5F - p.z);
@@ -108,20 +111,17 @@ TEST(GapMap, FindsThinGapsAcrossTheLineOfSight) {
     const TriangleMesh mesh = joined({makeBoxMesh(turned * glm::dvec3(0, 0, 0.205), {1, 1, 0.2}, turned),
                                       makeBoxMesh(turned * glm::dvec3(0, 0, -0.205), {1, 1, 0.2}, turned)});
     const DepthMap map = gapMap(mesh, "front-back:dir=-z,size=66,compare=gap", kNothingKnown);
-    std::mt19937 random(4);
-    std::uniform_real_distribution<double> across(-0.8, 0.8);
-    int outside = 0;
-    int inside = 0;
+    const auto isOutside = [&](const glm::dvec3& p) {
+        const auto said = vote(map, glm::vec3(turned * p));
+        return said && said->distance >= 0.0F;
+    };
+    MersenneRandom random(4);
+    int right = 0;
     for (int i = 0; i < 2000; ++i) {
-        const double x = across(random);
-        const double y = across(random);
-        const auto in_gap = vote(map, glm::vec3(turned * glm::dvec3(x, y, 0.0)));
-        outside += in_gap && in_gap->distance >= 0.0F ? 1 : 0;
-        const auto beyond = vote(map, glm::vec3(turned * glm::dvec3(x, y, 0.03)));
-        inside += beyond && beyond->distance < 0.0F ? 1 : 0;
+        const glm::dvec3 p = 0.8 * inCube(random);
+        right += isOutside({p.x, p.y, 0.0}) && !isOutside({p.x, p.y, 0.03}) ? 1 : 0;
     }
-    EXPECT_GT(outside, 1980);
-    EXPECT_GT(inside, 1980);
+    EXPECT_GT(right, 1970);
 }
 
 TEST(GapMap, SparesAWallAlongTheLineOfSight) {
@@ -131,22 +131,19 @@ TEST(GapMap, SparesAWallAlongTheLineOfSight) {
         joined({makeBoxMesh({0, 0, 0.1}, {1, 1, 0.1}), makeBoxMesh({0, 0, 2.1}, {1, 1, 0.1}),
                 makeBoxMesh({0, 0, 1.1}, {half, 1, 0.9 - 1e-3})});
     const DepthMap map = gapMap(mesh, "front-back:dir=-z,size=34,compare=gap", kNothingKnown);
-    std::mt19937 random(7);
-    std::uniform_real_distribution<float> unit(-0.9F, 0.9F);
+    MersenneRandom random(7);
     for (int i = 0; i < 2000; ++i) {
-        const float x = 0.9F * static_cast<float>(half) * unit(random);
-        const auto in_wall = vote(map, {x, unit(random), 1.1F + 0.8F * unit(random)});
-        ASSERT_FALSE(in_wall && in_wall->distance >= 0.0F) << x;
-        const auto beside = vote(map, {unit(random) < 0.0F ? -0.5F : 0.5F, unit(random), 1.1F});
+        const glm::dvec3 p = 0.9 * inCube(random);
+        const auto in_wall = vote(map, {0.9 * half * p.x, p.y, 1.1 + 0.8 * p.z});
+        ASSERT_FALSE(in_wall && in_wall->distance >= 0.0F) << p.x;
+        const auto beside = vote(map, {p.x < 0.0 ? -0.5 : 0.5, p.y, 1.1});
         ASSERT_TRUE(beside && beside->distance > 0.8F);
     }
 }
 
 TEST(GapMap, NoPointDeepInASolidIsOutside) {
     const TriangleMesh mesh = ballInABall();
-    std::mt19937 random(5);
-    std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    MersenneRandom random(5);
     for (const char* spec :
          {"front-back:dir=-z,size=66,compare=gap", "front-back:dir=1/2/3,size=50x80,compare=gap",
           "front-back:dir=+x,size=66,compare=gap,depth=half"}) {
@@ -154,21 +151,19 @@ TEST(GapMap, NoPointDeepInASolidIsOutside) {
         const DepthMap map = gapMap(mesh, spec, kNothingKnown);
         const double texel = 2.0 * std::sqrt(3.0) / 48.0;
         int known = 0;
-        int free = 0;
         for (int i = 0; i < 20'000; ++i) {
-            const glm::dvec3 way = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-            const bool shell = unit(random) < 0.5;
-            const double inside = shell ? kHollow + texel + unit(random) : kBall * unit(random) - texel;
-            const double clamped = std::clamp(inside, 0.0, shell ? 0.999 : kBall);
-            const auto in_solid = vote(map, glm::vec3(clamped * way));
-            ASSERT_FALSE(in_solid && in_solid->distance >= 0.0F && (shell ? clamped > kHollow + texel : true))
-                << clamped;
-            const auto in_gap = vote(map, glm::vec3((kBall + unit(random) * (kHollow - kBall)) * way));
-            ++free;
+            const glm::dvec3 way = random.direction();
+            const double share = random.uniform();
+            for (const double radius :
+                 {kHollow + texel + share * (0.999 - kHollow - texel), (kBall - texel) * share}) {
+                const auto in_solid = vote(map, glm::vec3(radius * way));
+                ASSERT_FALSE(in_solid && in_solid->distance >= 0.0F) << radius;
+            }
+            const auto in_gap = vote(map, glm::vec3((kBall + share * (kHollow - kBall)) * way));
             known += in_gap && in_gap->distance >= 0.0F ? 1 : 0;
         }
         // Before and behind the ball a line of sight has two gaps, of which it keeps one.
-        EXPECT_GT(known, 0.6 * free);
+        EXPECT_GT(known, 12'000);
     }
 }
 
@@ -177,12 +172,11 @@ TEST(GapMap, ItsSightIsWhatItsTexelsSay) {
     const MeshQuery query = queryOf(mesh);
     const DepthMap map = gapMap(mesh, "front-back:dir=-z,size=130,compare=gap", kNothingKnown);
     const Sight sight(map, query);
-    std::mt19937 random(6);
-    std::uniform_real_distribution<float> unit(-0.9F, 0.9F);
+    MersenneRandom random(6);
     int reached = 0;
     int differ = 0;
     for (int i = 0; i < 20'000; ++i) {
-        const glm::vec3 p(unit(random), unit(random), unit(random));
+        const glm::vec3 p(0.9 * inCube(random));
         const double r = glm::length(glm::dvec3(p));
         if (r < kBall + 0.03 || r > kHollow - 0.03) {
             continue;
@@ -208,23 +202,20 @@ TEST(GapMap, APlannedBakeLooksBetweenShelves) {
     for (int i = 1; i < 8; ++i) {
         boards.push_back(makeBoxMesh({0, 0.25 * i - 1.0, 0}, {0.99, 0.02, 0.99}));
     }
-    const TriangleMesh mesh = joined(boards);
-    const Result<MeshQuery> query =
-        MeshQuery::build(PreparedMesh::unionOf(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0)));
-    ASSERT_TRUE(query);
+    const MeshQuery query = unionOf(joined(boards));
     const auto wrongOf = [&](bool gaps) {
         ViewOptions options;
         options.gaps = gaps;
-        const Result<ViewChoice> views = chooseViews(*query, options);
+        const Result<ViewChoice> views = chooseViews(query, options);
         EXPECT_TRUE(views);
-        const Result<PlannedBake> made = bakePlanned(*query, *views, 200'000, {});
+        const Result<PlannedBake> made = bakePlanned(query, *views, 200'000, {});
         EXPECT_TRUE(made) << made.error().message;
         EXPECT_LE(made->baked.collider.gpuBytes(), 200'000U);
         EXPECT_EQ(made->plan.bytes, made->baked.collider.gpuBytes());
         const std::vector<DepthMap>& maps = made->baked.collider.maps;
         EXPECT_EQ(std::ranges::any_of(maps, [](const DepthMap& map) { return map.compare == Compare::kGap; }),
                   gaps);
-        return measureNear(sampleNear(*query, {.samples = 30'000, .seed = 8}), fieldOf(made->baked.collider))
+        return measureNear(sampleNear(query, {.samples = 30'000, .seed = 8}), fieldOf(made->baked.collider))
             .total();
     };
     EXPECT_LT(wrongOf(true), 0.2 * wrongOf(false));
@@ -232,26 +223,21 @@ TEST(GapMap, APlannedBakeLooksBetweenShelves) {
 
 TEST(GapsAlong, AreWhatALineCrosses) {
     const MeshQuery query = queryOf(plates());
-    for (const double scale : {1.0, 0.5, 3.0}) {
-        const std::vector<LineGap> gaps = query.gapsAlong({0.1, 0.2, 1.5}, {0, 0, scale});
-        ASSERT_EQ(gaps.size(), 3U);
-        const double expected[3][2] = {{0.25, 0.75}, {1.0, 2.5}, {2.75, 3.0}};
-        for (std::size_t i = 0; i < 3; ++i) {
-            EXPECT_NEAR(1.5 + scale * gaps[i].begin, expected[i][0], 1e-9);
-            EXPECT_NEAR(1.5 + scale * gaps[i].end, expected[i][1], 1e-9);
-        }
+    const std::vector<LineGap> gaps = query.gapsAlong({0.1, 0.2, 1.5}, {0, 0, 3.0});
+    ASSERT_EQ(gaps.size(), 3U);
+    const double expected[3][2] = {{0.25, 0.75}, {1.0, 2.5}, {2.75, 3.0}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(1.5 + 3.0 * gaps[i].begin, expected[i][0], 1e-9);
+        EXPECT_NEAR(1.5 + 3.0 * gaps[i].end, expected[i][1], 1e-9);
     }
     EXPECT_TRUE(query.gapsAlong({1.1, 0.0, 0.0}, {0, 0, 1}).empty());
     // Through the middle of every plate, where two triangles of it share an edge.
     EXPECT_EQ(query.gapsAlong({0, 0, -9}, {0, 0, 1}).size(), 3U);
     // Solids that overlap are one.
-    const TriangleMesh boxes =
-        joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeBoxMesh({0, 0, 0.5}, {0.5, 0.5, 1.0}),
-                makeBoxMesh({0, 0, 3}, {1, 1, 1})});
-    const Result<MeshQuery> overlapping =
-        MeshQuery::build(PreparedMesh::unionOf(boxes, std::vector<std::uint32_t>(boxes.triangles.size(), 0)));
-    ASSERT_TRUE(overlapping);
-    const std::vector<LineGap> one = overlapping->gapsAlong({0.1, 0.3, 0}, {0, 0, 1});
+    const MeshQuery overlapping =
+        unionOf(joined({makeBoxMesh({0, 0, 0}, {1, 1, 1}), makeBoxMesh({0, 0, 0.5}, {0.5, 0.5, 1.0}),
+                        makeBoxMesh({0, 0, 3}, {1, 1, 1})}));
+    const std::vector<LineGap> one = overlapping.gapsAlong({0.1, 0.3, 0}, {0, 0, 1});
     ASSERT_EQ(one.size(), 1U);
     EXPECT_NEAR(one[0].begin, 1.5, 1e-9);
     EXPECT_NEAR(one[0].end, 2.0, 1e-9);
@@ -259,26 +245,20 @@ TEST(GapsAlong, AreWhatALineCrosses) {
 
 TEST(GapGrid, APointInTheKeptGapIsFoundByAskingLess) {
     std::vector<TriangleMesh> balls;
-    std::mt19937 random(11);
-    std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
-    const auto place = [&] { return glm::dvec3(coordinate(random), coordinate(random), coordinate(random)); };
+    MersenneRandom random(11);
     for (int i = 0; i < 60; ++i) {
-        const glm::dvec3 at = place();
-        balls.push_back(makeIcosphere(at, 0.2, 1));
+        balls.push_back(makeIcosphere(inCube(random), 0.2, 1));
     }
-    const TriangleMesh mesh = joined(balls);
-    const Result<MeshQuery> query =
-        MeshQuery::build(PreparedMesh::unionOf(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0)));
-    ASSERT_TRUE(query);
+    const MeshQuery query = unionOf(joined(balls));
     const auto is_seen = [](const glm::dvec3& p) { return p.x + 0.5 * p.y > 0.1; };
     int held = 0;
     int met = 0;
     for (int i = 0; i < 4000; ++i) {
-        const glm::dvec3 p = place();
-        const glm::dvec3 along = place();
-        const std::optional<LineGap> kept = keptGap(*query, p, along, is_seen);
+        const glm::dvec3 p = inCube(random);
+        const glm::dvec3 along = inCube(random);
+        const std::optional<LineGap> kept = keptGap(query, p, along, is_seen);
         const bool in_kept = kept && kept->begin <= 0.0 && kept->end >= 0.0;
-        ASSERT_EQ(isInKeptGap(*query, p, along, is_seen), in_kept) << i;
+        ASSERT_EQ(isInKeptGap(query, p, along, is_seen), in_kept) << i;
         held += in_kept ? 1 : 0;
         met += kept ? 1 : 0;
     }

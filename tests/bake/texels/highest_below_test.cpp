@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <random>
 #include <vector>
 
@@ -90,15 +91,11 @@ TEST(HighestBelow, IsTheBestOfAllPlanesThroughThreePoints) {
 TEST(HighestBelow, LiesInAFlatSurfaceAndTouchesACurvedOne) {
     const std::optional<glm::dvec2> flat =
         highestBelow(grid(4, [](int i, int j) { return 3.0 + 0.5 * i - 2.0 * j; }));
-    ASSERT_TRUE(flat);
-    EXPECT_NEAR(flat->x, 0.5, 1e-9);
-    EXPECT_NEAR(flat->y, -2.0, 1e-9);
+    EXPECT_LT(glm::distance(flat.value(), glm::dvec2(0.5, -2.0)), 1e-9);
     const std::optional<glm::dvec2> hill = highestBelow(grid(4, [](int i, int j) {
         return -(i - 1.5) * (i - 1.5) - (j - 1.5) * (j - 1.5);  // the corners are the hull
     }));
-    ASSERT_TRUE(hill);
-    EXPECT_NEAR(hill->x, 0.0, 1e-9);
-    EXPECT_NEAR(hill->y, 0.0, 1e-9);
+    EXPECT_LT(glm::length(hill.value()), 1e-9);
 }
 
 TEST(HighestBelow, PointsWithoutAreaSpanNoPlane) {

@@ -60,7 +60,7 @@ TEST(Refine, GoesOnWhereSomethingWasMended) {
         RefineOptions options;
         options.worth_mending = worth_mending;
         refineTexels(collider, query, options);
-        return collider;
+        return collider.maps[0].texels;
     };
     const double as_usual = RefineOptions().worth_mending;
     constexpr double kAlways = -1e9;
@@ -69,31 +69,26 @@ TEST(Refine, GoesOnWhereSomethingWasMended) {
         const TriangleMesh torus = makeTorusMesh(1.0, 0.4, 64, 32);
         const MeshQuery query = queryOf(torus);
         const Collider coarse = bakePlanned(torus, query, Quality::kFast, Prefer::kNeither);
-        const Collider after = refined(coarse, query, as_usual);
-        EXPECT_EQ(after.maps[0].texels, refined(coarse, query, kAlways).maps[0].texels);
-        EXPECT_NE(after.maps[0].texels, refined(coarse, query, kNever).maps[0].texels);
+        EXPECT_EQ(refined(coarse, query, as_usual), refined(coarse, query, kAlways));
+        EXPECT_NE(refined(coarse, query, as_usual), refined(coarse, query, kNever));
     }
     {  // a smooth mesh has nothing to mend, not even for all points
         const TriangleMesh ball = makeIcosphere({1, 2, 3}, 2.0, 4);
         const MeshQuery query = queryOf(ball);
         const Collider smooth = bakePlanned(ball, query, Quality::kNormal, Prefer::kNeither);
-        EXPECT_EQ(refined(smooth, query, as_usual).maps[0].texels, smooth.maps[0].texels);
-        EXPECT_EQ(refined(smooth, query, kAlways).maps[0].texels, smooth.maps[0].texels);
+        EXPECT_EQ(refined(smooth, query, as_usual), smooth.maps[0].texels);
+        EXPECT_EQ(refined(smooth, query, kAlways), smooth.maps[0].texels);
     }
 }
 
 TEST(Refine, LeavesMapsOfProjectedDepthAlone) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 48, 24);
     const MeshQuery query = queryOf(mesh);
-    BakeOptions options;
-    options.maps = {*parseMapSpec("front-back:dir=-z,size=40,depth=unorm16,decode=projected"),
-                    *parseMapSpec("front-back:dir=-x,size=40,depth=half,decode=plane")};
-    options.quality = Quality::kFast;
-    Result<Baked> baked = bake(mesh, options);
-    ASSERT_TRUE(baked);
-    const Collider before = baked->collider;
-    refineTexels(baked->collider, query, {});
-    EXPECT_EQ(before.maps, baked->collider.maps);
+    Collider collider = bakeSpecs(mesh, {"front-back:dir=-z,size=40,depth=unorm16,decode=projected",
+                                         "front-back:dir=-x,size=40,depth=half,decode=plane"});
+    const std::vector<DepthMap> before = collider.maps;
+    refineTexels(collider, query, {});
+    EXPECT_EQ(collider.maps, before);
 }
 
 TEST(Prefer, ShiftsTheMistakesToTheOtherKind) {

@@ -31,7 +31,15 @@ Scanned scan(const TriangleMesh& mesh, const View& view) {
     Scanned hits;
     hits.near.resize(std::size_t{view.width} * view.height);
     hits.far.resize(hits.near.size());
-    ScanConverter(*scene, view).scan({0, 0, view.height}, hits.near, hits.far);
+    // In stripes, as big maps are.
+    const ScanConverter converter(*scene, view);
+    for (std::uint32_t y = 0; y < view.height; y += 7) {
+        const std::uint32_t end = std::min(y + 7, view.height);
+        const std::size_t first = std::size_t{y} * view.width;
+        const std::size_t count = std::size_t{end - y} * view.width;
+        converter.scan({0, y, end}, std::span(hits.near).subspan(first, count),
+                       std::span(hits.far).subspan(first, count));
+    }
     return hits;
 }
 
@@ -92,11 +100,10 @@ TEST(ScanConverter, MeetsWhatWholeNumbersSay) {
         std::vector<glm::uvec3> triangles;
         for (std::array<Corner, 3>& t : exact) {
             for (Corner& corner : t) {
-                corner = {std::min<std::int64_t>(number(), kSide), std::min<std::int64_t>(number(), kSide),
-                          std::min<std::int64_t>(number(), kSide)};
-                positions.emplace_back(0.25F * static_cast<float>(corner[0]),
-                                       0.25F * static_cast<float>(corner[1]),
-                                       0.25F * static_cast<float>(corner[2]));
+                for (std::int64_t& coordinate : corner) {
+                    coordinate = std::min<std::int64_t>(number(), kSide);
+                }
+                positions.push_back(0.25F * glm::vec3(corner[0], corner[1], corner[2]));
             }
             const auto first = static_cast<std::uint32_t>(positions.size() - 3);
             triangles.emplace_back(first, first + 1, first + 2);

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
-#include <random>
 
 #include "bake/director/director.h"
 #include "tests/bake/meshes.h"
+#include "tests/bake/points.h"
 #include "tests/seeds.h"
 
 namespace relief::test {
@@ -18,10 +18,9 @@ bool contains(const Bounds& outer, const Bounds& inner) {
 }
 
 TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
-    std::mt19937 random(seedFrom(41));
-    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    MersenneRandom random(seedFrom(41));
     for (const double radius : {0.5, 30.0}) {
-        const glm::dvec3 center(3.0 * unit(random), 20.0, -7.0);
+        const glm::dvec3 center(3.0 * random.uniform(), 20.0, -7.0);
         const TriangleMesh mesh = makeIcosphere(center, radius, 5);
         for (const std::uint64_t budget : {150'000U, 400'000U}) {
             BakeRequest request;
@@ -44,9 +43,7 @@ TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
             int known = 0;
             int wrong = 0;
             for (int i = 0; i < 4000; ++i) {
-                const double x = unit(random);
-                const double y = unit(random);
-                const glm::dvec3 p = center + 1.2 * radius * glm::dvec3(x, y, unit(random));
+                const glm::dvec3 p = center + 1.2 * radius * inCube(random);
                 const double away = glm::distance(p, center) - radius;
                 if (std::abs(away) > 0.01 * radius) {
                     ++known;
