@@ -243,14 +243,4 @@ DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec, std::uint32_
     return bakeSpecs(mesh, {spec, "float:size=16", "float:dir=-y,size=16"}, resolution).maps.front();
 }
 
-glm::dmat3 rotation(const glm::dvec3& axis, double degrees) {
-    const glm::dvec3 k = glm::normalize(axis);
-    const double angle = degrees * 3.14159265358979323846 / 180.0;
-    const auto turned = [&](const glm::dvec3& v) {  // Rodrigues
-        return v * std::cos(angle) + glm::cross(k, v) * std::sin(angle) +
-               k * glm::dot(k, v) * (1.0 - std::cos(angle));
-    };
-    return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
-}
-
 }  // namespace relief::test

@@ -13,6 +13,7 @@
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
+#include "tests/formats/rotation.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -77,8 +78,5 @@ template <class Gone>
                                  std::uint32_t resolution = 64, unsigned threads = 0);
 [[nodiscard]] DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec,
                                std::uint32_t resolution = 64);
-
-/// A rotation by `degrees` about an axis.
-[[nodiscard]] glm::dmat3 rotation(const glm::dvec3& axis, double degrees);
 
 }  // namespace relief::test

@@ -173,10 +173,6 @@ glm::dvec3 OrthographicFrame::toMap(const glm::dvec3& p) const {
     return (glm::transpose(axes) * (p - origin)) / sides;
 }
 
-glm::dmat3 rotation(const glm::dvec3& axis, double degrees) {
-    return glm::mat3_cast(glm::angleAxis(glm::radians(degrees), glm::normalize(axis)));
-}
-
 OrthographicFrame centeredFrame(const glm::dvec3& center, const glm::dmat3& axes, const glm::dvec3& sides) {
     return {center - axes * (0.5 * sides), axes, sides};
 }

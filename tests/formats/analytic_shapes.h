@@ -10,6 +10,7 @@
 
 #include "formats/collider.h"
 #include "formats/depth_map.h"
+#include "tests/formats/rotation.h"
 
 namespace relief::test {
 
@@ -52,7 +53,6 @@ struct CubeFrame {
     [[nodiscard]] glm::dvec3 toObject(const glm::dvec3& map) const { return center + axes * (half * map); }
 };
 
-[[nodiscard]] glm::dmat3 rotation(const glm::dvec3& axis, double degrees);
 inline const glm::dmat3 kTurned = rotation({1.0, 2.0, -0.5}, 37.0);  ///< along no axis
 
 /// The centred volume of the given sides.

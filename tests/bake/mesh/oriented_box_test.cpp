@@ -132,6 +132,14 @@ TEST(OrientedBox, FindsTheAxesOfATurnedBox) {
     EXPECT_NEAR(glm::dot(glm::cross((*axes)[0], (*axes)[1]), (*axes)[2]), 1.0, 1e-6) << "right-handed";
 }
 
+TEST(OrientedBox, AxesOfSpaceAreExact) {
+    const auto axes = orientedBoxAxes(verticesOf(makeBoxMesh({0.1, 0.2, 0.3}, {3, 1, 2})));
+    ASSERT_TRUE(axes);
+    EXPECT_EQ(glm::abs((*axes)[0]), glm::dvec3(1, 0, 0));
+    EXPECT_EQ(glm::abs((*axes)[1]), glm::dvec3(0, 0, 1));
+    EXPECT_EQ(glm::abs((*axes)[2]), glm::dvec3(0, 1, 0));
+}
+
 TEST(OrientedBox, WithoutVolumeThereIsNone) {
     EXPECT_FALSE(orientedBoxAxes({}));
     EXPECT_FALSE(orientedBoxAxes(std::vector<glm::dvec3>(100, glm::dvec3(1, 2, 3))));

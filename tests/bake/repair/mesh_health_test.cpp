@@ -138,6 +138,18 @@ TEST(Winding, GoodMeshesStay) {
     }
 }
 
+TEST(Winding, ASheetKeepsTheWindingOfMostOfItsTriangles) {
+    const TriangleMesh sheet = makePlane(0, 5);
+    TriangleMesh mixed = sheet;
+    for (const std::size_t triangle : {3U, 20U, 41U}) {
+        std::swap(mixed.triangles[triangle].y, mixed.triangles[triangle].z);
+    }
+    const Result<Winding> winding = windOutwards(mixed);
+    ASSERT_TRUE(winding);
+    EXPECT_EQ(winding->turned, 3U);
+    EXPECT_EQ(winding->mesh->triangles, sheet.triangles);
+}
+
 TEST(Winding, FlippedTrianglesComeBack) {
     const Result<TriangleMesh> bunny = importMesh("/usr/share/glmark2/models/bunny.obj");
     ASSERT_TRUE(bunny);

@@ -32,6 +32,20 @@ TEST(RecipeReport, AWarningOfSeveralAssetsIsToldOnce) {
     EXPECT_TRUE(warningLines({}).empty());
 }
 
+TEST(RecipeReport, AForgottenUnitIsToldOnce) {
+    const auto told = [](const std::string& name, float side) {
+        return baked(name, 1,
+                     {name + ".obj: " + *forgottenUnit({glm::vec3(0.0F), glm::vec3(side)}),
+                      name + ".obj: " + std::to_string(int(side)) + " % is wrong"});
+    };
+    const std::string unit = *forgottenUnit({glm::vec3(0.0F), glm::vec3(1800.0F)});
+    EXPECT_EQ(warningLines({told("a", 1800.0F), told("b", 200.0F), told("c", 300.0F)}),
+              (std::vector<std::string>{"3 assets (a.relief, b.relief, c.relief): of the first: " + unit,
+                                        "a.relief: 1800 % is wrong", "b.relief: 200 % is wrong",
+                                        "c.relief: 300 % is wrong"}));
+    EXPECT_EQ(warningLines({told("a", 1800.0F)})[0], "a.relief: " + unit);
+}
+
 TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
     const std::vector<std::string> chair = {"chair: 5.1 % wrong with 4.1 kB"};
     const std::vector<std::string> lamp = {"lamp: 12 % wrong with 5 kB", "lamp: open"};
