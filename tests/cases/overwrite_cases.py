@@ -4,7 +4,6 @@ may be lost to another, and a refusal names what it refuses."""
 import hashlib
 import os
 import pathlib
-import re
 import shutil
 import struct
 import subprocess
@@ -55,31 +54,11 @@ mesh = "box.obj"
 output = "baked/{stem}.relief"
 plan = "plan.toml"
 """
-# Commands that must be refused, whichever of these their output lands on: {.png} is a name with this ending that leads to it,
-# {map.exr} a folder in which this file does.
-MESH, PLANNED, MADE = "box.obj box.mtl", "box.obj plan.toml box.mtl", "recipe.toml box.obj plan.toml box.mtl .relief-cache.json baked/box.relief"
-BAKE, MANY = "relief bake box.obj -q", "relief bake --recipe recipe.toml -q"
-SCENE_FILES = "scene.toml box.relief live.obj points.csv flow.raw atlas.png"
-SIMULATIONS = (("scene.toml", SCENE_FILES), ("drawn.toml", "drawn.toml box.relief box.obj"), ("box.relief", "box.relief"))
-OUTPUTS = ("--dump {.ply}", "--events {.jsonl}", "--frames {frame_0000.png}", "--frames {frame_0002.png}",
-           "--dump-frames {particles_0001.ply}")
-REFUSED = [(f"relief-sim {scene} {output}", files) for scene, files in SIMULATIONS for output in OUTPUTS] + [
-    (f"relief-sim {scene} {first} {second}", target) for scene, _ in SIMULATIONS for first, second, target in (
-        ("--dump new", "--events {}", "new"), ("--events new", "--dump {}", "new"), ("--dump -", "--events /dev/fd/1", ""),
-        ("--frames frames", "--dump ./frames", ""), ("--frames frames", "--events sub/../frames", ""))] + [
-    (f"{BAKE} --map cube:size=8 -o {{}}", MESH), (f"{BAKE} --plan plan.toml -o {{}}", PLANNED),
-    (f"{BAKE} --budget 9kB -o new --plan-out {{}}", MESH), (f"{BAKE} --plan plan.toml -o new --depfile {{}}", PLANNED),
-    (f"{BAKE} --map cube:size=8 @args -o {{}}", "args"), (f"{BAKE} --map cube:size=8 -o new --depfile {{}}", "new"),
-    (f"{BAKE} --map cube:size=8 -o - --json", ""),
-    ("relief view box.relief --mesh box.obj -o {}", "box.relief " + MESH),
-    ("relief export box.relief -o {map0_patches.exr}", "box.relief"),
-    ("relief slice box.relief -o {.png}", "box.relief"),
-    ("relief query box.relief --points points.csv -o {}", "box.relief points.csv"),
-    ("relief check box.relief --mesh box.obj --samples 50 --html {}", "box.relief " + MESH),
-    ("relief export box.relief --voxels 16 --mesh {}", "box.relief"),
-    *((f"relief export box.relief --gpu {{{file}}}", "box.relief") for file in ("gpu.json", "block.bin", "collider.glsl")),
-    *((f"{MANY} {option} {{}}", MADE) for option in ("--stamp", "--depfile", "--events"))]
-ALLOWED = "relief-sim scene.toml --dump new --events other --dump-frames sub --steps 2"
+SCENES = {
+    "scene.toml": ["scene.toml", "box.relief", "live.obj", "points.csv", "flow.raw", "atlas.png"],
+    "drawn.toml": ["drawn.toml", "box.relief", "box.obj"],
+    "box.relief": ["box.relief"],
+}
 
 
 def make_inputs(cases, folder):
@@ -98,22 +77,126 @@ def make_inputs(cases, folder):
     assert made.returncode == 0, made.stderr
 
 
-def lead(random, folder, target, name):
-    """A name by which an output lands on `target`, which may be missing."""
-    if name.startswith(".") or not name:
-        how = random.choice(["same", "symbolic", "hard"])
-        if how == "same" and target.endswith(name):
+class Arena:
+    """A folder with every input, and names that lead to them."""
+
+    def __init__(self, cases, folder, pristine):
+        self.random, self.folder = cases.random, folder
+        shutil.copytree(pristine, folder, dirs_exist_ok=True)
+        self.names = {path.name: hashlib.sha256(path.read_bytes()).digest() for path in folder.iterdir()}
+        (folder / "sub").mkdir()
+        self.count = 0
+
+    def unchanged(self):
+        """The input that has changed, or None."""
+        for name, digest in self.names.items():
+            path = self.folder / name
+            if not path.is_file() or hashlib.sha256(path.read_bytes()).digest() != digest:
+                return name
+        return None
+
+    def fresh(self, ending):
+        self.count += 1
+        return f"new{self.count}{ending}"
+
+    def lead(self, target, ending):
+        """A name by which an output lands on `target`, which may be missing."""
+        name = self.fresh(ending)
+        how = self.random.choice(["same", "symbolic", "hard"])
+        path = self.folder / target
+        if how == "same" and target.endswith(ending):
             return target
-        path, back = folder / f"leads{name}", target
-    else:
-        how = random.choice(["symbolic", "hard"])
-        (folder / "leads").mkdir()
-        path, back = folder / "leads" / name, f"../{target}"
-    if how == "hard" and (folder / target).is_file():
-        os.link(folder / target, path)
-    else:
-        path.symlink_to(back)
-    return path.relative_to(folder).parts[0]
+        if how == "hard" and path.is_file():
+            os.link(path, self.folder / name)
+            return name
+        (self.folder / name).symlink_to(target)
+        return name
+
+    def lead_frame(self, target, head, ending):
+        """A folder whose numbered file leads to `target`."""
+        frames = self.folder / self.fresh("")
+        frames.mkdir()
+        frame = frames / f"{head}{self.random.randrange(3):04}{ending}"
+        if self.random.random() < 0.5:
+            frame.symlink_to(f"../{target}")
+        else:
+            os.link(self.folder / target, frame)
+        return frames.name
+
+
+def sim_case(arena, random):
+    """-> command, whether it must be refused"""
+    scene = random.choice(sorted(SCENES))
+    target = random.choice(SCENES[scene])
+    options = {"--dump": ".ply", "--events": ".jsonl"}
+    kind = random.choice(["input", "input", "frames", "dumps", "two", "out", "fine", "folder"])
+    command = ["relief-sim", scene]
+    if kind == "input":
+        option = random.choice(sorted(options))
+        return command + [option, arena.lead(target, options[option])], True
+    if kind == "frames":
+        return command + ["--frames", arena.lead_frame(target, "frame_", ".png")], True
+    if kind == "dumps":
+        return command + ["--dump-frames", arena.lead_frame(target, "particles_", ".ply")], True
+    if kind == "folder":
+        option = random.choice(["--dump", "--events"])
+        return command + ["--frames", "frames", option, random.choice(["frames", "./frames", "sub/../frames"])], True
+    first, second = random.sample(["--dump", "--events"], 2)
+    if kind == "out":
+        standard = ["-", "/dev/stdout", "/dev/fd/1"]
+        return command + [first, random.choice(standard), second, random.choice(standard)], True
+    if kind == "two":
+        name = arena.fresh("")
+        return command + [first, name, second, arena.lead(name, "")], True
+    return command + [first, arena.fresh(""), second, arena.fresh(""), "--dump-frames", "sub", "--steps", "2"], False
+
+
+def relief_case(arena, random):
+    def lead(*targets, ending=""):
+        return arena.lead(random.choice(targets), ending)
+    fresh = arena.fresh
+    bake = ["relief", "bake", "box.obj", "-q"]
+    refused = [
+        lambda: bake + ["-o", lead("box.obj", "box.mtl"), "--map", "cube:size=8"],
+        lambda: bake + ["-o", lead("plan.toml", "box.obj", "box.mtl"), "--plan", "plan.toml"],
+        lambda: bake + ["-o", fresh(".relief"), "--plan-out", lead("box.obj", "box.mtl"), "--budget", "9kB"],
+        lambda: bake + ["-o", fresh(".relief"), "--depfile", lead("box.obj", "plan.toml", "box.mtl"), "--plan",
+                        "plan.toml"],
+        lambda: bake + ["-o", lead("args"), "--map", "cube:size=8", "@args"],
+        lambda: (lambda one: bake + ["-o", one, "--depfile", lead(one), "--map", "cube:size=8"])(fresh("")),
+        lambda: ["relief", "view", "box.relief", "--mesh", "box.obj", "-o", lead("box.relief", "box.obj", "box.mtl")],
+        lambda: bake + ["-o", "-", "--json", "--map", "cube:size=8"],
+        lambda: ["relief", "export", "box.relief", "-o", maps_folder()],
+        lambda: ["relief", "slice", "box.relief", "-o", lead("box.relief", ending=".png")],
+        lambda: ["relief", "query", "box.relief", "--points", "points.csv", "-o", lead("box.relief", "points.csv")],
+        lambda: ["relief", "check", "box.relief", "--mesh", "box.obj", "--samples", "50", "--html",
+                 lead("box.relief", "box.obj", "box.mtl")],
+        lambda: ["relief", "export", "box.relief", "--mesh", lead("box.relief"), "--voxels", "16"],
+        lambda: ["relief", "export", "box.relief", "--gpu", gpu_folder()],
+        lambda: recipe() + [random.choice(["--stamp", "--depfile"]),
+                            lead("recipe.toml", "box.obj", "plan.toml", "box.mtl", ".relief-cache.json",
+                                 "baked/box.relief")],
+        lambda: recipe() + ["--events", lead("recipe.toml", "box.obj", "plan.toml", "box.mtl", ".relief-cache.json",
+                                             "baked/box.relief")],
+    ]
+
+    def folder_with(file):
+        name = fresh("")
+        (arena.folder / name).mkdir()
+        (arena.folder / name / file).symlink_to("../box.relief")
+        return name
+
+    def gpu_folder():
+        return folder_with(random.choice(["gpu.json", "block.bin", "collider.glsl"]))
+
+    def maps_folder():
+        return folder_with("map0_patches.exr")
+
+    def recipe():
+        (arena.folder / "baked").mkdir()
+        return ["relief", "bake", "--recipe", "recipe.toml", "-q"]
+
+    return random.choice(refused)(), True
 
 
 def main():
@@ -122,21 +205,17 @@ def main():
         pristine = pathlib.Path(name)
         make_inputs(cases, pristine)
         for number, folder in cases.each():
-            shutil.copytree(pristine, folder, dirs_exist_ok=True)
-            before = {path: hashlib.sha256(path.read_bytes()).digest() for path in folder.iterdir()}
-            (folder / "sub").mkdir()
-            (folder / "baked").mkdir()
-            command, targets = cases.random.choice(REFUSED) if number % 10 else (ALLOWED, "")
-            target = cases.random.choice(targets.split() or [""])
-            text = re.sub(r"\{(.*?)\}", lambda m: lead(cases.random, folder, target, m[1]), command)
-            done = cases.run(*text.split(), cwd=folder)
+            arena = Arena(cases, folder, pristine)
+            make = sim_case if cases.random.random() < 0.6 else relief_case
+            command, refused = make(arena, cases.random)
+            done = cases.run(*command, cwd=folder)
             if done is None:
                 continue
-            for path, digest in before.items():
-                kept = path.is_file() and hashlib.sha256(path.read_bytes()).digest() == digest
-                cases.expect(kept, f"{path.name} is lost: {text}")
-            wanted = 0 if command == ALLOWED else 1
-            cases.expect(done.returncode == wanted, f"exit code {done.returncode}, not {wanted}: {text}, {target}: {done.stderr}")
+            text = " ".join(command)
+            lost = arena.unchanged()
+            cases.expect(lost is None, f"{lost} is lost: {text}")
+            cases.expect(not refused or done.returncode == 1, f"exit code {done.returncode}, not 1: {text}: {done.stderr}")
+            cases.expect(refused or done.returncode == 0, f"refused: {text}: {done.stderr}")
             left = [path.name for path in folder.rglob(".relief-*") if path.name != ".relief-cache.json"]
             cases.expect(not left, f"left behind: {left}: {text}")
     cases.finish()
