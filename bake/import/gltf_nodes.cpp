@@ -267,8 +267,9 @@ Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, cons
     const GltfValue& material = all[*index];
     NodeResponse response;
     response.name = RELIEF_TRY(material.get<std::string>("name", ""));
-    response.restitution = RELIEF_TRY(material.get<float>("restitution", response.restitution));
-    response.friction = RELIEF_TRY(material.get<float>("dynamicFriction", response.friction));
+    // Defaults of the extension's schema.
+    response.restitution = RELIEF_TRY(material.get<float>("restitution", 0.0F));
+    response.friction = RELIEF_TRY(material.get<float>("dynamicFriction", 0.6F));
     for (float* share : {&response.restitution, &response.friction}) {
         if (!(*share >= 0.0F)) {
             return material.wrong("has a restitution or a dynamicFriction below 0");

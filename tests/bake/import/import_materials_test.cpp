@@ -20,7 +20,7 @@ std::string physics(const std::string& material) {
 const std::string kPhysics =
     R"("extensions":{"KHR_physics_rigid_bodies":{"physicsMaterials":[)"
     R"({"name":"rubber","restitution":0.75,"dynamicFriction":1.5,"staticFriction":9},{"name":"ice","restitution":0.25},)"
-    R"({"restitution":-1}]}},"extensionsRequired":["KHR_physics_rigid_bodies"],)";
+    R"({"restitution":-1},{"name":"tar","dynamicFriction":1}]}},"extensionsRequired":["KHR_physics_rigid_bodies"],)";
 
 TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
     const TemporaryFolder folder;
@@ -34,7 +34,7 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
     ASSERT_TRUE(mesh) << mesh.error().message;
     ASSERT_EQ(mesh->surface_names.size(), 3U);
     EXPECT_EQ(mesh->surface_names[0], (SurfaceName{0, "", "rubber", 0.75F, 1.0F}));
-    EXPECT_EQ(mesh->surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.0F}));
+    EXPECT_EQ(mesh->surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.6F})) << "the schema's friction";
     EXPECT_EQ(mesh->surface_names[2], (SurfaceName{2, "", "", 1.0F, 0.0F}));
     // Of a level the three nodes are three meshes, each of a single surface, whose name stays.
     const auto level = importLevel(path);
@@ -51,6 +51,12 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
     ImportOptions without;
     without.materials = false;
     EXPECT_EQ(importLevel(path, without)->meshes.size(), 1U);
+}
+
+TEST(ImportMaterials, AMaterialThatOnlyStatesFrictionDoesNotBounce) {
+    const auto mesh = importText("m.gltf", tetrahedronGltf({.nodes = node(physics("3")), .more = kPhysics}));
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    EXPECT_EQ(mesh->surface_names.at(0), (SurfaceName{0, "", "tar", 0.0F, 1.0F}));
 }
 
 TEST(ImportMaterials, CombineModesWarnOnceIfTheyWouldChangeMuch) {

@@ -341,7 +341,7 @@ TEST_P(CollisionGlTest, ASweptStepNeverTunnels) {
     const int steps = soak ? 1000 : 60;
     const Collider box = hollowBox();
     for (const auto& [integrator, sweep] :
-         {std::pair(Integrator::kEuler, 0.01F), std::pair(Integrator::kVerlet, 0.01F),
+         {std::pair(Integrator::kEuler, 0.018F), std::pair(Integrator::kVerlet, 0.018F),
           std::pair(Integrator::kEuler, 0.0F)}) {
         SCOPED_TRACE(nameOf(integrator, sweep));
         make({.capacity = count, .integrator = integrator});
