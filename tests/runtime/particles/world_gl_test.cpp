@@ -137,6 +137,21 @@ TEST_P(WorldFieldGlTest, FewAreAskedAndAllDecide) {
     EXPECT_LT(apart, known / 200);
 }
 
+// Its response tells which of two bodies in one place it was.
+TEST_P(WorldGlTest, OfEqualBodiesTheFirstDecides) {
+    const Collider box = boxCollider();
+    for (const float first : {0.25F, 0.75F}) {
+        const std::array<ColliderBody, 2> bodies{ColliderBody{&box, {}, first},
+                                                 ColliderBody{&box, {}, 1.0F - first}};
+        make({.capacity = 4});
+        collideWith(ColliderTextures::create(bodies));
+        setType({.restitution = 1.0F});
+        spawnOne({{0.0F, box.bounds.max.y + 0.005F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
+        step();
+        EXPECT_NEAR(state().at(0).velocity.y, first, 1e-5F);
+    }
+}
+
 TEST_P(WorldGlTest, ParticlesAreThoseOfEveryBody) {
     const Colliders colliders;
     for (const int kind : {0, 1, 2, 3}) {
