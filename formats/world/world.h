@@ -64,7 +64,7 @@ enum class WorldDetail : std::uint8_t { kFine, kCoarse };
 /// world = position + scale · rotation · object
 struct WorldBody {
     std::uint32_t collider = 0;
-    std::string node;
+    std::string node{};
     glm::vec3 position{0.0F};
     std::array<float, 4> rotation{0.0F, 0.0F, 0.0F, 1.0F};
     float scale = 1.0F;

@@ -39,7 +39,7 @@ namespace relief {
 /// A collider with a place in the world.
 struct ColliderBody {
     const Collider* collider = nullptr;  ///< for create() alone
-    Pose pose;
+    Pose pose{};
     float restitution = 1.0F;  ///< factor of the particle's own, 0…1
     /// ν, 0…1: what is left of the tangential speed is (1 − ν) of the particle's share.
     float friction = 0.0F;

@@ -352,8 +352,8 @@ Collider tileOf(int column, int row, std::uint32_t side) {
     Collider tile;
     tile.maps = {test::patchesOf({{1, 1, 1}, 0}, records)};
     tile.maps[0].object_to_map = {};
-    for (glm::vec4& row : tile.maps[0].object_to_map.row) {
-        row /= kTile;
+    for (glm::vec4& axis : tile.maps[0].object_to_map.row) {
+        axis /= kTile;
     }
     tile.maps[0].object_per_map = glm::vec3(kTile);
     tile.bounds = {glm::vec3(0.0F), glm::vec3(kTile)};
