@@ -307,7 +307,9 @@ class Planner {
         bytes_ = static_cast<double>(options_.bytes) -
                  std::min(wanted, kDepthShareMost * static_cast<double>(options_.bytes));
         for (double taken = taken_; taken > bytes_;) {
-            byte *= std::max(kDearer, taken / bytes_ * taken / bytes_);
+            // chooseAll() returns infinity for a tree that is far too large.
+            const double factor = taken / bytes_ * taken / bytes_;
+            byte *= std::isfinite(factor) ? std::max(kDearer, factor) : 2.0;
             taken = chooseAll(byte);
         }
     }
