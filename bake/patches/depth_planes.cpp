@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <glm/common.hpp>
+#include <limits>
 #include <vector>
 
 #include "bake/mesh/loops.h"
@@ -10,27 +13,38 @@
 namespace relief {
 namespace {
 
-/// Samples of a cell: its middle, and eight so far from its sides.
+/// A cell is sampled at its middle, and at eight points this far from its sides.
 constexpr double kBesideCorner = 0.1;
 constexpr std::size_t kSamples = 9;
-/// A turn of the normal counts as much as this error of the distance, in cells.
+/// Distance error, in cells, that weighs as much as a unit difference of the normals.
 constexpr double kTurn = 0.25;
-/// More planes are worth their bytes from these mean errors on, in cells, and if they leave less than this share.
+/// Planes are only added if they lower the mean error by this much, in cells, ...
 constexpr double kOneGains = 0.004;
 constexpr double kTwoGain = 0.005;
+/// ... and leave less than this fraction of it.
 constexpr double kLeftAtMost = 0.6;
-/// In cells, that the corners of a cell lie behind both planes.
+/// The corners of a cell lie at least this far behind both planes, in cells.
 constexpr double kBehind = 1.0 / 512.0;
-/// In cells, that heights of a patch can hold.
+/// Largest height that a patch can hold, in cells.
 constexpr double kHighest = 3.9;
-/// In cells: a nearer surface has no direction.
+/// The direction to a nearer surface is unknown, in cells.
 constexpr double kNoDirection = 1e-6;
-/// Of the volume of a cell whose depths are off by its size: so much counts as much as volume on the wrong side.
+/// Weight of the depth error, in cells times the volume of the cell, relative to misclassified volume.
 constexpr double kWorth = 3e-3;
 /// Bytes beside a bit in the record above, or beside the record of a patch.
 constexpr double kOneBytes = kPatchTexelBytes;
 constexpr double kTwoBytes = 3.0 * kPatchTexelBytes;
 constexpr double kSecondBytes = 2.0 * kPatchTexelBytes;
+
+/// Bit k of `corner` is the coordinate on axis k.
+glm::dvec3 cornerOfCube(unsigned corner) {
+    return {corner & 1U, corner >> 1U & 1U, corner >> 2U & 1U};
+}
+
+/// The middle of an octant, x fastest, in the unit cube of its parent.
+glm::dvec3 octantMiddle(unsigned octant) {
+    return 0.5 * cornerOfCube(octant) + 0.25;
+}
 
 /// A point of a cell and the surface nearest to it.
 struct Sample {
@@ -40,24 +54,13 @@ struct Sample {
     std::uint32_t triangle = 0;
 
     [[nodiscard]] CellPlane plane() const { return {normal, dot(normal, glm::dvec3(0.5) - at) - distance}; }
-    [[nodiscard]] double errorOf(double distance_there, const glm::dvec3& normal_there) const {
-        return std::abs(distance_there + distance) + kTurn * length(normal_there - normal);
-    }
-    [[nodiscard]] double errorOf(const CellPlane& one) const { return errorOf(one.at(at), one.normal); }
+    /// The error of the plane with the greater value at the point.
     [[nodiscard]] double errorOf(const CellPlane& one, const CellPlane& other) const {
-        return other.at(at) > one.at(at) ? errorOf(other) : errorOf(one);
+        const CellPlane& deciding = other.at(at) > one.at(at) ? other : one;
+        return std::abs(deciding.at(at) + distance) + kTurn * length(deciding.normal - normal);
     }
 };
-
-glm::dvec3 placeOf(std::size_t sample) {
-    if (sample + 1 == kSamples) {
-        return glm::dvec3(0.5);
-    }
-    const auto side = [&](unsigned bit) {
-        return (sample >> bit & 1U) != 0 ? 1.0 - kBesideCorner : kBesideCorner;
-    };
-    return {side(0), side(1), side(2)};
-}
+using Samples = std::array<Sample, kSamples>;
 
 Sample sampleAt(const MeshQuery& query, const MeshCell& cell, const glm::dvec3& at) {
     const glm::dvec3 p = cell.low + cell.size * at;
@@ -68,25 +71,36 @@ Sample sampleAt(const MeshQuery& query, const MeshCell& cell, const glm::dvec3& 
             closest.triangle};
 }
 
-template <class ErrorOf>
-double meanOf(std::span<const Sample> samples, const ErrorOf& error_of) {
+/// The last sample is that of the middle.
+Samples samplesOf(const MeshQuery& query, const MeshCell& cell) {
+    Samples samples;
+    for (unsigned i = 0; i < 8; ++i) {
+        samples[i] =
+            sampleAt(query, cell,
+                     glm::mix(glm::dvec3(kBesideCorner), glm::dvec3(1.0 - kBesideCorner), cornerOfCube(i)));
+    }
+    samples.back() = sampleAt(query, cell, glm::dvec3(0.5));
+    return samples;
+}
+
+double meanError(const Samples& samples, const CellPlane& one, const CellPlane& other) {
     double sum = 0.0;
     for (const Sample& sample : samples) {
-        sum += error_of(sample);
+        sum += sample.errorOf(one, other);
     }
-    return sum / static_cast<double>(samples.size());
+    return sum / static_cast<double>(kSamples);
 }
 
 bool liesBehind(const CellPlane& plane) {
     for (unsigned i = 0; i < 8; ++i) {
-        if (!(plane.at(glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U)) < -kBehind)) {
+        if (!(plane.at(cornerOfCube(i)) < -kBehind)) {
             return false;
         }
     }
     return true;
 }
 
-/// A patch of 2² heights; nullopt: its heights do not reach so far.
+/// Returns a patch of 2² heights; nullopt if they are out of range.
 std::optional<PatchRecord> patchOf(const CellPlane& plane) {
     const glm::dvec3 size = glm::abs(plane.normal);
     const std::uint8_t first = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -110,12 +124,13 @@ struct Two {
     std::array<CellPlane, 2> planes;
 };
 
-/// The plane nearest to the cell, and the one that is missed most beside it.
-std::optional<Two> twoOf(std::span<const Sample> samples) {
+/// The plane nearest to the cell, and the plane of the sample with the largest error. Returns nullopt if one cannot be stored or
+/// cuts the cell.
+std::optional<Two> twoOf(const Samples& samples) {
     const auto nearest = std::ranges::min_element(samples, {}, &Sample::distance);
     const CellPlane one = nearest->plane();
     const auto missed =
-        std::ranges::max_element(samples, {}, [&](const Sample& sample) { return sample.errorOf(one); });
+        std::ranges::max_element(samples, {}, [&](const Sample& sample) { return sample.errorOf(one, one); });
     const CellPlane other = missed->plane();
     const std::optional<PatchRecord> first = patchOf(one);
     const std::optional<PatchRecord> second = patchOf(other);
@@ -125,24 +140,17 @@ std::optional<Two> twoOf(std::span<const Sample> samples) {
     return Two{{*first, *second}, {one, other}};
 }
 
-std::array<Sample, kSamples> samplesOf(const MeshQuery& query, const MeshCell& cell) {
-    std::array<Sample, kSamples> samples;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-        samples[i] = sampleAt(query, cell, placeOf(i));
-    }
-    return samples;
+double worthOf(const MeshCell& cell, double error) {
+    return kWorth * error * cell.size * cell.size * cell.size;
 }
 
-/// A cell without a surface that is inside.
-/// \param now  the plane that it has: that of the cell above, or of a root its own.
-DepthGain gainOfEmpty(const MeshQuery& query, PatchNode& node, const CellPlane& now, bool root) {
-    const std::array<Sample, kSamples> samples = samplesOf(query, node.cell);
-    const CellPlane middle = planeOfMiddle(query, node);
-    const auto errorWith = [](const auto&... planes) {
-        return [=](const Sample& sample) { return sample.errorOf(planes...); };
-    };
-    const double before = meanOf(samples, errorWith(now));
-    const double with_one = root ? before : meanOf(samples, errorWith(middle));
+/// The gain of a cell without a surface that is inside.
+/// \param above  the plane of the split cell above; null for a root, which has a plane of its own.
+DepthGain gainOfEmpty(const MeshQuery& query, PatchNode& node, const CellPlane* above) {
+    const Samples samples = samplesOf(query, node.cell);
+    const CellPlane middle = samples.back().plane();
+    const double with_one = meanError(samples, middle, middle);
+    const double before = above != nullptr ? meanError(samples, *above, *above) : with_one;
     DepthGain gain{.node = &node};
     double left = before;
     if (before - with_one > kOneGains && with_one < kLeftAtMost * before) {
@@ -152,23 +160,29 @@ DepthGain gainOfEmpty(const MeshQuery& query, PatchNode& node, const CellPlane& 
     }
     if (left > kTwoGain) {
         if (const std::optional<Two> two = twoOf(samples)) {
-            const double with_two = meanOf(samples, errorWith(two->planes[0], two->planes[1]));
+            const double with_two = meanError(samples, two->planes[0], two->planes[1]);
             if (left - with_two > kTwoGain && with_two < kLeftAtMost * left) {
                 gain.planes = DepthPlanes::kTwo;
-                gain.bytes = root ? kSecondBytes : kTwoBytes;
+                gain.bytes = above != nullptr ? kTwoBytes : kSecondBytes;
                 left = with_two;
             }
         }
     }
-    const double size = node.cell.size;
-    gain.volume = kWorth * (before - left) * size * size * size;
+    gain.volume = worthOf(node.cell, before - left);
     return gain;
 }
 
-/// The face beyond a cell with a single surface that is nearer to points of its inside.
-std::optional<std::pair<Sample, double>> faceBeyond(const MeshQuery& query, const PatchNode& node) {
+/// A face outside a cell with a single surface.
+struct FaceBeyond {
+    PatchRecord record;
+    double error = 0.0;  // mean distance that it corrects, in cells
+};
+
+/// The face that is nearer to samples inside than the surface of the cell is. Returns nullopt if there is none, if it cannot
+/// be stored, or if its plane cuts the cell.
+std::optional<FaceBeyond> faceBeyond(const MeshQuery& query, const PatchNode& node) {
     const MeshCell& cell = node.cell;
-    std::optional<Sample> beyond;
+    CellPlane plane;
     double most = 0.0;
     double sum = 0.0;
     for (const Sample& sample : samplesOf(query, cell)) {
@@ -186,47 +200,42 @@ std::optional<std::pair<Sample, double>> faceBeyond(const MeshQuery& query, cons
             sum += gain;
             if (gain > most) {
                 most = gain;
-                beyond = sample;
+                plane = sample.plane();
             }
         }
     }
-    const double mean = sum / static_cast<double>(kSamples);
-    if (!beyond || !(mean > kTwoGain) || !liesBehind(beyond->plane())) {
+    const double error = sum / static_cast<double>(kSamples);
+    if (!(error > kTwoGain) || !liesBehind(plane)) {
         return std::nullopt;
     }
-    return std::pair(*beyond, mean);
+    const std::optional<PatchRecord> record = patchOf(plane);
+    return record ? std::optional(FaceBeyond{*record, error}) : std::nullopt;
 }
 
+/// Collects the gains of the leaves below one root.
 class Chooser {
   public:
     explicit Chooser(const MeshQuery& query) : query_(query) {}
 
-    void visitRoot(PatchNode& root) {
-        visit(root, root.split || root.surface() ? CellPlane() : planeOfMiddle(query_, root), true);
+    /// \param above  the plane of the split cell above, in the unit cube of the node; null for a root.
+    void visit(PatchNode& node, const CellPlane* above) {
+        if (node.split) {
+            const CellPlane plane = planeOfSplit(query_, node);
+            for (unsigned i = 0; i < 8; ++i) {
+                const CellPlane in_octant{plane.normal, 2.0 * plane.at(octantMiddle(i))};
+                visit((*node.children)[i], &in_octant);
+            }
+        } else if (node.surface()) {
+            if (const auto beyond = node.shape().pair ? std::nullopt : faceBeyond(query_, node)) {
+                add({&node, DepthPlanes::kTwo, kSecondBytes, worthOf(node.cell, beyond->error)});
+            }
+        } else if (node.inside()) {
+            add(gainOfEmpty(query_, node, above));
+        }
     }
     [[nodiscard]] const std::vector<DepthGain>& gains() const { return gains_; }
 
   private:
-    void visit(PatchNode& node, const CellPlane& above, bool root) {
-        if (node.split) {
-            const CellPlane plane = planeOfSplit(query_, node);
-            for (unsigned i = 0; i < 8; ++i) {
-                // In the unit cube of the octant.
-                const glm::dvec3 middle = 0.5 * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U) + 0.25;
-                visit((*node.children)[i], {plane.normal, 2.0 * plane.at(middle)}, false);
-            }
-        } else if (node.surface()) {
-            if (!node.shape().pair) {
-                if (const auto beyond = faceBeyond(query_, node); beyond && patchOf(beyond->first.plane())) {
-                    const double size = node.cell.size;
-                    add({&node, DepthPlanes::kTwo, kSecondBytes,
-                         kWorth * beyond->second * size * size * size});
-                }
-            }
-        } else if (node.inside()) {
-            add(gainOfEmpty(query_, node, above, root));
-        }
-    }
     void add(const DepthGain& gain) {
         if (gain.planes != DepthPlanes::kNone) {
             gains_.push_back(gain);
@@ -245,39 +254,28 @@ CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node) {
     for (unsigned i = 0; i < 8; ++i) {
         const PatchNode& child = (*node.children)[i];
         if (!child.split && !child.surface()) {
-            const glm::dvec3 middle = 0.5 * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U) + 0.25;
-            agree += (plane.at(middle) < 0.0) == child.inside() ? 1 : -1;
+            agree += (plane.at(octantMiddle(i)) < 0.0) == child.inside() ? 1 : -1;
         }
     }
-    if (agree < 0) {  // of meshes that are not wound
+    if (agree < 0) {  // the mesh is not wound
         plane = {-plane.normal, -plane.offset};
     }
     return plane;
 }
 
-CellPlane planeOfMiddle(const MeshQuery& query, const PatchNode& node) {
-    const glm::dvec3 middle = node.cell.middle();
-    const ClosestPoint closest = query.closest(glm::vec3(middle));
-    const bool inside = node.inside();
-    glm::dvec3 away = middle - closest.point;
-    away = length(away) > 0.0 ? (inside ? -away : away) : unitNormal(query.mesh(), closest.triangle);
-    const double distance = closest.distance / node.cell.size;
-    return {unit(away), inside ? -distance : distance};
-}
-
-std::optional<std::array<PatchRecord, 2>> depthPlanesOf(const MeshQuery& query, const PatchNode& node) {
-    if (node.surface()) {
-        const auto beyond = faceBeyond(query, node);
-        const auto record = beyond ? patchOf(beyond->first.plane()) : std::nullopt;
-        return record ? std::optional(std::array<PatchRecord, 2>{PatchRecord(), *record}) : std::nullopt;
-    }
+std::optional<std::array<PatchRecord, 2>> planesOfEmpty(const MeshQuery& query, const PatchNode& node) {
     const std::optional<Two> two = twoOf(samplesOf(query, node.cell));
     return two ? std::optional(two->records) : std::nullopt;
 }
 
+std::optional<PatchRecord> planeBeyond(const MeshQuery& query, const PatchNode& node) {
+    const std::optional<FaceBeyond> beyond = faceBeyond(query, node);
+    return beyond ? std::optional(beyond->record) : std::nullopt;
+}
+
 DepthPlaneChoice::DepthPlaneChoice(const MeshQuery& query, std::span<PatchNode> roots) {
     std::vector<Chooser> choosers(roots.size(), Chooser(query));
-    forEachIndex(0, roots.size(), 1, [&](std::size_t i) { choosers[i].visitRoot(roots[i]); });
+    forEachIndex(0, roots.size(), 1, [&](std::size_t i) { choosers[i].visit(roots[i], nullptr); });
     for (const Chooser& chooser : choosers) {
         gains_.insert(gains_.end(), chooser.gains().begin(), chooser.gains().end());
     }

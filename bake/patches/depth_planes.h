@@ -1,5 +1,5 @@
-// Planes for points deep inside: leaves whose own plane, or that of the split cell above, belongs to a face that is not the
-// nearest one.
+// Depth planes: leaves inside a mesh whose plane, or that of the split cell above, does not belong to the nearest face get planes
+// of their own.
 #pragma once
 
 #include <array>
@@ -16,35 +16,34 @@ namespace relief {
 
 /// The plane of a split cell, for octants without a record.
 [[nodiscard]] CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node);
-/// The plane of the surface point nearest to the middle of a cell without a patch.
-[[nodiscard]] CellPlane planeOfMiddle(const MeshQuery& query, const PatchNode& node);
-
-/// The planes that decide in a leaf with DepthPlanes::kTwo: of one without a surface both, of one with a surface the second,
-/// which no part of the cell is in front of.
-/// \return nullopt where two planes hold no more than one does.
-[[nodiscard]] std::optional<std::array<PatchRecord, 2>> depthPlanesOf(const MeshQuery& query,
+/// The planes of a leaf without a surface that has DepthPlanes::kTwo.
+/// \return nullopt if a plane cuts the cell or its heights are out of range: not for leaves that DepthPlaneChoice chose.
+[[nodiscard]] std::optional<std::array<PatchRecord, 2>> planesOfEmpty(const MeshQuery& query,
                                                                       const PatchNode& node);
+/// The second plane of a leaf with a single surface that has DepthPlanes::kTwo: of a face outside the cell.
+/// \return as planesOfEmpty().
+[[nodiscard]] std::optional<PatchRecord> planeBeyond(const MeshQuery& query, const PatchNode& node);
 
-/// What planes a leaf would gain by, and for how many bytes.
+/// The depth planes of a leaf, their cost and their gain.
 struct DepthGain {
     PatchNode* node = nullptr;
     DepthPlanes planes = DepthPlanes::kNone;
     double bytes = 0.0;
-    double volume =
-        0.0;  ///< of the cell, object units cubed, times the error in cells that the planes correct
+    double volume = 0.0;  ///< misclassified volume that weighs as much, object units cubed
 
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
 
-/// The leaves of a planned tree that need planes, those first that gain most for their bytes. The same for any number of threads.
+/// Chooses depth planes for the leaves of a planned tree, sorted by gain per byte. The same for any number of threads.
 class DepthPlaneChoice {
   public:
-    /// \param roots  borrowed; their leaves have no planes yet.
+    /// \param roots  borrowed; their leaves have no depth planes yet.
     DepthPlaneChoice(const MeshQuery& query, std::span<PatchNode> roots);
 
-    /// Bytes of planes that gain more than the surface does where a byte is worth so much wrong volume.
+    /// Bytes of all planes that gain more than `byte` per byte.
+    /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
-    /// Sets PatchNode::planes of those, within so many bytes.
+    /// Sets PatchNode::planes for these, in at most `bytes` bytes.
     void take(double bytes, double byte) const;
 
   private:

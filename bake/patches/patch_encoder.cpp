@@ -1,5 +1,6 @@
 #include "bake/patches/patch_encoder.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <vector>
@@ -83,9 +84,14 @@ class Encoder {
   private:
     /// A cell without a patch: the nearest surface.
     [[nodiscard]] PatchRecord flat(const PatchNode& node) const {
-        const CellPlane plane = planeOfMiddle(query_, node);
-        return PatchRecord::flat(node.inside(), glm::vec3(plane.normal),
-                                 static_cast<float>(plane.offset * node.cell.size / roots_.size));
+        const glm::dvec3 middle = node.cell.middle();
+        const ClosestPoint closest = query_.closest(glm::vec3(middle));
+        const bool inside = node.inside();
+        glm::dvec3 away = middle - closest.point;
+        away = length(away) > 0.0 ? (inside ? -away : away) : unitNormal(query_.mesh(), closest.triangle);
+        const double distance = closest.distance / roots_.size;
+        return PatchRecord::flat(inside, glm::vec3(unit(away)),
+                                 static_cast<float>(inside ? -distance : distance));
     }
 
     [[nodiscard]] PatchRecord splitOf(const PatchNode& node, std::uint32_t first) const {
@@ -110,20 +116,22 @@ class Encoder {
                 texels[at + k] = heights.texel(k);
             }
         };
-        if (node.planes == DepthPlanes::kTwo) {
-            const auto planes = depthPlanesOf(query_, node);
-            record = PatchRecord::pair(true, first);
-            texels[first] = (*planes)[0];
-            texels[first + 1] = (*planes)[1];
-            first += 2;
-        }
         if (!node.surface()) {
+            const auto planes = planesOfEmpty(query_, node).value();
+            record = PatchRecord::pair(true, first);
+            std::copy(planes.begin(), planes.end(), &texels[first]);
             return;
         }
         if (!node.shape().pair) {
+            PatchRecord* surface = &record;
+            if (node.planes == DepthPlanes::kTwo) {
+                record = PatchRecord::pair(true, first);
+                surface = &texels[first];
+                texels[first + 1] = planeBeyond(query_, node).value();
+                first += 2;
+            }
             const PatchHeights heights = fitter_.heights(node);
-            (node.planes == DepthPlanes::kTwo ? texels[first - 2] : record) =
-                PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
+            *surface = PatchRecord::patch(patchFrames()[node.frame.index], node.turned, heights, first);
             write(heights, first);
             return;
         }

@@ -20,7 +20,7 @@
 namespace relief {
 namespace {
 
-/// Of the bytes, that planes for points deep inside (depth_planes.h) get at least, and at most.
+/// Minimum and maximum fraction of the bytes for depth planes (depth_planes.h).
 constexpr double kDepthShare = 0.05;
 constexpr double kDepthShareMost = 0.35;
 /// A root for each so many bytes.
@@ -38,7 +38,7 @@ constexpr int kNarrowings = 12;
 constexpr double kSpare = 3e-4;
 /// The same of a curve, so that it does not end long before.
 constexpr double kSpareOfCurve = 0.3;
-/// Least step of the worth of a byte towards a smaller tree.
+/// Minimum factor of a byte's worth from one tree to the next smaller one.
 constexpr double kDearer = 1.05;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
@@ -91,7 +91,7 @@ class Planner {
                 leaveForDepth(narrow(*range, kSpare));
             }
         }
-        DepthPlaneChoice(query_, nodes_).take(spareBytes(), byteOfTexel());
+        depthPlanes().take(spareBytes(), byteOfTexel());
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
             roots.push_back(&node);
@@ -146,6 +146,7 @@ class Planner {
         roots_.count = glm::uvec3(rootsOf(roots_.size));
         roots_.origin =
             glm::dvec3(held_.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
+        depth_planes_.reset();
         nodes_.clear();
         nodes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -231,6 +232,7 @@ class Planner {
 
     /// \return the bytes of the whole tree; infinity of one that is far too large.
     double chooseAll(double byte) {
+        depth_planes_.reset();
         looked_at_ = 0;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
             choose(nodes_[i], byte, 0);
@@ -249,7 +251,7 @@ class Planner {
     }
 
     /// Of the map of all that is chosen.
-    /// \param planes  bytes of planes for points deep inside.
+    /// \param planes  bytes of depth planes.
     [[nodiscard]] double takenBytes(double planes = 0.0) const {
         double texels = 1.0 + static_cast<double>(nodes_.size()) + planes / kPatchTexelBytes;
         for (const PatchNode& node : nodes_) {
@@ -290,17 +292,25 @@ class Planner {
         return range;
     }
 
-    /// Bytes that the tree leaves, but for what fills its last row of texels.
+    /// Those of the tree as it is planned: computed once for each tree.
+    const DepthPlaneChoice& depthPlanes() {
+        if (!depth_planes_) {
+            depth_planes_.emplace(query_, nodes_);
+        }
+        return *depth_planes_;
+    }
+
+    /// Bytes that the tree leaves, less a row of texels, which a map fills up.
     [[nodiscard]] double spareBytes() const {
         const double all = static_cast<double>(options_.bytes);
         const PatchMapSize size = patchMapSize(static_cast<std::size_t>(all / kPatchTexelBytes));
         return all - takenBytes() - kPatchTexelBytes * size.width;
     }
 
-    /// Takes a smaller tree where planes for points deep inside are worth more than its last bytes.
-    /// \param byte  that the tree was chosen by.
+    /// Shrinks the tree if depth planes are worth more than its last bytes.
+    /// \param byte  the worth of a byte that the tree was chosen by.
     void leaveForDepth(double byte) {
-        const double wanted = DepthPlaneChoice(query_, nodes_).bytesWorth(byte);
+        const double wanted = depthPlanes().bytesWorth(byte);
         if (wanted <= spareBytes()) {
             return;
         }
@@ -314,9 +324,9 @@ class Planner {
         }
     }
 
-    /// Takes the least worth of a byte at which the tree fits, nearly.
-    /// \param spare  of the bytes, that it may leave.
-    /// \return that worth.
+    /// Searches for the lowest worth of a byte whose tree fits, and chooses that tree.
+    /// \param spare  fraction of the bytes that the tree may leave unused.
+    /// \return the worth of a byte.
     double narrow(ByteRange range, double spare) {
         double byte = range.cheap;
         const auto square = [](double x) { return x * x; };
@@ -361,7 +371,7 @@ class Planner {
         }
     }
 
-    /// Wrong volume that a byte is worth; 0: by bytes.
+    /// Misclassified volume that a byte is worth in a tree by texel; 0 in one by bytes.
     [[nodiscard]] double byteOfTexel() const { return kByteOfTexel * texel_ * texel_ * texel_; }
 
     [[nodiscard]] double rootsDone() const {
@@ -410,7 +420,7 @@ class Planner {
         if (texels_ > texels_most_ || takenBytes() > bytes_) {
             return false;
         }
-        return takenBytes(DepthPlaneChoice(query_, nodes_).bytesWorth(byteOfTexel())) <= bytes_;
+        return takenBytes(depthPlanes().bytesWorth(byteOfTexel())) <= bytes_;
     }
 
     /// Takes the cells below the roots for roots, as long as these are a small share of the tree.
@@ -438,6 +448,7 @@ class Planner {
                              (k & 1U)] = std::move(child);
                 }
             });
+            depth_planes_.reset();
             nodes_ = std::move(children);
             roots_.count = to;
             roots_.size *= 0.5;
@@ -496,6 +507,7 @@ class Planner {
     LeafFitter fitter_;
     PatchRoots roots_;
     std::vector<PatchNode> nodes_;
+    std::optional<DepthPlaneChoice> depth_planes_;  // of nodes_, whose planning resets it
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the tree tried last
     std::vector<MistakePoint> tried_;
