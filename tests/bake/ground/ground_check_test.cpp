@@ -60,11 +60,11 @@ TEST_F(GroundChecks, AShiftIsMeasured) {
     ASSERT_EQ(field.world().bodies.size(), 9U);
     const GroundAccuracy right = check("hills.raw", "tile=64", field);
     ASSERT_TRUE(right.seams);
-    const GroundAccuracy alone = onThreads(1, [&] { return check("hills.raw", "tile=64", field); });
-    EXPECT_EQ(alone.near.mean, right.near.mean);
-    EXPECT_EQ(alone.seams->p99, right.seams->p99);
-    EXPECT_EQ(alone.anywhere.total(), right.anywhere.total());
-    EXPECT_EQ(alone.worst.front().place, right.worst.front().place);
+    const GroundAccuracy single = onThreads(1, [&] { return check("hills.raw", "tile=64", field); });
+    EXPECT_EQ(single.near.mean, right.near.mean);
+    EXPECT_EQ(single.seams->p99, right.seams->p99);
+    EXPECT_EQ(single.anywhere.total(), right.anywhere.total());
+    EXPECT_EQ(single.worst.front().place, right.worst.front().place);
     EXPECT_LT(right.near.mean_abs, 0.01);
     EXPECT_LT(right.near.wrong.total(), 0.5);
     EXPECT_LT(right.seams->wrong.total(), 0.5);

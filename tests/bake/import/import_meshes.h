@@ -74,7 +74,8 @@ struct Wrong {
 };
 /// Files of this name, which their errors have.
 void expectWrong(const std::string& name, const std::vector<Wrong>& cases);
-/// What a worker answers that has been taken over. \param accepts  whether an answer is believed.
+/// Each lie makes a mesh that a compromised worker could send; none may be accepted.
+/// \param accepts  returns whether the reader accepts a mesh.
 void expectLiesRefused(const TriangleMesh& honest,
                        const std::vector<std::function<void(TriangleMesh&)>>& lies,
                        const std::function<bool(TriangleMesh)>& accepts);

@@ -162,7 +162,7 @@ TEST(ImportUnits, FormatsOfAssimpLieWhereTheirFilesHaveThem) {
         "3;0,2,1;,\n3;0,1,3;,\n3;1,2,3;,\n3;0,3,2;;\n}\n";
     for (const auto& [name, text] :
          {std::pair{"t.x", x}, std::pair{"t.b3d", tetrahedronB3d()}, std::pair{"t.lwo", tetrahedronLwo()}}) {
-        // z turned round, and up as the file has it.
+        // z is negated; the up axis stays that of the file.
         expectPlaced({{name, text, "", kOwnAxis, {0, 0, -3}, {1, 2, 0}, ""},
                       {name, text, "in", kOwnAxis, {0, 0, -3 * 0.0254F}, {0.0254F, 2 * 0.0254F, 0}},
                       {name, text, "", UpAxis::kPlusZ, {0, 0, 0}, {1, 3, 2}, ""}});

@@ -21,7 +21,7 @@ std::vector<BrickLayout> layouts() {
 }
 
 TEST(BrickVolume, PlaneIsExactButForTheCodes) {
-    // A tilted cube; points round the middle of one face see that plane alone.
+    // A tilted cube; points round the middle of one face see only that plane.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
     const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes));
     for (const BrickLayout& layout : layouts()) {
@@ -89,10 +89,10 @@ TEST(BrickVolume, BudgetIsKeptAndUsedOnAnyNumberOfThreads) {
             EXPECT_NEAR(volume.at({2.3F, 0.0F, 0.0F}).distance, 1.0, 1e-2) << "beyond the box, by the way";
         }
         const auto build = [&] { return BrickVolume::build(query, layout, 20'000); };
-        const BrickVolume alone = onThreads(1, build);
+        const BrickVolume single = onThreads(1, build);
         const BrickVolume many = build();
         for (const glm::vec3& p : pointsIn(query.mesh().bounds, 2000)) {
-            ASSERT_EQ(many.at(p).distance, alone.at(p).distance);
+            ASSERT_EQ(many.at(p).distance, single.at(p).distance);
         }
     }
 }

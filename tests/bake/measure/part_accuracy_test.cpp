@@ -125,7 +125,7 @@ TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {
     // By a texel that is given, a large part takes no more than it.
     EXPECT_DOUBLE_EQ(partThickness(1.0, 1000.0, true), 1.0);
     EXPECT_DOUBLE_EQ(partThickness(1.0, 0.8, true), 0.2);
-    // A box alone: a texel and a half, of 0.4 to 4 % of its side.
+    // A single box: one and a half texels, clamped to 0.4 to 4 % of its side.
     const Bounds cube{glm::vec3(0.0F), glm::vec3(1.0F)};
     for (const auto& [texels, expected] :
          {std::pair{1'000'000U, 1.5 * std::sqrt(36.0 / 1e6)}, {1'000'000'000U, 0.004}, {1'000U, 0.04}}) {

@@ -84,9 +84,9 @@ TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexelOnAnyNumberOfThreads) {
     const TriangleMesh torus = makeTorusMesh(1.0, 0.3, 128, 64);
     const Collider collider = bakeSpecs(torus, threeViews("12"));
     const Measured found = measured(torus, collider);
-    const Measured alone = onThreads(1, [&] { return measured(torus, collider); });
+    const Measured single = onThreads(1, [&] { return measured(torus, collider); });
     ASSERT_EQ(found.places.size(), 3U);
-    ASSERT_EQ(alone.places.size(), 3U);
+    ASSERT_EQ(single.places.size(), 3U);
     std::uint64_t before = ~std::uint64_t{0};
     for (std::size_t i = 0; i < 3; ++i) {
         const WorstPlace& place = found.places[i];
@@ -97,8 +97,8 @@ TEST(WorstPlaces, OfTooFewTexelsAreBelowTheTexelOnAnyNumberOfThreads) {
         EXPECT_LT(place.size(), 0.25 * 2.6);
         EXPECT_LE(place.points, before);
         before = place.points;
-        EXPECT_EQ(place.position, alone.places[i].position);
-        EXPECT_EQ(place.points, alone.places[i].points);
+        EXPECT_EQ(place.position, single.places[i].position);
+        EXPECT_EQ(place.points, single.places[i].points);
     }
 }
 

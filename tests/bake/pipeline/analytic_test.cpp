@@ -34,7 +34,7 @@ double depthTolerance(MapFormat format, double depth) {
 const glm::dvec3 kBoxCenter(0.3125, -0.25, 0.5);
 const glm::dvec3 kBoxHalf(1.0, 0.5, 0.75);
 
-/// Where a ray is inside a box about the origin.
+/// The part of a ray inside a box centred at the origin.
 struct Span {
     double in = -1e300;
     double out = 1e300;

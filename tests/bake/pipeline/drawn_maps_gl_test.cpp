@@ -101,11 +101,11 @@ std::optional<Surface> surfaceAt(const DepthMap& map, const TexelEnd& at) {
     return at.end == 0 ? texel.front : texel.back;
 }
 
-/// Where two maps of one view differ.
+/// Differences between two maps of the same view.
 struct Agreement {
     std::uint64_t both = 0;          ///< surfaces in both maps
     std::vector<TexelEnd> depths;    ///< in both, but their depths are more than a code apart
-    std::vector<TexelEnd> coverage;  ///< in one alone
+    std::vector<TexelEnd> coverage;  ///< present in only one map
 };
 
 Agreement compareMaps(const DepthMap& a, const DepthMap& b) {

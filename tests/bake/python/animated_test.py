@@ -17,7 +17,7 @@ def test_it_is_what_the_tool_bakes_and_plays(tmp_path):
     assert done.returncode == 0, done.stderr
     baked = relief.bake(tmp_path / "lift.gltf", animated=True, clips=str(tmp_path / "more.gltf"))
     assert baked.to_bytes() == (tmp_path / "tool.relief").read_bytes()
-    # What falls onto it rises with it.
+    # A particle that falls onto the lift rises with it.
     (tmp_path / "scene.toml").write_text("""
 time = { dt = 0.015625 }
 particles = { capacity = 2048 }

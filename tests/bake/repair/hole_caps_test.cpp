@@ -102,7 +102,7 @@ TEST(HoleCaps, BallWithACutTopIsASolid) {
 }
 
 TEST(HoleCaps, ThreeEdgesAreClosedByOneTriangle) {
-    // Two triangles of an icosahedron that share one vertex alone: two holes.
+    // Two triangles of an icosahedron that share only one vertex: two holes.
     TriangleMesh mesh = makeIcosphere(glm::dvec3(0.0), 1.0, 0);
     std::erase_if(mesh.triangles,
                   [](const glm::uvec3& t) { return t == glm::uvec3(0, 11, 5) || t == glm::uvec3(0, 1, 7); });
