@@ -56,6 +56,8 @@ void touch(std::size_t bytes) {
 
 // In a process of its own, as the heap of this one is in use.
 TEST(Heap, AsksForLargePagesAndKeepsWhatIsFreed) {
+    GTEST_FLAG_SET(death_test_style,
+                   "threadsafe");  // starts the program again: a fork would inherit this heap
     const auto work = [] {
         prepareHeap(std::size_t{64} << 20);
         const std::unique_ptr<char[]> block(new char[24 << 20]);
