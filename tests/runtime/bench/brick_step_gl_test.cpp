@@ -171,7 +171,9 @@ TEST_P(BrickStepGlTest, ParticlesAmongTightBricksEndOnTheCpusSide) {
     // More of them than sixteen bits name.
     constexpr std::uint32_t kIdle = 66'000;  // ahead of those in use
     BrickAtlas& atlas = rival.atlas;
-    atlas.codes.insert(atlas.codes.begin(), kIdle * atlas.nodesOfBrick(), std::int16_t{0});
+    const std::size_t idle = kIdle * atlas.nodesOfBrick();
+    atlas.codes.insert(atlas.codes.begin(), idle, std::int16_t{0});
+    atlas.bytes += idle * atlas.bits / 8;
     for (std::uint32_t& cube : atlas.index) {
         cube += cube >= BrickAtlas::kFirstBrick ? kIdle : 0;
     }

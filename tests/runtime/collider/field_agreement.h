@@ -50,6 +50,16 @@ inline std::vector<rounding::RoundedVote> possibleVotes(const Collider& collider
                                              : std::vector<rounding::RoundedVote>{};
 }
 
+/// What one map of a collider votes.
+inline FieldSample evaluateAlone(const Collider& collider, const glm::vec3& p, int map) {
+    Collider alone;
+    alone.bounds = collider.bounds;
+    alone.maps.push_back(collider.maps[static_cast<std::size_t>(map)]);
+    FieldSample own = evaluate(alone, p);
+    own.map = own.map < 0 ? own.map : map;
+    return own;
+}
+
 /// True if two maps vote alike at p, but for rounding, and the GPU chose the other: its answer is that map's own.
 inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample& gpu,
                  const rounding::RoundedVote* vote) {
@@ -59,15 +69,7 @@ inline bool tied(const Collider& collider, const glm::vec3& p, const FieldSample
         std::abs(double{cpu.distance} - double{gpu.distance}) > double{kRelative} * 2.0 + apart) {
         return false;
     }
-    if (vote != nullptr) {
-        return true;
-    }
-    Collider alone;
-    alone.bounds = collider.bounds;
-    alone.maps.push_back(collider.maps[static_cast<std::size_t>(gpu.map)]);
-    FieldSample own = evaluate(alone, p);
-    own.map = gpu.map;
-    return agrees(gpu, own);
+    return vote != nullptr || agrees(gpu, evaluateAlone(collider, p, gpu.map));
 }
 
 /// Of the 27 points of a cube of side 2, the middle among them.
@@ -92,12 +94,14 @@ inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const F
     if (tied(collider, p, gpu, rounded ? &*own : nullptr)) {
         return Agreement::kAtBorder;
     }
+    const bool own_vote = gpu.map >= 0 && agrees(gpu, evaluateAlone(collider, p, gpu.map));
     for (int k = 0; k < 27; ++k) {
         const FieldSample near = evaluate(collider, p + step * neighbour(k));
-        // The distance has moved with the point, too.
+        // Either another map leaves the decision to the GPU's there, or the distance has moved with the point, too.
         if (near.map == gpu.map &&
-            (rounded || (std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
-                         glm::length(near.normal - gpu.normal) <= kNormal))) {
+            (rounded || own_vote ||
+             (std::abs(near.distance - gpu.distance) <= 4.0F * step + kRelative * 2.0F &&
+              glm::length(near.normal - gpu.normal) <= kNormal))) {
             return Agreement::kAtBorder;
         }
     }
