@@ -325,8 +325,19 @@ CellPlane meanPlane(std::span<const ClippedTriangle> pieces) {
         center += piece.area * piece.center;
         area += piece.area;
     }
+    if (!(area > 0.0)) {
+        return {};
+    }
     normal = length(normal) > 1e-9 * area ? unit(normal) : glm::dvec3(0.0, 1.0, 0.0);
     return {normal, dot(normal, 0.5 - center / area)};
+}
+
+glm::dvec3 meanNormalAlong(std::span<const ClippedTriangle> pieces, const glm::dvec3& along) {
+    glm::dvec3 normal(0.0);
+    for (const ClippedTriangle& piece : pieces) {
+        normal += (dot(piece.normal, along) < 0.0 ? -piece.area : piece.area) * piece.normal;
+    }
+    return dot(normal, along) > 0.0 ? unit(normal) : unit(along);
 }
 
 bool meetsUnitCube(const UnitTriangle& triangle) {

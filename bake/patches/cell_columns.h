@@ -55,9 +55,11 @@ struct CellPlane {
 
     [[nodiscard]] double at(const glm::dvec3& in_cell) const { return dot(normal, in_cell - 0.5) + offset; }
 };
-/// Through the middle of a surface, by its mean normal; level where that is none.
-/// \param pieces  not all without an area.
+/// Through the middle of a surface, by its mean normal; level where that is none, and through the cell's middle where no piece
+/// has an area.
 [[nodiscard]] CellPlane meanPlane(std::span<const ClippedTriangle> pieces);
+/// The mean normal of faces that may look to either side: those against `along` are reversed.
+[[nodiscard]] glm::dvec3 meanNormalAlong(std::span<const ClippedTriangle> pieces, const glm::dvec3& along);
 
 /// The eighths of a cell, x fastest.
 /// \param triangles  of unitTriangles().

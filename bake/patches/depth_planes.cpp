@@ -4,8 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
+#include <iterator>
 #include <limits>
-#include <vector>
+#include <optional>
 
 #include "bake/mesh/loops.h"
 #include "bake/patches/leaf_fitter.h"
@@ -14,27 +15,29 @@ namespace relief {
 namespace {
 
 /// A cell is sampled at its middle, and at eight points this far from its sides.
-constexpr double kBesideCorner = 0.1;
+constexpr double kBesideCorner = 0.02;
 constexpr std::size_t kSamples = 9;
 /// Distance error, in cells, that weighs as much as a unit difference of the normals.
 constexpr double kTurn = 0.25;
 /// Planes are only added if they lower the mean error by this much, in cells, ...
-constexpr double kOneGains = 0.004;
-constexpr double kTwoGain = 0.005;
-/// ... and leave less than this fraction of it.
+constexpr double kGain = 0.004;
+/// ... and leave less than this fraction of it in a leaf without a surface.
 constexpr double kLeftAtMost = 0.6;
-/// The corners of a cell lie at least this far behind both planes, in cells.
-constexpr double kBehind = 1.0 / 512.0;
+/// Cells are left out if such a mean error, in cells, would not pay: hardly one is larger.
+constexpr double kErrorMost = 1.0;
+/// The corners of a cell lie at least this far behind its depth planes, in cells.
+constexpr double kBehind = 1.0 / 256.0;
 /// Largest height that a patch can hold, in cells.
 constexpr double kHighest = 3.9;
 /// The direction to a nearer surface is unknown, in cells.
 constexpr double kNoDirection = 1e-6;
+/// Beyond a boundary of the solid this is outside, in cells.
+constexpr double kBeyond = 1e-3;
 /// Weight of the depth error, in cells times the volume of the cell, relative to misclassified volume.
-constexpr double kWorth = 3e-3;
-/// Bytes beside a bit in the record above, or beside the record of a patch.
+constexpr double kWorth = 1e-3;
+/// Bytes of one plane in a record of its own, and of the records of a second one or of two.
 constexpr double kOneBytes = kPatchTexelBytes;
-constexpr double kTwoBytes = 3.0 * kPatchTexelBytes;
-constexpr double kSecondBytes = 2.0 * kPatchTexelBytes;
+constexpr double kPairBytes = 2.0 * kPatchTexelBytes;
 
 /// Bit k of `corner` is the coordinate on axis k.
 glm::dvec3 cornerOfCube(unsigned corner) {
@@ -46,205 +49,337 @@ glm::dvec3 octantMiddle(unsigned octant) {
     return 0.5 * cornerOfCube(octant) + 0.25;
 }
 
-/// A point of a cell and the surface nearest to it.
+/// A point inside and the surface nearest to it.
 struct Sample {
     glm::dvec3 at{0.0};      // unit cube
     double distance = 0.0;   // cells
-    glm::dvec3 normal{0.0};  // from the point inside to the surface
-    std::uint32_t triangle = 0;
+    glm::dvec3 normal{0.0};  // from the point to the surface
 
     [[nodiscard]] CellPlane plane() const { return {normal, dot(normal, glm::dvec3(0.5) - at) - distance}; }
-    /// The error of the plane with the greater value at the point.
-    [[nodiscard]] double errorOf(const CellPlane& one, const CellPlane& other) const {
-        const CellPlane& deciding = other.at(at) > one.at(at) ? other : one;
-        return std::abs(deciding.at(at) + distance) + kTurn * length(deciding.normal - normal);
-    }
 };
-using Samples = std::array<Sample, kSamples>;
 
-Sample sampleAt(const MeshQuery& query, const MeshCell& cell, const glm::dvec3& at) {
-    const glm::dvec3 p = cell.low + cell.size * at;
-    const ClosestPoint closest = query.closest(glm::vec3(p));
-    const glm::dvec3 way = closest.point - p;
-    const double distance = length(way) / cell.size;
-    return {at, distance, distance > kNoDirection ? unit(way) : unitNormal(query.mesh(), closest.triangle),
-            closest.triangle};
-}
+/// A tree of a single root: its record, and up to six more texels.
+class SmallTree {
+  public:
+    SmallTree() = default;
+    explicit SmallTree(const PatchRecord& root) { add(root); }
 
-/// The last sample is that of the middle.
-Samples samplesOf(const MeshQuery& query, const MeshCell& cell) {
-    Samples samples;
-    for (unsigned i = 0; i < 8; ++i) {
-        samples[i] =
-            sampleAt(query, cell,
-                     glm::mix(glm::dvec3(kBesideCorner), glm::dvec3(1.0 - kBesideCorner), cornerOfCube(i)));
+    void add(const PatchRecord& texel) { texels_[count_++] = texel; }
+    [[nodiscard]] const PatchRecord& operator[](std::size_t index) const { return texels_[index]; }
+    [[nodiscard]] std::size_t size() const { return count_; }
+    [[nodiscard]] PatchTexels texels() const { return std::as_bytes(std::span(texels_).first(count_)); }
+
+  private:
+    std::array<PatchRecord, 8> texels_{{{1U | 1U << 16U, 1U | 1U << 16U}}};  // a root, and a level below it
+    std::size_t count_ = 1;
+};
+
+/// What points of a cell get from the texels of its own tree, or from one in which it is an octant.
+class Cell {
+  public:
+    Cell() = default;
+    explicit Cell(unsigned octant) : low_(0.5 * cornerOfCube(octant)), size_(0.5) {}
+
+    [[nodiscard]] PatchVote vote(const SmallTree& tree, const glm::dvec3& at) const {
+        // A point on an upper side is beyond the root.
+        const glm::dvec3 p = glm::min(low_ + size_ * at, glm::dvec3(1.0 - kNoDirection));
+        PatchVote vote = *votePatches(tree.texels(), glm::vec3(p));
+        vote.distance /= static_cast<float>(size_);
+        return vote;
     }
-    samples.back() = sampleAt(query, cell, glm::dvec3(0.5));
-    return samples;
-}
-
-double meanError(const Samples& samples, const CellPlane& one, const CellPlane& other) {
-    double sum = 0.0;
-    for (const Sample& sample : samples) {
-        sum += sample.errorOf(one, other);
-    }
-    return sum / static_cast<double>(kSamples);
-}
-
-bool liesBehind(const CellPlane& plane) {
-    for (unsigned i = 0; i < 8; ++i) {
-        if (!(plane.at(cornerOfCube(i)) < -kBehind)) {
-            return false;
+    [[nodiscard]] double meanError(const SmallTree& tree, std::span<const Sample> samples) const {
+        double sum = 0.0;
+        for (const Sample& sample : samples) {
+            const PatchVote found = vote(tree, sample.at);
+            sum += std::abs(double{found.distance} + sample.distance) +
+                   kTurn * length(glm::dvec3(found.normal) - sample.normal);
         }
+        return sum / static_cast<double>(kSamples);
     }
-    return true;
-}
 
-/// Returns a patch of 2² heights; nullopt if they are out of range.
-std::optional<PatchRecord> patchOf(const CellPlane& plane) {
+  private:
+    glm::dvec3 low_{0.0};
+    double size_ = 1.0;
+};
+
+/// Returns a patch of 2² heights on the plane, which is shifted outwards if a corner of the cell is not behind it: a leaf may
+/// neglect a corner of the surface. Returns nullopt if the heights are out of range.
+std::optional<PatchRecord> patchOf(CellPlane plane) {
     const glm::dvec3 size = glm::abs(plane.normal);
     const std::uint8_t first = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const int u = (first + 1) % 3;
-    const int v = (first + 2) % 3;
+    double highest = -kBehind;
+    for (unsigned i = 0; i < 8; ++i) {
+        highest = std::max(highest, plane.at(cornerOfCube(i)));
+    }
+    plane.offset -= highest + kBehind;
     std::array<double, 4> heights{};
     for (unsigned i = 0; i < 4; ++i) {
         glm::dvec3 corner(0.0);
-        corner[u] = i & 1U;
-        corner[v] = i >> 1U;
+        corner[(first + 1) % 3] = i & 1U;
+        corner[(first + 2) % 3] = i >> 1U;
         heights[i] = -plane.at(corner) / plane.normal[first];
         if (!(std::abs(heights[i]) <= kHighest)) {
             return std::nullopt;
         }
     }
-    return PatchRecord::patch({0, first, 0}, plane.normal[first] < 0.0, PatchHeights::of(heights, 2), 0);
-}
-
-struct Two {
-    std::array<PatchRecord, 2> records;
-    std::array<CellPlane, 2> planes;
-};
-
-/// The plane nearest to the cell, and the plane of the sample with the largest error. Returns nullopt if one cannot be stored or
-/// cuts the cell.
-std::optional<Two> twoOf(const Samples& samples) {
-    const auto nearest = std::ranges::min_element(samples, {}, &Sample::distance);
-    const CellPlane one = nearest->plane();
-    const auto missed =
-        std::ranges::max_element(samples, {}, [&](const Sample& sample) { return sample.errorOf(one, one); });
-    const CellPlane other = missed->plane();
-    const std::optional<PatchRecord> first = patchOf(one);
-    const std::optional<PatchRecord> second = patchOf(other);
-    if (!first || !second || !liesBehind(one) || !liesBehind(other)) {
-        return std::nullopt;
-    }
-    return Two{{*first, *second}, {one, other}};
-}
-
-double worthOf(const MeshCell& cell, double error) {
-    return kWorth * error * cell.size * cell.size * cell.size;
-}
-
-/// The gain of a cell without a surface that is inside.
-/// \param above  the plane of the split cell above; null for a root, which has a plane of its own.
-DepthGain gainOfEmpty(const MeshQuery& query, PatchNode& node, const CellPlane* above) {
-    const Samples samples = samplesOf(query, node.cell);
-    const CellPlane middle = samples.back().plane();
-    const double with_one = meanError(samples, middle, middle);
-    const double before = above != nullptr ? meanError(samples, *above, *above) : with_one;
-    DepthGain gain{.node = &node};
-    double left = before;
-    if (before - with_one > kOneGains && with_one < kLeftAtMost * before) {
-        gain.planes = DepthPlanes::kOne;
-        gain.bytes = kOneBytes;
-        left = with_one;
-    }
-    if (left > kTwoGain) {
-        if (const std::optional<Two> two = twoOf(samples)) {
-            const double with_two = meanError(samples, two->planes[0], two->planes[1]);
-            if (left - with_two > kTwoGain && with_two < kLeftAtMost * left) {
-                gain.planes = DepthPlanes::kTwo;
-                gain.bytes = above != nullptr ? kTwoBytes : kSecondBytes;
-                left = with_two;
-            }
+    const PatchRecord patch =
+        PatchRecord::patch({0, first, 0}, plane.normal[first] < 0.0, PatchHeights::of(heights, 2), 0);
+    for (unsigned i = 0; i < 8; ++i) {
+        if (!(Cell().vote(SmallTree(patch), cornerOfCube(i)).distance < 0.0F)) {
+            return std::nullopt;
         }
     }
-    gain.volume = worthOf(node.cell, before - left);
-    return gain;
+    return patch;
 }
 
-/// A face outside a cell with a single surface.
-struct FaceBeyond {
+/// The record with the lowest mean error.
+struct Best {
     PatchRecord record;
-    double error = 0.0;  // mean distance that it corrects, in cells
+    double error = std::numeric_limits<double>::infinity();
+
+    void consider(const PatchRecord& other, double its_error) {
+        if (its_error < error) {
+            *this = {other, its_error};
+        }
+    }
 };
 
-/// The face that is nearer to samples inside than the surface of the cell is. Returns nullopt if there is none, if it cannot
-/// be stored, or if its plane cuts the cell.
-std::optional<FaceBeyond> faceBeyond(const MeshQuery& query, const PatchNode& node) {
-    const MeshCell& cell = node.cell;
-    CellPlane plane;
-    double most = 0.0;
-    double sum = 0.0;
-    for (const Sample& sample : samplesOf(query, cell)) {
-        if (std::ranges::binary_search(cell.triangles, sample.triangle)) {
-            continue;
-        }
-        double own = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t triangle : cell.triangles) {
-            const UnitTriangle corners = cell.inUnit(query.mesh(), triangle);
-            own = std::min(
-                own, length(closestOnTriangle(sample.at, corners[0], corners[1], corners[2]) - sample.at));
-        }
-        const double gain = own - sample.distance;
-        if (gain > kTwoGain && query.inside(glm::vec3(cell.low + cell.size * sample.at))) {
-            sum += gain;
-            if (gain > most) {
-                most = gain;
-                plane = sample.plane();
-            }
-        }
-    }
-    const double error = sum / static_cast<double>(kSamples);
-    if (!(error > kTwoGain) || !liesBehind(plane)) {
-        return std::nullopt;
-    }
-    const std::optional<PatchRecord> record = patchOf(plane);
-    return record ? std::optional(FaceBeyond{*record, error}) : std::nullopt;
-}
+/// What a leaf has without depth planes.
+struct Baseline {
+    Cell cell;
+    SmallTree tree;
+};
 
-/// Collects the gains of the leaves below one root.
-class Chooser {
+/// Chooses the depth planes of one leaf.
+class LeafChooser {
   public:
-    explicit Chooser(const MeshQuery& query) : query_(query) {}
-
-    /// \param above  the plane of the split cell above, in the unit cube of the node; null for a root.
-    void visit(PatchNode& node, const CellPlane* above) {
-        if (node.split) {
-            const CellPlane plane = planeOfSplit(query_, node);
-            for (unsigned i = 0; i < 8; ++i) {
-                const CellPlane in_octant{plane.normal, 2.0 * plane.at(octantMiddle(i))};
-                visit((*node.children)[i], &in_octant);
-            }
-        } else if (node.surface()) {
-            if (const auto beyond = node.shape().pair ? std::nullopt : faceBeyond(query_, node)) {
-                add({&node, DepthPlanes::kTwo, kSecondBytes, worthOf(node.cell, beyond->error)});
-            }
-        } else if (node.inside()) {
-            add(gainOfEmpty(query_, node, above));
+    /// \param baseline  none of a root without a surface, whose plane is that of its middle.
+    /// \param roots_per_cell  the size of the cell, in root cells.
+    LeafChooser(const MeshQuery& query, PatchNode& node, const std::optional<Baseline>& baseline,
+                double roots_per_cell)
+        : query_(query), node_(node), baseline_(baseline), roots_per_cell_(roots_per_cell) {
+        takeSamples();
+        if (worthwhile()) {
+            dropSamplesWithin();
         }
     }
-    [[nodiscard]] const std::vector<DepthGain>& gains() const { return gains_; }
+
+    void addTo(std::vector<DepthGain>& gains) const {
+        if (worthwhile()) {
+            node_.surface() ? addSurface(gains) : addEmpty(gains);
+        }
+    }
 
   private:
-    void add(const DepthGain& gain) {
-        if (gain.planes != DepthPlanes::kNone) {
-            gains_.push_back(gain);
+    [[nodiscard]] double errorWithout() const {
+        return baseline_ ? baseline_->cell.meanError(baseline_->tree, samples_) : kErrorMost;
+    }
+    [[nodiscard]] bool worthwhile() const { return errorWithout() > kGain; }
+
+    void takeSamples() {
+        const MeshCell& cell = node_.cell;
+        std::optional<std::uint32_t> hint;
+        for (unsigned i = 0; i < kSamples; ++i) {
+            const glm::dvec3 at =
+                i < 8 ? glm::mix(glm::dvec3(kBesideCorner), glm::dvec3(1.0 - kBesideCorner), cornerOfCube(i))
+                      : glm::dvec3(0.5);
+            const glm::dvec3 p = cell.low + cell.size * at;
+            const bool inside = node_.surface() ? baseline_->cell.vote(baseline_->tree, at).distance < 0.0F
+                                                : node_.empty() || query_.inside(glm::vec3(p));
+            if (!inside) {
+                continue;
+            }
+            const ClosestPoint closest = query_.closest(glm::vec3(p), hint);
+            hint = closest.triangle;
+            const glm::dvec3 way = closest.point - p;
+            const double distance = length(way) / cell.size;
+            if (distance > kNoDirection) {
+                samples_.push_back({at, distance, unit(way)});
+            }
         }
+    }
+    /// Drops samples whose surface is no boundary: that of a body within another one, or of a filled void.
+    void dropSamplesWithin() {
+        std::erase_if(samples_, [&](const Sample& sample) {
+            const glm::dvec3 beyond = sample.at + (sample.distance + kBeyond) * sample.normal;
+            return query_.inside(glm::vec3(node_.cell.low + node_.cell.size * beyond));
+        });
+    }
+
+    /// Of a leaf without a surface.
+    void addEmpty(std::vector<DepthGain>& gains) const {
+        const auto flatOf = [](const CellPlane& plane, double per_cell) {
+            return PatchRecord::flat(true, glm::vec3(plane.normal),
+                                     static_cast<float>(per_cell * plane.offset));
+        };
+        Best one;
+        for (const Sample& sample : samples_) {
+            const PatchRecord in_cell = flatOf(sample.plane(), 1.0);
+            one.consider(flatOf(sample.plane(), roots_per_cell_), errorOf(SmallTree(in_cell)));
+        }
+        const double before = baseline_ ? errorWithout() : one.error;
+        DepthGain first{.node = &node_};
+        double left = before;
+        if (pays(before, one.error)) {
+            left = one.error;
+            first.to = DepthPlanes::kOne;
+            first.records[0] = one.record;
+            first.bytes = kOneBytes;
+            first.volume = volume(before - one.error);
+        }
+        DepthGain second{.node = &node_};
+        if (left > kGain) {
+            const std::vector<PatchRecord> patches = patchesOf();
+            Best nearest;
+            for (const PatchRecord& patch : patches) {
+                nearest.consider(patch, errorOf(SmallTree(patch)));
+            }
+            const Best other = bestWith(SmallTree(nearest.record), patches);
+            if (pays(left, other.error)) {
+                second.to = DepthPlanes::kTwo;
+                second.records = {nearest.record, other.record};
+                second.bytes = kPairBytes + (baseline_ ? kOneBytes : 0.0);
+                second.volume = volume(before - other.error);
+            }
+        }
+        if (first.to == DepthPlanes::kOne && second.to == DepthPlanes::kTwo) {
+            if (second.worth() < first.worth()) {
+                second.from = first.to;
+                second.bytes -= first.bytes;
+                second.volume -= first.volume;
+            } else {
+                first.to = DepthPlanes::kNone;
+            }
+        }
+        std::ranges::copy_if(std::array{first, second}, std::back_inserter(gains),
+                             [](const DepthGain& gain) { return gain.to != DepthPlanes::kNone; });
+    }
+
+    /// Of a leaf with a single surface: a face outside the cell decides where it is nearer.
+    void addSurface(std::vector<DepthGain>& gains) const {
+        const Best best = bestWith(baseline_->tree, patchesOf());
+        const double gain = errorWithout() - best.error;
+        if (gain > kGain) {
+            gains.push_back(
+                {&node_, DepthPlanes::kNone, DepthPlanes::kTwo, {best.record, {}}, kPairBytes, volume(gain)});
+        }
+    }
+
+    static bool pays(double before, double after) {
+        return before - after > kGain && after < kLeftAtMost * before;
+    }
+    [[nodiscard]] double volume(double error) const {
+        return kWorth * error * node_.cell.size * node_.cell.size * node_.cell.size;
+    }
+    [[nodiscard]] double errorOf(const SmallTree& tree) const { return Cell().meanError(tree, samples_); }
+    /// The planes of the samples that lie outside the cell.
+    [[nodiscard]] std::vector<PatchRecord> patchesOf() const {
+        std::vector<PatchRecord> patches;
+        for (const Sample& sample : samples_) {
+            const std::optional<PatchRecord> patch = patchOf(sample.plane());
+            const auto same = [&](const PatchRecord& other) {
+                return other.low == patch->low && other.high == patch->high;
+            };
+            if (patch && std::ranges::none_of(patches, same)) {
+                patches.push_back(*patch);
+            }
+        }
+        return patches;
+    }
+    /// The best of some patches, as a pair with the patch of a tree.
+    [[nodiscard]] Best bestWith(const SmallTree& other, std::span<const PatchRecord> patches) const {
+        constexpr std::uint32_t kMoved = 2;
+        PatchRecord moved = other[1];
+        moved.high += moved.side() > 2 ? kMoved : 0;
+        Best best;
+        for (const PatchRecord& patch : patches) {
+            SmallTree pair(PatchRecord::pair(true, kMoved));
+            pair.add(moved);
+            pair.add(patch);
+            for (std::size_t i = 2; i < other.size(); ++i) {
+                pair.add(other[i]);
+            }
+            best.consider(patch, errorOf(pair));
+        }
+        return best;
     }
 
     const MeshQuery& query_;
-    std::vector<DepthGain> gains_;
+    PatchNode& node_;
+    const std::optional<Baseline>& baseline_;
+    double roots_per_cell_;
+    std::vector<Sample> samples_;
 };
+
+/// The tree of a leaf with a single surface. Its 3² heights stand for 5² ones, which are not fitted yet.
+SmallTree treeOf(const PatchNode& leaf) {
+    const PatchHeights& heights =
+        leaf.heights[std::min<std::size_t>(leaf.chosen - kFlats, leaf.heights.size() - 1)];
+    SmallTree tree(PatchRecord::patch(patchFrames()[leaf.frame.index], leaf.turned, heights, 2));
+    for (std::uint32_t k = 0; k < heightTexels(heights.side); ++k) {
+        tree.add(heights.texel(k));
+    }
+    return tree;
+}
+
+SmallTree treeOfSplit(const MeshQuery& query, const PatchNode& node) {
+    const CellPlane plane = planeOfSplit(query, node);
+    return SmallTree(
+        PatchRecord::split(0, 0xffU, 0, glm::vec3(plane.normal), static_cast<float>(plane.offset)));
+}
+
+/// Appends split cells, and the root if it is a leaf: each is a family, whose leaves are treated together.
+void addFamilies(PatchNode& node, std::vector<PatchNode*>& families) {
+    families.push_back(&node);
+    for (std::size_t i = 0; node.split && i < 8; ++i) {
+        if ((*node.children)[i].split) {
+            addFamilies((*node.children)[i], families);
+        }
+    }
+}
+
+std::span<PatchNode> membersOf(PatchNode& family) {
+    return family.split ? std::span<PatchNode>(*family.children) : std::span(&family, 1);
+}
+
+/// Equal for two plans of a family with the same leaves.
+std::uint64_t stateOf(PatchNode& family) {
+    std::uint64_t state = 1;
+    for (const PatchNode& node : membersOf(family)) {
+        state = state << 4U | (node.split ? kPatchShapes.size() : node.chosen);
+    }
+    return state;
+}
+
+/// \param byte  as in DepthPlaneChoice::find().
+/// \param root_size  object units.
+std::vector<DepthGain> gainsOf(const MeshQuery& query, PatchNode& family, double root_size, double byte) {
+    std::vector<DepthGain> gains;
+    const auto mayPay = [&](const PatchNode& leaf, double bytes) {
+        return kWorth * kErrorMost * leaf.cell.size * leaf.cell.size * leaf.cell.size > byte * bytes;
+    };
+    std::optional<Baseline> above;
+    const std::span<PatchNode> members = membersOf(family);
+    for (unsigned i = 0; i < members.size(); ++i) {
+        PatchNode& leaf = members[i];
+        if (leaf.split) {
+            continue;
+        }
+        const double roots_per_cell = leaf.cell.size / root_size;
+        if (leaf.surface()) {
+            if (!leaf.shape().pair && mayPay(leaf, kPairBytes)) {
+                const std::optional<Baseline> own = Baseline{{}, treeOf(leaf)};
+                LeafChooser(query, leaf, own, roots_per_cell).addTo(gains);
+            }
+        } else if (leaf.inside() && mayPay(leaf, kOneBytes)) {
+            if (family.split) {
+                above = Baseline{Cell(i), above ? above->tree : treeOfSplit(query, family)};
+            }
+            LeafChooser(query, leaf, above, roots_per_cell).addTo(gains);
+        }
+    }
+    return gains;
+}
 
 }  // namespace
 
@@ -263,21 +398,26 @@ CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node) {
     return plane;
 }
 
-std::optional<std::array<PatchRecord, 2>> planesOfEmpty(const MeshQuery& query, const PatchNode& node) {
-    const std::optional<Two> two = twoOf(samplesOf(query, node.cell));
-    return two ? std::optional(two->records) : std::nullopt;
-}
-
-std::optional<PatchRecord> planeBeyond(const MeshQuery& query, const PatchNode& node) {
-    const std::optional<FaceBeyond> beyond = faceBeyond(query, node);
-    return beyond ? std::optional(beyond->record) : std::nullopt;
-}
-
-DepthPlaneChoice::DepthPlaneChoice(const MeshQuery& query, std::span<PatchNode> roots) {
-    std::vector<Chooser> choosers(roots.size(), Chooser(query));
-    forEachIndex(0, roots.size(), 1, [&](std::size_t i) { choosers[i].visit(roots[i], nullptr); });
-    for (const Chooser& chooser : choosers) {
-        gains_.insert(gains_.end(), chooser.gains().begin(), chooser.gains().end());
+void DepthPlaneChoice::find(std::span<PatchNode> roots, double byte, const std::function<void()>& progress) {
+    std::vector<PatchNode*> families;
+    for (PatchNode& root : roots) {
+        addFamilies(root, families);
+    }
+    for (PatchNode* const family : families) {
+        known_.try_emplace(family);
+    }
+    forEachIndex(0, families.size(), 4, [&](std::size_t i) {
+        Known& known = known_.find(families[i])->second;
+        const std::uint64_t state = stateOf(*families[i]);
+        if (known.state != state) {
+            known = {state, gainsOf(query_, *families[i], roots[0].cell.size, byte)};
+        }
+        progress();
+    });
+    gains_.clear();
+    for (PatchNode* const family : families) {
+        std::ranges::copy_if(known_.find(family)->second.gains, std::back_inserter(gains_),
+                             [&](const DepthGain& gain) { return gain.worth() > byte; });
     }
     std::ranges::stable_sort(gains_, std::greater(), &DepthGain::worth);
 }
@@ -290,10 +430,11 @@ double DepthPlaneChoice::bytesWorth(double byte) const {
     return bytes;
 }
 
-void DepthPlaneChoice::take(double bytes, double byte) const {
+void DepthPlaneChoice::take(double bytes) const {
     for (const DepthGain& gain : gains_) {
-        if (gain.worth() > byte && gain.bytes <= bytes) {
-            gain.node->planes = gain.planes;
+        if (gain.bytes <= bytes && gain.node->planes == gain.from) {
+            gain.node->planes = gain.to;
+            gain.node->depth = gain.records;
             bytes -= gain.bytes;
         }
     }

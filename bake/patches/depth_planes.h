@@ -3,9 +3,10 @@
 #pragma once
 
 #include <array>
-#include <glm/vec3.hpp>
-#include <optional>
+#include <cstdint>
+#include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "bake/mesh/mesh_query.h"
@@ -16,38 +17,46 @@ namespace relief {
 
 /// The plane of a split cell, for octants without a record.
 [[nodiscard]] CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node);
-/// The planes of a leaf without a surface that has DepthPlanes::kTwo.
-/// \return nullopt if a plane cuts the cell or its heights are out of range: not for leaves that DepthPlaneChoice chose.
-[[nodiscard]] std::optional<std::array<PatchRecord, 2>> planesOfEmpty(const MeshQuery& query,
-                                                                      const PatchNode& node);
-/// The second plane of a leaf with a single surface that has DepthPlanes::kTwo: of a face outside the cell.
-/// \return as planesOfEmpty().
-[[nodiscard]] std::optional<PatchRecord> planeBeyond(const MeshQuery& query, const PatchNode& node);
 
-/// The depth planes of a leaf, their cost and their gain.
+/// Depth planes that replace those that a leaf has so far, their cost and their gain.
 struct DepthGain {
     PatchNode* node = nullptr;
-    DepthPlanes planes = DepthPlanes::kNone;
-    double bytes = 0.0;
-    double volume = 0.0;  ///< misclassified volume that weighs as much, object units cubed
+    DepthPlanes from = DepthPlanes::kNone;
+    DepthPlanes to = DepthPlanes::kNone;
+    std::array<PatchRecord, 2> records{};  ///< PatchNode::depth
+    double bytes = 0.0;                    ///< more than `from` takes
+    double volume = 0.0;                   ///< misclassified volume that weighs as much, object units cubed
 
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
 
-/// Chooses depth planes for the leaves of a planned tree, sorted by gain per byte. The same for any number of threads.
+/// Chooses depth planes for the leaves of a planned tree. The same for any number of threads.
 class DepthPlaneChoice {
   public:
-    /// \param roots  borrowed; their leaves have no depth planes yet.
-    DepthPlaneChoice(const MeshQuery& query, std::span<PatchNode> roots);
+    /// \param query  borrowed.
+    explicit DepthPlaneChoice(const MeshQuery& query) : query_(query) {}
 
-    /// Bytes of all planes that gain more than `byte` per byte.
+    /// Finds the planes of a tree. Later calls reuse those of leaves that are as before.
+    /// \param roots  borrowed as long as this object is used; their leaves have no depth planes yet.
+    /// \param byte  misclassified volume, object units cubed: planes that gain less per byte are not chosen.
+    /// \param progress  called often, from any thread; what it throws ends the search.
+    void find(std::span<PatchNode> roots, double byte, const std::function<void()>& progress);
+
+    /// Bytes of all planes found that gain more than `byte` per byte.
     /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
-    /// Sets PatchNode::planes for these, in at most `bytes` bytes.
-    void take(double bytes, double byte) const;
+    /// Sets PatchNode::planes and PatchNode::depth of those with the largest gain per byte, in at most `bytes` bytes.
+    void take(double bytes) const;
 
   private:
-    std::vector<DepthGain> gains_;
+    struct Known {
+        std::uint64_t state = 0;  // of the leaves that the gains are of
+        std::vector<DepthGain> gains;
+    };
+
+    const MeshQuery& query_;
+    std::unordered_map<const PatchNode*, Known> known_;  // by the cell that is split, or the root
+    std::vector<DepthGain> gains_;                       // sorted by gain per byte
 };
 
 }  // namespace relief

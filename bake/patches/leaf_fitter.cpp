@@ -67,7 +67,8 @@ class LeafTrial {
         node_.add(volume_ * fitted.wrong + node_.passed_by);
     }
     void beginPairs() {
-        pairs_.emplace(columns_, costs_);
+        pairs_.emplace(columns_, costs_,
+                       meanNormalAlong(clippedTriangles(triangles_), columns_.grid().along()));
         node_.pair_least = volume_ * pairs_->least() + node_.passed_by;
         node_.walls = pairs_->walls();
     }
@@ -232,7 +233,9 @@ PatchHeights LeafFitter::heights(const PatchNode& node) const {
 
 std::array<PatchHeights, 2> LeafFitter::pair(const PatchNode& node) const {
     const CellColumns columns = keptColumns(node);
-    return PairFitter(columns, costs_, node.walls).fit(node.shape().side, kFinalPairRounds).heights;
+    const glm::dvec3 normal =
+        meanNormalAlong(clippedTriangles(unitTriangles(query_.mesh(), node.cell)), columns.grid().along());
+    return PairFitter(columns, costs_, normal, node.walls).fit(node.shape().side, kFinalPairRounds).heights;
 }
 
 }  // namespace relief

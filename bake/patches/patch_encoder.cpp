@@ -55,7 +55,7 @@ class Encoder {
             if (node.split) {
                 texels[1 + i] = splitOf(node, first[i]);
             } else if (!node.surface() && node.planes != DepthPlanes::kTwo) {
-                texels[1 + i] = flat(node);
+                texels[1 + i] = node.planes == DepthPlanes::kOne ? node.depth[0] : flat(node);
             } else {
                 writeLeaf(node, first[i], texels[1 + i], texels);
             }
@@ -117,9 +117,8 @@ class Encoder {
             }
         };
         if (!node.surface()) {
-            const auto planes = planesOfEmpty(query_, node).value();
             record = PatchRecord::pair(true, first);
-            std::copy(planes.begin(), planes.end(), &texels[first]);
+            std::ranges::copy(node.depth, &texels[first]);
             return;
         }
         if (!node.shape().pair) {
@@ -127,7 +126,7 @@ class Encoder {
             if (node.planes == DepthPlanes::kTwo) {
                 record = PatchRecord::pair(true, first);
                 surface = &texels[first];
-                texels[first + 1] = planeBeyond(query_, node).value();
+                texels[first + 1] = node.depth[0];
                 first += 2;
             }
             const PatchHeights heights = fitter_.heights(node);

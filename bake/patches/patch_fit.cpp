@@ -441,8 +441,10 @@ FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
     return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
 }
 
-PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls)
+PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, const glm::dvec3& normal,
+                       std::optional<bool> walls)
     : columns_(columns),
+      normal_(normal),
       targets_{HeightTargets(columns.grid().lines().size()), HeightTargets(columns.grid().lines().size())} {
     const std::vector<LineGrid::Line>& lines = columns.grid().lines();
     const auto leastOf = [&](bool of_walls) {
@@ -479,10 +481,32 @@ PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, st
     }
 }
 
+/// The plane with the mean height of a surface.
+template <std::size_t kSide>
+std::array<double, kSide * kSide> PairFitter::anchorsOf(std::size_t surface) const {
+    std::array<double, kSide* kSide> anchors = heightsOf<kSide>(columns_.grid().frame(), {normal_, 0.0});
+    const HeightLanes<kSide> on_lines(columns_.grid(), anchors);
+    const HeightTargets& targets = targets_[surface];
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < columns_.grid().lines().size(); ++i) {
+        if (*targets.above(i) > 0.0F && *targets.below(i) > 0.0F) {
+            sum += double{*targets.height(i)} - double{on_lines[i]};
+            ++count;
+        }
+    }
+    for (double& height : anchors) {
+        height += count > 0 ? sum / count : 0.0;
+    }
+    return anchors;
+}
+
 template <std::size_t kSide>
 FittedPair PairFitter::fitOf(int rounds) const {
     const LineGrid& grid = columns_.grid();
     std::array<HeightTargets, 2> targets = targets_;
+    const std::array<std::array<double, kSide * kSide>, 2> anchors = {anchorsOf<kSide>(0),
+                                                                      anchorsOf<kSide>(1)};
     std::array<std::array<double, kSide * kSide>, 2> heights{};
     std::array<std::vector<float>, 2> on_lines;
     const auto lay = [&] {
@@ -507,7 +531,7 @@ FittedPair PairFitter::fitOf(int rounds) const {
             }
         }
         for (std::size_t k = 0; k < 2; ++k) {
-            fitRound<kSide>(grid, targets[k], {}, round > 0, heights[k]);
+            fitRound<kSide>(grid, targets[k], anchors[k], round > 0, heights[k]);
         }
     }
     FittedPair fitted;

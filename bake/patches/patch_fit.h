@@ -58,8 +58,10 @@ struct FittedPair {
 class PairFitter {
   public:
     /// \param columns  borrowed.
+    /// \param normal  of the planes that heights lie in where no line meets the surface.
     /// \param walls  by the columns where it is not given.
-    PairFitter(const CellColumns& columns, const MistakeCosts& costs, std::optional<bool> walls = {});
+    PairFitter(const CellColumns& columns, const MistakeCosts& costs, const glm::dvec3& normal,
+               std::optional<bool> walls = {});
 
     [[nodiscard]] bool walls() const { return walls_; }
     /// No pair has less volume on the wrong side, in cells, times its costs.
@@ -69,10 +71,13 @@ class PairFitter {
 
   private:
     template <std::size_t kSide>
+    [[nodiscard]] std::array<double, kSide * kSide> anchorsOf(std::size_t surface) const;
+    template <std::size_t kSide>
     [[nodiscard]] FittedPair fitOf(int rounds) const;
 
     const CellColumns& columns_;
     MistakeCosts costs_;  // of what lies between
+    glm::dvec3 normal_;
     bool walls_ = true;
     double least_ = 0.0;
     std::array<HeightTargets, 2> targets_;

@@ -60,6 +60,7 @@ struct PatchNode {
     MeshCell cell;
     CellPlane mean;                       ///< of the surface in the cell
     std::array<PatchHeights, 2> heights;  ///< of single surfaces of 2² and 3²
+    std::array<PatchRecord, 2> depth;     ///< records of `planes`
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
     /// Without a look at the cell, which is out of reach of the cache: what has a surface is tried as both flats.

@@ -20,9 +20,12 @@
 namespace relief {
 namespace {
 
-/// Minimum and maximum fraction of the bytes for depth planes (depth_planes.h).
-constexpr double kDepthShare = 0.05;
+/// A tree gives up at most this fraction of its bytes for depth planes (depth_planes.h).
 constexpr double kDepthShareMost = 0.35;
+/// The same as kSpare of a tree that depth planes follow, which fill what it leaves.
+constexpr double kSpareForDepth = 3e-3;
+/// The worth of a byte that is left when the tree is chosen.
+constexpr double kSpareByte = 0.25;
 /// A root for each so many bytes.
 constexpr double kBytesPerRoot = 160.0;
 /// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
@@ -70,8 +73,9 @@ class Planner {
         : query_(query),
           options_(options),
           held_(query.mesh().bounds),
-          bytes_((options.texel > 0.0 ? 1.0 : 1.0 - kDepthShare) * static_cast<double>(options.bytes)),
-          fitter_(query, options.costs, options.lines) {
+          bytes_(static_cast<double>(options.bytes)),
+          fitter_(query, options.costs, options.lines),
+          depth_planes_(query) {
         if (options.roots_hold) {
             held_.add(options.roots_hold->min);
             held_.add(options.roots_hold->max);
@@ -81,17 +85,20 @@ class Planner {
     Result<PatchTree> run() {
         if (options_.texel > 0.0) {
             RELIEF_TRY(searchTexel());
-            if (takenBytes() > static_cast<double>(options_.tile_bytes) && !splitRoots()) {
+            const double most = (1.0 + kDepthShareMost) * takenBytes();
+            if (most > static_cast<double>(options_.tile_bytes) && !splitRoots()) {
                 planTexel(texel_);
             }
+            takeDepthPlanes(byteOfTexel());
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
+            double byte = 0.0;
             if (const std::optional<ByteRange> range = descend()) {
-                leaveForDepth(narrow(*range, kSpare));
+                byte = leaveForDepth(narrow(*range, kSpare));
             }
+            takeDepthPlanes(kSpareByte * byte);
         }
-        depthPlanes().take(spareBytes(), byteOfTexel());
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
             roots.push_back(&node);
@@ -146,7 +153,6 @@ class Planner {
         roots_.count = glm::uvec3(rootsOf(roots_.size));
         roots_.origin =
             glm::dvec3(held_.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
-        depth_planes_.reset();
         nodes_.clear();
         nodes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -232,7 +238,6 @@ class Planner {
 
     /// \return the bytes of the whole tree; infinity of one that is far too large.
     double chooseAll(double byte) {
-        depth_planes_.reset();
         looked_at_ = 0;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
             choose(nodes_[i], byte, 0);
@@ -246,7 +251,7 @@ class Planner {
             wrong_ += node.wrong;
         }
         taken_ = takenBytes();
-        tried_.push_back({taken_ / (1.0 - kDepthShare), wrong_});
+        tried_.push_back({taken_, wrong_});
         return taken_;
     }
 
@@ -292,12 +297,12 @@ class Planner {
         return range;
     }
 
-    /// Those of the tree as it is planned: computed once for each tree.
-    const DepthPlaneChoice& depthPlanes() {
-        if (!depth_planes_) {
-            depth_planes_.emplace(query_, nodes_);
-        }
-        return *depth_planes_;
+    void findDepthPlanes(double byte) {
+        depth_planes_.find(nodes_, byte, [this] { report(kSearchShare); });
+    }
+    void takeDepthPlanes(double byte) {
+        findDepthPlanes(byte);
+        depth_planes_.take(spareBytes());
     }
 
     /// Bytes that the tree leaves, less a row of texels, which a map fills up.
@@ -309,19 +314,26 @@ class Planner {
 
     /// Shrinks the tree if depth planes are worth more than its last bytes.
     /// \param byte  the worth of a byte that the tree was chosen by.
-    void leaveForDepth(double byte) {
-        const double wanted = depthPlanes().bytesWorth(byte);
-        if (wanted <= spareBytes()) {
-            return;
+    /// \return that of the tree that is left.
+    double leaveForDepth(double byte) {
+        findDepthPlanes(byte);
+        const double wanted = depth_planes_.bytesWorth(byte);
+        if (takenBytes(wanted) <= bytes_) {
+            return byte;
         }
-        bytes_ = static_cast<double>(options_.bytes) -
-                 std::min(wanted, kDepthShareMost * static_cast<double>(options_.bytes));
-        for (double taken = taken_; taken > bytes_;) {
+        bytes_ -= std::min(wanted, kDepthShareMost * bytes_);
+        ByteRange range{.dear = byte, .taken_dear = taken_};
+        while (range.taken_dear > bytes_) {
+            range.cheap = range.dear;
+            range.taken_cheap = range.taken_dear;
             // chooseAll() returns infinity for a tree that is far too large.
-            const double factor = taken / bytes_ * taken / bytes_;
-            byte *= std::isfinite(factor) ? std::max(kDearer, factor) : 2.0;
-            taken = chooseAll(byte);
+            const double factor = range.taken_dear / bytes_ * range.taken_dear / bytes_;
+            range.dear *= std::isfinite(factor) ? std::max(kDearer, factor) : 2.0;
+            range.taken_dear = chooseAll(range.dear);
         }
+        byte = range.cheap > 0.0 ? narrow(range, kSpareForDepth) : byte;
+        bytes_ = static_cast<double>(options_.bytes);
+        return byte;
     }
 
     /// Searches for the lowest worth of a byte whose tree fits, and chooses that tree.
@@ -417,10 +429,7 @@ class Planner {
             ++roots_done_;
             report(kSearchShare * rootsDone());
         });
-        if (texels_ > texels_most_ || takenBytes() > bytes_) {
-            return false;
-        }
-        return takenBytes(depthPlanes().bytesWorth(byteOfTexel())) <= bytes_;
+        return texels_ <= texels_most_ && takenBytes() <= bytes_;
     }
 
     /// Takes the cells below the roots for roots, as long as these are a small share of the tree.
@@ -448,7 +457,6 @@ class Planner {
                              (k & 1U)] = std::move(child);
                 }
             });
-            depth_planes_.reset();
             nodes_ = std::move(children);
             roots_.count = to;
             roots_.size *= 0.5;
@@ -507,7 +515,7 @@ class Planner {
     LeafFitter fitter_;
     PatchRoots roots_;
     std::vector<PatchNode> nodes_;
-    std::optional<DepthPlaneChoice> depth_planes_;  // of nodes_, whose planning resets it
+    DepthPlaneChoice depth_planes_;
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the tree tried last
     std::vector<MistakePoint> tried_;
