@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "bake/mesh/mesh_query.h"
@@ -55,8 +55,8 @@ class DepthPlaneChoice {
     };
 
     const MeshQuery& query_;
-    std::unordered_map<const PatchNode*, Known> known_;  // by the cell that is split, or the root
-    std::vector<DepthGain> gains_;                       // sorted by gain per byte
+    std::map<const PatchNode*, Known> known_;  // by the cell that is split, or the root
+    std::vector<DepthGain> gains_;             // sorted by gain per byte
 };
 
 }  // namespace relief

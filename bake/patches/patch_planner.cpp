@@ -27,7 +27,7 @@ constexpr double kSpareForDepth = 3e-3;
 /// The worth of a byte that is left when the tree is chosen.
 constexpr double kSpareByte = 0.25;
 /// A root for each so many bytes.
-constexpr double kBytesPerRoot = 160.0;
+constexpr double kBytesPerRoot = 168.4;
 /// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
 /// alone gets far, and eight of them cost more.
 constexpr double kMendedLeast = 1.2;
