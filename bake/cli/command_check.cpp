@@ -74,7 +74,7 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
 void addAdvice(const CheckCommand& command, MeshCheck& run) {
     // Of one that moves, all maps are given.
     if (run.recorded.request.animated ||
-        (run.passes(command.max_error) && run.wrongPercent() <= kGoodPercent)) {
+        (run.passes(command.max_error) && (command.max_error || run.wrongPercent() <= kGoodPercent))) {
         return;
     }
     run.advice = adviceFor(run, command.request.mesh, command.file == "-" ? "out.relief" : command.file);
@@ -90,10 +90,24 @@ Result<void> writePage(const CheckCommand& command, std::vector<std::byte> conta
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
+/// The grade, or with --max-error whether that is kept.
+std::string verdictOf(const CheckCommand& command, const MeshCheck& run) {
+    const double wrong = run.original.accuracy.field.near.total();
+    const bool within = command.max_error && wrong <= double{*command.max_error};
+    if (!command.max_error || (within && !run.passes(command.max_error))) {
+        return verdictText(run.wrongPercent(), run.part_accuracy);
+    }
+    return percentText(wrong) + " wrong near the surface: " + (within ? "within" : "above") +
+           " --max-error " + percentText(double{*command.max_error});
+}
+
 std::string checkText(const CheckCommand& command, const MeshCheck& run) {
     const auto& [samples, accuracy] = run.judged();
-    std::string text =
-        inputName(command.file) + ": " + verdictText(run.wrongPercent(), run.part_accuracy) + "\n";
+    std::string text = inputName(command.file) + ": " + verdictOf(command, run) + "\n";
+    if (const std::string inside = insideVerdictText(accuracy.field.inside.far_face_percent);
+        !inside.empty()) {
+        text += inputName(command.file) + ": " + inside + "\n";
+    }
     if (run.repaired) {
         text += "That is against the mesh repaired by " + run.recorded.request.repair.method + ", " +
                 std::to_string(run.baked->triangles.size()) + " triangles; against " + run.mesh->name +

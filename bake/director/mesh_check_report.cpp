@@ -31,6 +31,10 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
             {.help = "good: at most 1 % wrong; fair: at most 5 %; at best fair if a part is coarse, poor if "
                      "one is lost",
              .words = kWords<"good", "fair", "poor">});
+        visit_verdict("inside_grade", insideGradeOf(run.judged().accuracy.field.inside.far_face_percent),
+                      {.help = "Votes at points inside: good if a farther face decides at most 3 %; fair: at "
+                               "most 10 %",
+                       .words = kWords<"good", "fair", "poor">});
     };
     visit("verdict", group(verdict), {"Summary"});
     visit("parts", PartsReport{run.part_accuracy, run.parts, run.collider},

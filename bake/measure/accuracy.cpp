@@ -17,6 +17,9 @@ namespace relief {
 namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+/// InsideAccuracy::far_face_percent: 0.55 / 0.45 of a wall's thickness, and of the longest side.
+constexpr double kFarFace = 1.25;
+constexpr double kFarFaceShare = 1e-3;
 
 /// Sums in the order of the samples, not in that of the threads.
 struct Spread {
@@ -78,16 +81,18 @@ void compareDistances(const std::vector<TruthPoint>& points,
     accuracy.unknown_percent = percent(unknown, points.size());
 }
 
+/// In degrees. Exact for small angles, where acos of the cosine is not.
+double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
+    return kDegrees * portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
 void measureNormals(const std::vector<SurfacePoint>& points, const Field& field, FieldAccuracy& accuracy) {
     constexpr double kNone = -1.0;
     std::vector<double> angles(points.size(), kNone);
     forEachIndex(0, points.size(), 512, [&](std::size_t i) {
         const std::optional<FieldValue> value = field(points[i].position);
         if (!points[i].buried && value && glm::dot(value->normal, value->normal) > 0.0F) {
-            const glm::dvec3 a = glm::normalize(glm::dvec3(value->normal));
-            const glm::dvec3 b = points[i].normal;
-            // Exact for small angles, where acos of the cosine is not.
-            angles[i] = kDegrees * portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+            angles[i] = angleBetween(glm::normalize(glm::dvec3(value->normal)), points[i].normal);
         }
     });
     const std::size_t counted = points.size() - buriedPoints(points);
@@ -96,6 +101,35 @@ void measureNormals(const std::vector<SurfacePoint>& points, const Field& field,
     const Spread spread = spreadOf(std::move(angles));
     accuracy.normal_mean = spread.mean;
     accuracy.normal_p99 = spread.p99;
+}
+
+InsideAccuracy measureInside(const TruthSamples& samples, const Field& field) {
+    const std::vector<InsidePoint>& points = samples.inside;
+    std::vector<std::optional<FieldValue>> values(points.size());
+    forEachIndex(0, points.size(), 512, [&](std::size_t i) { values[i] = field(points[i].position); });
+    std::vector<double> depths;
+    std::vector<double> angles;
+    std::uint64_t far_face = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!values[i] || !(values[i]->distance < 0.0F)) {
+            continue;
+        }
+        const double depth = -double{values[i]->distance};
+        depths.push_back(std::abs(depth - points[i].depth));
+        far_face += depth > kFarFace * points[i].depth + kFarFaceShare * samples.longest_side ? 1 : 0;
+        if (glm::dot(values[i]->normal, values[i]->normal) > 0.0F) {
+            angles.push_back(angleBetween(glm::normalize(glm::dvec3(values[i]->normal)), points[i].out));
+        }
+    }
+    InsideAccuracy accuracy;
+    accuracy.far_face_percent = percent(far_face, depths.size());
+    const Spread depth = spreadOf(std::move(depths));
+    const Spread angle = spreadOf(std::move(angles));
+    accuracy.depth_mean = depth.mean;
+    accuracy.depth_p99 = depth.p99;
+    accuracy.normal_mean = angle.mean;
+    accuracy.normal_p99 = angle.p99;
+    return accuracy;
 }
 
 }  // namespace
@@ -128,6 +162,7 @@ FieldAccuracy measureField(const TruthSamples& samples, const Field& field) {
     }
     accuracy.uniform = wrongShare(samples.uniform, evaluateAt(samples.uniform, field));
     measureNormals(samples.surface, field, accuracy);
+    accuracy.inside = measureInside(samples, field);
     accuracy.seconds = watch.seconds();
     return accuracy;
 }

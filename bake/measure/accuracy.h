@@ -38,6 +38,16 @@ struct WrongShare {
 
 void fields(FieldVisitor& visit, const WrongShare& share);
 
+/// What particles that are inside get, at TruthSamples::inside, as far as the field has a value inside there.
+struct InsideAccuracy {
+    /// Points whose depth is more than 1.25 times the true one, and 0.1 % of the longest side: a face farther away decides. Percent.
+    double far_face_percent = 0.0;
+    double depth_mean = 0.0;  ///< |depth − true depth|, object units
+    double depth_p99 = 0.0;
+    double normal_mean = 0.0;  ///< angle between the normal and the way to the boundary, degrees
+    double normal_p99 = 0.0;
+};
+
 struct FieldAccuracy {
     WrongShare near;     ///< points near the surface
     WrongShare uniform;  ///< points in the box
@@ -51,7 +61,8 @@ struct FieldAccuracy {
     double normal_mean = 0.0;
     double normal_p99 = 0.0;
     double no_normal_percent = 0.0;  ///< of the surface points that are not buried
-    double seconds = 0.0;            ///< of the measurement, on all cores
+    InsideAccuracy inside;
+    double seconds = 0.0;  ///< of the measurement, on all cores
 };
 
 /// \param points  as sampleNear draws them.

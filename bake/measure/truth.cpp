@@ -1,6 +1,7 @@
 #include "bake/measure/truth.h"
 
 #include <cmath>
+#include <optional>
 
 #include "bake/mesh/loops.h"
 #include "bake/mesh/mersenne.h"
@@ -94,6 +95,21 @@ class Sampler {
         return {p, query_.inside(p) ? -1.0F : 1.0F};
     }
 
+    /// \param p  inside.
+    [[nodiscard]] std::optional<InsidePoint> inside(const glm::vec3& p) const {
+        const ClosestPoint closest = query_.closest(p);
+        const glm::dvec3 way = closest.point - glm::dvec3(p);
+        const double depth = length(way);
+        if (!(depth > kSurfaceStep * longest_side_)) {
+            return std::nullopt;
+        }
+        const glm::dvec3 out = way / depth;
+        if (query_.inside(closest.point + kSurfaceStep * longest_side_ * out)) {
+            return std::nullopt;
+        }
+        return InsidePoint{p, depth, out};
+    }
+
   private:
     struct Draw {
         glm::dvec3 position;
@@ -139,6 +155,17 @@ TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options)
         samples.near[i] = sampler.nearSurface(i);
         samples.uniform[i] = sampler.inBox(i);
     });
+    std::vector<std::optional<InsidePoint>> inside(options.samples);
+    forEachIndex(0, options.samples, 256, [&](std::size_t i) {
+        if (samples.uniform[i].inside()) {
+            inside[i] = sampler.inside(samples.uniform[i].position);
+        }
+    });
+    for (const std::optional<InsidePoint>& point : inside) {
+        if (point) {
+            samples.inside.push_back(*point);
+        }
+    }
     samples.seconds = watch.seconds();
     return samples;
 }

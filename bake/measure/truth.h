@@ -38,12 +38,21 @@ struct SurfacePoint {
     return static_cast<std::size_t>(std::ranges::count(points, true, &SurfacePoint::buried));
 }
 
+/// A point inside, with the boundary nearest to it. Surfaces with the inside on both sides are no boundary: points that are nearer
+/// to one of them are left out.
+struct InsidePoint {
+    glm::vec3 position{0.0F};
+    double depth = 0.0;   ///< to the boundary, object units, above 0
+    glm::dvec3 out{0.0};  ///< unit length, towards it
+};
+
 struct TruthSamples {
     AccuracyOptions options;
     double longest_side = 0.0;          ///< of the mesh's box, object units
     std::vector<TruthPoint> near;       ///< area-weighted surface points plus an isotropic Gaussian offset
     std::vector<TruthPoint> uniform;    ///< in the mesh's box
     std::vector<SurfacePoint> surface;  ///< area-weighted
+    std::vector<InsidePoint> inside;    ///< of the uniform ones
     double seconds = 0.0;               ///< spent here
 };
 

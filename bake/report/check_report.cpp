@@ -30,6 +30,19 @@ std::string verdictText(double wrong_percent) {
     return percentText(wrong_percent) + " wrong near the surface: " + gradeOf(wrong_percent);
 }
 
+std::string insideGradeOf(double far_face_percent) {
+    return far_face_percent <= kGoodInsidePercent   ? "good"
+           : far_face_percent <= kFairInsidePercent ? "fair"
+                                                    : "poor";
+}
+
+std::string insideVerdictText(double far_face_percent) {
+    const std::string grade = insideGradeOf(far_face_percent);
+    return grade == "good" ? ""
+                           : "at " + percentText(far_face_percent) +
+                                 " of the points inside a farther face decides: " + grade;
+}
+
 std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& samples,
                          const std::string& unit) {
     const FieldAccuracy& field = accuracy.field;
@@ -38,6 +51,7 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
         return std::vector<std::string>{where, precisely(share.total()), precisely(share.false_inside),
                                         precisely(share.false_outside)};
     };
+    const auto degrees = [](double value) { return shortNumber(value) + " degrees"; };
     const auto length = [&](double value) {
         return shortNumber(value) + units + " (" + precisely(100.0 * value / samples.longest_side) + ")";
     };
@@ -48,14 +62,16 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
     text +=
         table({{"error", "mean", "99 % stay below"},
                {"signed distance near the surface", length(field.distance_mean), length(field.distance_p99)},
-               {"normal at the surface", shortNumber(field.normal_mean) + " degrees",
-                shortNumber(field.normal_p99) + " degrees"}});
+               {"normal at the surface", degrees(field.normal_mean), degrees(field.normal_p99)},
+               {"depth inside", length(field.inside.depth_mean), length(field.inside.depth_p99)},
+               {"normal inside", degrees(field.inside.normal_mean), degrees(field.inside.normal_p99)}});
     text += "\n";
     std::vector<std::vector<std::string>> rows = {
         {"near the surface, outside without a distance", precisely(field.far_percent)},
         {"near the surface, no map votes", precisely(field.unknown_percent)},
         {"on the surface, no normal", precisely(field.no_normal_percent)},
-        {"surface that no map sees", precisely(accuracy.unseen_percent)}};
+        {"surface that no map sees", precisely(accuracy.unseen_percent)},
+        {"inside, a farther face decides", precisely(field.inside.far_face_percent)}};
     if (accuracy.buried_percent > 0.0) {
         rows.push_back({"surface inside the object, left out", precisely(accuracy.buried_percent)});
     }
@@ -154,27 +170,43 @@ void fields(FieldVisitor& visit, const FieldAccuracyReport& report) {
     const FieldAccuracy& field = report.field;
     visit("near", field.near, {"Sides of the points near the surface"});
     visit("uniform", field.uniform, {"Sides of the points anywhere in the box"});
-    const auto distance = [&](FieldVisitor& visit_error) {
-        const double to_percent = 100.0 / report.longest_side;
-        visit_error("mean", finite(field.distance_mean), {"Mean", "object units", kFromZero});
-        visit_error("p99", finite(field.distance_p99), {"99th percentile", "object units", kFromZero});
-        visit_error("mean_percent", finite(field.distance_mean * to_percent),
-                    {"Mean", "% of the longest side", kFromZero});
-        visit_error("p99_percent", finite(field.distance_p99 * to_percent),
-                    {"99th percentile", "% of the longest side", kFromZero});
+    const auto lengths = [&](double mean, double p99) {
+        return [to_percent = 100.0 / report.longest_side, mean, p99](FieldVisitor& visit_error) {
+            visit_error("mean", finite(mean), {"Mean", "object units", kFromZero});
+            visit_error("p99", finite(p99), {"99th percentile", "object units", kFromZero});
+            visit_error("mean_percent", finite(mean * to_percent),
+                        {"Mean", "% of the longest side", kFromZero});
+            visit_error("p99_percent", finite(p99 * to_percent),
+                        {"99th percentile", "% of the longest side", kFromZero});
+        };
     };
+    const auto angles = [](double mean, double p99) {
+        return [mean, p99](FieldVisitor& visit_error) {
+            visit_error("mean", finite(mean), {"Mean", "degrees", kFromZero});
+            visit_error("p99", finite(p99), {"99th percentile", "degrees", kFromZero});
+        };
+    };
+    const auto distance = lengths(field.distance_mean, field.distance_p99);
     visit("distance_error", group(distance), {"Error of the signed distance near the surface"});
     visit("far_percent", field.far_percent,
           {"Points near the surface that are outside without a known distance", "%", kPercentRange});
     visit("unknown_percent", field.unknown_percent,
           {"Points near the surface for which no map votes", "%", kPercentRange});
-    const auto normal = [&](FieldVisitor& visit_error) {
-        visit_error("mean", finite(field.normal_mean), {"Mean", "degrees", kFromZero});
-        visit_error("p99", finite(field.normal_p99), {"99th percentile", "degrees", kFromZero});
-    };
+    const auto normal = angles(field.normal_mean, field.normal_p99);
     visit("normal_error_degrees", group(normal), {"Error of the normal at the surface"});
     visit("no_normal_percent", field.no_normal_percent,
           {"Points on the surface without a normal", "%", kPercentRange});
+    const auto inside = [&](FieldVisitor& visit_inside) {
+        const auto depth_error = lengths(field.inside.depth_mean, field.inside.depth_p99);
+        const auto normal_error = angles(field.inside.normal_mean, field.inside.normal_p99);
+        visit_inside("far_face_percent", field.inside.far_face_percent,
+                     {"Points for which a face decides that is more than 1.25 times as far as the nearest",
+                      "%", kPercentRange});
+        visit_inside("depth_error", group(depth_error), {"Error of the depth"});
+        visit_inside("normal_error_degrees", group(normal_error),
+                     {"Angle between the normal and the way to the nearest face"});
+    };
+    visit("inside", group(inside), {"Votes at points inside, at any depth"});
 }
 
 void fields(FieldVisitor& visit, const ColliderAccuracyReport& report) {

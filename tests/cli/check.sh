@@ -99,7 +99,11 @@ json seen.json "abs(d['accuracy']['unseen_area_percent'] - json.load(open('plan.
 expect 7 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 0.01 --json
 json stdout 'd["max_error_percent"] == 0.01 and not d["passed"]'
 grep -q 'max-error' stderr || die "no reason given: $(cat stderr)"
+"$relief" bake "$bunny" -o good.relief --budget 256kB -q
+expect 7 "$relief" check good.relief --mesh "$bunny" --samples 5000 --max-error 0.01
+grep -q '^good.relief: .* wrong near the surface: above --max-error 0.01 %$' stdout && grep -q '^What to do:$' stdout || die "$(cat stdout)"
 expect 0 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 50%
+grep -q '^b.relief: .*: within --max-error 50 %$' stdout && ! grep -q '^What to do:$' stdout || die "$(cat stdout)"
 
 # The same surface in another file is a warning, another mesh an error.
 (cat "$bunny" && echo '# touched') >touched.obj

@@ -272,6 +272,7 @@ function checkRows({ accuracy: original, repaired, sampling }, length) {
             ["surface that no map sees", percent(accuracy.unseen_area_percent)],
             ["outside without a distance", percent(accuracy.far_percent)], ["no map votes", percent(accuracy.unknown_percent)],
             ["no normal", percent(accuracy.no_normal_percent)],
+            ["inside, a farther face decides", percent(accuracy.inside.far_face_percent)],
             ["on the GPU", `${accuracy.gpu_bytes.toLocaleString("en")} bytes`],
             ["points of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
 }

@@ -167,6 +167,35 @@ TEST_F(AccuracyOfASphere, WhatAFieldDoesNotSayCountsAsOutside) {
     EXPECT_EQ(far.near.false_outside, silent.near.false_outside);
 }
 
+TEST_F(AccuracyOfASphere, InsideANearerFaceThatDoesNotDecideIsSeen) {
+    const InsideAccuracy right = measureField(samples(), grown(0.0)).inside;
+    EXPECT_EQ(right.far_face_percent, 0.0);
+    EXPECT_LT(right.depth_p99, 1e-6);
+    EXPECT_LT(right.normal_mean, 1.0);
+    EXPECT_NEAR(static_cast<double>(samples().inside.size()), 3.14159265 / 6.0 * kSamples, 0.01 * kSamples);
+    // Planes through the far side: the depth at r is 1 + r instead of 1 − r, and too large from r = 0.25 / 2.25 on.
+    const InsideAccuracy wrong = measureField(samples(), [](const glm::vec3& p) {
+                                     return FieldValue{-1.0F - glm::length(p), -glm::normalize(p)};
+                                 }).inside;
+    EXPECT_NEAR(wrong.far_face_percent, 100.0 * (1.0 - std::pow(0.25 / 2.25, 3.0)), 0.2);
+    EXPECT_NEAR(wrong.depth_mean, 2.0 * 0.75, 0.01);  // the mean of r over a ball
+    EXPECT_GT(wrong.normal_mean, 179.0);
+}
+
+// Of two boxes that overlap, the ends within the other one are no boundary.
+TEST(Accuracy, InsidePointsAreBesideABoundary) {
+    const TriangleMesh boxes =
+        joined({makeBoxMesh({-0.4, 0, 0}, {1, 1, 1}), makeBoxMesh({0.4, 0, 0}, {1, 1, 1})});
+    const MeshQuery query =
+        queryOf(PreparedMesh::unionOf(boxes, std::vector<std::uint32_t>(boxes.triangles.size(), 0)));
+    const TruthSamples samples = sampleTruth(query, withSamples(20'000));
+    ASSERT_GT(samples.inside.size(), 5'000U);
+    for (const InsidePoint& point : samples.inside) {
+        const glm::dvec3 d = glm::dvec3(1.4, 1.0, 1.0) - glm::abs(glm::dvec3(point.position));
+        ASSERT_NEAR(point.depth, std::min({d.x, d.y, d.z}), 1e-5);
+    }
+}
+
 TEST_F(AccuracyOfASphere, NormalsAreMeasuredInDegrees) {
     // Turned about a fixed axis by 10°, a normal n moves by 2·asin(sin 5° · sin ∠(n, axis)): 10° at most.
     const glm::mat3 turn(rotation({0, 0, 1}, 10.0));
