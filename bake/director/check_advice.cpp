@@ -243,7 +243,8 @@ class Advisor {
 }  // namespace
 
 std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file, const std::string& output) {
-    return Advisor(run, mesh_file, output).run();
+    // No maps help where floats are too coarse.
+    return coarseFloatsWarning(*run.mesh) ? std::vector<Advice>() : Advisor(run, mesh_file, output).run();
 }
 
 }  // namespace relief

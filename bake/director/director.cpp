@@ -400,7 +400,7 @@ class Director {
         }
         result_.times.check_ms = watch.ms();
         std::vector<std::string>& warnings = result_.baked.report.warnings;
-        if (result_.wrong->total() > kSelfCheckWarns) {
+        if (result_.wrong->total() > kSelfCheckWarns && !coarseFloatsWarning(*mesh)) {
             warnings.push_back(mesh->name + ": " + shortNumber(result_.wrong->total()) +
                                " % wrong near the surface; " + cure());
         }

@@ -82,6 +82,9 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
     const Provenance& from = run.collider.provenance;
     run.same_file = from.mesh_hash == run.mesh->content_hash;
     run.warnings = run.mesh->warnings;
+    if (const std::optional<std::string> warning = coarseFloatsWarning(*run.mesh)) {
+        run.warnings.push_back(*warning);
+    }
     if (!run.same_file) {
         run.warnings.push_back(run.mesh->name + " is not the file that the collider was baked from (" +
                                from.mesh_name + ", XXH3-128 " +

@@ -116,12 +116,8 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
 }
 
 void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
-    const glm::vec3 far_corner = glm::max(glm::abs(mesh->bounds.min), glm::abs(mesh->bounds.max));
-    const float farthest = std::max({far_corner.x, far_corner.y, far_corner.z});
-    if (mesh->bounds.longestSide() < 1e-3F * farthest) {
-        report.warnings.push_back(mesh->name +
-                                  " lies more than 1000 times its size away from the origin, where floats "
-                                  "are coarse; move it to the origin");
+    if (const std::optional<std::string> warning = coarseFloatsWarning(*mesh)) {
+        report.warnings.push_back(*warning);
     }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         const View& view = jobs[i].view;
@@ -514,6 +510,18 @@ Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
     std::optional<Result<Baked>> result;
     arena.execute([&] { result.emplace(Bake(mesh, options).run()); });
     return std::move(*result);
+}
+
+std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh) {
+    const glm::vec3 far_corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
+    const float farthest = std::max({far_corner.x, far_corner.y, far_corner.z});
+    if (mesh.bounds.longestSide() >= 1e-3F * farthest) {
+        return std::nullopt;
+    }
+    return mesh.name +
+           " lies more than 1000 times its size away from the origin, where floats are coarse; move it to "
+           "the "
+           "origin";
 }
 
 Result<MistakeCurve> planMistakes(const PreparedMesh& mesh, const BakeOptions& options, std::uint64_t bytes) {

@@ -58,6 +58,9 @@ struct Baked {
 /// any map meets the mesh).
 [[nodiscard]] Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options);
 
+/// A line for a mesh so far from the origin that floats limit its accuracy, whatever its maps are; nullopt for others.
+[[nodiscard]] std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh);
+
 /// The mistakes of planned patches against their bytes (planMistakes).
 /// \param bytes  of the largest tree, kPatchBytesMin to kPatchBytesMax.
 /// Errors: kFailure (Embree).

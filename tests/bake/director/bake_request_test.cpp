@@ -323,6 +323,26 @@ TEST(Director, BakesAMeshInMemory) {
     EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
 }
 
+TEST(Director, AdvisesNothingButTheOriginWhereFloatsAreCoarse) {
+    const TriangleMesh mesh = moved(makeIcosphere({0, 0, 0}, 1.0, 3),
+                                    [](const glm::dvec3& p) { return p + glm::dvec3(4e5, 0.0, 8e5); });
+    BakeRequest request;
+    request.budget = 20'000;
+    const Result<BakeResult> baked = bake(request, {}, mesh);
+    ASSERT_TRUE(baked) << baked.error().message;
+    ASSERT_GT(baked->wrong->total(), 5.0);
+    const std::string warning = coarseFloatsWarning(mesh).value();
+    EXPECT_NE(warning.find("move it to the origin"), std::string::npos);
+    EXPECT_EQ(baked->baked.report.warnings, std::vector{warning});
+    CheckRequest fewer;
+    fewer.samples = 2000;
+    const Result<MeshCheck> checked = check(fewer, baked->baked.collider, mesh);
+    ASSERT_TRUE(checked) << checked.error().message;
+    EXPECT_EQ(checked->warnings, std::vector{warning});
+    EXPECT_TRUE(adviceFor(*checked, "mesh.obj", "out.relief").empty());
+    EXPECT_FALSE(coarseFloatsWarning(makeIcosphere({0, 0, 0}, 1.0, 1)));
+}
+
 TEST(ShellWord, IsOneWordToAShell) {
     EXPECT_EQ(shellWord("a/b-1.obj"), "a/b-1.obj");
     EXPECT_EQ(shellWord("my mesh.obj"), "'my mesh.obj'");
