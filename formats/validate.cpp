@@ -163,7 +163,7 @@ const char* faultOfHalves(std::span<const std::byte> texel) {
 }  // namespace
 
 bool isPlainText(std::string_view text) {
-    return cleanUtf8(text) == text;
+    return cleanUtf8(text, std::string::npos, Bidi::kKeep) == text;
 }
 
 std::vector<Issue> descriptionIssues(const Collider& collider) {

@@ -50,8 +50,8 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info, con
                        ", " + bytesText(info.file_size) + "\n";
     text += "bounds   " + vectorText(collider.bounds.min) + " to " + vectorText(collider.bounds.max) + " " +
             unitText(collider.unit) + "\n";
-    text += "mesh     " + from.mesh_name + ", " + std::to_string(from.triangles) + " triangles, XXH3-128 " +
-            (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) + "\n";
+    text += "mesh     " + cleanUtf8(from.mesh_name) + ", " + std::to_string(from.triangles) +
+            " triangles, XXH3-128 " + (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) + "\n";
     text += bakedText(from);
     if (animated != nullptr) {
         text += "moves    " + animationText(*animated);

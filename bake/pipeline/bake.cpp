@@ -28,6 +28,7 @@
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/patch_tree.h"
+#include "formats/validate.h"
 
 namespace relief {
 namespace {
@@ -113,6 +114,12 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
         recorded.push_back({"budget", std::to_string(options.planned_budget)});
     }
     return recorded;
+}
+
+/// The name of a mesh as a container may have it: that of a node may look like a path, and be long.
+std::string storedName(std::string name) {
+    std::ranges::replace(name, '/', '_');
+    return cleanUtf8(name, kMeshNameMax);
 }
 
 void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
@@ -295,7 +302,7 @@ class Bake {
         warnAbout(mesh_, jobs_, baked_.report);
         baked_.collider.bounds = mesh_->bounds;
         baked_.collider.unit = mesh_->unit;
-        baked_.collider.provenance = {mesh_->name, mesh_->content_hash, mesh_->sourceTriangles(),
+        baked_.collider.provenance = {storedName(mesh_->name), mesh_->content_hash, mesh_->sourceTriangles(),
                                       "relief " RELIEF_VERSION,
                                       effectiveOptions(jobs_, options_, baked_.collider)};
         return std::move(baked_);

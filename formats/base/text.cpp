@@ -79,6 +79,12 @@ std::size_t utf8Length(std::string_view bytes) {
     return length;
 }
 
+/// U+202A to U+202E and U+2066 to U+2069: embeddings, overrides and isolates.
+bool changesOrder(std::string_view character) {
+    return (character >= "\xe2\x80\xaa" && character <= "\xe2\x80\xae") ||
+           (character >= "\xe2\x81\xa6" && character <= "\xe2\x81\xa9");
+}
+
 }  // namespace
 
 void appendShortest(std::string& out, float value) {
@@ -225,14 +231,15 @@ std::string listed(std::span<const std::string_view> words) {
     return text;
 }
 
-std::string cleanUtf8(std::string_view bytes, std::size_t size_max) {
+std::string cleanUtf8(std::string_view bytes, std::size_t size_max, Bidi bidi) {
     std::string text;
     while (!bytes.empty()) {
         const std::size_t length = utf8Length(bytes);
         const auto first = static_cast<unsigned char>(bytes[0]);
         const bool upper_control =
             length == 2 && first == 0xc2 && static_cast<unsigned char>(bytes[1]) < 0xa0;
-        const bool bad = length == 0 || first < 0x20 || first == 0x7f || upper_control;
+        const bool bad = length == 0 || first < 0x20 || first == 0x7f || upper_control ||
+                         (bidi == Bidi::kReplace && changesOrder(bytes.substr(0, length)));
         const std::string_view character = bad ? std::string_view("\xef\xbf\xbd") : bytes.substr(0, length);
         if (text.size() + character.size() > size_max) {
             break;

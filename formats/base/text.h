@@ -52,9 +52,12 @@ void appendShortest(std::string& out, float value);
 /// "less, greater"
 [[nodiscard]] std::string listed(std::span<const std::string_view> words);
 
+/// Characters that change the order of those round them (UAX 9), with which a name can pretend to be another one.
+enum class Bidi : std::uint8_t { kReplace, kKeep };
 /// Any bytes as valid UTF-8: what is none becomes U+FFFD, control characters included.
 /// \param size_max  bytes: the text ends before the character that would exceed it.
-[[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos);
+[[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos,
+                                    Bidi bidi = Bidi::kReplace);
 /// Words of another program for a message: cleanUtf8, with spaces for control characters, and none at both ends.
 [[nodiscard]] std::string oneCleanLine(std::string_view text);
 

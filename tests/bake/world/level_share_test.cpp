@@ -73,6 +73,13 @@ TEST_F(LevelShares, ABumpyBallGetsMoreThanABoxOfItsAreaWithAnyNumberOfThreads) {
     EXPECT_TRUE(filesOf("w") == filesOf("one"));
 }
 
+TEST_F(LevelShares, NamesMayLookLikePathsAndBeLong) {
+    write({{"props/" + std::string(300, 'x'), makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0))},
+           {"ball", makeIcosphere({5.0, 0.0, 0.0}, 1.0, 2)}});
+    request_.bake.budget = 20'000;
+    EXPECT_EQ(sharesOf(bake("w")).size(), 2U);
+}
+
 TEST_F(LevelShares, ASecondRunPlansAndBakesOnlyWhatChanged) {
     std::map<std::string, std::uint64_t> shares = sharesOf(bake("w"));
     const Files files = filesOf("w");

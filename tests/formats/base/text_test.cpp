@@ -75,6 +75,9 @@ TEST(Utf8, WhatIsNoneIsReplaced) {
     for (const std::string bad : {"\xff", "\xc0", "\xed\xa0", "\xf5"}) {
         EXPECT_EQ(cleanUtf8(bad).substr(0, 3), "\xef\xbf\xbd") << bad;
     }
+    EXPECT_EQ(cleanUtf8("a\xe2\x80\xae\xe2\x81\xa6z"), "a\xef\xbf\xbd\xef\xbf\xbdz") << "another order";
+    EXPECT_EQ(cleanUtf8("a\xe2\x80\xaf\xe2\x81\xa5z"), "a\xe2\x80\xaf\xe2\x81\xa5z");
+    EXPECT_EQ(cleanUtf8("a\xe2\x80\xaez", 9, Bidi::kKeep), "a\xe2\x80\xaez");
     EXPECT_EQ(cleanUtf8("\xc3\xa4\xc3\xa4", 3), "\xc3\xa4") << "no half characters";
 }
 
