@@ -133,7 +133,7 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
     return run;
 }
 
-/// Files that are written beside the outputs must be none of them, nor any input.
+/// Files that are written beside the outputs.
 Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
                        FileGuard& files) {
     for (const std::string& file : {options.stamp, call.depfile}) {
@@ -144,18 +144,9 @@ Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& cal
     if (!run.dry_run) {
         RELIEF_TRY(preflightFolder(run.output_folder, "--output"));
     }
-    const fs::path cache = run.output_folder / kBakeCacheName;
-    std::error_code error;
-    // A link of that name is not followed.
-    if (!fs::is_symlink(fs::symlink_status(cache, error))) {
-        if (const FileGuard::File* other = files.claim(cache, "the recipe's cache"); other != nullptr) {
-            return fail(ErrorCode::kUsage, quotedPath(cache) + " is the recipe's cache, and " +
-                                               quotedPath(other->path) +
-                                               " is the same file; rename it, or choose another --output");
-        }
-    }
-    if (call.json) {
-        RELIEF_TRY(files.writes("-", "--json"));
+    RELIEF_TRY(files.keeps(run.output_folder / kBakeCacheName, "--output (the recipe's cache)"));
+    if (call.json || (run.dry_run && options.events != "-")) {
+        RELIEF_TRY(files.writes("-", call.json ? "--json" : "the list of --dry-run"));
     }
     RELIEF_TRY(files.writes(options.stamp, "--stamp"));
     RELIEF_TRY(files.writes(call.depfile, "--depfile"));

@@ -246,6 +246,9 @@ Result<std::string> scenePage(const std::string& name, const ContainerLimits& li
                         " has a [flow], which browsers do not read; take relief-sim, or "
                         "leave it out");
     }
+    for (const fs::path& file_of_scene : allFilesOf(loaded)) {
+        RELIEF_TRY(page.files_of_run.reads(file_of_scene));
+    }
     for (const fs::path& named : filesOf(loaded.scene)) {
         page.files[nameInScene(named, file)] = textOf(RELIEF_TRY(page.read(named)));
     }
@@ -354,14 +357,11 @@ Result<void> preflightPage(const std::string& file, const std::string& mesh, con
     if (html.empty()) {
         return {};
     }
-    if (html == "-") {
-        return fail(ErrorCode::kUsage, "--html cannot be standard output, where the report goes");
-    }
     RELIEF_TRY(files.reads(file));
     RELIEF_TRY(files.reads(mesh));
-    const fs::path page = RELIEF_TRY(findViewPage());
-    RELIEF_TRY(files.reads(page));
-    return files.writes(html, "--html");
+    RELIEF_TRY(files.writes("-", "the report"));
+    RELIEF_TRY(files.writes(html, "--html"));
+    return files.reads(RELIEF_TRY(findViewPage()));
 }
 
 Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,

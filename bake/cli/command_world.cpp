@@ -6,6 +6,7 @@
 #include <span>
 
 #include "bake/cli/command_view.h"
+#include "bake/recipe/recipe_jobs.h"
 #include "bake/report/recipe_report.h"
 #include "bake/report/report_text.h"
 #include "bake/world/world_bake.h"
@@ -93,6 +94,7 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
     }
     RELIEF_TRY(preflightFolder(folder, "--world"));
     RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world"));
+    RELIEF_TRY(ownWorldFolder(folder, "--world", call.files));
     return call.files.writes(call.outputs.depfile, "--depfile");
 }
 

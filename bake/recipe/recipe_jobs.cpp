@@ -100,14 +100,14 @@ class Expander {
         }
         for (std::size_t i = 0; i < result_.jobs.size(); ++i) {
             const RecipeJob& job = result_.jobs[i];
-            const FileGuard::File* other = files.claim(job.output_path, job.mesh);
-            if (other != nullptr && other->input) {
+            const auto other = files.claim(job.output_path, bakeOf(job));
+            if (other && other->use == FileGuard::Use::kRead) {
                 return at(places_[i], "the output " + inQuotes(job.output) + " is the input " +
                                           quotedPath(other->path) + "; name another file");
             }
-            if (other != nullptr) {
-                return at(places_[i], inQuotes(other->option) + " and " + inQuotes(job.mesh) +
-                                          " would both be baked into " + inQuotes(job.output) +
+            if (other) {
+                return at(places_[i], other->option + " and " + bakeOf(job) + " would both write " +
+                                          inQuotes(job.output) +
                                           "; tell them apart by {stem}, {name} or {dir}");
             }
         }
@@ -133,7 +133,6 @@ class Expander {
             folders.push_back(destination(job.output_path.parent_path(), error));
             if (job.world) {
                 worlds.emplace(folders.back(), i);
-                RELIEF_TRY(checkWorldFolder(job, places_[i]));
             }
         }
         for (std::size_t i = 0; i < folders.size(); ++i) {
@@ -150,6 +149,9 @@ class Expander {
                 }
             }
         }
+        for (const auto& [folder, i] : worlds) {
+            RELIEF_TRY(checkWorldFolder(result_.jobs[i], places_[i]));
+        }
         return {};
     }
 
@@ -160,20 +162,11 @@ class Expander {
                                  inQuotes(*link) + ", which leads out of the output folder " +
                                  quotedPath(output_folder_) + "; remove it");
         }
-        // The world's own files; in the output folder the cache is the recipe's as well.
-        for (const char* name : {kBakeCacheName, kMistakeCurvesName}) {
-            const fs::path cache = job.output_path.parent_path() / name;
-            std::error_code error;
-            const bool skipped = (inside.empty() && name == kBakeCacheName) ||
-                                 fs::is_symlink(fs::symlink_status(cache, error));
-            const FileGuard::File* const other = skipped ? nullptr : result_.files.claim(cache, job.mesh);
-            if (other != nullptr) {
-                return at(place, quotedPath(other->path) + " is where the world " + inQuotes(job.output) +
-                                     " keeps its cache; name another folder");
-            }
-        }
-        return {};
+        const auto owned = ownWorldFolder(job.output_path.parent_path(), bakeOf(job), result_.files);
+        return owned ? Result<void>() : at(place, owned.error().message);
     }
+
+    static std::string bakeOf(const RecipeJob& job) { return "the bake of " + inQuotes(job.mesh); }
 
     /// The files of all patterns, each once, without the excluded ones.
     Result<std::vector<std::string>> meshesOf(const RecipeAsset& asset) {
@@ -325,6 +318,12 @@ class Expander {
 };
 
 }  // namespace
+
+Result<void> ownWorldFolder(const fs::path& folder, std::string_view option, FileGuard& files) {
+    RELIEF_TRY(files.writes(FilesByEnding{folder, std::string(kColliderExtension)}, option));
+    RELIEF_TRY(files.keeps(folder / kBakeCacheName, option));
+    return files.keeps(folder / kMistakeCurvesName, option);
+}
 
 fs::path recipeFolder(const fs::path& recipe) {
     return recipe == "-" || !recipe.has_parent_path() ? fs::path(".") : recipe.parent_path();

@@ -53,6 +53,11 @@ struct RecipeJobs {
                                             const std::filesystem::path& recipe,
                                             const std::filesystem::path& output_folder, FileGuard files = {});
 
+/// The bake of a world owns its folder's containers, also those that are up to date, and its caches.
+/// \param option  that names the folder. Errors: as FileGuard::writes().
+[[nodiscard]] Result<void> ownWorldFolder(const std::filesystem::path& folder, std::string_view option,
+                                          FileGuard& files);
+
 /// The folder of a recipe: never empty.
 [[nodiscard]] std::filesystem::path recipeFolder(const std::filesystem::path& recipe);
 

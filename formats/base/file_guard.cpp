@@ -21,9 +21,15 @@ std::string shown(const fs::path& path, const char* standard) {
     return path == "-" ? standard : quotedPath(path);
 }
 
-/// The folder, or one that it lies in.
-bool isOrHolds(const fs::path& outer, const fs::path& inner) {
-    return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+/// A link's own place; nullopt: no symbolic link.
+std::optional<std::string> placeOfLink(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error))) {
+        return std::nullopt;
+    }
+    const fs::path folder = path.parent_path();
+    const fs::path real = destination(folder.empty() ? "." : folder, error);
+    return error ? std::nullopt : std::optional((real / path.filename()).native());
 }
 
 }  // namespace
@@ -41,6 +47,9 @@ FileGuard::Keys FileGuard::keysOf(const fs::path& path, int standard) {
             keys.emplace_back("-");
         }
     } else if (!exists || S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) {
+        if (auto link = placeOfLink(path); link) {
+            keys.insert(keys.begin(), *std::move(link));
+        }
         std::error_code error;
         const fs::path place = destination(path, error);
         keys.push_back(error ? path.native() : place.native());
@@ -48,19 +57,21 @@ FileGuard::Keys FileGuard::keysOf(const fs::path& path, int standard) {
     return keys;
 }
 
-const FileGuard::File* FileGuard::find(const Keys& keys) const {
+std::optional<FileGuard::File> FileGuard::find(const Keys& keys) const {
     for (const std::string& key : keys) {
         if (const auto known = by_key_.find(key); known != by_key_.end()) {
-            return &files_[known->second];
+            return files_[known->second];
         }
         const fs::path place = key;
-        for (const Series& series : series_) {
-            if (place.parent_path() == series.files.folder && series.files.hold(place.filename().native())) {
-                return &files_[series.file];
+        const auto [begin, end] = series_.equal_range(place.parent_path().native());
+        for (auto at = begin; at != end; ++at) {
+            const auto& [folder, holds] = at->second;
+            if (holds(place.filename().native())) {
+                return File{folder.path / place.filename(), folder.option, Use::kOneOfMany};
             }
         }
     }
-    return nullptr;
+    return std::nullopt;
 }
 
 void FileGuard::add(const Keys& keys, File file) {
@@ -71,16 +82,19 @@ void FileGuard::add(const Keys& keys, File file) {
 }
 
 Result<void> FileGuard::refusal(const File& file, const File& other) {
-    if (file.input || other.input) {
-        const File& input = file.input ? file : other;
-        const File& output = file.input ? other : file;
+    if (file.use == Use::kRead || other.use == Use::kRead) {
+        const bool reads = file.use == Use::kRead;
+        const File& input = reads ? file : other;
+        const File& output = reads ? other : file;
         const std::string name = input.path == output.path ? "" : " " + shown(input.path, "standard input");
         return fail(ErrorCode::kUsage, (output.path == "-" ? "" : "the output ") +
                                            shown(output.path, "standard output") + " is the input" + name +
                                            "; choose another place for " + output.option);
     }
+    const bool same = file.path.lexically_normal() == other.path.lexically_normal();
     return fail(ErrorCode::kUsage, "two outputs are one: " + other.option + " and " + file.option +
                                        " would both write " + shown(file.path, "standard output") +
+                                       (same ? "" : ", which is " + shown(other.path, "standard output")) +
                                        "; choose another place for one of them");
 }
 
@@ -89,10 +103,10 @@ Result<void> FileGuard::reads(const fs::path& path) {
         return {};
     }
     const Keys keys = keysOf(path, STDIN_FILENO);
-    if (const File* other = find(keys); other != nullptr && !other->input) {
-        return refusal({path, "", true}, *other);
+    if (const auto other = find(keys); other && other->use != Use::kRead) {
+        return refusal({path, "", Use::kRead}, *other);
     }
-    add(keys, {path, "", true});
+    add(keys, {path, "", Use::kRead});
     return {};
 }
 
@@ -101,62 +115,89 @@ Result<void> FileGuard::writes(const fs::path& path, std::string_view option) {
         return {};
     }
     RELIEF_TRY(preflightFile(path, option));
-    if (const File* other = claim(path, option); other != nullptr) {
-        return refusal({path, std::string(option)}, *other);
-    }
-    return {};
+    const auto other = claim(path, option);
+    return other ? refusal({path, std::string(option)}, *other) : Result<void>();
 }
 
-const FileGuard::File* FileGuard::claim(const fs::path& path, std::string_view option) {
+std::optional<FileGuard::File> FileGuard::claim(const fs::path& path, std::string_view option) {
     const Keys keys = keysOf(path, STDOUT_FILENO);
-    if (const File* other = find(keys); other != nullptr) {
+    if (auto other = find(keys); other || keys.empty()) {
         return other;
     }
-    // A folder of frames that is not made yet.
-    for (const Series& series : series_) {
-        if (!keys.empty() && isOrHolds(keys.back(), series.files.folder)) {
-            return &files_[series.file];
+    // A folder of outputs, or one that it lies in, which is not made yet.
+    const std::string inside = keys.back() + "/";
+    for (const auto& series : {series_.find(keys.back()), series_.lower_bound(inside)}) {
+        if (series != series_.end() && (series->first + "/").starts_with(inside)) {
+            return series->second.folder;
         }
     }
     add(keys, {path, std::string(option)});
-    return nullptr;
+    return std::nullopt;
+}
+
+Result<void> FileGuard::keeps(const fs::path& path, std::string_view option) {
+    const auto link = placeOfLink(path);
+    const Keys keys = link ? Keys{*link} : keysOf(path, STDOUT_FILENO);
+    File file{path, std::string(option), Use::kKept};
+    if (const auto other = find(keys); other && other->use != Use::kKept) {
+        return refusal(file, *other);
+    }
+    add(keys, std::move(file));
+    return {};
 }
 
 Result<void> FileGuard::writes(const NumberedFiles& files, std::string_view option) {
-    const File self{files.folder, std::string(option)};
+    return writesSeries(
+        files.folder, [files](const std::string& name) { return files.hold(name); }, option);
+}
+
+Result<void> FileGuard::writes(const FilesByEnding& files, std::string_view option) {
+    const auto holds = [ending = files.ending](const std::string& name) { return name.ends_with(ending); };
+    return writesSeries(files.folder, holds, option);
+}
+
+Result<void> FileGuard::writesSeries(const fs::path& folder, const HoldsName& holds,
+                                     std::string_view option) {
+    const File self{folder, std::string(option), Use::kOneOfMany};
     std::error_code error;
-    NumberedFiles real = files;
-    real.folder = destination(files.folder, error);
+    const fs::path real = destination(folder, error);
     if (error) {
-        return fail(ErrorCode::kIo, "cannot follow " + quotedPath(files.folder) + ": " + error.message() +
+        return fail(ErrorCode::kIo, "cannot follow " + quotedPath(folder) + ": " + error.message() +
                                         "; choose another place for " + self.option);
     }
-    for (const auto& [key, file] : by_key_) {
-        const fs::path path = key;
-        if (!files_[file].input && path.is_absolute() && isOrHolds(path, real.folder)) {
-            return refusal(self, files_[file]);
+    for (fs::path outer = real; outer.has_relative_path(); outer = outer.parent_path()) {
+        if (const auto known = by_key_.find(outer.native());
+            known != by_key_.end() && files_[known->second].use != Use::kRead) {
+            return refusal(self, files_[known->second]);
         }
-        // Files that are not there yet are known by their names alone.
-        if (path.parent_path() == real.folder && real.hold(path.filename().native())) {
-            return refusal({files.folder / path.filename(), self.option}, files_[file]);
+    }
+    // Files that are not there yet are known by their names only.
+    const std::string inside = (real / "").native();
+    for (auto known = by_key_.lower_bound(inside); known != by_key_.end() && known->first.starts_with(inside);
+         ++known) {
+        const std::string name = known->first.substr(inside.size());
+        if (name.find('/') == std::string::npos && holds(name)) {
+            return refusal({folder / name, self.option, self.use}, files_[known->second]);
         }
     }
     std::vector<std::pair<Keys, File>> found;
-    for (fs::directory_iterator entry(real.folder, error), end; !error && entry != end;
-         entry.increment(error)) {
+    for (fs::directory_iterator entry(real, error), end; !error && entry != end; entry.increment(error)) {
         const fs::path name = entry->path().filename();
-        if (real.hold(name.native())) {
-            found.emplace_back(keysOf(entry->path(), STDOUT_FILENO), File{files.folder / name, self.option});
-            if (const File* other = find(found.back().first); other != nullptr) {
-                return refusal(found.back().second, *other);
-            }
+        if (!holds(name.native())) {
+            continue;
+        }
+        const auto& [keys, file] = found.emplace_back(keysOf(entry->path(), STDOUT_FILENO),
+                                                      File{folder / name, self.option, self.use});
+        const auto other = find(keys);
+        // Of many files each is replaced: a hard link leaves the other name as it is.
+        if (other && (other->use != Use::kOneOfMany || find({keys.back()}))) {
+            return refusal(file, *other);
         }
     }
     for (auto& [keys, file] : found) {
         add(keys, std::move(file));
     }
-    series_.push_back({std::move(real), files_.size()});
-    files_.push_back(self);
+    series_.emplace(real.native(), Series{self, holds});
     return {};
 }
 

@@ -1,10 +1,12 @@
-// Keeps the files of a run apart: nothing that it reads is lost to what it writes, and no two outputs are one file.
+// Keeps the files of a run apart: no output replaces a file that the run reads or owns, or another output.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,16 +28,28 @@ struct NumberedFiles {
     [[nodiscard]] bool hold(const std::string& name) const;
 };
 
+/// Every file of a folder whose name ends so, there or not yet: the containers of a world.
+struct FilesByEnding {
+    std::filesystem::path folder;
+    std::string ending;  ///< ".relief"
+};
+
 /// Knows files by what they are and not by how they are named: through symbolic links, dangling ones included, through
 /// hard links, and behind standard input and output. Name every file before the first one is written. Devices may be
 /// named as often as one likes.
 class FileGuard {
   public:
+    enum class Use : std::uint8_t {
+        kRead,
+        kWritten,
+        kOneOfMany,  ///< written, of NumberedFiles or FilesByEnding
+        kKept,       ///< by keeps()
+    };
     /// A file that the run reads or writes.
     struct File {
         std::filesystem::path path;  ///< as it was named
         std::string option;          ///< that names an output; empty for an input
-        bool input = false;
+        Use use = Use::kWritten;
     };
 
     /// A file that the run reads; "-" is standard input, an empty path none.
@@ -45,30 +59,38 @@ class FileGuard {
     /// \param option  that names it, for messages: "--dump".
     /// Errors: those of preflightFile; kUsage: it is an input, or another output.
     [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option);
-    /// Files that the run writes, into a folder that it makes.
+    /// Files that the run writes into a folder, which may be missing.
     /// Errors: as the last one's kUsage.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
+    [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
+    /// A cache. A link of that name is replaced, not followed; several caches may be one file. The folder may be missing.
+    /// \param option  that names its folder. Errors: kUsage, as writes().
+    [[nodiscard]] Result<void> keeps(const std::filesystem::path& path, std::string_view option);
 
     /// As the first writes(), for a file whose folder may still be missing: whether it can be written is not checked.
-    /// \return the file that it would replace, valid until the next call; null: none, and the guard knows it now.
-    [[nodiscard]] const File* claim(const std::filesystem::path& path, std::string_view option);
+    /// \return the file that it would replace; nullopt: none, and the guard knows it now.
+    [[nodiscard]] std::optional<File> claim(const std::filesystem::path& path, std::string_view option);
 
   private:
-    /// Identities of a path: the number of a regular file, and its destination, "-" for standard output. None of devices.
+    /// Identities of a path: a symbolic link's own place, the number of a regular file, and last its destination, "-" for
+    /// standard output. None of devices.
     using Keys = std::vector<std::string>;
+    using HoldsName = std::function<bool(const std::string& name)>;
     struct Series {
-        NumberedFiles files;  ///< in the folder's destination
-        std::size_t file;     ///< in files_
+        File folder;
+        HoldsName holds;
     };
 
     [[nodiscard]] static Keys keysOf(const std::filesystem::path& path, int standard);
-    [[nodiscard]] const File* find(const Keys& keys) const;
+    [[nodiscard]] std::optional<File> find(const Keys& keys) const;
+    [[nodiscard]] Result<void> writesSeries(const std::filesystem::path& folder, const HoldsName& holds,
+                                            std::string_view option);
     void add(const Keys& keys, File file);
     [[nodiscard]] static Result<void> refusal(const File& file, const File& other);
 
     std::vector<File> files_;
     std::map<std::string, std::size_t> by_key_;  // in files_
-    std::vector<Series> series_;
+    std::multimap<std::string, Series> series_;  // by the folder's destination
 };
 
 }  // namespace relief

@@ -9,6 +9,7 @@
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
 #include "runtime/player/watchdog.h"
+#include "runtime/scene/scene_meshes.h"
 #include "runtime/vdb/vdb_writer.h"
 
 namespace relief {
@@ -37,16 +38,13 @@ Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard) {
 }
 
 Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded, FileGuard& guard) {
-    const Scene& scene = loaded.scene;
-    for (const fs::path& file : filesOf(scene)) {
+    for (const fs::path& file : allFilesOf(loaded)) {
         RELIEF_TRY(guard.reads(file));
     }
-    if (!options.frames.empty() && !scene.render.meshes.empty()) {
-        for (const fs::path& file : RELIEF_TRY(drawnFiles(loaded))) {
-            RELIEF_TRY(guard.reads(file));
-        }
+    if (!options.frames.empty() && !loaded.scene.render.meshes.empty()) {
+        static_cast<void>(RELIEF_TRY(drawnFiles(loaded)));  // or a missing one is found after the first steps
     }
-    const std::uint32_t count = frameCount(scene);
+    const std::uint32_t count = frameCount(loaded.scene);
     if (!options.frames.empty()) {
         RELIEF_TRY(guard.writes(pictureFiles(options, count), "--frames"));
     }

@@ -17,7 +17,7 @@ namespace relief {
 /// another output. \param guard  gets to know them.
 /// Fails as FileGuard does, and with kUnsupported (OpenVDB).
 [[nodiscard]] Result<void> checkOutputs(const PlayerOptions& options, FileGuard& guard);
-/// The same with every file that the scene names, and with the numbered files of its frames.
+/// The same with allFilesOf() the scene, and with the numbered files of its frames.
 [[nodiscard]] Result<void> checkFrames(const PlayerOptions& options, const LoadedScene& loaded,
                                        FileGuard& guard);
 

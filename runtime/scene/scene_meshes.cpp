@@ -51,11 +51,11 @@ std::string originOf(const Scene& scene) {
     return scene.render.meshes_origin + ": render.meshes";
 }
 
-/// Of each collider the file that is drawn for it; empty: none is.
-Result<std::vector<fs::path>> fileOfEach(const LoadedScene& loaded) {
+/// Of each collider the file that is drawn for it; an empty path: none is.
+std::vector<Result<fs::path>> findFiles(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     const std::map<fs::path, std::string> of_world = namesOfWorld(loaded);
-    std::vector<fs::path> files(scene.colliders.size());
+    std::vector<Result<fs::path>> files(scene.colliders.size());
     for (std::size_t i = 0; i < files.size(); ++i) {
         const SceneCollider& collider = scene.colliders[i];
         if (collider.tile_of || loaded.played[i] || loaded.live[i]) {
@@ -63,8 +63,24 @@ Result<std::vector<fs::path>> fileOfEach(const LoadedScene& loaded) {
         }
         const auto named = of_world.find(collider.path);
         const std::string name = named != of_world.end() ? named->second : collider.path.stem().string();
-        files[i] = RELIEF_TRY(inFront(originOf(scene), fileOf(scene.render.meshes, name)));
+        files[i] = inFront(originOf(scene), fileOf(scene.render.meshes, name));
     }
+    return files;
+}
+
+Result<std::vector<fs::path>> fileOfEach(const LoadedScene& loaded) {
+    std::vector<fs::path> files;
+    for (Result<fs::path>& file : findFiles(loaded)) {
+        files.push_back(RELIEF_TRY(std::move(file)));
+    }
+    return files;
+}
+
+/// Each once, without empty paths.
+std::vector<fs::path> sorted(std::vector<fs::path> files) {
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    files.erase(std::remove(files.begin(), files.end(), fs::path()), files.end());
     return files;
 }
 
@@ -121,11 +137,23 @@ Result<PictureMesh> animatedMesh(const PlayedMesh& played, const SceneCollider& 
 }  // namespace
 
 Result<std::vector<fs::path>> drawnFiles(const LoadedScene& loaded) {
-    std::vector<fs::path> files = RELIEF_TRY(fileOfEach(loaded));
-    std::sort(files.begin(), files.end());
-    files.erase(std::unique(files.begin(), files.end()), files.end());
-    files.erase(std::remove(files.begin(), files.end(), fs::path()), files.end());
-    return files;
+    return sorted(RELIEF_TRY(fileOfEach(loaded)));
+}
+
+std::vector<fs::path> allFilesOf(const LoadedScene& loaded) {
+    std::vector<fs::path> files = filesOf(loaded.scene);
+    for (const WorldCollider& collider : loaded.world.colliders) {
+        files.push_back(containerOf(loaded.scene, collider));
+        if (collider.coarse) {
+            files.push_back(containerOf(loaded.scene, *collider.coarse));
+        }
+    }
+    if (!loaded.scene.render.meshes.empty()) {
+        for (const Result<fs::path>& file : findFiles(loaded)) {
+            files.push_back(file.value_or(fs::path()));
+        }
+    }
+    return sorted(std::move(files));
 }
 
 Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {

@@ -35,7 +35,11 @@ struct DrawnMeshes {
 /// Errors: kInvalidInput (no such file; a name that leaves the folder); messages begin with the place in the scene.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> drawnFiles(const LoadedScene& loaded);
 
-/// Reads them. Fails as drawnFiles() and loadPictureMesh() do.
+/// Every file that a scene may read, whatever a run of it reads: those that it names, the containers of its world, fine
+/// and coarse, and those of drawnFiles() that are there. No output may replace one. Sorted; without the scene itself.
+[[nodiscard]] std::vector<std::filesystem::path> allFilesOf(const LoadedScene& loaded);
+
+/// Reads the drawn files. Fails as drawnFiles() and loadPictureMesh() do.
 [[nodiscard]] Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded);
 
 /// Their places after so many seconds. Those that play a clip press the snow.

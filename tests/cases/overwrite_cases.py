@@ -48,6 +48,11 @@ file = "box.relief"
 [render]
 mesh = "box.obj"
 """
+PICTURED = """[collider]
+file = "box.relief"
+[render]
+meshes = "."
+"""
 RECIPE = """version = 1
 [[asset]]
 mesh = "box.obj"
@@ -57,6 +62,7 @@ plan = "plan.toml"
 SCENES = {
     "scene.toml": ["scene.toml", "box.relief", "live.obj", "points.csv", "flow.raw", "atlas.png"],
     "drawn.toml": ["drawn.toml", "box.relief", "box.obj"],
+    "pictured.toml": ["pictured.toml", "box.relief", "box.obj"],
     "box.relief": ["box.relief"],
 }
 
@@ -70,8 +76,8 @@ def make_inputs(cases, folder):
     subprocess.run(["convert", "-size", "4x4", "xc:red", folder / "atlas.png"], check=True)
     (folder / "scene.toml").write_text(SCENE)
     (folder / "drawn.toml").write_text(DRAWN)
+    (folder / "pictured.toml").write_text(PICTURED)
     (folder / "recipe.toml").write_text(RECIPE)
-    (folder / "args").write_text("--json\n")
     made = cases.run("relief", "bake", "box.obj", "-o", "box.relief", "--budget", "20kB", "--no-check", "--plan-out",
                      "plan.toml", "-q", cwd=folder)
     assert made.returncode == 0, made.stderr
@@ -162,7 +168,6 @@ def relief_case(arena, random):
         lambda: bake + ["-o", fresh(".relief"), "--plan-out", lead("box.obj", "box.mtl"), "--budget", "9kB"],
         lambda: bake + ["-o", fresh(".relief"), "--depfile", lead("box.obj", "plan.toml", "box.mtl"), "--plan",
                         "plan.toml"],
-        lambda: bake + ["-o", lead("args"), "--map", "cube:size=8", "@args"],
         lambda: (lambda one: bake + ["-o", one, "--depfile", lead(one), "--map", "cube:size=8"])(fresh("")),
         lambda: ["relief", "view", "box.relief", "--mesh", "box.obj", "-o", lead("box.relief", "box.obj", "box.mtl")],
         lambda: bake + ["-o", "-", "--json", "--map", "cube:size=8"],

@@ -2,6 +2,9 @@
 # combinations are drawn by tests/cases/overwrite_cases.py; this script has those that need a shell or several runs.
 . "$(dirname "$0")/lib.sh"
 
+echo '<script type="application/json" id="relief-page-data">null</script>' >stub.html
+export RELIEF_VIEW_PAGE=$work/stub.html
+
 PYTHONPATH=$RELIEF_SOURCE/tests/cases python3 "$RELIEF_SOURCE/tests/cases/overwrite_cases.py" "$RELIEF_BIN" --seed "${RELIEF_TEST_SEED:-1}" --cases 40
 
 { echo 'mtllib box.mtl' && cat "$models/OBJ/box.obj"; } >box.obj
@@ -23,6 +26,41 @@ kept() { # PATTERN COMMAND…: refused as a usage error, and no file has changed
 # A frame is an input only if its number is written.
 kept "frame_0002\.png' is the input" "$relief_sim" scene.toml --first-frame 0 --frames frames
 expect 0 "$relief_sim" scene.toml --frames frames -q
+
+# Every file of a scene is an input, also one that this run does not read: a mesh of pictures, a finer or coarser container.
+mkdir meshes
+cp box.obj meshes/stored
+ln -s stored meshes/box.obj
+printf '%s\n' '[collider]' 'file = "box.relief"' '[render]' 'meshes = "meshes"' >pictured.toml
+sha256sum meshes/stored >>before
+for output in meshes/box.obj meshes/stored; do
+    kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --dump $output
+    kept "'$output' is the input" "$relief_sim" pictured.toml --steps 1 --events $output
+done
+
+# A bake owns the folder of a world: its containers, up to date or not there yet, and its caches.
+python3 "$RELIEF_SOURCE/tests/cli/heights.py" hills.png 33
+printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "box.obj"' 'output = "recipe/world.json"' 'budget = "20kB"' >world.toml
+level=("$relief" bake box.obj --world level --budget 20kB)
+ground=("$relief" bake hills.png --heights spacing=1,low=0,high=9 --world ground)
+recipe=("$relief" bake --recipe world.toml)
+for bake in level ground recipe; do
+    declare -n command=$bake
+    expect 0 "${command[@]}" -q
+    ln $bake/*.relief $bake.hard
+    ln -s "$(echo $bake/*.relief)" $bake.symbolic
+    find $bake -type f -exec sha256sum {} + >>before
+    for output in $bake/*.relief $bake/new.relief $bake/world.json $bake.hard $bake.symbolic $bake/.relief-cache.json; do
+        kept "and --depfile would both write '$output'.*; choose another" "${command[@]}" --depfile $output
+    done
+done
+kept "and --stamp would both write 'recipe.symbolic', which is '.*recipe/.*relief'; choose" "${recipe[@]}" --stamp recipe.symbolic
+kept "'box.obj' and --events would both write" "${recipe[@]}" --events "$(echo recipe/*.relief)"
+kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curves.json
+
+# A page of a world, and the report beside a page.
+kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
+kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout
 
 # Standard input and output are files as well.
 kept "'points.csv' is the input standard input" sh -c "'$relief' query box.relief --points - -o points.csv <points.csv"

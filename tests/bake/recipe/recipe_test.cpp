@@ -239,15 +239,15 @@ TEST_F(RecipeJobsTest, AWorldHasItsFolderForItself) {
         fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = '" + other + "'\n",
               std::string("the output '") + other + "' lies in the folder of the world 'w/world.json'");
     }
-    fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'link/world.json'\n", "would both be baked into");
+    fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'link/world.json'\n", "would both write");
     EXPECT_TRUE(jobs(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'wx/world.json'\n"));
 }
 
 TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
     const std::string rocks = "[[asset]]\nmesh = '**/a.obj'\n";
     fails(rocks + "output = '{stem}.relief'\n",
-          "'rocks/a.obj' and 'rocks/deep/a.obj' would both be baked into 'a.relief'");
-    fails(rocks + "output = 'x/../a.relief'\n", "baked into 'a.relief'");
+          "'rocks/a.obj' and the bake of 'rocks/deep/a.obj' would both write 'a.relief'");
+    fails(rocks + "output = 'x/../a.relief'\n", "write 'a.relief'");
     put("mesh.relief");
     fails("[[asset]]\nmesh = 'mesh.relief'\noutput = '{stem}.relief'\n", "is the input");
     fs::create_symlink("rocks", folder_ / "link");
@@ -260,7 +260,7 @@ TEST_F(RecipeJobsTest, OutputsCollideWithNothing) {
           std::pair{"to_fresh.relief", "fresh.relief"}, std::pair{"one.relief", "two.relief"}}) {
         fails("[[asset]]\nmesh = 'hill.off'\noutput = '" + std::string(first) +
                   "'\n[[asset]]\nmesh = 'rocks/a.obj'\noutput = '" + second + "'\n",
-              "baked into '" + std::string(second) + "'");
+              "would both write '" + std::string(second) + "'");
     }
 }
 

@@ -42,7 +42,10 @@ class FileGuardTest : public testing::Test {
         expectUsage(guard_.writes(in(name), "--new"), name, says);
     }
     Result<void> frames(const std::string& folder) {
-        return guard_.writes({in(folder), "frame_", ".png", 3}, "--frames");
+        return guard_.writes(NumberedFiles{in(folder), "frame_", ".png", 3}, "--frames");
+    }
+    Result<void> containers(const std::string& folder) {
+        return guard_.writes(FilesByEnding{in(folder), ".relief"}, "--world");
     }
     void refusesFrames(const std::string& folder, const std::string& says) {
         expectUsage(frames(folder), folder, says);
@@ -81,8 +84,10 @@ TEST_F(FileGuardTest, NoTwoOutputsAreOne) {
     refuses("twice", "--stats and --new would both write");
     writes("real/fresh", "--events");
     refuses("linked/fresh", "--events and --new");
-    writes("/dev/null", "--table");
-    writes("/dev/null", "--plan");
+    fs::create_symlink("/dev/null", folder_ / "null");
+    for (const char* device : {"/dev/null", "null", "null"}) {
+        writes(device, "--plan");
+    }
     fs::create_symlink("circle", folder_ / "circle");
     writes("circle", "-o");  // writing it fails
 }
@@ -133,6 +138,49 @@ TEST_F(FileGuardTest, FramesAreNoOtherOutputNorEachOther) {
     refusesFrames("made/deeper", "--dump and --frames would both write");
     EXPECT_TRUE(frames("fresh"));
     refuses("fresh", "--frames and --new would both write");
+}
+
+TEST_F(FileGuardTest, FilesByEndingAreThoseThereAndThoseToCome) {
+    std::ofstream(folder_ / "real/a.relief") << "container";
+    fs::create_symlink("real/a.relief", folder_ / "to_container");
+    fs::create_hard_link(folder_ / "real/a.relief", folder_ / "same_container");
+    fs::create_symlink("../scene", folder_ / "real/b.relief");
+    ASSERT_TRUE(containers("linked/"));
+    refuses("real/a.relief", "--world and --new would both write '");
+    refuses("to_container", "to_container', which is '");
+    refuses("to_container", "linked/a.relief'; choose another place for one of them");
+    refuses("same_container", "same_container', which is '");
+    refuses("real/later.relief", "--world and --new");
+    refuses("scene", "--world and --new");
+    EXPECT_FALSE(guard_.reads(in("real/a.relief")));
+    writes("real/deps.d", "--depfile");
+    writes("real2.relief", "-o");
+    EXPECT_TRUE(containers("missing"));
+    refuses("missing", "--world and --new");
+}
+
+TEST_F(FileGuardTest, FilesByEndingReplaceNoOther) {
+    writes("real/x.relief", "-o");
+    expectUsage(containers("linked"), "real", "-o and --world would both write '");
+    fs::create_directory(folder_ / "one");
+    fs::create_directory(folder_ / "two");
+    std::ofstream(folder_ / "one/a.relief") << "container";
+    fs::create_hard_link(folder_ / "one/a.relief", folder_ / "two/a.relief");
+    EXPECT_TRUE(containers("one"));
+    EXPECT_TRUE(containers("two")) << "each is replaced, which leaves the other name as it is";
+    fs::create_directory(folder_ / "three");
+    fs::create_symlink("../one/a.relief", folder_ / "three/a.relief");
+    EXPECT_FALSE(containers("three"));
+}
+
+TEST_F(FileGuardTest, KeptFilesAreSharedAndReplaceLinks) {
+    fs::create_symlink("scene", folder_ / "cache");
+    reads("scene");
+    EXPECT_TRUE(guard_.keeps(in("cache"), "--world")) << "the link is replaced, and not the scene";
+    EXPECT_TRUE(guard_.keeps(in("cache"), "--output")) << "two worlds may have one cache";
+    refuses("cache", "--world and --new would both write '");
+    EXPECT_FALSE(guard_.reads(in("cache")));
+    expectUsage(guard_.keeps(in("scene"), "--world"), "scene", "is the input");
 }
 
 TEST_F(FileGuardTest, NumbersHaveFourDigitsOrMore) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "runtime/scene/scene_world.h"
 #include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
@@ -67,6 +69,20 @@ TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
     EXPECT_EQ(places[0].pose.position, glm::vec3(0.0F, 5.0F, 0.0F));
     EXPECT_EQ(places[2].pose, scene.scene.colliders[2].pose);
     EXPECT_FALSE(places[2].moves);
+}
+
+TEST_F(DrawnMeshesTest, AllFilesAreThoseOfAnyRun) {
+    World world = namedWorld();
+    world.colliders[0].coarse = WorldFile{"floor.coarse.relief", "", 0};
+    world.colliders[1].mesh = "missing";
+    const fs::path folder = folder_.path().parent_path();
+    std::set<fs::path> wanted = {folder / "world.json", folder_.path() / "floor.obj",
+                                 folder / "floor.coarse.relief"};
+    for (const WorldCollider& collider : world.colliders) {
+        wanted.insert(folder / collider.file);
+    }
+    const std::vector<fs::path> files = allFilesOf(loaded(world, "world = \"world.json\"\n"));
+    EXPECT_EQ(std::set(files.begin(), files.end()), wanted);
 }
 
 TEST_F(DrawnMeshesTest, TilesOfAMeshAreDrawnOnce) {
