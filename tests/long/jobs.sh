@@ -51,25 +51,25 @@ strace_tests='^cli[.](atomic_outputs|import_faults)$'
 sample_tests='^cli[.](samples|demo|lead_through)$'
 other_tests='^(python[.]|fuzz[.]|docs$|bench|oracle[.]|vdb[.])|^cli[.]vdb$'
 
-job nightly 45 release
+job nightly 20 release
 job_release() {
     release
     tested build/release -LE cli -E "$other_tests"
 }
 
-job nightly 15 repeats
+job nightly 2 repeats
 job_repeats() {
     release
     programs '*/Gles30*:*Compute*' "$bin"/relief_*_test
 }
 
-job nightly 15 cli
+job nightly 5 cli
 job_cli() {
     release
     tested build/release -L cli -E "$strace_tests|$sample_tests|$other_tests"
 }
 
-job nightly 5 faults
+job nightly 1 faults
 job_faults() {
     release
     tested build/release -R "$strace_tests"
@@ -81,20 +81,20 @@ job_samples() {
     tested build/release -R "$sample_tests"
 }
 
-job nightly 5 python
+job nightly 1 python
 job_python() {
     release
     tested build/release -R '^python[.]'
 }
 
-job nightly 5 vdb
+job nightly 1 vdb
 job_vdb() {
     release
     programs '*' "$bin/relief_vdb_test"
     tested build/release -R 'cli[.]vdb'
 }
 
-job nightly 5 oracle
+job nightly 1 oracle
 job_oracle() {
     release relief_oracle_test
     programs '*' "$bin/relief_oracle_test"
@@ -110,7 +110,7 @@ job_bench() {
 job nightly 2 docs
 job_docs() { scripts/docs.sh "$work/docs" | sed "s/^[0-9]* links of/$name: &/"; }
 
-job nightly 20 web
+job nightly 12 web
 job_web() {
     release
     scripts/build.sh web
@@ -128,7 +128,7 @@ sanitized() {
     tested "$build" "$@"
 }
 
-job nightly 60 sanitize
+job nightly 35 sanitize
 job_sanitize() { sanitized -LE cli; }
 
 job nightly 3 replay
@@ -149,7 +149,7 @@ job_coverage() {
     say "$(sed -n 's/^\(lines\|branches\): \([0-9.]*%\).*/\2 of \1/p' "$work/coverage.log" | paste -sd, | sed 's/,/, /')"
 }
 
-job nightly 10 cases
+job nightly 4 cases
 job_cases() {
     local generator status=0
     release

@@ -195,6 +195,8 @@ TEST(ImportWorker, EveryModelOfThePackageIsReadOrRefused) {
             EXPECT_EQ(error.message.find(words), std::string::npos) << error.message;
         }
     }
+    RecordProperty("tried", static_cast<int>(tried));
+    RecordProperty("read", static_cast<int>(read));
     EXPECT_GT(tried, all ? 400U : 60U);
     EXPECT_GT(4 * read, tried) << "hardly any is read";
 }
