@@ -176,11 +176,11 @@ Result<void> exportGrids(const Collider& collider, const ExportCommand& command)
 Result<void> runExport(const ExportCommand& command, FileGuard& files) {
     RELIEF_TRY(checkTogether(command));
     RELIEF_TRY(files.reads(command.file));
+    RELIEF_TRY(files.writes(command.vdb, "--vdb"));
+    RELIEF_TRY(files.writes(command.mesh, "--mesh"));
     if (!command.vdb.empty() || !command.mesh.empty()) {
         RELIEF_TRY(checkVdb());
     }
-    RELIEF_TRY(files.writes(command.vdb, "--vdb"));
-    RELIEF_TRY(files.writes(command.mesh, "--mesh"));
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::string> maps = mapFileNames(collider);
     const std::vector<std::string> gpu = gpuFileNames(collider);
