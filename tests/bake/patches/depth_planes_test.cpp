@@ -115,11 +115,11 @@ TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndItsNormal) {
 
 INSTANTIATE_TEST_SUITE_P(Degrees, PlateTest, testing::Values(0, 20, 35, 50, 60));
 
-TEST(DepthPlanes, AMegabyteIsAsRight) {
+TEST(DepthPlanes, LargeBudgetsAreExactToo) {
     expectTheNearerFace(Plate(30.0, 1'000'000));
 }
 
-TEST(DepthPlanes, WindingIsOfNoAccount) {
+TEST(DepthPlanes, TheWindingDoesNotMatter) {
     TriangleMesh mesh = Plate::boxFromTo(-Plate::kHalf, Plate::kHalf, 30.0);
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) {
         std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
