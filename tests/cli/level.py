@@ -1,4 +1,4 @@
-"""Writes a small level as glTF: level.py OUT.gltf [KEY=VALUE…]
+"""Writes a small level as glTF: level.py OUT.gltf|OUT.glb [KEY=VALUE…]
 
 Nodes: a floor, and three boxes by one mesh, turned and scaled, and one that is stretched. x=3 moves the first box, high=2
 makes the mesh of all boxes higher, box=0 leaves boxes out.
@@ -35,8 +35,15 @@ if options['box']:
               {'name': 'second', 'mesh': 1, 'translation': [5, 0, 5], 'rotation': [0, 0.6, 0, 0.8], 'scale': [2, 2, 2]},
               {'name': 'third', 'mesh': 1, 'translation': [-5, 0.1, 5], 'rotation': [0.6, 0, 0, 0.8]},
               {'name': 'wide', 'mesh': 1, 'translation': [-5, 0, -5], 'scale': [3, 1, 1]}]
-json.dump({'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': list(range(len(nodes)))}], 'nodes': nodes,
-           'meshes': meshes, 'accessors': accessors, 'bufferViews': views,
-           'buffers': [{'byteLength': len(data),
-                        'uri': 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()}]},
-          open(sys.argv[1], 'w'))
+document = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': list(range(len(nodes)))}], 'nodes': nodes,
+            'meshes': meshes, 'accessors': accessors, 'bufferViews': views, 'buffers': [{'byteLength': len(data)}]}
+if sys.argv[1].endswith('.glb'):
+    text = json.dumps(document).encode()
+    text += b' ' * (-len(text) % 4)
+    data += bytes(-len(data) % 4)
+    with open(sys.argv[1], 'wb') as file:
+        file.write(struct.pack('<4sII', b'glTF', 2, 28 + len(text) + len(data)))
+        file.write(struct.pack('<I4s', len(text), b'JSON') + text + struct.pack('<I4s', len(data), b'BIN\0') + data)
+else:
+    document['buffers'][0]['uri'] = 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()
+    json.dump(document, open(sys.argv[1], 'w'))

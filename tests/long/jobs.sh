@@ -240,6 +240,7 @@ job_packages() {
     names=$(cd build/packages/deb && echo *.deb)
     say "$names: lintian finds no errors"
     cp build/packages/deb/*.deb tests/long/try_packages.sh /usr/share/glmark2/models/bunny.obj "$room/"
+    python3 tests/cli/level.py "$room/level.glb"
     cp --parents README.md bake/python/README.md "$room/doc/"
     # First the users' packages, without a compiler or documentation; then the programmers'; then none.
     in_bare 'cd /srv/relief
@@ -254,6 +255,14 @@ job_packages() {
         left=$(find /usr -ipath "*relief*" ! -path "/usr/share/doc/*")
         [ -z "$left" ] || { echo "left behind: $left"; exit 1; }'
     say "removed, they leave nothing behind"
+}
+
+# The README's test command where nothing is installed.
+job nightly 15 bare
+job_bare() {
+    make_bare git,ca-certificates
+    git clone -q . "$work/bare/srv/relief"
+    in_bare 'cd /srv/relief && time scripts/test.sh'
 }
 
 # --- weekly ---

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tries installed packages as their users would: try_packages.sh MESH PART…, in an empty folder, on a system that has
-# nothing else of Relief. `scripts/nightly.sh packages` runs it in a bare Debian. Parts:
+# Tries installed packages as their users would: try_packages.sh MESH PART…, on a system that has nothing else of Relief.
+# Part `tools` also reads level.glb from the folder of MESH. `scripts/nightly.sh packages` runs it in a bare Debian. Parts:
 #
 #   tools        the commands of README.md, "Use"; the manual
 #   python       the program of bake/python/README.md
@@ -20,16 +20,17 @@ die() {
 
 tools() {
     cp "$mesh" bunny.obj
+    cp "$(dirname "$mesh")/level.glb" .
     printf '[collider]\nfile = "bunny.relief"\n[time]\nsteps = 20\n[render]\nsize = [160, 120]\n' >scene.toml
     mkdir -p meshes/rocks && cp "$mesh" meshes/rocks/a.obj
     printf 'version = 1\n[[asset]]\nmesh = "meshes/**/*.obj"\noutput = "baked/{stem}.relief"\nbudget = "64kB"\n' >colliders.toml
-    sed -n '/^## Use$/,/^The sixth/s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
+    sed -n '/^## Use$/,/^The seventh/s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
     [ "$(wc -l <commands)" -ge 5 ] || die "README.md shows $(wc -l <commands) commands"
     while read -r line; do
         bash -euc "$line" >said 2>&1 </dev/null || die "$line: $(tail -5 said)"
         echo "  $line"
     done <commands
-    for file in bunny.relief bunny.html end.ply frames/frame_0000.png baked/a.relief; do
+    for file in bunny.relief bunny.html end.ply frames/frame_0000.png baked/a.relief level/world.json; do
         [ -s $file ] || die "no $file was written"
     done
     relief bake --recipe colliders.toml -j 2 >said 2>&1 || die "the recipe fails the second time: $(tail -5 said)"
