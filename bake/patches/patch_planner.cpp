@@ -46,6 +46,9 @@ constexpr double kDearer = 1.05;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
+/// The least worth of a byte where a triangle lies, in its area times its longest edge. A cube of 12 triangles, seen by it, is
+/// off by some 1e-6 of its side on average; a mesh of many triangles is not held back by it at any usual size.
+constexpr double kLeastByte = 5e-12;
 /// Cells do not end in the planes of even numbers, in which models have walls.
 constexpr double kBesideMesh = 1.01;
 constexpr double kBesideRoots = 1.00137;
@@ -93,11 +96,7 @@ class Planner {
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
-            double byte = 0.0;
-            if (const std::optional<ByteRange> range = descend()) {
-                byte = leaveForDepth(narrow(*range, kSpare));
-            }
-            takeDepthPlanes(kSpareByte * byte);
+            takeDepthPlanes(kSpareByte * leaveForDepth(narrow(descend(), kSpare)));
         }
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
@@ -112,9 +111,7 @@ class Planner {
     MistakeCurve mistakes() {
         roots_.size = rootSizeByBytes();
         makeRoots();
-        if (const std::optional<ByteRange> range = descend()) {
-            narrow(*range, kSpareOfCurve);
-        }
+        narrow(descend(), kSpareOfCurve);
         std::ranges::stable_sort(tried_, {}, &MistakePoint::bytes);
         MistakeCurve curve;
         for (const MistakePoint& tree : tried_) {
@@ -188,7 +185,22 @@ class Planner {
         forEachIndex(0, nodes_.size(), 16, [&](std::size_t i) {
             MeshCell& cell = nodes_[i].cell;
             cell.bodies = query_.bodiesAt(glm::vec3(cell.low + cell.size * MeshCell::kKnown));
+            nodes_[i].byte_least = leastByte(cell);
         });
+    }
+
+    /// Misclassified volume, object units cubed, that a byte has to save in a cell.
+    [[nodiscard]] double leastByte(const MeshCell& cell) const {
+        const TriangleMesh& mesh = query_.mesh();
+        double least = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t triangle : cell.triangles) {
+            const auto [a, b, c] = cornersOf(mesh, triangle);
+            const double area = 0.5 * static_cast<double>(length(cross(b - a, c - a)));
+            const double edge =
+                static_cast<double>(std::max({distance(a, b), distance(b, c), distance(c, a)}));
+            least = std::min(least, kLeastByte * area * edge);
+        }
+        return least;
     }
 
     [[nodiscard]] double trialBytes(const PatchNode& node) const {
@@ -205,7 +217,9 @@ class Planner {
             std::array<MeshCell, 8> cells =
                 childrenOf(query_, node.cell, unitTriangles(query_.mesh(), node.cell));
             for (std::size_t i = 0; i < 8; ++i) {
-                (*node.children)[i].cell = std::move(cells[i]);
+                PatchNode& child = (*node.children)[i];
+                child.cell = std::move(cells[i]);
+                child.byte_least = leastByte(child.cell);
             }
         }
     }
@@ -215,6 +229,10 @@ class Planner {
         if (static_cast<double>(++looked_at_) > kCellsPerByte * bytes_) {
             return;  // chooseAll() discards it all
         }
+        if (byte > node.byte_least) {
+            all_least_ = false;
+        }
+        byte = std::max(byte, node.empty() ? 0.0 : node.byte_least);
         fitter_.tryWorth(node, byte);
         node.chooseLeaf(byte);
         if (node.seenEmpty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
@@ -239,6 +257,7 @@ class Planner {
     /// \return the bytes of the whole tree; infinity of one that is far too large.
     double chooseAll(double byte) {
         looked_at_ = 0;
+        all_least_ = true;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
             choose(nodes_[i], byte, 0);
             report(kSearchShare * std::min(1.0, taken_ / bytes_));
@@ -267,7 +286,7 @@ class Planner {
         return kPatchTexelBytes * size.width * size.height;
     }
 
-    /// Worths of a byte, and what their trees take: one that fits, and one that does not.
+    /// Worths of a byte, and what their trees take: one that fits, and one that does not; `cheap` 0: none.
     struct ByteRange {
         double dear = 0.0;
         double taken_dear = 0.0;
@@ -275,17 +294,16 @@ class Planner {
         double taken_cheap = 0.0;
     };
 
-    /// Plans larger and larger trees.
-    /// \return nullopt: the last one is without mistakes.
-    std::optional<ByteRange> descend() {
+    /// Plans larger and larger trees, up to one that does not fit, is without mistakes, or gains too little by more bytes.
+    ByteRange descend() {
         double byte = 1e-3 * static_cast<double>(roots_.size * roots_.size * roots_.size);
         ByteRange range{.dear = byte};
         double taken = chooseAll(byte);
         for (int i = 0; i < kSteps && taken <= bytes_; ++i) {
             range.dear = byte;
             range.taken_dear = taken;
-            if (!(wrong_ > 0.0)) {
-                return std::nullopt;
+            if (!(wrong_ > 0.0) || all_least_) {
+                return range;
             }
             // Bytes go by about the square root of their worth.
             const double share = taken / bytes_;
@@ -340,6 +358,9 @@ class Planner {
     /// \param spare  fraction of the bytes that the tree may leave unused.
     /// \return the worth of a byte.
     double narrow(ByteRange range, double spare) {
+        if (!(range.cheap > 0.0)) {
+            return range.dear;
+        }
         double byte = range.cheap;
         const auto square = [](double x) { return x * x; };
         for (int i = 0; i < kNarrowings && range.taken_dear < (1.0 - spare) * bytes_; ++i) {
@@ -520,8 +541,9 @@ class Planner {
     double taken_ = 0.0;  // bytes of the tree tried last
     std::vector<MistakePoint> tried_;
     std::atomic<std::size_t> looked_at_ = 0;
-    double texel_ = 0.0;                     // that the nodes were chosen by
-    std::uint32_t levels_ = 0;               // below the roots, by texel
+    std::atomic<bool> all_least_ = false;  // in the tree tried last, a byte was worth its least in each cell
+    double texel_ = 0.0;                   // that the nodes were chosen by
+    std::uint32_t levels_ = 0;             // below the roots, by texel
     std::atomic<std::uint64_t> texels_ = 0;  // of leaves so far, by texel
     std::uint64_t texels_most_ = 0;
     std::atomic<std::size_t> roots_done_ = 0;

@@ -173,6 +173,24 @@ TEST(PatchPlanner, FacesOfABoxAreExactButForTheCodes) {
     }
 }
 
+TEST(PatchPlanner, FlatShapesTakeTheBytesThatTheyNeed) {
+    // Beside a large box a small one, which is judged by its own size.
+    std::vector<TriangleMesh> parts = {makeBoxMesh({0, 0, 0}, {1, 1, 1}),
+                                       makeBoxMesh({1.5, 0, 0}, {0.01, 0.01, 0.01})};
+    const MeshQuery query = queryOf(joined(parts));
+    const DepthMap map = checked(query, 4'000'000);
+    EXPECT_LT(map.texels.size(), 1'500'000);
+    EXPECT_EQ(wrongPercent(query, map, 20'000), 0.0);
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    for (int i = 0; i < 2000; ++i) {
+        const float z = 0.008F * unit(random);
+        const float y = 0.01F + 1e-4F * unit(random);
+        const std::optional<Vote> found = vote(map, {1.5F + 0.008F * unit(random), y, z});
+        ASSERT_TRUE(found && ((found->distance < 0.0F) == (y < 0.01F) || std::abs(y - 0.01F) < 3e-6F)) << y;
+    }
+}
+
 TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
     // Both sides of a wall lie in one cell, and so thin a wall has too little volume to be worth a cell of its own size.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);
