@@ -21,7 +21,7 @@ tools=(
     glmark2-data imagemagick python3 webp
 )
 test=(
-    assimp-testmodels clang clang-format libcgal-demo libclang-rt-dev libgtest-dev
+    assimp-testmodels clang clang-format libcgal-demo libclang-rt-dev libgtest-dev libstb-dev
     pybind11-dev python3-dev python3-jsonschema python3-numpy python3-pytest
 )
 everything=(
@@ -41,7 +41,7 @@ case ${1-} in
     web)
         shift
         everything=()
-        set -- emscripten esbuild chromium fonts-liberation libstb-dev "$@"
+        set -- emscripten esbuild chromium fonts-liberation "$@"
         command -v node >/dev/null || set -- nodejs "$@"
         command -v npm >/dev/null || set -- npm "$@"
         ;;
