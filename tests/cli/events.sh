@@ -153,3 +153,31 @@ for path in fragment compute; do
 done
 sed 's/"death"/"birth"/' splash.toml >wrong.toml
 expect_error 3 'wrong\.toml:28:6:' "$relief_sim" wrong.toml
+
+# Drops enter a plate, 1 thick and turned by 30 degrees, in one step, by up to 0.4: a hit is on the face that they entered by.
+python3 - <<'P'
+import math
+turn = math.radians(30)
+c, s = math.cos(turn), math.sin(turn)
+with open('plate.obj', 'w') as file:
+    for x, y, z in ((x, y, z) for x in (-5, 5) for y in (-0.5, 0.5) for z in (-5, 5)):
+        file.write(f'v {x * c - y * s} {x * s + y * c} {z}\n')
+    for quad in ('1 2 4 3', '5 7 8 6', '1 5 6 2', '3 4 8 7', '1 3 7 5', '2 6 8 4'):
+        file.write(f'f {quad}\n')
+P
+"$relief" bake plate.obj -o plate.relief --budget 256kB -q
+printf '%s\n' '[collider]' 'file = "plate.relief"' '[time]' 'dt = 1.0' 'steps = 1' '[particles]' 'capacity = 4000' '[emitter]' \
+    'box_min = [-0.51, 0.5555, -4.0]' 'box_max = [-0.27, 0.7955, 4.0]' 'velocity = [0.25, -0.4330127, 0.0]' \
+    'velocity_spread = [0.0, 0.0, 0.0]' 'rate = 0.0' 'burst = 4000' 'lifetime = 9.0' '[forces]' 'gravity = [0.0, 0.0, 0.0]' \
+    'wind = [0.0, 0.0, 0.0]' 'drag = 0.0' '[ground]' 'enabled = false' >plate.toml
+"$relief_sim" plate.toml --events hits.jsonl -q
+python3 - <<'P'
+import json
+hits = [json.loads(line) for line in open('hits.jsonl')]
+assert len(hits) > 3900, len(hits)
+for hit in hits:
+    p, n = hit['position'], hit['normal']
+    assert abs(-0.5 * p[0] + 0.8660254 * p[1] - 0.5) < 2e-3, hit
+    assert -0.5 * n[0] + 0.8660254 * n[1] > 0.9999, hit
+    assert abs(hit['speed'] - 0.5) < 1e-3, hit
+P
