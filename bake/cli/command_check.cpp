@@ -186,7 +186,8 @@ void addCheck(CLI::App& app, Action& action) {
         "--repair, the repaired mesh too.\n"
         "Of a world, a file .json that relief bake --world wrote: whether its containers are there and "
         "right, and with "
-        "--mesh\nthe share of points on the wrong side near each body, and the ten worst.\n"
+        "--mesh\nthe share of points on the wrong side near each body, the ten worst, and meshes that lose "
+        "parts.\n"
         "Of ground, a collider or a world that relief bake --heights wrote, with the height map as --mesh: "
         "the share of points on the wrong side,\nnear seams between tiles too, how far the surface is off "
         "along y, and the ten worst places.",

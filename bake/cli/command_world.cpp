@@ -169,7 +169,11 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
     const WorldAccuracy* const measured = accuracy ? &*accuracy : nullptr;
     RELIEF_TRY(printOut(call.json ? jsonTextOf(WorldCheckJson{name, &field, measured, call.max_error})
                                   : worldCheckText(field, name, measured)));
-    if (accuracy && call.max_error && accuracy->all.total() > double{*call.max_error}) {
+    if (accuracy && !accuracy->passes(call.max_error)) {
+        if (accuracy->all.total() <= double{*call.max_error}) {
+            const LostParts& first = accuracy->lost.front();
+            return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
+        }
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy->all.total()) +
                         " % of the points near the surface are on the wrong side, more than "

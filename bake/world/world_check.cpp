@@ -6,9 +6,11 @@
 #include <map>
 
 #include "bake/import/level_folder.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
 #include "bake/repair/winding.h"
+#include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape_options.h"
 #include "bake/world/placed_mesh.h"
@@ -51,6 +53,7 @@ class WorldChecker {
         place();
         comparePoses();
         measure();
+        findLostParts();
         result_.seconds = watch.seconds();
         return std::move(result_);
     }
@@ -92,8 +95,9 @@ class WorldChecker {
                     "--mesh the level that it was baked from");
             }
             Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
-            const ShapedMesh shaped = RELIEF_TRY(recordedSolid(recorded_[*collider], winding.mesh));
+            ShapedMesh shaped = RELIEF_TRY(recordedSolid(recorded_[*collider], winding.mesh));
             queries_.push_back(RELIEF_TRY(MeshQuery::build(shaped.mesh)));
+            parts_.push_back(std::move(shaped.parts));
             static_cast<void>(queries_.back().prepared().areas());  // before threads do
         }
         return {};
@@ -212,6 +216,40 @@ class WorldChecker {
         }
     }
 
+    /// Measures the parts of each mesh in its own space, against the colliders of its first body.
+    void findLostParts() {
+        const std::vector<std::size_t> first = firstBodies();
+        std::vector<bool> done(queries_.size(), false);
+        PartOptions options;
+        options.seed = request_.check.seed;
+        options.points_all = std::min(options.points_all, request_.check.samples / queries_.size());
+        for (std::size_t i = 0; i < placed_.size(); ++i) {
+            const std::size_t mesh = placed_[i].body->mesh;
+            if (done[mesh] || tiles_[i] == 0) {
+                continue;
+            }
+            done[mesh] = true;
+            std::vector<Field> tiles;
+            for (std::size_t k = 0; k < tiles_[i]; ++k) {
+                tiles.push_back(fieldOf(field_.colliderOf(first[i] + k)));
+            }
+            const Field field = [&tiles](const glm::vec3& p) {
+                std::optional<FieldValue> least;
+                for (const Field& tile : tiles) {
+                    const std::optional<FieldValue> value = tile(p);
+                    least = value && (!least || value->distance < least->distance) ? value : least;
+                }
+                return least;
+            };
+            const PartsAccuracy accuracy = measureParts(queries_[mesh], parts_[mesh], field, options);
+            if (std::optional<std::string> text =
+                    lostPartsWarning(accuracy, parts_[mesh], field_.colliderOf(first[i]))) {
+                result_.lost.push_back(
+                    {queries_[mesh].mesh().name, accuracy.countOf(PartVerdict::kLost), std::move(*text)});
+            }
+        }
+    }
+
     struct BodyCounts {
         std::uint64_t false_inside = 0;
         std::uint64_t false_outside = 0;
@@ -281,7 +319,8 @@ class WorldChecker {
     std::multimap<std::string, std::size_t> by_hash_;  // colliders, by the hash of their mesh
     std::vector<std::string> as_;                      // NAME=KIND of all colliders
     Level level_;
-    std::vector<MeshQuery> queries_;  // of its meshes
+    std::vector<MeshQuery> queries_;   // of its meshes
+    std::vector<SurfaceParts> parts_;  // of its meshes
     std::vector<PlacedMesh> placed_;
     std::vector<std::size_t> tiles_;  // of them: bodies of the world
     std::vector<bool> moved_;         // of them: the world has it elsewhere

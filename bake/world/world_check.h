@@ -34,14 +34,27 @@ struct BodyAccuracy {
     glm::vec3 place{0.0F};  ///< world space: a typical point on the wrong side, or the body's position
 };
 
+/// Parts of a mesh of the level that its collider loses, each by its own size (measureParts()), wherever bodies stand.
+struct LostParts {
+    std::string mesh;
+    std::uint64_t lost = 0;
+    std::string text;  ///< lostPartsWarning()
+};
+
 struct WorldAccuracy {
     WrongShare all;                    ///< of the points of all bodies, as many of each
     std::vector<BodyAccuracy> bodies;  ///< in the order of the level
     std::vector<std::size_t> worst;    ///< bodies with points on the wrong side, at most ten, the worst first
     std::vector<WorldPlace> places;    ///< of those, in the same order
+    std::vector<LostParts> lost;       ///< meshes that lose parts, in the order of the level
     std::vector<std::string> warnings;
     std::vector<std::string> dependencies;  ///< files that the level's file refers to
     double seconds = 0.0;
+
+    /// \param max_error  percent; nullopt: no limit.
+    [[nodiscard]] bool passes(const std::optional<float>& max_error) const {
+        return !max_error || (all.total() <= double{*max_error} && lost.empty());
+    }
 };
 
 /// Errors: kLimit (samples), kInvalidInput (a mesh of the level that no collider was baked from), those of

@@ -77,6 +77,10 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
             percentText(accuracy->all.false_inside) + " inside by mistake, " +
             percentText(accuracy->all.false_outside) + " outside), of " + countText(points, "point") +
             " for each body\n";
+    for (const LostParts& mesh : accuracy->lost) {
+        text += (&mesh == &accuracy->lost.front() ? "\nLost parts, each by its own size:\n  " : "  ") +
+                mesh.mesh + ": " + mesh.text + "\n";
+    }
     if (accuracy->worst.empty()) {
         return text;
     }
@@ -117,6 +121,12 @@ void fields(FieldVisitor& visit, const WorldPlaceReport& report) {
           {"What to do, one sentence; empty of a body with at most 1 % wrong"});
 }
 
+void fields(FieldVisitor& visit, const LostParts& parts) {
+    visit("mesh", parts.mesh, {"Name of the mesh"});
+    visit("lost", parts.lost, {"Parts that its collider loses, each judged by its own size", {}, kFromOne});
+    visit("text", parts.text, {"How many of how many, the largest, and what would keep it"});
+}
+
 void fields(FieldVisitor& visit, const BodyAccuracy& body) {
     visit("node", body.node, {"Name of its node in the level"});
     visit("mesh", body.mesh, {"Name of its mesh"});
@@ -149,6 +159,7 @@ void fields(FieldVisitor& visit, const WorldCheckJson& report) {
                             {"Indices of the bodies that are most often wrong, the worst first"});
                       inner("places", placesOf(report),
                             {"Of those the place where each is typically wrong, and what to do"});
+                      inner("lost_parts", accuracy.lost, {"Meshes that lose parts"});
                       inner("bodies", accuracy.bodies, {"Bodies, in the order of the level"});
                       inner("warnings", accuracy.warnings, {"Warnings, one line each"});
                       inner("seconds", accuracy.seconds, {"Time of the measurement", "s", kFromZero});

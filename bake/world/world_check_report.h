@@ -32,6 +32,7 @@ struct WorldPlaceReport {
 void fields(FieldVisitor& visit, const WorldPlaceReport& report);
 
 void fields(FieldVisitor& visit, const BodyAccuracy& body);
+void fields(FieldVisitor& visit, const LostParts& parts);
 
 /// `relief check world.json --json`
 struct WorldCheckJson {

@@ -1,0 +1,44 @@
+// Worlds measured against their levels, of which a thin part is lost.
+#include "bake/world/world_check.h"
+
+#include "bake/recipe/recipe_jobs.h"
+#include "tests/bake/world/level_bakes.h"
+
+namespace relief::test {
+namespace {
+
+using WorldCheck = LevelBakes;
+
+TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
+    // 20 posts of 0.5 m on a slab of 20 m, which most points near the mesh are far from.
+    const auto check = [&](double half, std::uint64_t budget) {
+        std::vector<TriangleMesh> house = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};
+        for (int i = 0; i < 20; ++i) {
+            house.push_back(makeBoxMesh({0.9 * i - 9.0, 0.45, 0.2 * i - 2.0}, {half, 0.25, half}));
+        }
+        write({{"house", joined(house)}});
+        request_.bake.budget = budget;
+        static_cast<void>(bake("w"));
+        Result<LoadedWorld> loaded = loadWorld(folder_.path() / "w" / kWorldFileName, {});
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        WorldCheckRequest request;
+        request.check.mesh = (folder_.path() / "level.obj").string();
+        request.check.samples = 10'000;
+        Result<WorldAccuracy> accuracy = checkWorld(request, WorldField(std::move(*loaded)));
+        EXPECT_TRUE(accuracy) << accuracy.error().message;
+        EXPECT_LT(accuracy->all.total(), 1.0);
+        return std::move(*accuracy);
+    };
+    const WorldAccuracy coarse = check(0.0025, 24'000);
+    ASSERT_EQ(coarse.lost.size(), 1U);
+    EXPECT_EQ(coarse.lost[0].mesh, "house");
+    EXPECT_GT(coarse.lost[0].lost, 10U) << coarse.lost[0].text;
+    EXPECT_FALSE(coarse.passes(1.0F));
+    EXPECT_TRUE(coarse.passes({}));
+    const WorldAccuracy fine = check(0.04, 300'000);
+    EXPECT_TRUE(fine.lost.empty()) << fine.lost[0].text;
+    EXPECT_TRUE(fine.passes(1.0F));
+}
+
+}  // namespace
+}  // namespace relief::test
