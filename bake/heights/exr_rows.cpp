@@ -5,6 +5,8 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfVersion.h>
 
 #include <algorithm>
 #include <cstring>
@@ -56,6 +58,13 @@ class ExrRows : public SampleRows {
             std::call_once(limited,
                            [] { Imf::Header::setMaxImageSize(int{kHeightsSideMax}, int{kHeightsSideMax}); });
             file_.emplace(stream_);
+            if (Imf::isMultiPart(file_->version())) {
+                stream_.seekg(0);
+                if (const int parts = Imf::MultiPartInputFile(stream_).parts(); parts > 1) {
+                    return fail(ErrorCode::kUnsupported,
+                                "it has " + std::to_string(parts) + " parts; save the heights alone");
+                }
+            }
             const Imf::ChannelList& channels = file_->header().channels();
             std::size_t count = 0;
             for (auto channel = channels.begin(); channel != channels.end(); ++channel) {

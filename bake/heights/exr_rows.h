@@ -11,7 +11,7 @@
 namespace relief {
 
 /// \param bytes  untrusted; must outlive the rows.
-/// Errors, without the file's name: kInvalidInput (OpenEXR's words), kUnsupported (several channels).
+/// Errors, without the file's name: kInvalidInput (OpenEXR's words), kUnsupported (several channels or parts).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openExrRows(std::span<const std::byte> bytes);
 
 }  // namespace relief

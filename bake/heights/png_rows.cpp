@@ -3,7 +3,10 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +43,7 @@ class PngRows : public SampleRows {
         columns_ = png_get_image_width(png_, info_);
         rows_ = png_get_image_height(png_, info_);
         most_ = bits == 16 ? 65535 : 255;
+        readHole();
         return {};
     }
 
@@ -51,13 +55,25 @@ class PngRows : public SampleRows {
         for (std::size_t i = 0; i < out.size(); ++i) {
             const std::uint32_t grey = sampleAt(i * channels_);
             RELIEF_TRY(checkColour(i, grey));
-            out[i] = static_cast<float>(grey);
+            out[i] = grey == hole_ ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(grey);
         }
         ++row_number_;
         return {};
     }
 
   private:
+    /// The one colour that a chunk tRNS makes transparent. Of 8 bits only the low byte counts.
+    void readHole() {
+        png_color_16p key = nullptr;
+        if (png_get_tRNS(png_, info_, nullptr, nullptr, &key) == 0 || key == nullptr) {
+            return;
+        }
+        const bool grey = channels_ < 3;
+        if (grey || (key->red == key->green && key->red == key->blue)) {
+            hole_ = std::uint32_t{grey ? key->gray : key->red} & most_;
+        }
+    }
+
     [[nodiscard]] std::uint32_t sampleAt(std::size_t i) const {
         return most_ > 255 ? std::uint32_t{row_[2 * i]} << 8U | row_[2 * i + 1] : std::uint32_t{row_[i]};
     }
@@ -118,6 +134,7 @@ class PngRows : public SampleRows {
     png_infop info_ = nullptr;
     std::vector<png_byte> row_;
     std::size_t channels_ = 1;
+    std::optional<std::uint32_t> hole_;
     std::uint64_t row_number_ = 0;
     std::array<char, 128> message_{};
 };

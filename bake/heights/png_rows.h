@@ -11,7 +11,7 @@
 
 namespace relief {
 
-/// \param bytes  untrusted; must outlive the rows.
+/// \param bytes  untrusted; must outlive the rows. A colour that the chunk tRNS makes transparent is a hole.
 /// Errors, without the file's name: kInvalidInput (libpng's words), kUnsupported (a palette, fewer than 8 bits, interlaced);
 /// of a row kUnsupported, too (red, green and blue that differ, alpha that is not opaque).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes);

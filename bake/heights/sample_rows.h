@@ -20,7 +20,7 @@ class SampleRows {
     /// The largest whole number that a sample may be; 0: samples are heights.
     [[nodiscard]] std::uint32_t most() const { return most_; }
 
-    /// \param out  columns() samples of the next row; there must be one.
+    /// \param out  columns() samples of the next row; NaN is a hole. There must be such a row.
     /// Errors, without the file's name: kInvalidInput, kUnsupported.
     [[nodiscard]] virtual Result<void> next(std::span<float> out) = 0;
 

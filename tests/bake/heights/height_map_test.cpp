@@ -1,6 +1,12 @@
 // Settings of height maps, and their files, sound and hostile.
 #include "bake/heights/height_map.h"
 
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
 #include <gtest/gtest.h>
 #include <png.h>
 #include <zlib.h>
@@ -26,6 +32,26 @@ void expectError(const Error& error, const std::string& words, ErrorCode code) {
     EXPECT_EQ(error.message.find('\n'), std::string::npos) << error.message;
 }
 
+/// An EXR of two images of 2x2 heights.
+void writeParts(const fs::path& path) {
+    std::vector<Imf::Header> headers(2, Imf::Header(2, 2));
+    for (std::size_t i = 0; i < headers.size(); ++i) {
+        headers[i].setName("part " + std::to_string(i));
+        headers[i].setType(Imf::SCANLINEIMAGE);
+        headers[i].channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    }
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+    std::array<float, 4> heights = {1.0F, 2.0F, 3.0F, 4.0F};
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(heights.data()), sizeof(float),
+                                  2 * sizeof(float)));
+    for (int i = 0; i < 2; ++i) {
+        Imf::OutputPart part(file, i);
+        part.setFrameBuffer(buffer);
+        part.writePixels(2);
+    }
+}
+
 class HeightMaps : public testing::Test {
   protected:
     fs::path write(const char* name, std::span<const std::byte> bytes) {
@@ -44,6 +70,29 @@ class HeightMaps : public testing::Test {
         image.format = format;
         EXPECT_NE(png_image_write_to_file(&image, (folder_ / name).c_str(), 0, pixels.data(), 0, nullptr), 0);
         return folder_ / name;
+    }
+
+    /// The PNG with a chunk of this type and these 16-bit numbers behind its header.
+    static fs::path addChunk(const fs::path& png, const char* type, std::initializer_list<unsigned> numbers) {
+        std::vector<unsigned char> chunk;
+        const auto append = [&](std::uint32_t value, unsigned bytes) {
+            for (unsigned i = bytes; i-- > 0;) {
+                chunk.push_back(static_cast<unsigned char>(value >> 8U * i));
+            }
+        };
+        append(static_cast<std::uint32_t>(2 * numbers.size()), 4);
+        chunk.insert(chunk.end(), type, type + 4);
+        for (const unsigned number : numbers) {
+            append(number, 2);
+        }
+        append(static_cast<std::uint32_t>(::crc32(0, chunk.data() + 4, static_cast<uInt>(chunk.size() - 4))),
+               4);
+        constexpr std::ptrdiff_t kHeaderEnd = 33;
+        std::vector<std::byte> bytes = *readFile(png);
+        const auto added = std::as_bytes(std::span(chunk));
+        bytes.insert(bytes.begin() + kHeaderEnd, added.begin(), added.end());
+        EXPECT_TRUE(writeFile(png, bytes));
+        return png;
     }
 
     /// Errors of opening a file, or of reading its rows.
@@ -146,6 +195,9 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
     refuses(path, "low=0,high=1", "a.exr': --heights low is for images of whole numbers", ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
     refuses(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
+    writeParts(folder_ / "parts.exr");
+    refuses(folder_ / "parts.exr", "spacing=1", "parts.exr': it has 2 parts; save the heights alone",
+            ErrorCode::kUnsupported);
     image.channels = {{"Y", std::vector<float>(6, std::numeric_limits<float>::infinity())}};
     refuses(write("c.exr", *encodeExr(image)), "spacing=1",
             "height of inf, beyond 1e9; if it stands for a hole, save it as NaN");
@@ -191,6 +243,36 @@ TEST_F(HeightMaps, GreyMayBeSavedInColourAndOpaque) {
             "in colour at column 0 of row 0", ErrorCode::kUnsupported);
     refuses(png(PNG_FORMAT_GA, {1, 255, 2, 254, 3, 255, 250, 255}), whole,
             "it is transparent at column 1 of row 0; save it", ErrorCode::kUnsupported);
+}
+
+TEST_F(HeightMaps, TransparentColoursOfPngAreHoles) {
+    const std::array<std::uint16_t, 4> samples = {0, 300, 44, 65535};
+    std::vector<std::byte> words(sizeof(samples));
+    std::memcpy(words.data(), samples.data(), words.size());
+    const auto holesOf = [](const fs::path& png, const char* settings) {
+        std::string holes;
+        for (const float height : heightsOf(png, settings)) {
+            holes += std::isnan(height) ? 'o' : '.';
+        }
+        return holes;
+    };
+    const auto grey16 = [&] { return writePng("g.png", PNG_FORMAT_LINEAR_Y, 2, 2, words); };
+    EXPECT_EQ(holesOf(addChunk(grey16(), "tRNS", {300}), "low=0,high=65535"), ".o..");
+    EXPECT_EQ(holesOf(addChunk(grey16(), "tRNS", {0}), "low=0,high=65535,hole=44"), "o.o.");
+    EXPECT_EQ(holesOf(grey16(), "low=0,high=65535"), "....");
+    const std::vector<std::byte> bytes = {std::byte{0}, std::byte{44}, std::byte{7}, std::byte{255}};
+    const auto grey8 = [&] { return writePng("b.png", PNG_FORMAT_GRAY, 2, 2, bytes); };
+    EXPECT_EQ(holesOf(addChunk(grey8(), "tRNS", {44}), "low=0,high=255"), ".o..");
+    EXPECT_EQ(holesOf(addChunk(grey8(), "tRNS", {300}), "low=0,high=255"), ".o..") << "the low byte counts";
+    const auto rgb = [&] {
+        std::vector<std::byte> pixels;
+        for (const std::byte value : bytes) {
+            pixels.insert(pixels.end(), 3, value);
+        }
+        return writePng("c.png", PNG_FORMAT_RGB, 2, 2, pixels);
+    };
+    EXPECT_EQ(holesOf(addChunk(rgb(), "tRNS", {7, 7, 7}), "low=0,high=255"), "..o.");
+    EXPECT_EQ(holesOf(addChunk(rgb(), "tRNS", {7, 7, 0}), "low=0,high=255"), "....");
 }
 
 TEST_F(HeightMaps, OfTheWrongSizeOrKindAreRefused) {
