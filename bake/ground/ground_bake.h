@@ -35,7 +35,7 @@ struct GroundTile {
     std::optional<WorldFile> coarse;  ///< where hasCoarse()
     std::uint64_t squares = 0;        ///< with ground
     std::uint64_t steep = 0;  ///< of its own squares, without the rim, those that are steeper than kSteepest
-    double error_max = 0.0;   ///< of its heights, metres
+    double error_max = 0.0;   ///< of its heights but those of steep squares, metres; 0: all are steep
     Bounds box;               ///< of its surface, in its own space
 };
 
@@ -49,7 +49,7 @@ struct GroundResult {
     std::vector<std::string> warnings;  ///< one line each
 
     [[nodiscard]] std::uint64_t gpuBytes() const;
-    [[nodiscard]] double errorMax() const;  ///< of all tiles, metres
+    [[nodiscard]] double errorMax() const;  ///< of all tiles, metres; 0: all is steep
 };
 
 struct GroundOptions {

@@ -29,7 +29,7 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
     std::string text =
         name + ": ground of " + accuracy.map + ", " + std::to_string(accuracy.columns) + "x" +
         std::to_string(accuracy.rows) + " samples; " + countText(accuracy.squares, "square") +
-        " with ground, " + std::to_string(accuracy.steep) + " of them steeper than 71 degrees, " +
+        " with ground, " + std::to_string(accuracy.steep) + " of them steep, " +
         std::to_string(accuracy.holes) + " without\n" + percentText(accuracy.near.wrong.total()) +
         " of the points within " + lengthText(accuracy.within, "m") +
         " of the surface are on the wrong side; along y it is off by " + millimetres(accuracy.near.mean_abs) +
@@ -84,7 +84,7 @@ void fields(FieldVisitor& visit, const GroundCheckJson& report) {
     visit("columns", a.columns, {"Samples in a row, along +x", {}, {2.0}});
     visit("rows", a.rows, {"Rows of samples, along +z", {}, {2.0}});
     visit("squares", a.squares, {"Squares with ground", {}, kFromOne});
-    visit("steep_squares", a.steep, {"Those of them that are steeper than 71 degrees"});
+    visit("steep_squares", a.steep, {"Those of them that rise by more than 2.9 of their side"});
     visit("holes", a.holes, {"Squares without ground"});
     visit("within", a.within,
           {"Largest distance of points near the surface from it, along y", "m", kFromZero});

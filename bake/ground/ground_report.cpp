@@ -5,16 +5,26 @@
 #include "bake/report/report_text.h"
 
 namespace relief {
+namespace {
+
+/// There is none where all is steep.
+std::optional<double> bound(double error_max) {
+    return error_max > 0.0 ? std::optional(error_max) : std::nullopt;
+}
+
+}  // namespace
 
 std::string groundText(const GroundResult& result, const std::string& output, double ms) {
     const std::string tiles = result.container.empty() ? " in " + countText(result.tiles.size(), "tile") : "";
     const bool steep = std::any_of(result.tiles.begin(), result.tiles.end(),
                                    [](const GroundTile& tile) { return tile.steep > 0; });
+    const std::string error = shortNumber(1000.0 * result.errorMax()) + " mm along y";
     return output + ": ground of " + std::to_string(result.columns) + "x" + std::to_string(result.rows) +
-           " samples" + tiles + ", " + (steep ? "off by at most " : "nowhere off by more than ") +
-           shortNumber(1000.0 * result.errorMax()) + " mm along y" +
-           (steep ? " but where it is steep; " : "; ") + bytesText(result.gpuBytes()) + "; " +
-           shortNumber(ms / 1000.0) + " s\n";
+           " samples" + tiles + ", " +
+           (!steep                    ? "nowhere off by more than " + error
+            : result.errorMax() > 0.0 ? "off by at most " + error + " except at steep squares"
+                                      : "steep everywhere") +
+           "; " + bytesText(result.gpuBytes()) + "; " + shortNumber(ms / 1000.0) + " s\n";
 }
 
 void fields(FieldVisitor& visit, const GroundTile& tile) {
@@ -25,9 +35,12 @@ void fields(FieldVisitor& visit, const GroundTile& tile) {
     visit("coarse", tile.coarse,
           {"Container that stands in for it while it is not on the GPU; null where that would save little"});
     visit("squares", tile.squares, {"Squares with ground", {}, kFromOne});
-    visit("steep_squares", tile.steep, {"Those of them that are steeper than 71 degrees"});
-    visit("error_max", tile.error_max,
-          {"Largest distance of the surface from its place, along y, but of steep squares", "m", kFromZero});
+    visit("steep_squares", tile.steep, {"Those of them that rise by more than 2.9 of their side"});
+    visit("error_max", bound(tile.error_max),
+          {"Largest distance of the surface from its place, along y, except at steep squares; null where all "
+           "are "
+           "steep",
+           "m", kFromZero});
     fields(visit, tile.box);
 }
 
@@ -40,7 +53,7 @@ void fields(FieldVisitor& visit, const GroundJson& report) {
     visit("columns", r.columns, {"Samples in a row, along +x", {}, {2.0}});
     visit("rows", r.rows, {"Rows of samples, along +z", {}, {2.0}});
     visit("gpu_bytes", r.gpuBytes(), {"Bytes that all tiles take on the GPU", "bytes"});
-    visit("error_max", r.errorMax(), {"The largest error_max of the tiles", "m", kFromZero});
+    visit("error_max", bound(r.errorMax()), {"The largest error_max of the tiles", "m", kFromZero});
     visit("tiles", r.tiles,
           {.help = "Tiles with ground, row by row; without --world the only one", .items = kFromOne});
     visit("removed", r.removed, {"Containers that only the world from before named, and that are gone now"});

@@ -30,7 +30,8 @@
 
 namespace relief {
 
-/// The largest rise within a leaf that 8 bits hold, of its side; of a single square: 71°.
+/// The largest rise within a leaf that 8 bits hold, of its side. A plane of such single squares has 71° along a row, and 64°
+/// along a diagonal.
 inline constexpr double kSteepest = 2.9;
 /// Of a square's side: how far the surface of a steeper square may stand beside its place.
 inline constexpr double kAside = 0.15;
@@ -57,7 +58,7 @@ struct Ground {
     DepthMap map;
     Bounds bounds;            ///< of the surface, object space
     std::uint64_t steep = 0;  ///< of those to be counted the ones that are steeper than kSteepest
-    double error_max = 0.0;   ///< half of the largest step of a leaf, object units
+    double error_max = 0.0;   ///< half of the largest step of a leaf, object units; 0: all is steep
 };
 
 /// The ground reaches down to a twentieth of its longest side below its lowest point, or further, as that of meshes does

@@ -55,7 +55,7 @@ expect_error 3 "larger.png" "$relief" check ground.relief --mesh larger.png
 # Cliffs are named, one beside a seam once.
 heights wide.png 130 step65
 expect 0 "$relief" bake wide.png --heights low=0,high=655.35,tile=64 --world wide
-grep -q 'warning: wide.png: 129 squares are steeper' stderr || die "another cliff: $(cat stderr)"
+grep -q 'warning: wide.png: 129 squares are steep:' stderr || die "another cliff: $(cat stderr)"
 
 # Wrong calls and files: one line, and nothing is written.
 bad() { # CODE PATTERN FILE SETTINGS

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "bake/ground/ground_report.h"
 #include "tests/bake/ground/height_grids.h"
 #include "tests/bake/threads.h"
 #include "tests/seeds.h"
@@ -164,6 +165,28 @@ TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
         EXPECT_EQ(none.error().code, ErrorCode::kInvalidInput);
         EXPECT_EQ(none.error().message.find("none.raw: "), 0U) << none.error().message;
     }
+}
+
+/// A square along whose diagonal the ground rises by 66° has no bound, though each of its sides rises by 58°.
+TEST_F(GroundBakes, SteepSquaresAreCountedByTheirRiseAndHaveNoBound) {
+    const auto report = [&](double slope, double kink) {
+        write("slope.raw", 9, 9, [&](double x, double z) {
+            return slope * std::max(x - kink, 0.0) + slope * std::max(z - kink, 0.0);
+        });
+        const GroundResult result = bake("slope.raw", spec(""));
+        return (result.warnings.empty() ? "" : result.warnings.front()) + "\n" + groundText(result, "g", 0.0);
+    };
+    const std::string all = report(1.6, 0.0);
+    EXPECT_NE(all.find("64 squares are steep: they rise by more than 2.9 of their side, 64 degrees along a "
+                       "diagonal and 71 along a row; "),
+              std::string::npos)
+        << all;
+    EXPECT_NE(all.find("samples, steep everywhere; "), std::string::npos) << all;
+    EXPECT_EQ(all.find(" mm"), std::string::npos) << all;
+    const std::string some = report(1.6, 4.0);
+    EXPECT_NE(some.find("16 squares are steep"), std::string::npos) << some;
+    EXPECT_NE(some.find(" mm along y except at steep squares; "), std::string::npos) << some;
+    EXPECT_NE(report(1.4, 0.0).find(" mm along y; "), std::string::npos);
 }
 
 }  // namespace
