@@ -220,10 +220,24 @@ vec3 reliefBodyMotion(int body, vec3 p) {
     return met.map >= 0 ? reliefMotion(body, met.map, q, met.normal) : vec3(0.0);
 }
 
+// The longest diagonal of a texel of a live body's maps, world units.
+float reliefBodyTexel(int body) {
+    float texel = 0.0;
+    int first = reliefBodyMaps(body).x;
+    for (int i = first; i < first + reliefBodyMaps(body).y; ++i) {
+        texel = max(texel, length(1.0 / vec2(length(reliefMapRow(i, 0).xyz), length(reliefMapRow(i, 1).xyz))));
+    }
+    return reliefBodyResponse(body).x * texel;
+}
+
 #else
 
 vec3 reliefBodyMotion(int body, vec3 p) {
     return vec3(0.0);
+}
+
+float reliefBodyTexel(int body) {
+    return 0.0;
 }
 
 #endif

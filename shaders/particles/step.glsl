@@ -35,8 +35,9 @@ struct Solid {
 };
 
 // True if a ball about p, where the step began, was in the body of s at that time: its centre, or its point nearest to the
-// surface hit. (Contact with another side does not count: a ball on a floor bounces off a wall.)
-bool insideBefore(vec3 p, float radius, Solid s);
+// surface hit. (Contact with another side does not count: a ball on a floor bounces off a wall.) free: the last step ended
+// without contact.
+bool insideBefore(vec3 p, float radius, Solid s, bool free);
 // The place of a point of the body of s at the beginning of the step.
 vec3 pointBefore(Solid s, vec3 p);
 // The place, at the end of the step, of a point of a body at its beginning.
@@ -108,8 +109,9 @@ Solid solidOrGround(vec3 p, float radius) {
 //!include particles/step_sweep.glsl
 //!include particles/step_event.glsl
 
-bool caught(vec3 p, float radius, Solid s) {
-    return s.body < 0 ? p.y - radius < u_ground : insideBefore(p, radius, s);
+bool caught(State state, float radius, Solid s) {
+    vec3 p = state.position;
+    return s.body < 0 ? p.y - radius < u_ground : insideBefore(p, radius, s, state.contact == float(RELIEF_CONTACT_NONE));
 }
 
 vec3 surfaceVelocity(Solid s, vec3 p) {
@@ -176,7 +178,7 @@ State reacted(State state, Sweep sweep, ParticleType type, out bool dies) {
     float vn = dot(relative, n);
     float contact = float(RELIEF_CONTACT_COLLIDED);
     dies = false;
-    if (sweep.first && caught(p, type.radius, sweep.hit)) {
+    if (sweep.first && caught(state, type.radius, sweep.hit)) {
         contact = float(RELIEF_CONTACT_CAUGHT);
         if (vn < 0.0) {
             v -= (2.0 * vn) * n;

@@ -10,13 +10,13 @@ Solid solid(vec3 p, float radius) {
     return Solid(RELIEF_FAR_OUTSIDE, vec3(0.0), -1, -1, vec3(0.0));
 }
 
-bool insideBefore(vec3 p, float radius, Solid s) {
+bool insideBefore(vec3 p, float radius, Solid s, bool free) {
     return false;
 }
 
 #elif RELIEF_BODIES == 0
 
-bool insideBefore(vec3 p, float radius, Solid s) {
+bool insideBefore(vec3 p, float radius, Solid s, bool free) {
 #if defined(RELIEF_RADIUS)
     return reliefSolidAt(p - radius * s.normal, s.map) || reliefSolidAt(p, s.map);
 #else
@@ -54,6 +54,10 @@ Solid solid(vec3 p, float radius) {
 
 #else
 
+bool reliefDeeper(ReliefField field, float depth) {
+    return reliefInside(field) && field.distance < -depth;
+}
+
 Solid solidOf(ReliefField field, int body, vec3 p, float radius) {
     bool inside = reliefInside(field);
     vec3 motion = vec3(0.0);
@@ -72,12 +76,14 @@ Solid solid(vec3 p, float radius) {
 
 // The maps of a live body show the surface at the end of the step alone. So the particle is moved with the piece of surface
 // that it met, and tested at the end: exact where all of the surface near it moves alike, as it does but for second order in
-// the distance of a step.
-bool insideBefore(vec3 p, float radius, Solid s) {
+// the distance of a step. The silhouette in the maps of the step before lay up to half a texel elsewhere: a particle that those
+// maps left free was outside if it is less than a texel deep.
+bool insideBefore(vec3 p, float radius, Solid s, bool free) {
     vec3 q = reliefMoved(s.body, p) + s.motion;
-    bool inside = reliefInside(reliefBodyField(s.body, q, 0.0, false));
+    float least = free && s.motion != vec3(0.0) ? reliefBodyTexel(s.body) : 0.0;
+    bool inside = reliefDeeper(reliefBodyField(s.body, q, 0.0, false), least);
 #if defined(RELIEF_RADIUS)
-    inside = inside || reliefInside(reliefBodyField(s.body, q - radius * s.normal, 0.0, false));
+    inside = inside || reliefDeeper(reliefBodyField(s.body, q - radius * s.normal, 0.0, false), least);
 #endif
     return inside;
 }

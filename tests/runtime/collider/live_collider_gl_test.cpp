@@ -272,6 +272,61 @@ TEST_P(LiveColliderGlTest, ATwistingBoxLetsNothingIn) {
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+// Drops at rest in the way of a box that is shifted, grows or turns by its vertices. Each update draws its silhouette into other
+// texels, up to half a texel off; every drop that the box passes over by more than a texel's diagonal is a hit all the same.
+TEST_P(LiveColliderGlTest, WhatTheSurfacePassesOverIsHit) {
+    constexpr int kSteps = 12;
+    constexpr std::uint32_t kDrops = 2048;
+    const float texel = std::sqrt(2.0F) * 1.03F / 62.0F;
+    const Mesh mesh = box({0.3F, 0.2F, 0.08F});
+    struct Case {
+        float way, angle, growth, radius;
+    };
+    for (const Case& c :
+         {Case{0.7F, 0.0F, 0.0F, 0.0F}, Case{0.0F, 0.0F, 0.6F, 0.0F}, Case{0.0F, 1.2F, 0.0F, 0.015F}}) {
+        const auto poseAt = [&](int step) {
+            const float t = static_cast<float>(step) / kSteps;
+            return Pose{{0.0F, 0.0F, c.way * (t - 0.5F)}, turn({0, 1, 0}, c.angle * t), 1.0F + c.growth * t};
+        };
+        const auto depth = [&](const glm::vec3& p, int step) {
+            const glm::vec3 q = glm::vec3(0.3F, 0.2F, 0.08F) - glm::abs(toObject(poseAt(step), p));
+            return poseAt(step).scale * std::min({q.x, q.y, q.z});
+        };
+        const auto positionsAt = [&](int step) {
+            std::vector<glm::vec3> positions = mesh.positions;
+            for (glm::vec3& p : positions) {
+                p = toWorld(poseAt(step), p);
+            }
+            return positions;
+        };
+        makeLive({positionsAt(0), mesh.triangles}, cube(0.5F), 64);
+        particlesOf({.capacity = kDrops}, {.radius = c.radius, .on_collision = OnCollision::kDie});
+        Pcg32 random(11);
+        std::size_t met = 0;
+        spawnMany(kDrops, [&](std::uint32_t) {
+            glm::vec3 p(0.0F);
+            while (depth(p, 0) > -c.radius - texel) {
+                p = randomIn(random, 0.45F);
+            }
+            float deepest = -1.0F;
+            for (int step = 1; step <= kSteps; ++step) {
+                deepest = std::max(deepest, depth(p, step));
+            }
+            met += deepest > texel ? 1 : 0;
+            return Birth{p, glm::vec3(0.0F), 1000.0F, 0};
+        });
+        EXPECT_GT(met, 30U);
+        for (int step = 1; step <= kSteps; ++step) {
+            goTo(positionsAt(step));
+            particles_->step(kDt);
+        }
+        const std::vector<ParticleState> left = state();
+        EXPECT_EQ(std::count_if(left.begin(), left.end(), [](const auto& p) { return p.collisions > 0; }), 0)
+            << "of " << met << " were caught";
+        EXPECT_LE(left.size(), kDrops - met);
+    }
+}
+
 // Positions from a span, and from a caller's own buffer at an offset, are the same, whatever the caller's state, which is kept.
 TEST_P(LiveColliderGlTest, PositionsComeFromTheCallersBuffer) {
     const Mesh mesh = sphere(0.3F);
