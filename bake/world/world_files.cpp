@@ -1,10 +1,12 @@
 #include "bake/world/world_files.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <span>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "bake/recipe/bake_cache.h"
@@ -46,37 +48,123 @@ void keepMaterials(World& world, const World& before, const std::set<std::string
     }
 }
 
-/// The numbers of the bodies of each node. Nodes may share a name, and tiles of a mesh do.
-std::map<std::string, std::vector<std::size_t>> bodiesByNode(const World& world) {
-    std::map<std::string, std::vector<std::size_t>> bodies;
-    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
-        bodies[world.bodies[i].node].push_back(i);
+/// A node that is placed: its body, or those of the tiles of its mesh.
+struct Placed {
+    std::span<const WorldBody> bodies;
+    std::string node;
+    std::array<float, 8> pose;
+    std::vector<std::array<float, 6>> boxes;  ///< of the colliders, which stand for the mesh
+    std::size_t first = 0;                    ///< of the world's bodies
+    bool matched = false;
+
+    [[nodiscard]] std::array<float, 6> box() const {
+        std::array<float, 6> all = boxes.front();
+        for (const auto& one : boxes) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                all[i] = std::min(all[i], one[i]);
+                all[i + 3] = std::max(all[i + 3], one[i + 3]);
+            }
+        }
+        return all;
     }
-    return bodies;
+};
+
+std::array<float, 8> poseOf(const WorldBody& body) {
+    const auto& [x, y, z, w] = body.rotation;
+    return {body.position.x, body.position.y, body.position.z, x, y, z, w, body.scale};
 }
 
-void keepBodies(World& world, const World& before, std::vector<std::string>& warnings) {
-    const auto response = [](const WorldBody& body) { return std::pair(body.restitution, body.friction); };
-    const std::pair<float, float> untouched = response(WorldBody());
-    const std::map<std::string, std::vector<std::size_t>> now = bodiesByNode(world);
-    std::vector<std::string> gone;
-    for (const auto& [node, old] : bodiesByNode(before)) {
-        const auto all = [&, &known = old](const std::pair<float, float>& same) {
-            return std::all_of(known.begin(), known.end(),
-                               [&](std::size_t i) { return response(before.bodies[i]) == same; });
-        };
-        const bool alike = all(response(before.bodies[old.front()]));
-        const auto found = now.find(node);
-        if (found == now.end() || (!alike && found->second.size() != old.size())) {
-            if (!all(untouched)) {
-                gone.push_back(node);
-            }
-            continue;
+std::vector<Placed> placedOf(const World& world) {
+    std::vector<Placed> all;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+        const WorldBody& body = world.bodies[i];
+        const auto [low, high] = world.colliders[body.collider].box;
+        const bool tile = !all.empty() && all.back().node == body.node && all.back().pose == poseOf(body) &&
+                          world.bodies[i - 1].collider + 1 == body.collider;
+        if (!tile) {
+            all.push_back({{}, body.node, poseOf(body), {}, i});
         }
-        for (std::size_t k = 0; k < found->second.size(); ++k) {
-            const WorldBody& from = before.bodies[alike ? old.front() : old[k]];
-            world.bodies[found->second[k]].restitution = from.restitution;
-            world.bodies[found->second[k]].friction = from.friction;
+        all.back().boxes.push_back({low.x, low.y, low.z, high.x, high.y, high.z});
+        all.back().bodies = std::span(world.bodies).subspan(all.back().first, i + 1 - all.back().first);
+    }
+    return all;
+}
+
+bool sameResponse(const WorldBody& a, const WorldBody& b) {
+    return a.restitution == b.restitution && a.friction == b.friction;
+}
+
+/// \return false if the bodies differ and `to` has other tiles.
+bool keepResponses(const Placed& from, const Placed& to, World& world) {
+    const WorldBody& first = from.bodies.front();
+    const bool alike =
+        std::ranges::all_of(from.bodies, [&](const WorldBody& body) { return sameResponse(body, first); });
+    for (std::size_t k = 0; (alike || from.boxes == to.boxes) && k < to.bodies.size(); ++k) {
+        const WorldBody& body = alike ? first : from.bodies[k];
+        world.bodies[to.first + k].restitution = body.restitution;
+        world.bodies[to.first + k].friction = body.friction;
+    }
+    return alike || from.boxes == to.boxes;
+}
+
+using Nodes = std::vector<Placed*>;
+
+/// Matches the nodes of one key, where nothing else can be meant: one each, or several that respond alike.
+/// \param exact  equal nodes are in the same place too, so that of as many each is the one in its turn.
+void matchNodes(const Nodes& before, const Nodes& now, bool exact, World& world) {
+    if (before.empty() || now.empty()) {
+        return;
+    }
+    const bool pairs = before.size() == now.size() && (exact || now.size() == 1);
+    const bool alike = before.size() > 1 && std::ranges::all_of(before, [&](const Placed* node) {
+                           return std::ranges::all_of(node->bodies, [&](const WorldBody& body) {
+                               return sameResponse(body, before.front()->bodies.front());
+                           });
+                       });
+    for (std::size_t k = 0; pairs && k < now.size(); ++k) {
+        if (!before[k]->matched && !now[k]->matched && keepResponses(*before[k], *now[k], world)) {
+            before[k]->matched = now[k]->matched = true;
+        }
+    }
+    for (Placed* to : alike && !pairs ? now : Nodes()) {
+        to->matched = to->matched || keepResponses(*before.front(), *to, world);
+    }
+    for (Placed* from : before) {
+        from->matched = from->matched || alike;
+    }
+}
+
+/// \param read  `world` as a reader gets it, whose poses compare with those of `before`.
+void keepBodies(World& world, const World& read, const World& before, std::vector<std::string>& warnings) {
+    std::vector<Placed> old = placedOf(before);
+    std::vector<Placed> now = placedOf(read);
+    struct Key {
+        bool node, mesh, pose;
+    };
+    for (const Key key :
+         {Key{true, true, true}, Key{true, true, false}, Key{false, true, true}, Key{true, false, false}}) {
+        const auto of = [&](const Placed& placed) {
+            return std::tuple(key.node ? placed.node : std::string(),
+                              key.pose ? placed.pose : std::array<float, 8>(),
+                              key.mesh ? placed.box() : std::array<float, 6>());
+        };
+        std::map<decltype(of(old[0])), std::pair<Nodes, Nodes>> nodes;
+        for (Placed& placed : old) {
+            nodes[of(placed)].first.push_back(&placed);
+        }
+        for (Placed& placed : now) {
+            nodes[of(placed)].second.push_back(&placed);
+        }
+        for (const auto& [value, same] : nodes) {
+            matchNodes(same.first, same.second, key.node && key.mesh && key.pose, world);
+        }
+    }
+    std::vector<std::string> gone;
+    for (const Placed& placed : old) {
+        if (!placed.matched && !std::ranges::all_of(placed.bodies, [](const WorldBody& body) {
+                return sameResponse(body, WorldBody());
+            })) {
+            gone.push_back(placed.node.empty() ? "(without a name)" : placed.node);
         }
     }
     if (!gone.empty()) {
@@ -124,14 +212,16 @@ Result<ReplacedWorld> replaceWorld(const fs::path& folder, World& world,
     std::error_code error;
     if (before) {
         keepMaterials(world, *before, materials, replaced.warnings);
-        keepBodies(world, *before, replaced.warnings);
     } else if (fs::exists(path, error)) {
         replaced.warnings.push_back(before.error().message +
                                     "; it is replaced, without what was written into it by hand");
     }
-    const std::string text = worldText(world);
     // A world that no reader would take must not be written: scales or places that floats do not hold.
-    static_cast<void>(RELIEF_TRY(inFront(name, parseWorld(text))));
+    const World read = RELIEF_TRY(inFront(name, parseWorld(worldText(world))));
+    if (before) {
+        keepBodies(world, read, *before, replaced.warnings);
+    }
+    const std::string text = worldText(world);
     RELIEF_TRY(writeFile(path, std::as_bytes(std::span(text))));
     if (before) {
         replaced.removed = removeUnnamed(folder, filesOf(before->colliders), world);

@@ -23,7 +23,7 @@ struct ReplacedWorld {
 
 /// Writes kWorldFileName; its containers are there. Containers of the world from before that this one does not name are removed,
 /// if they still are what that one named. What people write into that file stays: responses by the names of materials,
-/// restitution and friction of bodies by their nodes.
+/// restitution and friction of bodies by name, box and place of their nodes, or by less if that means one node only.
 /// \param materials  names of those of all its colliders.
 /// \param name       stands in front of what is wrong with the world.
 /// Errors: those of parseWorld: no reader would take it; kIo.

@@ -132,6 +132,93 @@ TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
     EXPECT_EQ(frictionOf(world), (Bodies{{"gate", 0.125F}, {"gate", 0.125F}}));
 }
 
+/// As placed(), with the x of each place, and the side of each mesh's box.
+struct Node {
+    std::string name;
+    float x;
+    float side;
+};
+World placed(const std::vector<Node>& nodes) {
+    World world;
+    for (const Node& node : nodes) {
+        const auto number = static_cast<std::uint32_t>(world.colliders.size());
+        world.colliders.push_back({{"m" + std::to_string(number) + ".relief", std::string(32, '0'), 1},
+                                   "m",
+                                   {glm::vec3(0.0F), glm::vec3(node.side)},
+                                   {}});
+        WorldBody& body = world.bodies.emplace_back();
+        body.collider = number;
+        body.node = node.name;
+        body.position.x = node.x;
+        body.rotation = {0.1F, 0.2F, 0.3F, 0.9273618F};  // of length 1, but for rounding
+    }
+    return world;
+}
+
+// Each list of nodes is baked over the first, whose frictions were written by hand.
+TEST_F(WrittenByHand, ResponsesGoWithTheBodyThatIsMeant) {
+    fs::create_directories(worldFile().parent_path());
+    const std::vector<Node> before = {
+        {"gate", 0, 1}, {"gate", 5, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}};
+    const std::string gate = "'gate'";
+    struct Case {
+        const char* what;
+        std::vector<Node> nodes;
+        std::vector<float> friction;
+        std::string gone;
+    };
+    const std::vector<Case> cases = {
+        {"swapped",
+         {{"door", 2, 3}, {"gate", 9, 1}, {"", 4, 2}, {"gate", 0, 1}, {"gate", 5, 1}},
+         {0.5F, 0.375F, 0.625F, 0.0F, 0.25F},
+         ""},
+        {"removed, and another one added",
+         {{"gate", 0, 1}, {"gate", 7, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}},
+         {0.0F, 0.0F, 0.375F, 0.5F, 0.625F},
+         gate},
+        {"removed",
+         {{"gate", 0, 1}, {"gate", 9, 1}, {"door", 2, 3}, {"", 4, 2}},
+         {0.0F, 0.375F, 0.5F, 0.625F},
+         gate},
+        {"renamed",
+         {{"gate", 0, 1}, {"gate.1", 5, 1}, {"gate", 9, 1}, {"portal", 2, 3}, {"", 4, 2}},
+         {0.0F, 0.25F, 0.375F, 0.5F, 0.625F},
+         ""},
+        {"renamed, and another has the name",
+         {{"gate", 0, 1}, {"gate", 5, 1}, {"gate", 9, 1}, {"portal", 2, 3}, {"door", 8, 7}, {"", 4, 2}},
+         {0.0F, 0.25F, 0.375F, 0.5F, 0.0F, 0.625F},
+         ""},
+        {"moved, and of another mesh",
+         {{"gate", 0, 1}, {"gate", 5, 1}, {"gate", 9, 1}, {"door", 6, 4}, {"", 4, 2}},
+         {0.0F, 0.25F, 0.375F, 0.5F, 0.625F},
+         ""},
+        {"all but one gone", {{"gate", 9, 1}}, {0.375F}, "'gate', 'door', '(without a name)'"},
+    };
+    for (const Case& one : cases) {
+        SCOPED_TRACE(one.what);
+        fs::remove(worldFile());
+        World world = placed(before);
+        ASSERT_TRUE(replaceWorld(worldFile().parent_path(), world, {}, "level"));
+        edit([](World& edited) {
+            const float friction[] = {0.0F, 0.25F, 0.375F, 0.5F, 0.625F};
+            for (std::size_t i = 0; i < edited.bodies.size(); ++i) {
+                edited.bodies[i].friction = friction[i];
+            }
+        });
+        world = placed(one.nodes);
+        const auto replaced = replaceWorld(worldFile().parent_path(), world, {}, "level");
+        ASSERT_TRUE(replaced) << replaced.error().message;
+        std::vector<float> friction;
+        for (const WorldBody& body : world.bodies) {
+            friction.push_back(body.friction);
+        }
+        EXPECT_EQ(friction, one.friction);
+        ASSERT_EQ(replaced->warnings.size(), one.gone.empty() ? 0U : 1U);
+        EXPECT_TRUE(one.gone.empty() || replaced->warnings[0].find(one.gone) != std::string::npos)
+            << replaced->warnings[0];
+    }
+}
+
 TEST_F(WrittenByHand, AFileThatCannotBeReadIsReplacedWithAWarning) {
     static_cast<void>(bake("w"));
     const std::vector<std::byte> first = bytes();
