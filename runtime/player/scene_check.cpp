@@ -9,6 +9,7 @@
 #include "runtime/player/scene_warnings.h"
 #include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"
+#include "runtime/scene/scene_world.h"
 
 namespace relief {
 namespace {
@@ -50,6 +51,17 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
         if (known.insert(loaded.colliders[i].get()).second) {
             report.files.push_back(checkedFile(from.path, from.live ? "mesh" : "collider"));
             report.collider_maps += loaded.colliders[i]->maps.size();
+        }
+    }
+    // A streamed world was loaded by its coarse containers; a run reads the others later.
+    for (std::size_t i = 0; loaded.scene.stream && i < loaded.world.colliders.size(); ++i) {
+        const std::optional<WorldFile>& coarse = loaded.world.colliders[i].coarse;
+        if (coarse) {
+            static_cast<void>(
+                RELIEF_TRY(inFront(loaded.scene.world_origin + ": world: " + quotedPath(world),
+                                   loadWorldCollider(loaded.world, i, WorldDetail::kFine, world.parent_path(),
+                                                     loaded.limits))));
+            report.files.push_back(checkedFile(containerOf(loaded.scene, *coarse), "collider"));
         }
     }
     if (loaded.scene.flow) {

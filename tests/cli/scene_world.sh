@@ -93,7 +93,12 @@ fine=$(of '') coarse=$(of "['coarse']")
 mv "t/$fine" kept
 expect 0 "$relief_sim" stream.toml --json
 json stdout "len(d['warnings']) == 1 and '$fine' in d['warnings'][0]"
+expect_error 2 "stream.toml:1:9: world: .*$fine" "$relief_sim" stream.toml --check
+head -c 1000 kept >"t/$fine"
+expect_error 3 "stream.toml:1:9: world: .*$fine" "$relief_sim" stream.toml --check
 mv kept "t/$fine"
+expect 0 "$relief_sim" stream.toml --check --json
+json stdout "{'t/$fine', 't/$coarse'} <= {f['file'] for f in d['files']}"
 mv "t/$coarse" kept
 expect_error 2 "stream.toml:1:9: world: .*$coarse" "$relief_sim" stream.toml
 expect 0 "$relief_sim" all.toml -q
