@@ -14,7 +14,7 @@ namespace {
 constexpr float kStepTexels = 1.5F;
 
 // Across the diagonal of a box whose finest texel is 1/2048 of its longest side, with room for the
-// bisections.
+// bisections. In a larger box steps are longer.
 constexpr int kRayStepsMax = 2560;
 constexpr int kBisections = 10;
 

@@ -57,10 +57,9 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     for (std::size_t i = 0; loaded.scene.stream && i < loaded.world.colliders.size(); ++i) {
         const std::optional<WorldFile>& coarse = loaded.world.colliders[i].coarse;
         if (coarse) {
-            static_cast<void>(
-                RELIEF_TRY(inFront(loaded.scene.world_origin + ": world: " + quotedPath(world),
-                                   loadWorldCollider(loaded.world, i, WorldDetail::kFine, world.parent_path(),
-                                                     loaded.limits))));
+            static_cast<void>(RELIEF_TRY(inFront(
+                loaded.scene.world_origin + ": world: " + quotedPath(world),
+                loadWorldCollider(loaded.world, i, WorldDetail::kFine, world.parent_path(), loaded.limits))));
             report.files.push_back(checkedFile(containerOf(loaded.scene, *coarse), "collider"));
         }
     }

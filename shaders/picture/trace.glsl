@@ -1,4 +1,5 @@
-// Rays through the collider's combined field, in steps below a texel, to the first change of sign.
+// Rays through the collider's combined field, in steps of about a texel, to the first change of sign. A ray that is longer than
+// u_steps_max of these takes longer ones, so that each reaches its end.
 //
 //     origin ··|····o o o o o x───── inside        the box clips the ray; o outside, x the first inside;
 //              └ bounds       ^ bisection           then ten bisections between the last two
@@ -13,9 +14,14 @@ uniform float u_step;     // object units
 uniform int u_steps_max;  // samples of the field on a ray
 uniform int u_bisections;
 
+// In lengths of d: the step of a ray between t.x and t.y, which leaves room for the bisections and for rounding.
+float strideOf(vec3 d, vec2 t) {
+    return max(u_step / length(d), (t.y - t.x) / float(u_steps_max - u_bisections - 4));
+}
+
 // First point of the collider on the ray origin + t d between t.x and t.y; -1 if there is none, -2 if t.x lies inside.
 float hit(vec3 origin, vec3 d, vec2 t) {
-    float stride = u_step / length(d);
+    float stride = strideOf(d, t);
     float outer = t.x;   // the last point known to be outside
     float inner = -1.0;  // the first known to be inside, once there is one
     int left = u_bisections;
@@ -57,7 +63,7 @@ float guidedHit(vec2 uv, vec3 origin, vec3 d, vec2 span) {
     if (nearest == 1e30) {
         return -1.0;
     }
-    float start = max(nearest - 8.0 * u_step / length(d), span.x);
+    float start = max(nearest - 8.0 * strideOf(d, span), span.x);
     float t = -2.0;
     // Once more from the box if the start lies inside: the guide was too far in, or the eye is in the collider.
     for (int attempt = 0; attempt < u_bisections && t == -2.0; ++attempt) {

@@ -151,6 +151,23 @@ TEST_P(RendererGlTest, TheFloorIsShadedBelowTheCollider) {
     EXPECT_LT(pixel(rgb, x, y).b + 20, pixel(rgb, ox, oy).b);
 }
 
+// The finest body of a world decides the step, however large the others are: rays still reach through the whole box.
+TEST_P(RendererGlTest, RaysReachThroughABoxOfManyTexels) {
+    const auto clay = [&](float texel) {
+        auto renderer = required(ColliderRenderer::create({&textures_, collider_.bounds, texel}));
+        EXPECT_TRUE(renderer.draw(camera_, style_, frame_.target()));
+        const std::vector<std::uint8_t> rgb = frame_.read();
+        int count = 0;
+        for (std::size_t i = 0; i < rgb.size(); i += 3) {
+            count += rgb[i] > rgb[i + 2] ? 1 : 0;
+        }
+        return count;
+    };
+    const int all = clay(view().texel);
+    EXPECT_GT(all, 500);
+    EXPECT_NEAR(clay(1e-5F), all, 0.02 * all);
+}
+
 TEST_P(RendererGlTest, FrameSizesAreChecked) {
     EXPECT_EQ(Frame::create(0, 5).error().code, ErrorCode::kUsage);
     EXPECT_EQ(Frame::create(5, 0).error().code, ErrorCode::kUsage);
