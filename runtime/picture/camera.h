@@ -61,6 +61,25 @@ struct CameraMatrices {
     return target + distance * glm::normalize(glm::vec3(0.42F, 0.36F, 1.0F));
 }
 
+/// Places the eye in front of a level and above it, so that its box fills about nine tenths of the picture.
+/// \param bounds  not a point, about the target. \param aspect  width / height of the picture.
+[[nodiscard]] inline glm::vec3 levelEye(const glm::vec3& target, const Bounds& bounds, float fov,
+                                        float aspect) {
+    const glm::vec3 back = glm::normalize(glm::vec3(0.42F, 0.66F, 1.0F));
+    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0F, 1.0F, 0.0F), back));
+    const glm::vec3 up = glm::cross(back, right);
+    const float reach = 0.9F * std::tan(0.5F * glm::radians(fov));
+    float distance = 0.0F;
+    for (int i = 0; i < 8; ++i) {
+        const glm::bvec3 high((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
+        const glm::vec3 corner = glm::mix(bounds.min, bounds.max, high) - target;
+        const float across =
+            std::fmax(std::abs(glm::dot(corner, right)) / aspect, std::abs(glm::dot(corner, up)));
+        distance = std::fmax(distance, glm::dot(corner, back) + across / reach);
+    }
+    return target + distance * back;
+}
+
 /// Near and far plane round everything that a scene of this size shows from that eye.
 inline void setClipPlanes(Camera& camera, const Bounds& bounds) {
     const float distance = glm::length(camera.eye - bounds.center());

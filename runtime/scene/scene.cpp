@@ -327,9 +327,12 @@ Result<Scene> withDefaults(Scene scene, const Bounds& bounds) {
         key.fov = key.fov.value_or(scene.camera.fov);
     }
     if (!scene.camera.eye && scene.camera.keys.empty()) {
+        const float aspect = static_cast<float>(scene.render.width) / static_cast<float>(scene.render.height);
         scene.camera.eye =
-            defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
-                       scene.camera.fov);
+            scene.world.empty() || !(bounds.longestSide() >= scale)
+                ? defaultEye(*scene.camera.target, std::max(0.5F * glm::length(bounds.size()), 0.5F * scale),
+                             scene.camera.fov)
+                : levelEye(*scene.camera.target, bounds, scene.camera.fov, aspect);
     }
     const char* const problem =
         scene.camera.eye ? cameraProblem(*scene.camera.eye, *scene.camera.target) : nullptr;

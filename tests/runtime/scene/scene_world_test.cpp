@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <glm/glm.hpp>
+
 #include "runtime/collider/world_bodies.h"
+#include "runtime/picture/camera.h"
+#include "runtime/scene/scene_pictures.h"
 #include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
 
@@ -48,6 +53,26 @@ TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
     EXPECT_EQ(scene.colliders[2].node, "floor");
     EXPECT_EQ(scene.colliders[2].pose.position, glm::vec3(0.0F, 1.0F, 0.0F));
     EXPECT_EQ(scene.colliders[3].node, "gate");
+}
+
+// A level is wide and low: seen from above, it fills nine tenths of the picture one way or the other.
+TEST(SceneWorld, TheDefaultCameraFramesALevel) {
+    for (const glm::vec3& half :
+         {glm::vec3(90.0F, 12.0F, 90.0F), glm::vec3(4.0F, 30.0F, 2.0F), glm::vec3(300.0F, 0.0F, 5.0F)}) {
+        const Bounds bounds{-half, half};
+        const auto scene = withDefaults(placed("[render]\nsize = [640, 360]\n"), bounds);
+        ASSERT_TRUE(scene) << scene.error().message;
+        const Camera camera = sceneCamera(*scene, bounds, 0.0);
+        glm::vec2 most(0.0F);
+        for (int i = 0; i < 8; ++i) {
+            const glm::bvec3 high((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
+            const glm::vec4 clip = camera.projection(640.0F / 360.0F) * camera.view() *
+                                   glm::vec4(glm::mix(bounds.min, bounds.max, high), 1.0F);
+            ASSERT_GT(clip.w, 0.0F);
+            most = glm::max(most, glm::abs(glm::vec2(clip)) / clip.w);
+        }
+        EXPECT_NEAR(std::max(most.x, most.y), 0.9F, 1e-3F) << half.x;
+    }
 }
 
 /// Of the door another tile, in the same place, and before the gate.
