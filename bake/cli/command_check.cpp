@@ -90,28 +90,21 @@ Result<void> writePage(const CheckCommand& command, std::vector<std::byte> conta
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
-/// The grade, or with --max-error whether that is kept.
-std::string verdictOf(const CheckCommand& command, const MeshCheck& run) {
-    const double wrong = run.original.accuracy.field.near.total();
-    const bool within = command.max_error && wrong <= double{*command.max_error};
-    if (!command.max_error || (within && !run.passes(command.max_error))) {
-        return verdictText(run.wrongPercent(), run.part_accuracy);
-    }
-    return percentText(wrong) + " wrong near the surface: " + (within ? "within" : "above") +
-           " --max-error " + percentText(double{*command.max_error});
-}
-
 std::string checkText(const CheckCommand& command, const MeshCheck& run) {
     const auto& [samples, accuracy] = run.judged();
-    std::string text = inputName(command.file) + ": " + verdictOf(command, run) + "\n";
-    if (const std::string inside = insideVerdictText(accuracy.field.inside.far_face_percent);
-        !inside.empty()) {
-        text += inputName(command.file) + ": " + inside + "\n";
+    const MeshCheckReport report{run, inputName(command.file), command.max_error};
+    std::string text = report.file + ": " + report.verdict() + "\n";
+    if (const std::string inside = insideVerdictText(accuracy.field.inside); !inside.empty()) {
+        text += report.file + ": " + inside + "\n";
     }
     if (run.repaired) {
-        text += "That is against the mesh repaired by " + run.recorded.request.repair.method + ", " +
-                std::to_string(run.baked->triangles.size()) + " triangles; against " + run.mesh->name +
-                " as it came: " + shortNumber(run.original.accuracy.field.near.total()) + " %\n";
+        const std::string repaired = "the mesh repaired by " + run.recorded.request.repair.method + ", " +
+                                     std::to_string(run.baked->triangles.size()) + " triangles";
+        const std::string original = run.mesh->name + " as it came";
+        const double other =
+            command.max_error ? run.wrongPercent() : run.original.accuracy.field.near.total();
+        text += "That is against " + (command.max_error ? original : repaired) + "; against " +
+                (command.max_error ? repaired : original) + ": " + shortNumber(other) + " %\n";
     }
     for (const std::string& part :
          {partsText(run.part_accuracy, run.parts, run.collider), placesText(run.places, run.collider),
@@ -162,11 +155,13 @@ Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
                                                 "; --detail LENGTH leaves smaller ones out");
     }
     if (!passed) {
-        return fail(ErrorCode::kDifference, shortNumber(run.original.accuracy.field.near.total()) +
-                                                " % of the points near the surface are on the wrong side" +
-                                                (run.repaired ? " of the mesh as it came" : "") +
-                                                ", more than --max-error " + shortest(*command.max_error) +
-                                                " %; bake with larger or more maps");
+        return fail(ErrorCode::kDifference,
+                    shortNumber(run.original.accuracy.field.near.total()) +
+                        " % of the points near the surface are on the wrong side" +
+                        (run.repaired ? " of the mesh as it came" : "") + ", more than --max-error " +
+                        shortest(*command.max_error) + " %; " +
+                        (floatsLimit(*run.mesh, run.wrongPercent()) ? "move the mesh to the origin"
+                                                                    : "bake with larger or more maps"));
     }
     return {};
 }

@@ -172,7 +172,6 @@ struct Page {
 Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
     Json report = jsonOf(MeshCheckReport{check, page.name, max_error});
     report.erase("times_ms");  // no two runs have the same
-    report["verdict"]["text"] = verdictText(check.wrongPercent(), check.part_accuracy);
     report["parts"]["text"] = partsText(check.part_accuracy, check.parts, check.collider);
     for (std::size_t i = 0; i < check.places.size(); ++i) {
         const ClosestPoint closest = check.query->closest(check.places[i].position);

@@ -244,7 +244,8 @@ class Advisor {
 
 std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file, const std::string& output) {
     // No maps help where floats are too coarse.
-    return coarseFloatsWarning(*run.mesh) ? std::vector<Advice>() : Advisor(run, mesh_file, output).run();
+    return floatsLimit(*run.mesh, run.wrongPercent()) ? std::vector<Advice>()
+                                                      : Advisor(run, mesh_file, output).run();
 }
 
 }  // namespace relief

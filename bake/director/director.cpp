@@ -65,6 +65,12 @@ class MapMaker {
         tell(watcher_.begin, "searching for the least budget");
         BudgetSearchOptions options;
         options.max_error_percent = double{*request_.max_error};
+        if (const double floats = wrongByFloats(truth.mesh()); floats > 2.0 * options.max_error_percent) {
+            return fail(ErrorCode::kDifference, truth.mesh().name + ": --max-error is " +
+                                                    percentText(options.max_error_percent) +
+                                                    ", and floats so far from the origin leave about " +
+                                                    percentText(floats) + " wrong; move it to the origin");
+        }
         options.budget_max = request_.budget.value_or(options.budget_max);
         options.bake = settings_.bake;
         options.bake.progress = [this](double) { tell(watcher_.checkpoint); };
@@ -400,9 +406,9 @@ class Director {
         }
         result_.times.check_ms = watch.ms();
         std::vector<std::string>& warnings = result_.baked.report.warnings;
-        if (result_.wrong->total() > kSelfCheckWarns && !coarseFloatsWarning(*mesh)) {
-            warnings.push_back(mesh->name + ": " + shortNumber(result_.wrong->total()) +
-                               " % wrong near the surface; " + cure());
+        if (const double wrong = result_.wrong->total(); wrong > kSelfCheckWarns) {
+            warnings.push_back(mesh->name + ": " + shortNumber(wrong) + " % wrong near the surface; " +
+                               (floatsLimit(*mesh, wrong) ? "move it to the origin" : cure()));
         }
         if (result_.part_accuracy) {
             if (const auto lost =

@@ -2,6 +2,16 @@
 
 namespace relief {
 
+std::string MeshCheckReport::verdict() const {
+    const double wrong = run.original.accuracy.field.near.total();
+    const bool within = max_error && wrong <= double{*max_error};
+    if (!max_error || (within && !run.passes(max_error))) {
+        return verdictText(run.wrongPercent(), run.part_accuracy);
+    }
+    return percentText(wrong) + " wrong near the surface" + (run.repaired ? " of the mesh as it came" : "") +
+           ": " + (within ? "within" : "above") + " --max-error " + percentText(double{*max_error});
+}
+
 void fields(FieldVisitor& visit, const MeshCheckReport& report) {
     const MeshCheck& run = report.run;
     const TruthSamples& samples = run.original.samples;
@@ -31,10 +41,14 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
             {.help = "good: at most 1 % wrong; fair: at most 5 %; at best fair if a part is coarse, poor if "
                      "one is lost",
              .words = kWords<"good", "fair", "poor">});
-        visit_verdict("inside_grade", insideGradeOf(run.judged().accuracy.field.inside.far_face_percent),
-                      {.help = "Votes at points inside: good if a farther face decides at most 3 %; fair: at "
-                               "most 10 %",
-                       .words = kWords<"good", "fair", "poor">});
+        visit_verdict("text", report.verdict(), {"The grade in words; with --max-error whether it is kept"});
+        visit_verdict(
+            "inside_grade", insideGradeOf(run.judged().accuracy.field.inside),
+            {.help = "Votes at points inside: good if the nearest face does not decide at most 3 %; "
+                     "fair: at most 10 %; unknown with fewer than 300 points",
+             .words = kWords<"good", "fair", "poor", "unknown">});
+        visit_verdict("inside_text", insideVerdictText(run.judged().accuracy.field.inside),
+                      {"That grade in words; empty if it is good or unknown"});
     };
     visit("verdict", group(verdict), {"Summary"});
     visit("parts", PartsReport{run.part_accuracy, run.parts, run.collider},

@@ -15,6 +15,9 @@ struct MeshCheckReport {
     const MeshCheck& run = kNone<MeshCheck>;
     std::string file;                     ///< name of the collider
     std::optional<float> max_error = {};  ///< percent
+
+    /// The grade; with `max_error` whether that is kept by the mesh as it came.
+    [[nodiscard]] std::string verdict() const;
 };
 
 void fields(FieldVisitor& visit, const MeshCheckReport& report);

@@ -17,7 +17,8 @@ namespace relief {
 namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-/// InsideAccuracy::far_face_percent: 0.55 / 0.45 of a wall's thickness, and of the longest side.
+/// InsideAccuracy::far_face_percent: of the true depth, and of the longest side. Below 0.45 of a wall's thickness the opposite
+/// face is at least 1.22 times as far.
 constexpr double kFarFace = 1.25;
 constexpr double kFarFaceShare = 1e-3;
 
@@ -112,17 +113,21 @@ InsideAccuracy measureInside(const TruthSamples& samples, const Field& field) {
     std::uint64_t far_face = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (!values[i] || !(values[i]->distance < 0.0F)) {
+            ++far_face;
             continue;
         }
         const double depth = -double{values[i]->distance};
+        const glm::dvec3 normal = values[i]->normal;
         depths.push_back(std::abs(depth - points[i].depth));
-        far_face += depth > kFarFace * points[i].depth + kFarFaceShare * samples.longest_side ? 1 : 0;
-        if (glm::dot(values[i]->normal, values[i]->normal) > 0.0F) {
-            angles.push_back(angleBetween(glm::normalize(glm::dvec3(values[i]->normal)), points[i].out));
+        const bool deep = depth > kFarFace * points[i].depth + kFarFaceShare * samples.longest_side;
+        far_face += deep || glm::dot(normal, points[i].out) < 0.0 ? 1 : 0;
+        if (glm::dot(normal, normal) > 0.0) {
+            angles.push_back(angleBetween(glm::normalize(normal), points[i].out));
         }
     }
     InsideAccuracy accuracy;
-    accuracy.far_face_percent = percent(far_face, depths.size());
+    accuracy.points = points.size();
+    accuracy.far_face_percent = percent(far_face, points.size());
     const Spread depth = spreadOf(std::move(depths));
     const Spread angle = spreadOf(std::move(angles));
     accuracy.depth_mean = depth.mean;

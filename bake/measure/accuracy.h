@@ -38,11 +38,13 @@ struct WrongShare {
 
 void fields(FieldVisitor& visit, const WrongShare& share);
 
-/// What particles that are inside get, at TruthSamples::inside, as far as the field has a value inside there.
+/// What particles that are inside get, at TruthSamples::inside.
 struct InsideAccuracy {
-    /// Points whose depth is more than 1.25 times the true one, and 0.1 % of the longest side: a face farther away decides. Percent.
+    std::uint64_t points = 0;
+    /// Points at which the nearest face does not decide: they are called outside, the normal points away from it, or the depth is
+    /// more than 1.25 times the true one and 0.1 % of the longest side. Percent.
     double far_face_percent = 0.0;
-    double depth_mean = 0.0;  ///< |depth − true depth|, object units
+    double depth_mean = 0.0;  ///< |depth − true depth| of those that are called inside, object units
     double depth_p99 = 0.0;
     double normal_mean = 0.0;  ///< angle between the normal and the way to the boundary, degrees
     double normal_p99 = 0.0;

@@ -44,6 +44,9 @@ class SplitMixRandom {
 constexpr std::uint64_t kSurfaceKind = 1;
 constexpr std::uint64_t kNearKind = 2;
 constexpr std::uint64_t kUniformKind = 3;
+constexpr std::uint64_t kInsideKind = 4;
+/// Points inside lie up to this share of the thickness below a face: beyond, the opposite one is about as near.
+constexpr double kInsideShare = 0.45;
 
 /// Draws the i-th sample of each kind.
 class Sampler {
@@ -95,8 +98,21 @@ class Sampler {
         return {p, query_.inside(p) ? -1.0F : 1.0F};
     }
 
-    /// \param p  inside.
-    [[nodiscard]] std::optional<InsidePoint> inside(const glm::vec3& p) const {
+    /// nullopt below a buried face or one without an inside, and next to a boundary.
+    [[nodiscard]] std::optional<InsidePoint> inside(std::size_t i) const {
+        SplitMixRandom random(options_.seed, kInsideKind, i);
+        const auto [on, triangle] = draw(random);
+        const double step = kSurfaceStep * longest_side_;
+        glm::dvec3 in = planeOf(mesh_, triangle).normal;
+        in *= -winding_ / length(in);
+        if (!query_.inside(on + step * in)) {
+            in = -in;
+        }
+        const std::optional<FirstHit> hit = query_.firstHit(on + step * in, in);
+        const glm::vec3 p = on + (hit ? kInsideShare * random.uniform() * (step + hit->along) : 0.0) * in;
+        if (!hit || query_.inside(on - step * in) || !query_.inside(p)) {
+            return std::nullopt;
+        }
         const ClosestPoint closest = query_.closest(p);
         const glm::dvec3 way = closest.point - glm::dvec3(p);
         const double depth = length(way);
@@ -156,11 +172,7 @@ TruthSamples sampleTruth(const MeshQuery& query, const AccuracyOptions& options)
         samples.uniform[i] = sampler.inBox(i);
     });
     std::vector<std::optional<InsidePoint>> inside(options.samples);
-    forEachIndex(0, options.samples, 256, [&](std::size_t i) {
-        if (samples.uniform[i].inside()) {
-            inside[i] = sampler.inside(samples.uniform[i].position);
-        }
-    });
+    forEachIndex(0, options.samples, 256, [&](std::size_t i) { inside[i] = sampler.inside(i); });
     for (const std::optional<InsidePoint>& point : inside) {
         if (point) {
             samples.inside.push_back(*point);

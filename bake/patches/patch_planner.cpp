@@ -334,7 +334,7 @@ class Planner {
     /// \param byte  the worth of a byte that the tree was chosen by.
     /// \return that of the tree that is left.
     double leaveForDepth(double byte) {
-        findDepthPlanes(byte);
+        findDepthPlanes(kSpareByte * byte);  // takeDepthPlanes() needs those, too
         const double wanted = depth_planes_.bytesWorth(byte);
         if (takenBytes(wanted) <= bytes_) {
             return byte;

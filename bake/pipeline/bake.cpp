@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/measure/accuracy.h"
 #include "bake/measure/patch_cells.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/ray_cost.h"
@@ -519,10 +520,27 @@ Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
     return std::move(*result);
 }
 
+namespace {
+
+/// Measured: a house at (4e5, 0, 8e5) m, a ball there.
+constexpr double kWrongPerStep = 0.1;
+
+/// Of the mesh from the origin, along an axis.
+float farthestOf(const TriangleMesh& mesh) {
+    const glm::vec3 corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
+    return std::max({corner.x, corner.y, corner.z});
+}
+
+}  // namespace
+
+double wrongByFloats(const TriangleMesh& mesh) {
+    const double step = std::ldexp(1.0, std::ilogb(farthestOf(mesh)) - 23);
+    const double sigma = AccuracyOptions().sigma_share * double{mesh.bounds.longestSide()};
+    return std::min(50.0, 100.0 * kWrongPerStep * step / sigma);
+}
+
 std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh) {
-    const glm::vec3 far_corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
-    const float farthest = std::max({far_corner.x, far_corner.y, far_corner.z});
-    if (mesh.bounds.longestSide() >= 1e-3F * farthest) {
+    if (mesh.bounds.longestSide() >= 1e-3F * farthestOf(mesh)) {
         return std::nullopt;
     }
     return mesh.name +

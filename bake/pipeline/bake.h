@@ -58,8 +58,15 @@ struct Baked {
 /// any map meets the mesh).
 [[nodiscard]] Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options);
 
-/// A line for a mesh so far from the origin that floats limit its accuracy, whatever its maps are; nullopt for others.
+/// A line for a mesh more than 1000 times its size away from the origin; nullopt for others.
 [[nodiscard]] std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh);
+/// About the share of points near the surface that are on the wrong side because floats are coarse there, whatever the maps are:
+/// by the step of floats at the farthest corner, in standard deviations of the points' distance. Percent, up to 50.
+[[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
+/// At least half of the percentage is due to floats: more bytes do not help.
+[[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {
+    return 2.0 * wrongByFloats(mesh) > wrong_percent;
+}
 
 /// The mistakes of planned patches against their bytes (planMistakes).
 /// \param bytes  of the largest tree, kPatchBytesMin to kPatchBytesMax.

@@ -30,17 +30,19 @@ std::string verdictText(double wrong_percent) {
     return percentText(wrong_percent) + " wrong near the surface: " + gradeOf(wrong_percent);
 }
 
-std::string insideGradeOf(double far_face_percent) {
-    return far_face_percent <= kGoodInsidePercent   ? "good"
-           : far_face_percent <= kFairInsidePercent ? "fair"
-                                                    : "poor";
+std::string insideGradeOf(const InsideAccuracy& accuracy) {
+    return accuracy.points < kInsidePointsLeast              ? "unknown"
+           : accuracy.far_face_percent <= kGoodInsidePercent ? "good"
+           : accuracy.far_face_percent <= kFairInsidePercent ? "fair"
+                                                             : "poor";
 }
 
-std::string insideVerdictText(double far_face_percent) {
-    const std::string grade = insideGradeOf(far_face_percent);
-    return grade == "good" ? ""
-                           : "at " + percentText(far_face_percent) +
-                                 " of the points inside a farther face decides: " + grade;
+std::string insideVerdictText(const InsideAccuracy& accuracy) {
+    const std::string grade = insideGradeOf(accuracy);
+    return grade == "good" || grade == "unknown"
+               ? ""
+               : "at " + percentText(accuracy.far_face_percent) +
+                     " of the points inside the nearest face does not decide: " + grade;
 }
 
 std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& samples,
@@ -71,16 +73,17 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
         {"near the surface, no map votes", precisely(field.unknown_percent)},
         {"on the surface, no normal", precisely(field.no_normal_percent)},
         {"surface that no map sees", precisely(accuracy.unseen_percent)},
-        {"inside, a farther face decides", precisely(field.inside.far_face_percent)}};
+        {"inside, the nearest face does not decide", precisely(field.inside.far_face_percent)}};
     if (accuracy.buried_percent > 0.0) {
         rows.push_back({"surface inside the object, left out", precisely(accuracy.buried_percent)});
     }
     rows.push_back({"on the GPU", bytesText(accuracy.gpu_bytes)});
     text += table(rows);
     text += "\nLengths in percent are of the longest side, " + shortNumber(samples.longest_side) + units +
-            ". " + std::to_string(samples.options.samples) + " points of each kind, seed " +
-            std::to_string(samples.options.seed) + "; those near\nthe surface lie " +
-            precisely(100.0 * samples.options.sigma_share) + " of it away (standard deviation).\n";
+            ". " + std::to_string(samples.options.samples) + " points of each kind, " +
+            std::to_string(field.inside.points) + " inside, seed " + std::to_string(samples.options.seed) +
+            "; those near\nthe surface lie " + precisely(100.0 * samples.options.sigma_share) +
+            " of it away (standard deviation).\n";
     return text;
 }
 
@@ -199,14 +202,16 @@ void fields(FieldVisitor& visit, const FieldAccuracyReport& report) {
     const auto inside = [&](FieldVisitor& visit_inside) {
         const auto depth_error = lengths(field.inside.depth_mean, field.inside.depth_p99);
         const auto normal_error = angles(field.inside.normal_mean, field.inside.normal_p99);
+        visit_inside("points", field.inside.points, {"Points that were measured"});
         visit_inside("far_face_percent", field.inside.far_face_percent,
-                     {"Points for which a face decides that is more than 1.25 times as far as the nearest",
+                     {"Points at which the nearest face does not decide: called outside, with a normal away "
+                      "from it, or more than 1.25 times as deep",
                       "%", kPercentRange});
         visit_inside("depth_error", group(depth_error), {"Error of the depth"});
         visit_inside("normal_error_degrees", group(normal_error),
                      {"Angle between the normal and the way to the nearest face"});
     };
-    visit("inside", group(inside), {"Votes at points inside, at any depth"});
+    visit("inside", group(inside), {"Votes at points inside, up to 0.45 of the thickness below a face"});
 }
 
 void fields(FieldVisitor& visit, const ColliderAccuracyReport& report) {

@@ -22,12 +22,13 @@ inline constexpr double kFairPercent = 5.0;
 /// "0.4 % wrong near the surface: good"
 [[nodiscard]] std::string verdictText(double wrong_percent);
 
-/// Grade of the votes inside, by InsideAccuracy::far_face_percent.
+/// Grade of the votes inside, by InsideAccuracy::far_face_percent; "unknown" with fewer than kInsidePointsLeast points.
 inline constexpr double kGoodInsidePercent = 3.0;
 inline constexpr double kFairInsidePercent = 10.0;
-[[nodiscard]] std::string insideGradeOf(double far_face_percent);
-/// "at 12 % of the points inside a farther face decides: poor"; "" if it is good.
-[[nodiscard]] std::string insideVerdictText(double far_face_percent);
+inline constexpr std::uint64_t kInsidePointsLeast = 300;
+[[nodiscard]] std::string insideGradeOf(const InsideAccuracy& accuracy);
+/// "at 12 % of the points inside the nearest face does not decide: poor"; "" if it is good or unknown.
+[[nodiscard]] std::string insideVerdictText(const InsideAccuracy& accuracy);
 
 /// A few lines: what was measured, and the results.
 /// \param unit  of lengths: "m", or "" for object units

@@ -189,8 +189,8 @@ export class Panel {
         const side = this.app.body.box.longest;
         const rows = checkRows(check, (v) => `${this.#length(v)} (${shortNumber(100 * v / side)} %)`);
         $("measures").replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
-        $("verdict").className = verdict.grade;
-        $("verdict").textContent = verdict.text;
+        $("verdict").className = check.max_error_percent === null ? verdict.grade : check.passed ? "good" : "poor";
+        $("verdict").textContent = [verdict.text, verdict.inside_text].filter(Boolean).join("; ");
         $("parts").textContent = parts.text;
         $("advice-title").hidden = advice.length === 0;
         $("advice").replaceChildren(...advice.map(({ command, ...one }) => element("li", {},
@@ -272,7 +272,7 @@ function checkRows({ accuracy: original, repaired, sampling }, length) {
             ["surface that no map sees", percent(accuracy.unseen_area_percent)],
             ["outside without a distance", percent(accuracy.far_percent)], ["no map votes", percent(accuracy.unknown_percent)],
             ["no normal", percent(accuracy.no_normal_percent)],
-            ["inside, a farther face decides", percent(accuracy.inside.far_face_percent)],
+            ["inside, the nearest face does not decide", percent(accuracy.inside.far_face_percent)],
             ["on the GPU", `${accuracy.gpu_bytes.toLocaleString("en")} bytes`],
             ["points of each kind", sampling.samples.toLocaleString("en")], ["seed", `${sampling.seed}`]];
 }

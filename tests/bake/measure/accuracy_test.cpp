@@ -172,14 +172,24 @@ TEST_F(AccuracyOfASphere, InsideANearerFaceThatDoesNotDecideIsSeen) {
     EXPECT_EQ(right.far_face_percent, 0.0);
     EXPECT_LT(right.depth_p99, 1e-6);
     EXPECT_LT(right.normal_mean, 1.0);
-    EXPECT_NEAR(static_cast<double>(samples().inside.size()), 3.14159265 / 6.0 * kSamples, 0.01 * kSamples);
-    // Planes through the far side: the depth at r is 1 + r instead of 1 − r, and too large from r = 0.25 / 2.25 on.
-    const InsideAccuracy wrong = measureField(samples(), [](const glm::vec3& p) {
-                                     return FieldValue{-1.0F - glm::length(p), -glm::normalize(p)};
+    EXPECT_GT(samples().inside.size(), 0.99 * kSamples);
+    EXPECT_EQ(right.points, samples().inside.size());
+    // As deep as the far side: at r, which is uniform from 0.1 to 1, 1 + r instead of 1 − r, too large from r = 0.25 / 2.25 on.
+    const InsideAccuracy deep = measureField(samples(), [](const glm::vec3& p) {
+                                    return FieldValue{-1.0F - glm::length(p), glm::normalize(p)};
+                                }).inside;
+    EXPECT_NEAR(deep.far_face_percent, 100.0 * (1.0 - 0.25 / 2.25) / 0.9, 0.2);
+    EXPECT_NEAR(deep.depth_mean, 2.0 * 0.55, 0.01);
+    // The opposite normal, in an object so large that its depth tells nothing; and nothing inside.
+    const InsideAccuracy turned = measureField(samples(), [](const glm::vec3& p) {
+                                      return FieldValue{glm::length(p) - 1.0F, -glm::normalize(p)};
+                                  }).inside;
+    EXPECT_EQ(turned.far_face_percent, 100.0);
+    EXPECT_GT(turned.normal_mean, 179.0);
+    const InsideAccuracy empty = measureField(samples(), [](const glm::vec3&) {
+                                     return FieldValue{1.0F, glm::vec3(0, 1, 0)};
                                  }).inside;
-    EXPECT_NEAR(wrong.far_face_percent, 100.0 * (1.0 - std::pow(0.25 / 2.25, 3.0)), 0.2);
-    EXPECT_NEAR(wrong.depth_mean, 2.0 * 0.75, 0.01);  // the mean of r over a ball
-    EXPECT_GT(wrong.normal_mean, 179.0);
+    EXPECT_EQ(empty.far_face_percent, 100.0);
 }
 
 // Of two boxes that overlap, the ends within the other one are no boundary.
