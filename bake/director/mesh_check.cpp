@@ -1,5 +1,6 @@
 #include "bake/director/mesh_check.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bake/director/director.h"
@@ -40,15 +41,16 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
     return {};
 }
 
-/// The mesh, with the names that the collider was baked by; of one that moves, its rest pose.
-Result<TriangleMesh> importFor(const std::vector<std::string>& names, bool animated,
+/// The mesh, with the names and the hidden objects that the collider was baked with; of one that moves, its rest pose.
+Result<TriangleMesh> importFor(const std::vector<std::string>& names, const BakeRequest& recorded,
                                const CheckRequest& request) {
-    if (animated) {
-        return RELIEF_TRY(importAnimatedFileInWorker(request.mesh, ImportKind::kAnimated, request.import,
+    ImportOptions options = request.import;
+    options.hidden = std::max(options.hidden, recorded.import.hidden);
+    if (recorded.animated) {
+        return RELIEF_TRY(importAnimatedFileInWorker(request.mesh, ImportKind::kAnimated, options,
                                                      request.import_limits))
             .rest;
     }
-    ImportOptions options = request.import;
     options.names = names;
     Result<TriangleMesh> mesh = importMeshInWorker(request.mesh, options, request.import_limits);
     if (!mesh && mesh.error().code == ErrorCode::kUsage && !options.names.empty()) {
@@ -64,7 +66,7 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
     const BakeRequest& recorded = run.recorded.request;
     const std::vector<std::string> names = RELIEF_TRY(parseShapeOptions(recorded.as)).names();
     if (!given) {
-        given = RELIEF_TRY(importFor(names, recorded.animated, request));
+        given = RELIEF_TRY(importFor(names, recorded, request));
     } else if (const std::string option = importOptionOf(request.import, request.import_limits);
                !option.empty()) {
         return fail(ErrorCode::kUsage, option + " is for a mesh that is read from a file; leave it out");

@@ -131,7 +131,8 @@ class AnimatedReader {
         addFrame();
         RELIEF_TRY(addNodes(withJoints(shown)));
         for (const std::uint32_t index : shown) {
-            if (from_[index].mesh) {
+            const GltfNode& node = from_[index];
+            if (node.mesh && !left_out_.leaveOut(node.shown, node.name, job_.options.hidden)) {
                 RELIEF_TRY(place(index));
             }
         }
@@ -404,7 +405,7 @@ class AnimatedReader {
             return invalidInput(*refusal);
         }
         if (mesh_.triangles.empty()) {
-            return invalidInput("no triangles; export the surface as polygons, not as points or lines");
+            return noTriangles(left_out_.any());
         }
         if (mesh_.materials == std::vector<std::string>{""}) {  // none is named
             mesh_.materials.clear();
@@ -412,6 +413,7 @@ class AnimatedReader {
         }
         out_.unused_vertices = counts.unused;
         warnOfParts(counts, out_.warnings);
+        left_out_.warn(out_.warnings);
         if (odd_sums_ > 0) {
             out_.warnings.push_back(std::to_string(odd_sums_) +
                                     (odd_sums_ == 1 ? " vertex has joints whose weights have"
@@ -428,6 +430,7 @@ class AnimatedReader {
     GltfMeshes meshes_;
     AnimatedMesh mesh_;
     Transform frame_;
+    LeftOutObjects left_out_;
     std::vector<GltfNode> from_;
     std::vector<std::optional<std::uint32_t>> nodes_;  // of mesh_, by those of the file
     std::map<std::uint64_t, Skin> skins_;

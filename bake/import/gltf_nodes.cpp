@@ -15,10 +15,13 @@ namespace {
 // --- the document ---
 
 // Required extensions that are read or do not change positions.
-constexpr std::array<std::string_view, 12> kKnown = {
-    "KHR_mesh_quantization",   "KHR_texture_transform",   "KHR_technique_webgl",      "KHR_techniques_webgl",
-    "KHR_texture_basisu",      "KHR_lights_punctual",     "EXT_texture_webp",         "MSFT_texture_dds",
-    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_physics_rigid_bodies", "KHR_implicit_shapes"};
+constexpr std::array<std::string_view, 14> kKnown = {"KHR_mesh_quantization",    "KHR_texture_transform",
+                                                     "KHR_technique_webgl",      "KHR_techniques_webgl",
+                                                     "KHR_texture_basisu",       "KHR_lights_punctual",
+                                                     "EXT_texture_webp",         "MSFT_texture_dds",
+                                                     "EXT_mesh_gpu_instancing",  "EXT_meshopt_compression",
+                                                     "KHR_physics_rigid_bodies", "KHR_implicit_shapes",
+                                                     "KHR_node_visibility",      "MSFT_lod"};
 
 Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
@@ -43,7 +46,11 @@ Result<void> checkVersion(const GltfValue& document) {
     return {};
 }
 
-Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>& warnings) {
+Result<std::optional<GltfValue>> inside(const std::optional<GltfValue>& of, const char* name) {
+    return of ? of->object(name) : std::optional<GltfValue>();
+}
+
+Result<void> checkExtensions(const GltfValue& document) {
     using Names = std::vector<std::string>;
     for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsRequired", {}))) {
         const bool known = name.starts_with("KHR_materials_") || name.starts_with("KHR_xmp") ||
@@ -53,14 +60,23 @@ Result<void> checkExtensions(const GltfValue& document, std::vector<std::string>
                                                      "', which is not read; export it without");
         }
     }
-    // Optional extensions that change the surface.
-    for (const std::string& name : RELIEF_TRY(document.get<Names>("extensionsUsed", {}))) {
-        if (name == "KHR_node_visibility") {
-            warnings.emplace_back(
-                "nodes that KHR_node_visibility hides are baked too; export it without them");
+    return {};
+}
+
+/// Whether animations show and hide nodes (KHR_animation_pointer). Errors: of animations, which a mesh does not depend on.
+Result<bool> animatesVisibility(const GltfValue& document) {
+    for (const GltfValue& animation : RELIEF_TRY(document.objects("animations"))) {
+        for (const GltfValue& channel : RELIEF_TRY(animation.objects("channels"))) {
+            const auto target = RELIEF_TRY(channel.object("target"));
+            const auto pointer = RELIEF_TRY(inside(
+                target ? RELIEF_TRY(target->object("extensions")) : std::nullopt, "KHR_animation_pointer"));
+            const std::string path = pointer ? RELIEF_TRY(pointer->get<std::string>("pointer", "")) : "";
+            if (path.ends_with("/KHR_node_visibility/visible")) {
+                return true;
+            }
         }
     }
-    return {};
+    return false;
 }
 
 // --- nodes ---
@@ -139,6 +155,28 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     return {};
 }
 
+/// What the nodes' extensions hide. Levels of detail below the first are usually in no scene.
+Result<void> hideNodes(std::vector<GltfNode>& nodes) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));
+        const auto visibility = RELIEF_TRY(inside(extensions, "KHR_node_visibility"));
+        if (visibility && !RELIEF_TRY(visibility->get<bool>("visible", true))) {
+            nodes[i].shown = Shown::kHidden;
+        }
+        const auto levels = RELIEF_TRY(inside(extensions, "MSFT_lod"));
+        using Indices = std::vector<std::uint64_t>;
+        for (const std::uint64_t level : levels ? RELIEF_TRY(levels->get<Indices>("ids", {})) : Indices()) {
+            if (level >= nodes.size()) {
+                return levels->wrong("names nodes[" + std::to_string(level) + "], which does not exist");
+            }
+            if (level != i && nodes[level].shown == Shown::kYes) {
+                nodes[level].shown = Shown::kLesserLevel;
+            }
+        }
+    }
+    return {};
+}
+
 /// Empty where there is no such attribute.
 template <class T>
 Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* name, GltfUse use,
@@ -167,7 +205,10 @@ Result<void> checkCombineModes(const GltfValue& material, std::vector<std::strin
 
 Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings) {
     RELIEF_TRY(checkVersion(document));
-    return checkExtensions(document, warnings);
+    if (animatesVisibility(document).value_or(false)) {
+        warnings.emplace_back(kAnimatedVisibility);
+    }
+    return checkExtensions(document);
 }
 
 Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document) {
@@ -187,9 +228,16 @@ Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document) {
             roots.push_back(i);
         }
     }
-    return nodesBelow(roots, nodes).size() == nodes.size()
-               ? Result<std::vector<GltfNode>>(std::move(nodes))
-               : invalidInput("its nodes are their own parents; nodes must form trees");
+    const std::vector<std::uint32_t> all = nodesBelow(roots, nodes);
+    if (all.size() != nodes.size()) {
+        return invalidInput("its nodes are their own parents; nodes must form trees");
+    }
+    RELIEF_TRY(hideNodes(nodes));
+    for (const std::uint32_t index : all) {
+        const Shown above = nodes[index].parent ? nodes[*nodes[index].parent].shown : Shown::kYes;
+        nodes[index].shown = above == Shown::kYes ? nodes[index].shown : above;
+    }
+    return nodes;
 }
 
 Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document, const std::vector<GltfNode>& nodes) {
@@ -245,10 +293,6 @@ std::optional<Transform> affineOf(const float* m) {
 Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, const GltfNode& node,
                                                  std::vector<std::string>& warnings) {
     constexpr const char* kPhysics = "KHR_physics_rigid_bodies";
-    const auto inside = [&](const std::optional<GltfValue>& of,
-                            const char* name) -> Result<std::optional<GltfValue>> {
-        return of ? of->object(name) : std::optional<GltfValue>();
-    };
     const auto own = RELIEF_TRY(node.place.object("extensions"));
     const auto physics = RELIEF_TRY(inside(own, kPhysics));
     const auto collider = RELIEF_TRY(inside(physics, "collider"));

@@ -37,6 +37,7 @@ struct GltfNode {
     std::vector<std::uint32_t> children{};
     std::optional<GltfValue> mesh{};
     std::optional<GltfValue> skin{};
+    Shown shown = Shown::kYes;  ///< KHR_node_visibility, MSFT_lod
 };
 
 /// The response of a node's surface by KHR_physics_rigid_bodies: that of its physics material. A share above 1 counts as 1.

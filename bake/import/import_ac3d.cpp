@@ -114,7 +114,10 @@ class Ac3dReader {
         }
         SceneNode node{Transform{}};
         node.index = index;
-        node.shown = open_.empty() ? std::string() : scene_.nodes[open_.back().node].shown;
+        if (!open_.empty()) {
+            node.shown = scene_.nodes[open_.back().node].shown;
+            node.is_shown = scene_.nodes[open_.back().node].is_shown;
+        }
         text_.nextLine();
         positions_.clear();
         used_.clear();
@@ -152,6 +155,8 @@ class Ac3dReader {
         if (key == "name") {
             node.names = {nameOf(text_.restOfLine())};
             node.shown = node.names[0].empty() ? node.shown : node.names[0];
+        } else if (key == "hidden") {
+            node.is_shown = Shown::kHidden;
         } else if (key == "loc") {
             for (int axis = 0; axis < 3; ++axis) {
                 node.transform->offset[axis] = RELIEF_TRY(number());

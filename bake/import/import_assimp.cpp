@@ -11,10 +11,12 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 
 #include "bake/import/import_readers.h"
+#include "bake/import/source_marks.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -25,7 +27,8 @@ namespace {
 /// The mesh from memory, and the files that it refers to (material libraries) by ImportFiles. Nothing can be written.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:
-    explicit ReadOnlyFiles(ImportFiles& files) : files_(files) {}
+    /// \param mesh  the mesh's bytes, borrowed.
+    ReadOnlyFiles(ImportFiles& files, std::span<const std::byte> mesh) : files_(files), mesh_(mesh) {}
 
     bool Exists(const char* path) const override { return path != nullptr && files_.exists(path); }
     [[nodiscard]] char getOsSeparator() const override { return '/'; }
@@ -34,9 +37,8 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
             return nullptr;
         }
         if (files_.isMesh(path)) {
-            const std::span<const std::byte> mesh = files_.meshBytes();
-            return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(mesh.data()),
-                                              mesh.size());
+            return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(mesh_.data()),
+                                              mesh_.size());
         }
         const std::optional<std::vector<std::byte>> bytes = files_.open(path);
         if (!bytes) {
@@ -55,6 +57,7 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
 
   private:
     ImportFiles& files_;
+    std::span<const std::byte> mesh_;
 };
 
 /// The first errors of an import on this thread, and warnings about omitted parts of the surface. A reader of assimp that
@@ -114,9 +117,9 @@ bool hasLogged(std::string_view words) {
 // --- units and axes ---
 
 template <class T>
-std::optional<T> metadata(const aiScene& scene, const char* key) {
+std::optional<T> metadata(const aiMetadata* data, const char* key) {
     T value{};
-    if (scene.mMetaData == nullptr || !scene.mMetaData->Get(key, value)) {
+    if (data == nullptr || !data->Get(key, value)) {
         return std::nullopt;
     }
     return value;
@@ -132,8 +135,8 @@ SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     } else {
         frame.unit_fault = "its UnitScaleFactor is " + unit.text + ", which is no length";
     }
-    const int axis = metadata<std::int32_t>(scene, "UpAxis").value_or(1);
-    const int sign = metadata<std::int32_t>(scene, "UpAxisSign").value_or(1);
+    const int axis = metadata<std::int32_t>(scene.mMetaData, "UpAxis").value_or(1);
+    const int sign = metadata<std::int32_t>(scene.mMetaData, "UpAxisSign").value_or(1);
     if (axis >= 0 && axis <= 2) {
         frame.up = static_cast<UpAxis>(2 * axis + (sign < 0 ? 1 : 0));
     } else {
@@ -189,7 +192,7 @@ std::string nameOf(const aiString& text) {
     // Placeholders of assimp for missing names, and its suffix for nodes of FBX that it splits.
     const bool made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
                          name.find("_$AssimpFbx$_") != std::string_view::npos;
-    return made_up ? std::string() : std::string(name);
+    return made_up ? std::string() : std::string(name.substr(0, name.find(kLodGroupMark)));
 }
 
 /// Some readers of assimp keep invalid indices. \return nullopt: a face uses a vertex that does not exist.
@@ -253,8 +256,45 @@ bool addMeshes(const aiScene& source, ImportScene& scene) {
     return true;
 }
 
-void addNodes(const aiScene& source, ImportScene& scene) {
+/// A property of an FBX node, of any type of number. \return whether it is there, and 0.
+bool isZero(const aiNode& node, const char* property) {
+    const auto is = [&](auto zero) { return metadata<decltype(zero)>(node.mMetaData, property) == zero; };
+    return is(false) || is(std::int32_t{0}) || is(0.0F) || is(0.0);
+}
+
+/// Whether the file hides this node, whatever is above it. \param hidden  names of hidden nodes.
+bool isHidden(const aiNode& node, const std::set<std::string>& hidden) {
+    return isZero(node, "Show") || isZero(node, "Visibility") || hidden.contains(node.mName.C_Str());
+}
+
+bool hasMeshes(const aiNode& node) {
+    const std::span children(node.mChildren, node.mNumChildren);
+    return node.mNumMeshes > 0 || std::any_of(children.begin(), children.end(), [](const aiNode* child) {
+               return child != nullptr && hasMeshes(*child);
+           });
+}
+
+/// All levels of a LodGroup but the most detailed one, which is the first that is shown.
+std::set<const aiNode*> lesserLevels(const aiNode& group, const std::set<std::string>& hidden) {
+    std::set<const aiNode*> levels;
+    if (std::string_view(group.mName.C_Str()).find(kLodGroupMark) == std::string_view::npos) {
+        return levels;
+    }
+    bool first = true;
+    for (const aiNode* child : std::span(group.mChildren, group.mNumChildren)) {
+        if (child != nullptr && hasMeshes(*child) && !isHidden(*child, hidden) &&
+            !std::exchange(first, false)) {
+            levels.insert(child);
+        }
+    }
+    return levels;
+}
+
+/// \param hidden  names of hidden nodes.
+void addNodes(const aiScene& source, const std::set<std::string>& hidden, ImportScene& scene) {
     std::vector<std::pair<const aiNode*, std::uint32_t>> pending{{source.mRootNode, 0}};
+    std::set<const aiNode*> lesser;
+    std::set<std::string> unmet = hidden;
     while (!pending.empty()) {
         const auto [from, parent] = pending.back();
         pending.pop_back();
@@ -264,7 +304,17 @@ void addNodes(const aiScene& source, ImportScene& scene) {
             Transform{glm::dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), {m.a4, m.b4, m.c4}}};
         node.names = {nameOf(from->mName)};
         node.index = index;
+        if (isHidden(*from, hidden)) {
+            node.is_shown = Shown::kHidden;
+            unmet.erase(from->mName.C_Str());
+        }
         if (index > 0) {  // the root is the file
+            const Shown above = scene.nodes[parent].is_shown;
+            if (above != Shown::kYes && !isZero(*from, "Visibility Inheritance")) {
+                node.is_shown = above;
+            } else if (lesser.contains(from)) {
+                node.is_shown = Shown::kLesserLevel;
+            }
             node.shown = node.names[0].empty() ? scene.nodes[parent].shown : node.names[0];
             scene.nodes[parent].children.push_back(index);
         }
@@ -274,6 +324,7 @@ void addNodes(const aiScene& source, ImportScene& scene) {
             }
         }
         scene.nodes.push_back(std::move(node));
+        lesser.merge(lesserLevels(*from, hidden));
         for (unsigned i = from->mNumChildren; i > 0; --i) {
             if (from->mChildren[i - 1] != nullptr) {
                 pending.emplace_back(from->mChildren[i - 1], index);
@@ -281,6 +332,10 @@ void addNodes(const aiScene& source, ImportScene& scene) {
         }
     }
     scene.roots = {0};
+    if (!unmet.empty()) {  // a 3DS file without a keyframer
+        scene.warnings.push_back("baked " + std::to_string(unmet.size()) + " hidden objects (first '" +
+                                 *unmet.begin() + "'), because no node has their names; remove them");
+    }
 }
 
 /// Keeps only the readers that claim the extension, so that the choice does not depend on the contents.
@@ -324,9 +379,14 @@ tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFile
 
 Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, ImportFiles& files) {
     beginLogging();
+    const ColladaNodes collada =
+        format == AssimpFrame::kDae ? RELIEF_TRY(readColladaNodes(job.bytes)) : ColladaNodes();
     Assimp::Importer importer;
     keepReadersOf(job.extension, importer);
-    importer.SetIOHandler(new ReadOnlyFiles(files));  // owned by the importer
+    const std::optional<std::vector<std::byte>> marked =
+        format == AssimpFrame::kFbx ? markedFbx(job.bytes) : std::nullopt;
+    // Owned by the importer.
+    importer.SetIOHandler(new ReadOnlyFiles(files, marked ? *marked : files.meshBytes()));
     // Otherwise files with only bones get a made-up mesh.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
@@ -343,7 +403,13 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
         return invalidInput("a face uses a vertex that does not exist");
     }
     scene.frame = frameOf(format, job, *source);
-    addNodes(*source, scene);
+    addNodes(*source, format == AssimpFrame::k3ds ? hiddenObjectsOf3ds(job.bytes) : collada.hidden, scene);
+    if (collada.missing) {
+        scene.warnings.push_back("left out what is missing: " + *collada.missing);
+    }
+    if (collada.animates_visibility || (format == AssimpFrame::kFbx && fbxAnimatesVisibility(job.bytes))) {
+        scene.warnings.emplace_back(kAnimatedVisibility);
+    }
     const std::span meshes(source->mMeshes, source->mNumMeshes);
     if (std::any_of(meshes.begin(), meshes.end(), [](const aiMesh* mesh) { return mesh->HasBones(); })) {
         scene.warnings.emplace_back("it is skinned; baked as it is modelled, without its skeleton");

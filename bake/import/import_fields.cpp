@@ -14,6 +14,10 @@ void fields(FieldVisitor& visit, ImportOptions& options) {
            .fallback = "the file's; without one, axes stay as they are",
            .value = "AXIS",
            .recorded = true});
+    visit(
+        "hidden", options.hidden,
+        {.help = "skip: leave out hidden objects and lower levels of detail of the mesh file; keep: use all",
+         .recorded = true});
 }
 
 void fields(FieldVisitor& visit, ImportLimits& limits) {

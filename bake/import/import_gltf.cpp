@@ -53,6 +53,7 @@ class GltfReader {
         for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
             SceneNode& node = scene_.nodes[index];
             node.index = index;
+            node.is_shown = nodes_[index].shown;
             node.shown = nodes_[index].name;
             node.names = {node.shown};
             node.transform = nodes_[index].at.transform;
@@ -148,6 +149,7 @@ class GltfReader {
         for (const Transform& transform : *instances) {
             SceneNode node;
             node.transform = transform;
+            node.is_shown = scene_.nodes[index].is_shown;
             node.shown = scene_.nodes[index].shown;
             node.response = scene_.nodes[index].response;
             node.index = static_cast<std::uint32_t>(scene_.nodes.size());

@@ -17,6 +17,11 @@
 
 namespace relief {
 
+/// Geometry that the file has and does not show: hidden objects, and lower levels of detail.
+enum class HiddenAs : std::uint8_t { kSkip, kKeep };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<HiddenAs>{"skip", "keep"};
+
 struct ImportOptions {
     /// The unit of the source's lengths, one of kLengthUnits; the mesh is then in metres. "": the file's unit; if it
     /// states none, lengths stay as they are and the mesh's unit is "".
@@ -24,6 +29,7 @@ struct ImportOptions {
     /// The source's axis that points upwards; the mesh is turned so that this becomes +Y. None: the file's axis; if it
     /// states none, axes stay as they are.
     std::optional<UpAxis> up;
+    HiddenAs hidden = HiddenAs::kSkip;
     /// Names to mark triangles by (TriangleMesh::marks): of nodes, with everything below them, of meshes, of materials, of
     /// OBJ's groups and objects. Clean UTF-8 (cleanUtf8), at most kAskedNamesMax of at most kAskedNameBytesMax bytes; names
     /// of the file are cleaned and cut alike. A name that no triangle has is an error (kUsage) that lists existing ones.

@@ -245,8 +245,9 @@ class Flattener {
 
     Result<TriangleMesh> finish() {
         if (mesh_.triangles.empty()) {
-            return invalidInput("no triangles; export the surface as polygons, not as points or lines");
+            return noTriangles(left_out_.any());
         }
+        left_out_.warn(mesh_.warnings);
         RELIEF_TRY(marks_.allMet());
         dropSingleLabel(mesh_);
         if (flat_ > 0) {
@@ -338,6 +339,11 @@ class Flattener {
         return next;
     }
 
+    [[nodiscard]] bool hasTriangles(const SceneNode& node) const {
+        return std::ranges::any_of(
+            node.parts, [this](std::uint32_t part) { return !scene_.parts[part].triangles.empty(); });
+    }
+
     /// Whether a node or one below it has triangles. Recursive: importers run on a deep stack.
     Result<bool> look(std::uint32_t index) {
         if (states_[index] == State::kOpen) {
@@ -346,11 +352,10 @@ class Flattener {
         if (states_[index] == State::kUnseen) {
             states_[index] = State::kOpen;
             const SceneNode& node = scene_.nodes[index];
-            bool shown = false;
             for (const std::uint32_t part : node.parts) {
                 placed_[part] = true;
-                shown = shown || !scene_.parts[part].triangles.empty();
             }
+            bool shown = hasTriangles(node);
             for (const std::uint32_t child : node.children) {
                 shown = RELIEF_TRY(look(child)) || shown;
             }
@@ -403,14 +408,17 @@ class Flattener {
                 }
             }
         };
+        left_out_ = {};
         push(scene_.roots, root_, 0);
         while (!pending.empty()) {
             const Pending next = pending.back();
             pending.pop_back();
             const SceneNode& node = scene_.nodes[next.node];
             const Transform transform = node.transform ? next.parent * *node.transform : next.parent;
-            const std::uint8_t mark = std::max(next.mark, marks_.meet(node.names));
-            if (!node.parts.empty() && !visit(node, node.posed ? root_ : transform, mark)) {
+            const bool skips =
+                hasTriangles(node) && left_out_.leaveOut(node.is_shown, node.shown, job_.options.hidden);
+            const std::uint8_t mark = skips ? next.mark : std::max(next.mark, marks_.meet(node.names));
+            if (!skips && !node.parts.empty() && !visit(node, node.posed ? root_ : transform, mark)) {
                 return false;
             }
             push(node.children, transform, mark);
@@ -466,6 +474,7 @@ class Flattener {
     const ImportJob& job_;
     NameMarks marks_;
     Transform root_;
+    LeftOutObjects left_out_;
     std::vector<State> states_;  // of the nodes
     std::vector<bool> placed_;   // of the parts
     TriangleMesh mesh_;
@@ -655,6 +664,36 @@ Result<TriangleMesh> flatten(ImportScene scene, const ImportJob& job) {
 
 Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job) {
     return Flattener(std::move(scene), job).runLevel();
+}
+
+bool LeftOutObjects::leaveOut(Shown shown, const std::string& name, HiddenAs hidden) {
+    if (shown == Shown::kYes || hidden == HiddenAs::kKeep) {
+        return false;
+    }
+    const std::size_t kind = shown == Shown::kHidden ? 0 : 1;
+    if (counts_.at(kind)++ == 0) {
+        first_names_.at(kind) = name;
+    }
+    return true;
+}
+
+void LeftOutObjects::warn(std::vector<std::string>& warnings) const {
+    constexpr std::array<std::array<const char*, 2>, 2> kWords = {
+        {{"hidden object", "hidden objects"}, {"lower level of detail", "lower levels of detail"}}};
+    for (std::size_t kind = 0; kind < 2; ++kind) {
+        if (const std::uint64_t count = counts_.at(kind); count > 0) {
+            warnings.push_back("left out " + std::to_string(count) + " " +
+                               kWords.at(kind).at(count == 1 ? 0 : 1) + " (" + (count == 1 ? "" : "first ") +
+                               "'" + cleanUtf8(first_names_.at(kind), kAskedNameBytesMax) +
+                               "'); --hidden keep bakes all");
+        }
+    }
+}
+
+tl::unexpected<Error> noTriangles(bool left_out) {
+    return invalidInput(left_out
+                            ? "all of its objects are hidden; show what is to be baked, or give --hidden keep"
+                            : "no triangles; export the surface as polygons, not as points or lines");
 }
 
 tl::unexpected<Error> tooManyTriangles(const ImportJob& job) {

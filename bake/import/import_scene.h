@@ -59,12 +59,20 @@ struct NodeResponse {
     friend auto operator<=>(const NodeResponse&, const NodeResponse&) = default;
 };
 
+/// Whether the file shows the parts of a node.
+enum class Shown : std::uint8_t {
+    kYes,
+    kHidden,       ///< it or a node above it is hidden
+    kLesserLevel,  ///< of detail; another node has the most detailed one
+};
+
 /// A place of parts and of other nodes, which may have several places themselves.
 struct SceneNode {
     std::optional<Transform> transform{};  ///< to its parent
-    bool posed = false;                    ///< its parts are in scene space, whatever the transforms
-    std::vector<std::string> names{};      ///< that --as can select all below it by
-    std::string shown{};                   ///< of SurfaceName, as are the next two
+    Shown is_shown = Shown::kYes;
+    bool posed = false;                ///< its parts are in scene space, whatever the transforms
+    std::vector<std::string> names{};  ///< that --as can select all below it by
+    std::string shown{};               ///< of SurfaceName, as are the next two
     std::optional<NodeResponse> response{};
     std::optional<std::uint32_t> index{};  ///< nullopt: each place of the node counts for itself
     std::vector<std::uint32_t> parts{};
@@ -109,6 +117,27 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 /// mirror counts as another, to which that has been applied; of a rotation, one scale and a shift it is a body.
 /// Errors: also kLimit (more meshes or bodies than a world may have).
 [[nodiscard]] Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job);
+
+/// A warning, without the file's name.
+inline constexpr const char* kAnimatedVisibility =
+    "its animations show and hide objects; it is baked as its nodes are without them";
+
+/// Objects that an import leaves out because the file does not show them.
+class LeftOutObjects {
+  public:
+    /// \return whether it is left out. \param name  as the file has it.
+    bool leaveOut(Shown shown, const std::string& name, HiddenAs hidden);
+    /// One line for each kind. \param warnings  receives them.
+    void warn(std::vector<std::string>& warnings) const;
+    [[nodiscard]] bool any() const { return counts_ != std::array<std::uint64_t, 2>{}; }
+
+  private:
+    std::array<std::uint64_t, 2> counts_{};     // hidden ones, lesser levels
+    std::array<std::string, 2> first_names_{};  // the same
+};
+
+/// "no triangles…". \param left_out  any() of LeftOutObjects.
+[[nodiscard]] tl::unexpected<Error> noTriangles(bool left_out);
 
 /// "it has more than N triangles…", kLimit.
 [[nodiscard]] tl::unexpected<Error> tooManyTriangles(const ImportJob& job);

@@ -61,10 +61,12 @@ class WorldChecker {
   private:
     /// With the names that colliders were baked by.
     Result<void> readLevel() {
+        HiddenAs hidden = request_.check.import.hidden;
         for (const WorldCollider& collider : field_.world().colliders) {
             const std::size_t index = static_cast<std::size_t>(&collider - field_.world().colliders.data());
             const Provenance& from = field_.colliders()[index].provenance;
             recorded_.push_back(recordedBake(from.options).request);
+            hidden = std::max(hidden, recorded_.back().import.hidden);
             by_hash_.emplace(from.mesh_hash, index);
             for (const std::string& word : recorded_.back().as) {
                 if (word.find('=') != std::string::npos && std::ranges::find(as_, word) == as_.end()) {
@@ -73,6 +75,7 @@ class WorldChecker {
             }
         }
         ImportOptions options = request_.check.import;
+        options.hidden = hidden;
         options.names = RELIEF_TRY(parseShapeOptions(as_)).names();
         level_ = RELIEF_TRY(importLevel(request_.check.mesh, options, request_.check.import_limits));
         result_.warnings = level_.warnings;

@@ -1,0 +1,330 @@
+#include "bake/import/source_marks.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <pugixml.hpp>
+
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::string_view kLodGroup = "LodGroup";
+static_assert(kLodGroupMark.size() == kLodGroup.size());
+
+std::string_view textOf(std::span<const std::byte> document) {
+    return {reinterpret_cast<const char*>(document.data()), document.size()};
+}
+
+bool isBinary(std::string_view text) {
+    return text.starts_with("Kaydara");
+}
+
+std::uint32_t lengthAt(std::string_view text, std::size_t at) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, text.data() + at, sizeof(length));
+    return length;
+}
+
+/// A string of an FBX document: a token in quotes, or 'S', length and bytes.
+struct FbxString {
+    std::size_t begin;  ///< of its bytes
+    std::size_t size;
+};
+
+/// The string behind `at`, in text behind blanks and a comma. nullopt: there is none.
+std::optional<FbxString> stringBehind(std::string_view text, std::size_t at) {
+    if (isBinary(text)) {
+        const bool is_string =
+            at + 5 <= text.size() && text[at] == 'S' && lengthAt(text, at + 1) <= text.size() - at - 5;
+        return is_string ? std::optional(FbxString{at + 5, lengthAt(text, at + 1)}) : std::nullopt;
+    }
+    at = text.find_first_not_of(", \t\r\n", at);
+    const std::size_t end =
+        at < text.size() && text[at] == '"' ? text.find('"', at + 1) : std::string_view::npos;
+    return end == std::string_view::npos ? std::nullopt : std::optional(FbxString{at + 1, end - at - 1});
+}
+
+/// Behind a string, its quote included.
+std::size_t endOf(std::string_view text, const FbxString& string) {
+    return string.begin + string.size + (isBinary(text) ? 0 : 1);
+}
+
+std::string quoted(std::string_view text, std::string_view word) {
+    const auto size = static_cast<std::uint32_t>(word.size());
+    std::string length(sizeof(size), '\0');
+    std::memcpy(length.data(), &size, sizeof(size));
+    return isBinary(text) ? "S" + length + std::string(word) : "\"" + std::string(word) + "\"";
+}
+
+/// Replaces two strings that follow each other by two that are as long together.
+void replacePair(std::string& text, const FbxString& first, std::string_view new_first,
+                 const FbxString& second, std::string_view new_second) {
+    const std::size_t before = isBinary(text) ? 5 : 1;
+    const std::size_t begin = first.begin - before;
+    const std::size_t between = endOf(text, first);
+    const std::string separator = text.substr(between, second.begin - before - between);
+    const std::string pair = quoted(text, new_first) + separator + quoted(text, new_second);
+    if (pair.size() == endOf(text, second) - begin) {
+        text.replace(begin, pair.size(), pair);
+    }
+}
+
+/// A property `name` of a type of that name, which assimp does not know, becomes a number.
+bool typeAsNumber(std::string& text, std::string_view name) {
+    const std::string start = quoted(text, name);
+    bool any = false;
+    for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start, at + 1)) {
+        const auto type = stringBehind(text, at + start.size());
+        const auto label = type ? stringBehind(text, endOf(text, *type)) : std::nullopt;
+        const auto flags = label ? stringBehind(text, endOf(text, *label)) : std::nullopt;
+        if (!flags || text.substr(type->begin, type->size) != name) {
+            continue;
+        }
+        const std::size_t value = endOf(text, *flags);
+        const char letter = value < text.size() ? text[value] : '\0';
+        const std::string_view number = !isBinary(text) || letter == 'D' || letter == 'F' ? "double"sv
+                                        : letter == 'I'                                   ? "int"sv
+                                                                                          : ""sv;
+        if (!number.empty()) {
+            replacePair(text, *type, number, *label,
+                        std::string(label->size + name.size() - number.size(), ' '));
+            any = true;
+        }
+    }
+    return any;
+}
+
+/// The string of a binary document that ends before `end`.
+std::optional<FbxString> stringBefore(std::string_view text, std::size_t end) {
+    constexpr std::size_t kNameMax = 1024;
+    for (std::size_t size = 0; size + 5 <= end && size <= kNameMax; ++size) {
+        if (text[end - size - 5] == 'S' && lengthAt(text, end - size - 4) == size) {
+            return FbxString{end - size, size};
+        }
+    }
+    return std::nullopt;
+}
+
+bool markLodGroups(std::string& text) {
+    const bool binary = isBinary(text);
+    // In the name of a model: at its end in binary, at its begin in text.
+    const std::string_view word = binary ? "\0\1Model"sv : "\"Model::"sv;
+    bool any = false;
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+        const std::size_t end = at + word.size();
+        const auto written = binary ? std::nullopt : stringBehind(text, at);
+        const auto its_class = stringBehind(text, written ? endOf(text, *written) : end);
+        if (!its_class || std::string_view(text).substr(its_class->begin, its_class->size) != kLodGroup) {
+            continue;
+        }
+        if (const auto name = binary ? stringBefore(text, end) : written) {
+            std::string marked = text.substr(name->begin, name->size);
+            marked.insert(marked.size() - (binary ? word.size() : 0), kLodGroupMark);
+            replacePair(text, *name, marked, *its_class, "");
+            any = true;
+        }
+    }
+    return any;
+}
+
+/// Reads the nodes that the scene shows.
+class ColladaReader {
+  public:
+    explicit ColladaReader(std::span<const std::byte> document) : text_(textOf(document)) {
+        xml_.load_buffer(document.data(), document.size());
+    }
+
+    Result<ColladaNodes> read() {
+        const pugi::xml_node collada = xml_.child("COLLADA");
+        addIds(collada);
+        RELIEF_TRY(visitInstances(collada.child("scene")));
+        while (!pending_.empty()) {
+            const pugi::xml_node node = pending_.back();
+            pending_.pop_back();
+            if (isHidden(node)) {
+                nodes_.hidden.insert(node.attribute(node.attribute("id") ? "id" : "sid").value());
+            }
+            RELIEF_TRY(visitInstances(node));
+            for (const pugi::xml_node child : node.children("node")) {
+                pending_.push_back(child);
+            }
+        }
+        nodes_.hidden.erase("");
+        nodes_.animates_visibility = text_.find("/visibility\"") != std::string_view::npos;
+        if (missing_ > 1) {
+            nodes_.missing = *nodes_.missing + ", and " + std::to_string(missing_ - 1) + " more like it";
+        }
+        return std::move(nodes_);
+    }
+
+  private:
+    /// Objects that nodes may instance.
+    void addIds(const pugi::xml_node& collada) {
+        std::vector<pugi::xml_node> pending;
+        for (const pugi::xml_node library : collada.children()) {
+            for (const pugi::xml_node object : library.children()) {
+                pending.push_back(object);
+            }
+        }
+        while (!pending.empty()) {
+            const pugi::xml_node object = pending.back();
+            pending.pop_back();
+            const std::string_view name = object.name();
+            if (name != "node" && name != "visual_scene" && name != "geometry" && name != "controller") {
+                continue;
+            }
+            objects_.emplace(object.attribute("id").value(), object);
+            for (const pugi::xml_node child : object.children("node")) {
+                pending.push_back(child);
+            }
+        }
+    }
+
+    static bool isHidden(const pugi::xml_node& node) {
+        const char* const value = node.child("extra").child("technique").child("visibility").child_value();
+        return parseDouble(trimmed(value)) == 0.0;
+    }
+
+    /// Of a node, or of <scene>.
+    Result<void> visitInstances(const pugi::xml_node& node) {
+        for (const pugi::xml_node instance : node.children()) {
+            const std::string_view element = instance.name();
+            if (element == "instance_geometry" || element == "instance_controller" ||
+                element == "instance_node" || element == "instance_visual_scene") {
+                RELIEF_TRY(visit(node, instance, instance.attribute("url").value()));
+            }
+        }
+        return {};
+    }
+
+    Result<void> visit(const pugi::xml_node& node, const pugi::xml_node& instance, const std::string& url) {
+        if (!url.starts_with('#')) {
+            return fail(ErrorCode::kUnsupported, placeOf(node, instance) + " instances '" +
+                                                     cleanUtf8(url, kUrlMax) +
+                                                     "', which is in another file; join the files");
+        }
+        const auto found = objects_.find(url.substr(1));
+        const pugi::xml_node object = found == objects_.end() ? pugi::xml_node() : found->second;
+        if (!object) {
+            return miss(node, instance, url, "does not exist");
+        }
+        const std::string_view kind = object.name();
+        if (kind == "geometry") {
+            return object.child("mesh") ? Result<void>() : miss(node, instance, url, "has no <mesh>");
+        }
+        if (!visited_.insert(object).second) {
+            return {};
+        }
+        if (kind == "controller") {
+            return visit(node, instance,
+                         object.child("skin").attribute("source").as_string(
+                             object.child("morph").attribute("source").value()));
+        }
+        pending_.push_back(object);
+        return {};
+    }
+
+    Result<void> miss(const pugi::xml_node& node, const pugi::xml_node& instance, const std::string& url,
+                      const char* what) {
+        if (missing_++ == 0) {
+            nodes_.missing =
+                placeOf(node, instance) + " instances '" + cleanUtf8(url, kUrlMax) + "', which " + what;
+        }
+        return {};
+    }
+
+    /// "line 3: the node 'x'"; without a line in UTF-16.
+    [[nodiscard]] std::string placeOf(const pugi::xml_node& node, const pugi::xml_node& instance) const {
+        const std::string_view before =
+            text_.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(instance.offset_debug(), 0)));
+        const std::string line = "line " + std::to_string(1 + std::ranges::count(before, '\n')) + ": ";
+        const std::string name =
+            cleanUtf8(node.attribute("name").as_string(node.attribute("id").value()), kUrlMax);
+        return (text_.find('\0') == std::string_view::npos ? line : "") +
+               (std::string_view(node.name()) == "scene" ? "the <scene>"
+                : name.empty()                           ? "a node without a name"
+                                                         : "the node '" + name + "'");
+    }
+
+    static constexpr std::size_t kUrlMax = 100;  // bytes in messages
+
+    std::string_view text_;
+    pugi::xml_document xml_;
+    ColladaNodes nodes_;
+    std::map<std::string, pugi::xml_node> objects_;  // by id
+    std::set<pugi::xml_node> visited_;
+    std::vector<pugi::xml_node> pending_;
+    std::uint64_t missing_ = 0;
+};
+
+/// Chunks of a 3DS file.
+class HiddenOf3ds {
+  public:
+    /// \param text  of the chunks inside another. \param object  the name of the object that they describe; "" outside.
+    void read(std::string_view text, const std::string& object = "") {
+        constexpr std::size_t kHeader = 6;
+        while (text.size() >= kHeader) {
+            std::uint16_t id = 0;
+            std::memcpy(&id, text.data(), sizeof(id));
+            const std::size_t size = lengthAt(text, sizeof(id));
+            if (size < kHeader || size > text.size()) {
+                return;
+            }
+            const std::string_view inside = text.substr(kHeader, size - kHeader);
+            text.remove_prefix(size);
+            if (object.empty() && (id == kMain || id == kEditor)) {
+                read(inside);
+            } else if (object.empty() && id == kObject) {
+                const std::string name(inside.substr(0, inside.find('\0')));
+                read(inside.substr(std::min(inside.size(), name.size() + 1)), name);
+            } else if (id == kHidden) {
+                hidden_.insert(object);
+            }
+        }
+    }
+    [[nodiscard]] std::set<std::string> take() { return std::move(hidden_); }
+
+  private:
+    static constexpr std::uint16_t kMain = 0x4D4D;
+    static constexpr std::uint16_t kEditor = 0x3D3D;
+    static constexpr std::uint16_t kObject = 0x4000;
+    static constexpr std::uint16_t kHidden = 0x4010;
+
+    std::set<std::string> hidden_;
+};
+
+}  // namespace
+
+std::optional<std::vector<std::byte>> markedFbx(std::span<const std::byte> document) {
+    std::string text(textOf(document));
+    const bool typed = typeAsNumber(text, "Visibility");
+    const bool inherits = typeAsNumber(text, "Visibility Inheritance");
+    if (!markLodGroups(text) && !typed && !inherits) {
+        return std::nullopt;
+    }
+    const auto bytes = std::as_bytes(std::span(text));
+    return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+bool fbxAnimatesVisibility(std::span<const std::byte> document) {
+    const std::string_view text = textOf(document);
+    return text.find(isBinary(text) ? "Visibility\0\1AnimCurveNode"sv : "\"AnimCurveNode::Visibility\""sv) !=
+           std::string_view::npos;
+}
+
+Result<ColladaNodes> readColladaNodes(std::span<const std::byte> document) {
+    return ColladaReader(document).read();
+}
+
+std::set<std::string> hiddenObjectsOf3ds(std::span<const std::byte> document) {
+    HiddenOf3ds reader;
+    reader.read(textOf(document));
+    return reader.take();
+}
+
+}  // namespace relief

@@ -1,0 +1,39 @@
+// Properties of a file that assimp drops: which nodes are hidden or are levels of detail, and references to missing objects.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// Ends the names of LodGroup nodes in the result of markedFbx(). As long as "LodGroup".
+inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
+
+/// An FBX document of the same length, binary or text, of which assimp gives more: the visibility of nodes as metadata
+/// ("Visibility", "Visibility Inheritance"), because their type becomes a number; and LodGroup nodes by their names, because
+/// the class moves there. \return nullopt where there is nothing to change.
+[[nodiscard]] std::optional<std::vector<std::byte>> markedFbx(std::span<const std::byte> document);
+
+/// Whether curves animate the visibility of nodes of an FBX document.
+[[nodiscard]] bool fbxAnimatesVisibility(std::span<const std::byte> document);
+
+struct ColladaNodes {
+    std::set<std::string> hidden;  ///< ids or sids of nodes; FCOLLADA's `visibility` in <extra>
+    bool animates_visibility = false;
+    std::optional<std::string> missing;  ///< a warning: instances of what does not exist
+};
+/// The nodes that the document's scene shows. A document that is no XML has none.
+/// Errors: kUnsupported (an instance of an object in another file, with its line and node).
+[[nodiscard]] Result<ColladaNodes> readColladaNodes(std::span<const std::byte> document);
+
+/// Names of the hidden objects of a 3DS file. Nodes have them if the file has a keyframer.
+[[nodiscard]] std::set<std::string> hiddenObjectsOf3ds(std::span<const std::byte> document);
+
+}  // namespace relief

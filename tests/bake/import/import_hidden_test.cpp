@@ -1,0 +1,356 @@
+// Geometry that a file has and does not show, and instances of what it does not have.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/import/animated_import.h"
+#include "bake/import/level.h"
+#include "bake/import/mesh_import.h"
+#include "tests/bake/import/import_meshes.h"
+#include "tests/temporary_folder.h"
+
+namespace relief::test {
+namespace {
+
+/// The tetrahedron at the node `t`, and at `other`, moved by 10 along x, with these properties.
+std::string twoFbx(const std::string& properties, const std::string& other_class = "Mesh") {
+    std::string text = tetrahedronFbx(1, 1, "100");
+    const std::string model = "Model: 2000, \"Model::t\", \"Mesh\" {\nVersion: 232\nProperties70:  {\n}\n}\n";
+    text = replaced(text, model,
+                    model + "Model: 3000, \"Model::other\", \"" + other_class +
+                        "\" {\nVersion: 232\nProperties70:  {\n"
+                        "P: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",10,0,0\n" +
+                        properties + "}\n}\n");
+    const std::string placed = "C: \"OO\",1000,2000\n";
+    return replaced(text, placed, placed + "C: \"OO\",3000,0\nC: \"OO\",1000,3000\n");
+}
+
+/// The node `parent` holds `inner`, which shows the tetrahedron at x = 10 beside that of `t`.
+std::string nestedFbx(const std::string& parent, const std::string& inner) {
+    std::string text = twoFbx(inner);
+    text = replaced(text, "Model: 3000",
+                    "Model: 4000, \"Model::parent\", \"Null\" {\nVersion: 232\n"
+                    "Properties70:  {\n" +
+                        parent + "}\n}\nModel: 3000");
+    return replaced(text, "C: \"OO\",3000,0\n", "C: \"OO\",4000,0\nC: \"OO\",3000,4000\n");
+}
+
+/// `Tree` with the levels `near`, at x = 0, and `far`, at x = 10; `t` beside it.
+std::string levelsFbx() {
+    std::string text = twoFbx("");
+    text = replaced(text, "Model: 3000",
+                    "Model: 4000, \"Model::Tree\", \"LodGroup\" {\nVersion: 232\nProperties70:  {\n}\n}\n"
+                    "Model: 5000, \"Model::near\", \"Mesh\" {\nVersion: 232\nProperties70:  {\n}\n}\n"
+                    "Model: 3000");
+    return replaced(text, "C: \"OO\",3000,0\n",
+                    "C: \"OO\",4000,0\nC: \"OO\",5000,4000\nC: \"OO\",1000,5000\nC: \"OO\",3000,4000\n");
+}
+
+/// An FBX document of the lines above as binary.
+class BinaryFbx {
+  public:
+    explicit BinaryFbx(const std::string& text) : lines_(text) {
+        out_ = std::string("Kaydara FBX Binary  \0\x1a\0", 23);
+        number(std::uint32_t{7300});
+        std::string line;
+        std::getline(lines_, line);  // the comment
+        readBlock();
+        out_ += std::string(13, '\0');
+    }
+    [[nodiscard]] const std::string& bytes() const { return out_; }
+
+  private:
+    template <class T>
+    void number(T value) {
+        const std::size_t at = out_.size();
+        out_.resize(at + sizeof(value));
+        std::memcpy(&out_[at], &value, sizeof(value));
+    }
+    void write(std::size_t at, std::size_t value) {
+        const auto number = static_cast<std::uint32_t>(value);
+        std::memcpy(&out_[at], &number, sizeof(number));
+    }
+
+    /// Up to its '}'. \return whether it had lines.
+    bool readBlock() {
+        bool any = false;
+        for (std::string line; std::getline(lines_, line) && line != "}"; any = true) {
+            readNode(line);
+        }
+        return any;
+    }
+
+    void readNode(const std::string& line) {
+        const std::size_t at = out_.size();
+        const std::size_t colon = line.find(':');
+        const std::string name = line.substr(0, colon);
+        const bool opens = line.ends_with('{');
+        out_ += std::string(12, '\0') + static_cast<char>(name.size()) + name;
+        const std::size_t begin = out_.size();
+        std::size_t count = 1;
+        if (line[colon + 2] == '*') {
+            readArray(name == "Vertices");
+        } else {
+            count = writeProperties(line.substr(colon + 1, line.size() - colon - (opens ? 2 : 1)), name);
+        }
+        write(at + 4, count);
+        write(at + 8, out_.size() - begin);
+        if (opens && line[colon + 2] != '*' && readBlock()) {
+            out_ += std::string(13, '\0');
+        }
+        write(at, out_.size());
+    }
+
+    void readArray(bool doubles) {
+        std::string line;
+        std::getline(lines_, line);
+        std::istringstream words(line.substr(2));
+        std::vector<double> values;
+        for (std::string word; std::getline(words, word, ',');) {
+            values.push_back(std::stod(word));
+        }
+        out_ += doubles ? 'd' : 'i';
+        number(static_cast<std::uint32_t>(values.size()));
+        number(std::uint32_t{0});  // not compressed
+        number(static_cast<std::uint32_t>(values.size() * (doubles ? 8 : 4)));
+        for (const double value : values) {
+            doubles ? number(value) : number(static_cast<std::int32_t>(value));
+        }
+        std::getline(lines_, line);  // its '}'
+    }
+
+    std::size_t writeProperties(const std::string& text, const std::string& node) {
+        std::istringstream words(text);
+        std::size_t count = 0;
+        bool whole = node != "P";
+        for (std::string word; std::getline(words, word, ',');) {
+            word.erase(0, word.find_first_not_of(' '));
+            word.erase(word.find_last_not_of(' ') + 1);
+            if (word.empty()) {
+                continue;
+            }
+            ++count;
+            if (word[0] == '"') {
+                word = word.substr(1, word.size() - 2);
+                whole = whole || word == "int" || word == "bool" || word == "Visibility Inheritance";
+                const std::size_t split = word.find("::");
+                word = split == std::string::npos
+                           ? word
+                           : word.substr(split + 2) + std::string("\0\1", 2) + word.substr(0, split);
+                out_ += 'S';
+                number(static_cast<std::uint32_t>(word.size()));
+                out_ += word;
+            } else if (node.ends_with("Version")) {
+                out_ += 'I';
+                number(static_cast<std::int32_t>(std::stoi(word)));
+            } else if (node == "P" && whole) {
+                out_ += 'I';
+                number(static_cast<std::int32_t>(std::stoi(word)));
+            } else if (node == "P") {
+                out_ += 'D';
+                number(std::stod(word));
+            } else {
+                out_ += 'L';
+                number(static_cast<std::int64_t>(std::stoll(word)));
+            }
+        }
+        return count;
+    }
+
+    std::istringstream lines_;
+    std::string out_;
+};
+
+std::string binary(const std::string& fbx) {
+    return BinaryFbx(fbx).bytes();
+}
+
+std::string visibility(const char* value) {
+    return std::string(R"(P: "Visibility", "Visibility", "", "A",)") + value + "\n";
+}
+
+std::string propertyShow(int value) {
+    return R"(P: "Show", "bool", "", "",)" + std::to_string(value) + "\n";
+}
+
+/// A document with this library of nodes, and this visual scene.
+std::string dae(const std::string& scene, const std::string& library = "") {
+    return replaced(
+        replaced(tetrahedronDae(""), R"(<node id="n"><instance_geometry url="#g"/></node>)", scene),
+        "<library_visual_scenes>", "<library_nodes>" + library + "</library_nodes><library_visual_scenes>");
+}
+
+constexpr const char* kShownNode = R"(<node id="n"><instance_geometry url="#g"/></node>)";
+constexpr const char* kMoved = "<translate>10 0 0</translate>";
+constexpr const char* kUnseen =
+    R"(<extra><technique profile="FCOLLADA"><visibility>0.000000</visibility></technique></extra>)";
+
+/// The tetrahedron at x = 0 and, hidden, at x = 10.
+std::vector<std::pair<std::string, std::string>> hiddenFiles() {
+    const std::string hidden = R"({"mesh":0,"name":"other","translation":[10,0,0],"extensions":)"
+                               R"({"KHR_node_visibility":{"visible":false}}})";
+    const GltfParts gltf{.nodes = R"({"mesh":0},)" + hidden, .roots = "0,1"};
+    const GltfParts below{.nodes = R"({"mesh":0},{"children":[2],"extensions":)"
+                                   R"({"KHR_node_visibility":{"visible":false}}},)"
+                                   R"({"mesh":0,"name":"other","translation":[10,0,0]})",
+                          .roots = "0,1",
+                          .more = R"("extensionsRequired":["KHR_node_visibility"],)"};
+    const std::string shape =
+        "numvert 4\n0 0 0\n1 0 0\n0 2 0\n0 0 3\nnumsurf 4\n"
+        "SURF 0x0\nrefs 3\n0 0 0\n2 0 0\n1 0 0\nSURF 0x0\nrefs 3\n0 0 0\n1 0 0\n3 0 0\n"
+        "SURF 0x0\nrefs 3\n1 0 0\n2 0 0\n3 0 0\nSURF 0x0\nrefs 3\n0 0 0\n3 0 0\n2 0 0\nkids 0\n";
+    return {
+        {"visibility.fbx", twoFbx(visibility("0"))},
+        {"show.fbx", twoFbx(propertyShow(0))},
+        {"binary.fbx", binary(twoFbx(visibility("0")))},
+        {"binary_show.fbx", binary(twoFbx(propertyShow(0)))},
+        {"binary_parent.fbx", binary(nestedFbx(visibility("0"), ""))},
+        {"parent.fbx", nestedFbx(visibility("0"), "")},
+        {"visible.gltf", tetrahedronGltf(gltf)},
+        {"below.gltf", tetrahedronGltf(below)},
+        {"visibility.dae", dae(std::string(kShownNode) + R"(<node id="other" name="other">)" + kMoved +
+                               R"(<instance_geometry url="#g"/>)" + kUnseen + "</node>")},
+        {"hidden.ac",
+         "AC3Db\nMATERIAL \"\" rgb 1 1 1 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n"
+         "OBJECT world\nkids 2\nOBJECT poly\nname \"t\"\n" +
+             shape + "OBJECT poly\nname \"other\"\nhidden\nloc 10 0 0\n" + shape},
+    };
+}
+
+TEST(ImportHidden, WhatAFileDoesNotShowIsLeftOutAndCounted) {
+    for (const auto& [name, text] : hiddenFiles()) {
+        SCOPED_TRACE(name);
+        const TriangleMesh mesh = imported(name, text);
+        EXPECT_EQ(mesh.triangles.size(), 4U);
+        EXPECT_LT(mesh.bounds.max.x, 5.0F);
+        EXPECT_TRUE(warns(mesh, "left out 1 hidden object ('other'"))
+            << ::testing::PrintToString(mesh.warnings);
+        EXPECT_EQ(mesh.warnings.size(), 1U);
+    }
+}
+
+TEST(ImportHidden, LevelsLeaveItOutToo) {
+    const TemporaryFolder folder;
+    for (const auto& [name, text] : hiddenFiles()) {
+        SCOPED_TRACE(name);
+        const Result<Level> level = importLevelInWorker(folder.write(name, text));
+        ASSERT_TRUE(level) << level.error().message;
+        EXPECT_EQ(level->bodies.size(), 1U);
+    }
+}
+
+TEST(ImportHidden, WhatIsShownStays) {
+    for (const std::string& properties :
+         {visibility("1"), visibility("0.5"), propertyShow(1), std::string()}) {
+        const TriangleMesh mesh = imported("shown.fbx", twoFbx(properties));
+        EXPECT_EQ(mesh.triangles.size(), 8U);
+        EXPECT_TRUE(mesh.warnings.empty());
+    }
+    // A node that does not inherit its visibility.
+    const std::string apart = R"(P: "Visibility Inheritance", "Visibility Inheritance", "", "",0)"
+                              "\n";
+    EXPECT_EQ(imported("apart.fbx", nestedFbx(visibility("0"), apart)).triangles.size(), 8U);
+    EXPECT_EQ(imported("apart.fbx", binary(nestedFbx(visibility("0"), apart))).triangles.size(), 8U);
+}
+
+TEST(ImportHidden, KeepTakesAll) {
+    ImportOptions keep;
+    keep.hidden = HiddenAs::kKeep;
+    std::vector<std::pair<std::string, std::string>> files = hiddenFiles();
+    files.emplace_back("levels.fbx", levelsFbx());
+    for (const auto& [name, text] : files) {
+        SCOPED_TRACE(name);
+        const TriangleMesh mesh = imported(name, text, keep);
+        EXPECT_GT(mesh.bounds.max.x, 10.0F);
+        EXPECT_TRUE(mesh.warnings.empty());
+    }
+}
+
+TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
+    const std::string all = R"({"mesh":0,"extensions":{"KHR_node_visibility":{"visible":false}}})";
+    expectWrong("none.gltf", {{tetrahedronGltf({.nodes = all}), "all of its objects are hidden"}});
+    // The object gets a chunk 0x4010, and the keyframer a node of it.
+    std::string file = tetrahedron3ds();
+    file += std::string("\x10\x40\6\0\0\0", 6);
+    for (const std::size_t size_at : {2U, 8U, 14U}) {
+        file[size_at] = static_cast<char>(file[size_at] + 6);
+    }
+    EXPECT_TRUE(warns(imported("some.3ds", file), "baked 1 hidden objects (first 't')"));
+    const std::string keyframer(
+        "\x00\xB0\x22\0\0\0\x02\xB0\x1C\0\0\0\x30\xB0\x08\0\0\0\0\0"
+        "\x10\xB0\x0E\0\0\0t\0\0\0\0\0\xFF\xFF",
+        34);
+    file += keyframer;
+    file[2] = static_cast<char>(file[2] + static_cast<char>(keyframer.size()));
+    expectWrong("none.3ds", {{file, "--hidden keep"}});
+}
+
+TEST(ImportHidden, NamesOfWhatIsLeftOutSelectNothing) {
+    ImportOptions options;
+    options.names = {"other"};
+    expectRefused(importText("names.fbx", twoFbx(visibility("0")), options), "it names no triangles 'other'",
+                  ErrorCode::kUsage);
+}
+
+TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
+    for (const std::string& text : {levelsFbx(), binary(levelsFbx())}) {
+        const TriangleMesh mesh = imported("levels.fbx", text);
+        EXPECT_EQ(mesh.triangles.size(), 8U);
+        EXPECT_LT(mesh.bounds.max.x, 5.0F);
+        EXPECT_TRUE(warns(mesh, "left out 1 lower level of detail ('other'"));
+    }
+    ImportOptions named;  // the group keeps its name
+    named.names = {"Tree"};
+    EXPECT_TRUE(importText("levels.fbx", levelsFbx(), named));
+    const GltfParts gltf{.nodes = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[1]}}},)"
+                                  R"({"mesh":0,"name":"far","translation":[10,0,0]})",
+                         .roots = "0,1"};
+    EXPECT_TRUE(
+        warns(imported("levels.gltf", tetrahedronGltf(gltf)), "left out 1 lower level of detail ('far'"));
+    expectWrong("levels.gltf",
+                {{tetrahedronGltf({.nodes = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[7]}}})"}),
+                  "nodes[0].extensions.MSFT_lod names nodes[7], which does not exist"}});
+}
+
+TEST(ImportHidden, AnimatedVisibilityGetsANote) {
+    const std::string curve = "AnimationCurveNode: 9000, \"AnimCurveNode::Visibility\", \"\" {\n}\n";
+    const std::string fbx = replaced(twoFbx(""), "Model: 3000", curve + "Model: 3000");
+    EXPECT_TRUE(warns(imported("moves.fbx", fbx), "animations show and hide"));
+    EXPECT_TRUE(warns(imported("moves.fbx", binary(fbx)), "animations show and hide"));
+    const GltfParts gltf{
+        .more = R"("animations":[{"channels":[{"sampler":0,"target":{"path":"pointer","extensions":)"
+                R"({"KHR_animation_pointer":{"pointer":)"
+                R"("/nodes/0/extensions/KHR_node_visibility/visible"}}}}]}],)"};
+    EXPECT_TRUE(warns(imported("moves.gltf", tetrahedronGltf(gltf)), "animations show and hide"));
+}
+
+TEST(ImportHidden, ColladaInstancesOfWhatIsMissingAreNamed) {
+    const std::string lost = R"(<node name="lost"><instance_geometry url="#missing"/></node>)";
+    const TriangleMesh mesh = imported("missing.dae", dae(kShownNode + lost));
+    EXPECT_EQ(mesh.triangles.size(), 4U);
+    EXPECT_TRUE(warns(mesh, "line 1: the node 'lost' instances '#missing', which does not exist"))
+        << ::testing::PrintToString(mesh.warnings);
+    for (const char* element : {"instance_controller", "instance_node"}) {
+        const std::string node = std::string("<node id=\"lost\"><") + element + R"( url="#missing"/></node>)";
+        EXPECT_TRUE(warns(imported("missing.dae", dae(kShownNode + node)), "the node 'lost'")) << element;
+        EXPECT_TRUE(warns(
+            imported("missing.dae", dae(std::string(kShownNode) + R"(<node><instance_node url="#l"/></node>)",
+                                        R"(<node id="l" name="deep">)" + node + "</node>")),
+            "the node 'lost'"))
+            << element;
+    }
+    const TriangleMesh two = imported("missing.dae", dae(kShownNode + lost + lost));
+    EXPECT_TRUE(warns(two, "and 1 more like it"));
+    EXPECT_EQ(two.warnings.size(), 1U);
+    expectWrong(
+        "missing.dae",
+        {{dae(std::string(kShownNode) + R"(<node name="x"><instance_geometry url="b.dae#g"/></node>)"),
+          "line 1: the node 'x' instances 'b.dae#g', which is in another file", ErrorCode::kUnsupported}});
+}
+
+}  // namespace
+}  // namespace relief::test
