@@ -33,7 +33,7 @@ build() {
     scripts/setup.sh
     [ -f build/gpu/build.ninja ] ||
         cmake -S . -B build/gpu -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE='-O2 -DNDEBUG' \
-            -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_BENCHMARKS=OFF -DRELIEF_BUILD_OPENVDB=OFF \
+            -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DRELIEF_BUILD_TESTS=ON -DRELIEF_BUILD_OPENVDB=OFF \
             -DRELIEF_BUILD_PYTHON=OFF -DRELIEF_WARNINGS_AS_ERRORS=OFF >&2
     cmake --build build/gpu --target "${programs[@]}" >&2
     rm -rf "$folder"

@@ -207,14 +207,13 @@ P
 
 job nightly 5 runtime
 job_runtime() {
-    built runtime -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_TESTS=OFF -DRELIEF_BUILD_BENCHMARKS=OFF
+    built runtime -DRELIEF_BUILD_BAKE=OFF
     cmake --install "$build" --prefix "$work/prefix"
     PKG_CONFIG_PATH=$(find "$work/prefix" -name pkgconfig)
     export PKG_CONFIG_PATH
     # shellcheck disable=SC2046
     g++ -std=c++20 samples/glfw/glfw.cpp -o "$work/glfw" $(pkg-config --cflags --libs relief-runtime glfw3)
-    "$work/prefix/bin/relief-sim" --version
-    [ ! -e "$work/prefix/bin/relief" ]
+    [ ! -e "$work/prefix/bin" ]
     printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(p LANGUAGES CXX)' \
         'find_package(Relief REQUIRED COMPONENTS runtime bake)' >"$work/CMakeLists.txt"
     CMAKE_PREFIX_PATH=$work/prefix cmake -G Ninja -S "$work" -B "$work/out" >"$work/cmake.log" 2>&1 && return 1

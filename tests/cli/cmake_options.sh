@@ -1,0 +1,25 @@
+# Options of the build: without the baker only the runtime library is built, and what is missing is named with its cure.
+. "$(dirname "$0")/lib.sh"
+
+configure() { cmake -G Ninja -S "$RELIEF_SOURCE" -B "$1" "${@:2}" >log 2>&1; }
+says() { tr -s ' \n' ' ' <log | matches -F "$1" || die "'$1' is not said: $(cat log)"; }
+
+configure runtime -DRELIEF_BUILD_BAKE=OFF || die "the runtime does not configure: $(tail log)"
+! grep -oE '^build bin/[^ :]+' runtime/build.ninja || die "the runtime's build makes programs"
+! cmake --install runtime --prefix prefix >log 2>&1 || die "what is not built is installed"
+says "is not built; build all with: cmake --build $work/runtime"
+[ ! -e prefix ] || die "half an installation is left: $(find prefix)"
+
+for part in BAKE TESTS BENCHMARKS; do
+    ! configure runtime -DRELIEF_BUILD_$part=ON -DRELIEF_BUILD_PLAYER=OFF || die "$part needs no player"
+    says "RELIEF_BUILD_$part needs the player: configure with -DRELIEF_BUILD_PLAYER=ON"
+    configure runtime -DRELIEF_BUILD_$part=OFF || die "the runtime does not configure again: $(tail log)"
+done
+
+# Optional parts name their package and their option. CMake finds no header in /usr/include that is not given.
+configure vdb -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DCMAKE_IGNORE_PATH=/usr/include \
+    -DTOMLPLUSPLUS_INCLUDE_DIR=/usr/include -DPNG_PNG_INCLUDE_DIR=/usr/include -DZLIB_INCLUDE_DIR=/usr/include && die "no OpenVDB is needed"
+says 'OpenVDB is not found: install libopenvdb-dev, or configure with -DRELIEF_BUILD_OPENVDB=OFF'
+configure tests -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DRELIEF_BUILD_TESTS=ON -DRELIEF_BUILD_OPENVDB=OFF \
+    -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON && die "no GoogleTest is needed"
+says 'GoogleTest is not found: install libgtest-dev, or configure with -DRELIEF_BUILD_TESTS=OFF'
