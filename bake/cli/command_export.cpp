@@ -87,7 +87,7 @@ Result<void> exportForGpu(const Collider& collider, const std::filesystem::path&
         }
     }
     RELIEF_TRY(writeFile(folder / kBlock, image.block));
-    RELIEF_TRY(writeFile(folder / kGlsl, bytesOf(image.defines + core)));
+    RELIEF_TRY(writeFile(folder / kGlsl, bytesOf(std::string(kShaderLicence) + image.defines + core)));
     const Json all{{"format", kFormat},
                    {"tool", collider.provenance.tool_version},
                    {"bounds", {{"min", jsonOf(collider.bounds.min)}, {"max", jsonOf(collider.bounds.max)}}},

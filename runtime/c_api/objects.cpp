@@ -10,7 +10,8 @@ namespace relief {
 namespace {
 
 Result<TexturesObject> completed(TexturesObject made) {
-    made.glsl = made.textures().defines() + RELIEF_TRY(shaderText("collider/collider.glsl"));
+    made.glsl = std::string(kShaderLicence) + made.textures().defines() +
+                RELIEF_TRY(shaderText("collider/collider.glsl"));
     glGetIntegerv(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS, &made.units);
     glGetIntegerv(GL_MAX_UNIFORM_BUFFER_BINDINGS, &made.blocks);
     return made;

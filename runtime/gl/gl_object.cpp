@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <glm/glm.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <set>
 
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
@@ -36,6 +37,38 @@ Result<std::string> resolveIncludes(std::string_view name, std::vector<std::stri
             std::string nested = RELIEF_TRY(resolveIncludes(child, included));
             text += nested;
         }
+    }
+    return text;
+}
+
+/// Adds the names in a text that start with RELIEF_.
+void addNames(std::string_view text, std::set<std::string_view>& names) {
+    constexpr std::string_view kStart = "RELIEF_";
+    constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    for (std::size_t at = text.find(kStart); at != std::string_view::npos; at = text.find(kStart, at)) {
+        const std::size_t end = std::min(text.find_first_not_of(kLetters, at), text.size());
+        names.insert(text.substr(at, end - at));
+        at = end;
+    }
+}
+
+/// Those of shaderConstants() that a shader uses. Each may use earlier ones.
+std::string constantsOf(std::string_view shader) {
+    constexpr std::string_view kDefine = "#define ";
+    std::set<std::string_view> used;
+    addNames(shader, used);
+    std::string text;
+    std::string_view rest = shaderConstants();
+    while (!rest.empty()) {
+        const std::size_t start = rest.substr(0, rest.size() - 1).rfind('\n') + 1;  // npos + 1 is 0
+        const std::string_view line = rest.substr(start);
+        const std::string_view name =
+            line.substr(kDefine.size(), line.find(' ', kDefine.size()) - kDefine.size());
+        if (used.contains(name)) {
+            addNames(line, used);
+            text.insert(0, line);
+        }
+        rest = rest.substr(0, start);
     }
     return text;
 }
@@ -328,8 +361,8 @@ void GlProgram::drawScreen(GLuint framebuffer, GLsizei width, GLsizei height) co
 
 Result<std::string> shaderText(std::string_view file) {
     std::vector<std::string> included;
-    std::string text = RELIEF_TRY(resolveIncludes(file, included));
-    return std::string(shaderConstants()) + text;
+    const std::string text = RELIEF_TRY(resolveIncludes(file, included));
+    return constantsOf(text) + text;
 }
 
 Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {

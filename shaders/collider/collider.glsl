@@ -3,17 +3,17 @@
 //
 // ColliderTextures compiles it (collider_block.h: RELIEF_MAP_CAPACITY and so on) and binds all below.
 //
-//     P ──T_i──▶ P'    orthographic                       cube
-//                      z'                                        ╲  dist  ╱
-//                      │  near                                 ╲   ┌──┐  ╱
-//                      │ ┌──────────┐ 0                          ╲ │ ╲│╱   P' in [−1,1]³
-//                      │ │   dist   │     f = z_scale·           ──┤  ●──┤
-//                      │ │ ~~~~~~~~~│        (dist − z')         ╱ │ ╱│╲   f = (|P'| − dist)·|s∘d|
-//                      ▼ │ ● P'     │     negative: inside     ╱   └──┘  ╲   d = P'/|P'|
-//                        └──────────┘ 1
+//     P --T_i--> P'    orthographic                       cube
+//                      z'                                        \  dist  /
+//                      |  near                                 \   +--+  /
+//                      | +----------+ 0                          \ | \|/   P' in [-1,1]^3
+//                      | |   dist   |     f = z_scale *          --+  *--+
+//                      | | ~~~~~~~~~|        (dist - z')         / | /|\   f = (|P'| - dist) * |s*d|
+//                      v | * P'     |     negative: inside     /   +--+  \   d = P'/|P'|
+//                        +----------+ 1
 //
 // An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign. Those
-// are the paper's projected distances. In a map of planes f = n·(P − S) instead, with S the surface point on
+// are the paper's projected distances. In a map of planes f = n*(P - S) instead, with S the surface point on
 // the ray through the texel's centre; the normal points outwards, so that no sign turns. A plane along the ray has
 // no such S: its texel holds its distance from the ray.
 
@@ -95,7 +95,7 @@ uniform highp usampler2D u_relief_front_back;
 #define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
 
 // The kind of a map, constant where all are alike: a GL may otherwise run the branches of all formats for every map.
-// ColliderTextures defines RELIEF_HAS_… for the kinds present.
+// ColliderTextures defines RELIEF_HAS_... for the kinds present.
 bool reliefIsCube(ivec4 info) {
 #if !defined(RELIEF_HAS_CUBE)
     return false;
@@ -162,7 +162,7 @@ bool reliefHas(ivec4 info, int flag) {
     return (RELIEF_ALL & flag) != 0 || (info.z & flag) != 0;
 }
 
-// The combined vote. map is the deciding map, −1 where every map abstains; normal is zero where nothing but "outside"
+// The combined vote. map is the deciding map, -1 where every map abstains; normal is zero where nothing but "outside"
 // is known (distance RELIEF_FAR_OUTSIDE).
 struct ReliefField {
     float distance;
@@ -180,7 +180,7 @@ bool reliefReplaces(float vote, float best) {
     return (best < 0.0 && vote > best) || (vote >= 0.0 && vote < best);
 }
 
-// Equation 3: indices 0…2 half_range in each direction to the octahedron, of which the sphere's point is reliefUnit(). In
+// Equation 3: indices 0...2 half_range in each direction to the octahedron, of which the sphere's point is reliefUnit(). In
 // steps of the index, so that all of it is exact. shaderTexels() leaves no index 255.
 vec3 reliefFold(vec2 index, float half_range) {
     vec2 st = index - half_range;
@@ -275,8 +275,8 @@ vec3 reliefFromMap(int i, vec3 q) {
            (reliefMapColumn(i, 1).xyz * q.y + reliefMapColumn(i, 2).xyz * q.z);
 }
 
-// The vote of a plane: n·(P − S), or n·(P − O) less the stored offset where the plane stands along the ray.
-// along_normal: n times 1 / per_length; from: P − O, with O where the ray of the texel's centre has depth 0; ray: its
+// The vote of a plane: n*(P - S), or n*(P - O) less the stored offset where the plane stands along the ray.
+// along_normal: n times 1 / per_length; from: P - O, with O where the ray of the texel's centre has depth 0; ray: its
 // direction, for a unit of depth; standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to 2 half_depth.
 float reliefPlane(int i, vec3 along_normal, float per_length, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
     float along = per_length * reliefDot(along_normal, ray);
@@ -641,7 +641,7 @@ ReliefField reliefEvaluate(vec3 p) {
     }
 
 // For a step of a simulation: the same as reliefEvaluate where P is inside; where it is not, the first map that sees it
-// outside ends the loop, so that most points cost one fetch however many maps there are. (Rule 2 never turns a vote ≥ 0
+// outside ends the loop, so that most points cost one fetch however many maps there are. (Rule 2 never turns a vote >= 0
 // into one below.) The first maps have constant indices, so that GPUs need not index the block for them.
 ReliefField reliefSolid(vec3 p) {
     ReliefBest best = RELIEF_NO_VOTE;

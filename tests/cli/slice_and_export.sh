@@ -23,6 +23,17 @@ for word in 'low, 32-bit unsigned' 'high, 32-bit unsigned' relief.roots relief.o
     grep -q "$word" header || die "map0_patches.exr lacks $word: $(cat header)"
 done
 
+# An exported shader states its licence, is ASCII, and has no constant that it does not use.
+"$relief" export b.relief --gpu gpu
+python3 - <<'P' || die "collider.glsl: $(head -5 gpu/collider.glsl)"
+import re
+text = open('gpu/collider.glsl', 'rb').read().decode('ascii')
+assert text.startswith('// SPDX-License-Identifier: Apache-2.0\n')
+head = text[text.index('#define RELIEF_ALL'):text.index('struct ReliefMap')]
+unused = [n for n in re.findall(r'(?m)^#define (RELIEF_[A-Z0-9_]+) \S', head) if len(re.findall(rf'\b{n}\b', text)) < 2]
+assert not unused, unused
+P
+
 # Every run gives the same bytes.
 "$relief" slice b.relief --axis z --at center --size 200 -o again.png
 cmp s.png again.png || die "two pictures differ"
