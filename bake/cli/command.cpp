@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"
@@ -38,6 +39,30 @@ CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                                            : spdlog::level::info);
     });
     return *verb;
+}
+
+Result<void> forEachFile(const std::vector<std::string>& files,
+                         const std::function<Result<void>(const std::string& file)>& each) {
+    std::size_t failures = 0;
+    Error first{};
+    for (const std::string& file : files) {
+        Result<void> done = each(file);
+        if (done) {
+            continue;
+        }
+        if (files.size() == 1) {
+            return done;
+        }
+        reportError(done.error());
+        if (failures++ == 0) {
+            first = {done.error().code, ", first " + shownInput(file) + "; see the errors above"};
+        }
+    }
+    if (failures == 0) {
+        return {};
+    }
+    return fail(first.code, std::to_string(failures) + " of " + countText(files.size(), "file") + " failed" +
+                                first.message);
 }
 
 std::string shownInput(const std::string& file) {

@@ -31,6 +31,11 @@ struct CommonOptions {
 CLI::App& addVerb(CLI::App& app, CommonOptions& common, const std::string& name,
                   const std::string& description, const std::string& example);
 
+/// Runs `each` for every file. Of several, errors are shown as they come, and the other files still get their turn.
+/// Errors: that of the only file; else the code of the first failure, with the number of failures.
+[[nodiscard]] Result<void> forEachFile(const std::vector<std::string>& files,
+                                       const std::function<Result<void>(const std::string& file)>& each);
+
 /// "standard input" for "-", else the path in quotes: for messages.
 [[nodiscard]] std::string shownInput(const std::string& file);
 /// "standard input", or the name without its folder: for reports.

@@ -33,6 +33,11 @@ struct BakeCommand {
     std::string world;  // a folder
 };
 
+/// Without --output. A folder by itself has no name: bakes refuse it.
+std::string outputOf(const std::string& mesh) {
+    return std::filesystem::path(mesh).filename().replace_extension(kColliderExtension).string();
+}
+
 /// Shows the stages of a bake.
 BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
     BakeWatcher watcher;
@@ -129,7 +134,7 @@ void addBake(CLI::App& app, Action& action) {
         "Bakes a mesh into a collider\n\nWithout --map, --paper or --plan, a tree of small depth maps is "
         "planned, or with --layout views\ndirections, places and sizes of large ones, for --budget bytes or "
         "for --max-error.",
-        "relief bake bunny.obj -o bunny.relief\n"
+        "relief bake bunny.obj\n"
         "relief bake bunny.obj -o bunny.relief --budget 256kB --plan-out plan.toml\n"
         "relief bake bunny.obj -o bunny.relief --plan plan.toml\n"
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
@@ -143,7 +148,9 @@ void addBake(CLI::App& app, Action& action) {
         verb, "MESH", command->request.mesh,
         "The mesh: OBJ, STL, PLY, OFF, glTF, FBX, COLLADA, 3DS and more; or a height map, see --heights")
         ->typeName("");
-    addOption(verb, "-o,--output", command->output, "The collider to write; - for standard output")
+    addOption(verb, "-o,--output", command->output,
+              "The collider to write; - for standard output; by default MESH with .relief in place of its\n"
+              "extension, in the current folder")
         ->valueText("OUT.relief");
     addFields(verb, command->request);
     addFields(verb, command->outputs);
@@ -156,6 +163,9 @@ void addBake(CLI::App& app, Action& action) {
                                         {verb, command->common, command->output, command->request.threads,
                                          command->outputs.depfile, command->outputs.json, files});
             }
+            if (command->output.empty() && command->world.empty()) {
+                command->output = outputOf(command->request.mesh);
+            }
             if (!command->request.heights.empty()) {
                 return runGroundCommand(command->world, {command->request, command->outputs, command->common,
                                                          command->output, files});
@@ -164,10 +174,8 @@ void addBake(CLI::App& app, Action& action) {
                 return runWorldCommand(command->world, {command->request, command->outputs, command->common,
                                                         command->output, files});
             }
-            if (command->request.mesh.empty() || command->output.empty()) {
-                return fail(ErrorCode::kUsage,
-                            std::string(command->request.mesh.empty() ? "MESH" : "--output") +
-                                " is required; see relief bake --help");
+            if (command->request.mesh.empty()) {
+                return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
             }
             return runBake(*command, files);
         };

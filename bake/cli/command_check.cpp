@@ -25,7 +25,8 @@ namespace {
 
 struct CheckCommand {
     CommonOptions common;
-    std::string file;
+    std::vector<std::string> files;
+    std::string file;  ///< one of them
     CheckRequest request;
     ContainerLimits limits;
     std::string heights;
@@ -187,12 +188,14 @@ void addCheck(CLI::App& app, Action& action) {
         "the share of points on the wrong side,\nnear seams between tiles too, how far the surface is off "
         "along y, and the ten worst places.",
         "relief check bunny.relief\n"
+        "relief check *.relief\n"
         "relief check bunny.relief --mesh bunny.obj\n"
         "relief check bunny.relief --mesh bunny.obj --html bunny.html\n"
         "relief check bunny.relief --mesh bunny.obj --max-error 2 --json\n"
         "relief check level/world.json --mesh level.glb\n"
         "relief check ground/world.json --mesh heights.png");
-    addOption(verb, "FILE", command->file, "The collider, or the world; - for standard input")
+    addOption(verb, "FILE", command->files,
+              "The collider, or the world; - for standard input. Several without --mesh")
         ->typeName("")
         ->required();
     OptionRef mesh = addMeshOptions(verb, command->request);
@@ -224,7 +227,15 @@ void addCheck(CLI::App& app, Action& action) {
     addMemoryOption(verb, command->limits);
     addFlag(verb, "--json", command->json, "Print JSON");
     onVerb(verb, [command, &action] {
-        action = [command](FileGuard& files) { return runCheck(*command, files); };
+        action = [command](FileGuard& files) -> Result<void> {
+            if (command->files.size() > 1 && !command->request.mesh.empty()) {
+                return fail(ErrorCode::kUsage, "--mesh is for one FILE; check each collider by itself");
+            }
+            return forEachFile(command->files, [&](const std::string& file) {
+                command->file = file;
+                return runCheck(*command, files);
+            });
+        };
     });
 }
 

@@ -22,10 +22,8 @@ Result<void> preflightGround(const std::string& folder, const WorldCall& call) {
     if (!folder.empty()) {
         return preflightWorld(folder, call);
     }
-    if (call.request.mesh.empty() || call.output.empty()) {
-        return fail(ErrorCode::kUsage,
-                    std::string(call.request.mesh.empty() ? "MESH, the height map," : "--output or --world") +
-                        " is required; see relief bake --help");
+    if (call.request.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "MESH, the height map, is required; see relief bake --help");
     }
     return preflightBake(call.request, call.output, call.outputs, call.files);
 }

@@ -17,7 +17,7 @@ constexpr std::size_t kLineMost = 80;  // characters of options on one line
 
 struct InfoCommand {
     CommonOptions common;
-    std::string file;
+    std::vector<std::string> files;
     ContainerLimits limits;
     bool json = false;
 };
@@ -81,22 +81,27 @@ std::string humanReport(const Collider& collider, const ContainerInfo& info, con
     return text;
 }
 
-Result<void> runInfo(const InfoCommand& command) {
-    if (namesWorld(command.file)) {
-        const WorldInfo info = RELIEF_TRY(readWorldInfo(command.file, command.limits));
+Result<void> runInfo(const InfoCommand& command, const std::string& file) {
+    const bool several = command.files.size() > 1;
+    if (several && !command.json) {
+        RELIEF_TRY(printOut((file == command.files.front() ? "" : "\n") + inputName(file) + ":\n"));
+    }
+    if (namesWorld(file)) {
+        const WorldInfo info = RELIEF_TRY(readWorldInfo(file, command.limits));
         return printOut(command.json ? jsonTextOf(info) : worldInfoText(info));
     }
     // Checked as a whole, payloads included.
-    const ColliderFile shown = RELIEF_TRY(readColliderFile(command.file, command.limits));
+    const ColliderFile shown = RELIEF_TRY(readColliderFile(file, command.limits));
     const ContainerInfo info =
-        RELIEF_TRY(inFront(shownInput(command.file), readContainerInfo(shown.bytes, command.limits)));
+        RELIEF_TRY(inFront(shownInput(file), readContainerInfo(shown.bytes, command.limits)));
     std::optional<AnimatedMesh> mesh;
     if (!shown.collider.animation.empty()) {
-        mesh = RELIEF_TRY(inFront(shownInput(command.file), readAnimatedMesh(shown.collider.animation)));
+        mesh = RELIEF_TRY(inFront(shownInput(file), readAnimatedMesh(shown.collider.animation)));
     }
     const AnimatedMesh* const animated = mesh ? &*mesh : nullptr;
-    return printOut(command.json ? jsonTextOf(infoReport(shown.collider, info, animated))
-                                 : humanReport(shown.collider, info, animated));
+    ColliderReport<ColliderMapReport> report = infoReport(shown.collider, info, animated);
+    report.file = several ? inputName(file) : "";
+    return printOut(command.json ? jsonTextOf(report) : humanReport(shown.collider, info, animated));
 }
 
 }  // namespace
@@ -106,15 +111,21 @@ void addInfo(CLI::App& app, Action& action) {
     CLI::App& verb = addVerb(app, command->common, "info",
                              "Shows what is in a collider, and where it comes from; or what is in a world",
                              "relief info bunny.relief\n"
+                             "relief info *.relief\n"
                              "relief info level/world.json\n"
                              "relief info bunny.relief --json | jq .maps[0].object_to_map");
-    addOption(verb, "FILE", command->file,
-              "The collider, or a world.json; - for a collider on standard input")
+    addOption(verb, "FILE", command->files,
+              "The colliders, or files world.json; - for a collider on standard input")
         ->typeName("")
         ->required();
     addMemoryOption(verb, command->limits);
     addFlag(verb, "--json", command->json, "Print JSON");
-    onVerb(verb, [command, &action] { action = [command](FileGuard&) { return runInfo(*command); }; });
+    onVerb(verb, [command, &action] {
+        action = [command](FileGuard&) {
+            return forEachFile(command->files,
+                               [&](const std::string& file) { return runInfo(*command, file); });
+        };
+    });
 }
 
 }  // namespace relief

@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 
 #include "bake/import/animated_import.h"
@@ -28,6 +29,8 @@ const PartOptions kSelfCheckParts{
     .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
 /// Percent of them on the wrong side, above which the bake warns.
 constexpr double kSelfCheckWarns = 5.0;
+/// From so many nodes on, a source may be a level.
+constexpr std::size_t kLevelNodes = 100;
 /// Above this share that one more map would have served, the warning suggests more maps.
 constexpr double kMoreMapsHelp = 0.005;
 
@@ -220,6 +223,11 @@ class Director {
                         : RELIEF_TRY(importMeshInWorker(request().mesh, import, request().import_limits));
         }
         TriangleMesh mesh = std::move(*given);
+        std::set<std::uint32_t> nodes;
+        for (const SurfaceName& name : mesh.surface_names) {
+            nodes.insert(name.node_index);
+        }
+        nodes_ = nodes.size();
         result_.times.import_ms = watch.ms();
         result_.unused_vertices = mesh.unused_vertices;
         if (watcher_.imported) {
@@ -468,6 +476,12 @@ class Director {
             result_.notices.push_back(mesh.name + ": closed " + countText(mesh.closed_holes, "hole") +
                                       " for baking: the mesh is nearly closed");
         }
+        if (nodes_ >= kLevelNodes && !result_.animated) {
+            result_.notices.push_back(
+                mesh.name + ": " + std::to_string(nodes_) +
+                " nodes become one collider; if it is a level, bake it with --world DIR: "
+                "each mesh once, with more detail for the same bytes");
+        }
         if (const std::uint64_t sheets = result_.shape.closable_sheets; sheets > 0) {
             result_.notices.push_back(
                 mesh.name + ": " + countText(sheets, "sheet") +
@@ -478,6 +492,7 @@ class Director {
     const BakeWatcher& watcher_;
     BakeResult result_;
     std::string plan_hash_;
+    std::size_t nodes_ = 0;                 // of the source, that show something
     std::optional<PreparedMesh> imported_;  // as it came, where --max-error looks back at it after a repair
 };
 

@@ -54,6 +54,9 @@ BakeCacheEntry entryOf(const Json& json) {
     if (json.contains("containers")) {
         entry.containers = json["containers"].get<std::map<std::string, std::string>>();
     }
+    if (json.contains("wrong_percent")) {
+        entry.wrong_percent = json["wrong_percent"].get<double>();
+    }
     return entry;
 }
 
@@ -131,6 +134,9 @@ std::string bakeCacheText(const BakeCacheEntries& entries) {
                                     {"output_bytes", entry.output_bytes}};
         if (!entry.containers.empty()) {
             outputs[cleanUtf8(name)]["containers"] = entry.containers;
+        }
+        if (entry.wrong_percent) {
+            outputs[cleanUtf8(name)]["wrong_percent"] = *entry.wrong_percent;
         }
     }
     const Json json = {{"format", kFormat}, {"version", kCacheVersion}, {"outputs", std::move(outputs)}};

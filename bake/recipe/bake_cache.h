@@ -25,6 +25,7 @@ struct BakeCacheEntry {
     std::uint64_t output_bytes = 0;    ///< with the containers
     /// Of a world: the XXH3-128 of its containers, by their names in its folder.
     std::map<std::string, std::string> containers = {};
+    std::optional<double> wrong_percent = {};  ///< as its bake measured it
 
     bool operator==(const BakeCacheEntry&) const = default;
 };

@@ -69,6 +69,27 @@ Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     return entry;
 }
 
+/// Of the report of a bake: its own, or that of the worst collider of a world; nullopt if any was not measured.
+std::optional<double> wrongPercentOf(const nlohmann::json& report) {
+    const auto of = [](const nlohmann::json& json) {
+        const auto found = json.find("wrong_percent");
+        return found != json.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+    };
+    const auto colliders = report.find("colliders");
+    if (colliders == report.end() || !colliders->is_array()) {
+        return of(report);
+    }
+    std::optional<double> worst;
+    for (const nlohmann::json& collider : *colliders) {
+        const std::optional<double> wrong = of(collider);
+        if (!wrong) {
+            return std::nullopt;
+        }
+        worst = std::max(worst.value_or(0.0), *wrong);
+    }
+    return worst;
+}
+
 class Runner {
   public:
     Runner(const RecipeRun& run, std::string tool) : run_(run), tool_(std::move(tool)) {}
@@ -134,6 +155,7 @@ class Runner {
         asset.hash = entry.output_hash;
         asset.bytes = entry.output_bytes;
         asset.inputs = entry.inputs;
+        asset.wrong_percent = entry.wrong_percent;
         asset.key = assetKey(tool_, asset.job.options, asset.inputs);
         for (const auto& [file, hash] : entry.containers) {
             asset.containers.push_back((fs::path(asset.job.output).parent_path() / file).string());
@@ -266,6 +288,7 @@ class Runner {
         entry->tool = tool_;
         entry->options = asset.job.options;
         entry->inputs = asset.inputs;
+        entry->wrong_percent = wrongPercentOf(json);
         made(asset, AssetState::kBaked, *entry);
         fresh_[asset.job.output] = std::move(*entry);
     }

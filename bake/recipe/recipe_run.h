@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct AssetResult {
     std::string hash;                     ///< XXH3-128 of the output; baked or up to date
     std::uint64_t bytes = 0;              ///< of the output, with the containers; baked or up to date
     std::vector<std::string> containers;  ///< of a world, from the output folder; baked or up to date
+    std::optional<double> wrong_percent;  ///< points near the surface; of a world those of its worst collider
     Error error;                          ///< failed
     std::vector<std::string> warnings;    ///< of its baking
     std::vector<InputFile> inputs;        ///< from the recipe's folder, the mesh first; known as the hash is

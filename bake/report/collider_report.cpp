@@ -124,6 +124,9 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
     visit("provenance", collider.provenance, {"Origin of the collider"});
 }
 void fields(FieldVisitor& visit, const ColliderReport<ColliderMapReport>& report) {
+    visit("file", report.file,
+          {.help = "File name without its folder, if several files were given",
+           .left_out = report.file.empty()});
     colliderFields(visit, report.collider, report.info, report.maps, report.animated);
 }
 

@@ -48,6 +48,7 @@ struct ColliderReport {
     const ContainerInfo& info = kNone<ContainerInfo>;
     std::vector<Map> maps = {};
     const AnimatedMesh* animated = nullptr;  ///< of the collider
+    std::string file = {};                   ///< its name, if the report is one of several
 };
 
 /// \param maps  reports of the maps
@@ -60,7 +61,7 @@ void fields(FieldVisitor& visit, const ColliderReport<ColliderMapReport>& report
 [[nodiscard]] inline ColliderReport<ColliderMapReport> infoReport(const Collider& collider,
                                                                   const ContainerInfo& info,
                                                                   const AnimatedMesh* animated) {
-    ColliderReport<ColliderMapReport> report{collider, info, {}, animated};
+    ColliderReport<ColliderMapReport> report{collider, info, {}, animated, {}};
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         report.maps.push_back({i, collider.maps[i], info.payloads[i]});
     }

@@ -59,7 +59,8 @@ RecipeCounts countAssets(const std::vector<AssetResult>& assets) {
 }
 
 std::string bakedText(const AssetResult& asset) {
-    return "baked, " + bytesText(asset.bytes) + ", " + seconds(asset.ms);
+    return "baked, " + bytesText(asset.bytes) + ", " +
+           (asset.wrong_percent ? percentText(*asset.wrong_percent) + " wrong, " : "") + seconds(asset.ms);
 }
 
 std::string recipeSummary(const RecipeCounts& counts, double ms) {
@@ -224,6 +225,11 @@ void fields(FieldVisitor& visit, const AssetReport& report) {
     }
     if (made) {
         visit("bytes", asset.bytes, {"Size of the output, with its containers", "bytes"});
+        visit(
+            "wrong_percent", asset.wrong_percent,
+            {"Share of the points near the surface that are on the wrong side, of a world that of its worst "
+             "collider; null unless the bake measured all",
+             "%", kPercentRange});
         visit("hash", asset.hash,
               {.help = "XXH3-128 of the output; that of a world has those of its containers",
                .pattern = kHashPattern});

@@ -76,6 +76,7 @@ OptionRef addOption(CLI::App& app, const std::string& names, T& field, const std
     return app.add_option(names, field, help);
 }
 template OptionRef addOption(CLI::App&, const std::string&, std::string&, const std::string&);
+template OptionRef addOption(CLI::App&, const std::string&, std::vector<std::string>&, const std::string&);
 template OptionRef addOption(CLI::App&, const std::string&, std::filesystem::path&, const std::string&);
 template OptionRef addOption(CLI::App&, const std::string&, std::uint64_t&, const std::string&);
 template OptionRef addOption(CLI::App&, const std::string&, std::optional<std::uint32_t>&,

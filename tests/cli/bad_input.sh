@@ -32,7 +32,6 @@ mkdir out_dir
 bake_fails 2 nowhere good.obj -o nowhere/out.relief
 bake_fails 2 out_dir good.obj -o out_dir
 bake_fails 2 /dev/full good.obj -o /dev/full
-bake_fails 1 output good.obj
 expect_error 2 /dev/full "$relief" query good.relief --points points.csv -o /dev/full
 expect_error 2 nowhere "$relief" slice good.relief --axis x --at 0 -o nowhere/out.png
 expect_error 2 'good\.obj' "$relief" export good.relief -o good.obj

@@ -67,6 +67,37 @@ mkdir elsewhere
 cmp t1.relief elsewhere/x.relief || die "another folder gives other bytes"
 ! grep -aq "$work" t1.relief || die "the output holds a path"
 
+# Without -o the output is in the current folder, and never over the mesh.
+mkdir default
+(cd default && expect 0 "$relief" bake ../box.obj --map cube:size=16 --json)
+json stdout "d['settings']['output'] == 'box.relief'"
+[ "$(ls default)" = box.relief ] || die "without -o: $(ls default)"
+cp box.obj mesh.relief
+expect_error 1 "'mesh.relief' is the input" "$relief" bake mesh.relief
+cmp box.obj mesh.relief || die "a mesh is lost to the default output"
+expect_error 1 'MESH is required' "$relief" bake
+
+# Several files: each gets its report, also behind one that fails.
+cp default/box.relief one.relief
+echo damaged >bad.relief
+expect 3 "$relief" info one.relief bad.relief box.relief
+[ "$(grep -E '^[a-z]+\.relief:$' stdout | xargs)" = 'one.relief: bad.relief: box.relief:' ] || die "info: $(cat stdout)"
+[ "$(wc -l <stderr)" = 2 ] && grep -q "error: 'bad.relief'" stderr && grep -q "error: 1 of 3 files failed, first 'bad.relief'" stderr || die "info: $(cat stderr)"
+expect 0 "$relief" info one.relief box.relief --json
+[ "$(python3 -c 'import json; text = open("stdout").read(); print([json.loads(d + "\n}")["file"] for d in text.split("\n}\n") if d])')" = "['one.relief', 'box.relief']" ] || die "info: $(cat stdout)"
+expect 3 "$relief" check one.relief bad.relief box.relief
+grep -q '^one.relief: sound' stdout && grep -q '^box.relief: sound' stdout && grep -q "1 of 3 files failed" stderr || die "check: $(cat stdout stderr)"
+expect_error 1 'mesh is for one FILE' "$relief" check one.relief box.relief --mesh box.obj
+
+# A level in one collider.
+for i in $(seq 0 3 297); do
+    printf 'o n%d\nv %d 0 0\nv %d 1 0\nv %d 0 1\nf %d %d %d\n' "$i" "$i" "$i" $((i + 1)) $((i + 1)) $((i + 2)) $((i + 3))
+done >level.obj
+expect 0 "$relief" bake level.obj -o level.relief --map cube:size=16
+grep -q 'level.obj: 100 nodes become one collider; .* --world DIR' stderr || die "a level: $(cat stderr)"
+expect 0 "$relief" bake box.obj -o level.relief --map cube:size=16
+! grep -e --world stderr || die "a box is no level"
+
 # An older output is replaced; no temporary file stays.
 expect 0 "$relief" bake box.obj -o elsewhere/x.relief --paper --resolution 32 -q
 [ "$(ls -A elsewhere)" = x.relief ] || die "files left behind: $(ls -A elsewhere)"

@@ -74,6 +74,16 @@ cp pristine/rocks/r2.obj in/rocks/
 rebakes r2
 hashes in | cmp - first || die "mended, it gives other bytes"
 
+# The error of each collider, also of one that is up to date; of a world that of its worst; null where none was measured.
+printf '%s\n' 'version = 1' '[[asset]]' 'mesh = "hill.obj"' 'output = "a.relief"' 'budget = "20kB"' '[[asset]]' 'mesh = "hill.obj"' \
+    'output = "b.relief"' 'map = "cube:size=16"' '[[asset]]' 'mesh = "hill.obj"' 'output = "w/world.json"' 'budget = "20kB"' >in/wrong.toml
+for state in baked 'up to date'; do
+    expect 0 "$relief" bake --recipe in/wrong.toml --json --events wrong.jsonl
+    json stdout "[(a['state'], a['wrong_percent'] is not None) for a in d['assets']] == [('$state', w) for w in (True, False, True)]"
+    grep '"asset":"a.relief".*"wrong_percent":' wrong.jsonl >/dev/null || die "no error in events: $(cat wrong.jsonl)"
+    [ "$state" != baked ] || grep -qE '/3\] a.relief: baked, .* % wrong, ' stderr || die "no error in progress: $(cat stderr)"
+done
+
 # A bake that takes too long is ended, and the exit code says "limit".
 printf '%s\n' 'version = 1' '[[asset]]' "mesh = \"bunny.obj\"" 'output = "late.relief"' 'budget = "16MB"' 'time-limit = 0.2' >late.toml
 cp "$bunny" bunny.obj
