@@ -33,8 +33,8 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
             return fail(ErrorCode::kInvalidInput,
                         mesh.name + " has the bounds " + shortest(mesh.bounds.min) + " to " +
                             shortest(mesh.bounds.max) + " but the collider, of " +
-                            collider.provenance.mesh_name + ", has " + shortest(collider.bounds.min) +
-                            " to " + shortest(collider.bounds.max) +
+                            cleanUtf8(collider.provenance.mesh_name) + ", has " +
+                            shortest(collider.bounds.min) + " to " + shortest(collider.bounds.max) +
                             "; give --mesh the mesh that it was baked from");
         }
     }
@@ -89,7 +89,7 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
     }
     if (!run.same_file) {
         run.warnings.push_back(run.mesh->name + " is not the file that the collider was baked from (" +
-                               from.mesh_name + ", XXH3-128 " +
+                               cleanUtf8(from.mesh_name) + ", XXH3-128 " +
                                (from.mesh_hash.empty() ? "unknown" : from.mesh_hash) +
                                "); its bounds are the same");
     }

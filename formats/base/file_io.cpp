@@ -14,6 +14,7 @@
 
 #include "formats/base/descriptor.h"
 #include "formats/base/temporary_file.h"
+#include "formats/base/text.h"
 
 namespace relief {
 namespace {
@@ -258,18 +259,7 @@ Result<void> writeFile(const fs::path& path, std::span<const std::byte> bytes) {
 }
 
 std::string quotedPath(const fs::path& path) {
-    std::string text = "'";
-    for (const char c : path.native()) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte == 0x7f) {
-            char escaped[5];
-            std::snprintf(escaped, sizeof(escaped), "\\x%02x", static_cast<unsigned>(byte));
-            text += escaped;
-        } else {
-            text += c;
-        }
-    }
-    return text + "'";
+    return "'" + escapedUtf8(path.native()) + "'";
 }
 
 Result<void> preflightFile(const fs::path& path, std::string_view option) {

@@ -41,7 +41,7 @@ namespace relief {
 /// Errors: kIo, with the system's words.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
-/// A path for a message: in single quotes, control characters as hexadecimal escapes so that the message stays one line.
+/// A path for a message: escapedUtf8 in single quotes, so that the message stays one line in the order of its characters.
 [[nodiscard]] std::string quotedPath(const std::filesystem::path& path);
 
 /// An absolute path without symbolic links, "." and ".."; parts that do not exist stay. Dangling links are followed too:

@@ -85,6 +85,24 @@ bool changesOrder(std::string_view character) {
            (character >= "\xe2\x81\xa6" && character <= "\xe2\x81\xa9");
 }
 
+/// A character of UTF-8, or one byte that is part of none.
+struct Character {
+    std::string_view bytes;
+    bool clean = false;  ///< can be shown as it is
+};
+
+/// Cuts it off the start of `text`, which is not empty.
+Character takeCharacter(std::string_view& text, Bidi bidi) {
+    const std::size_t length = utf8Length(text);
+    const std::string_view bytes = text.substr(0, std::max(length, std::size_t{1}));
+    const auto first = static_cast<unsigned char>(bytes[0]);
+    const bool upper_control = length == 2 && first == 0xc2 && static_cast<unsigned char>(bytes[1]) < 0xa0;
+    const bool bad = length == 0 || first < 0x20 || first == 0x7f || upper_control ||
+                     (bidi == Bidi::kReplace && changesOrder(bytes));
+    text.remove_prefix(bytes.size());
+    return {bytes, !bad};
+}
+
 }  // namespace
 
 void appendShortest(std::string& out, float value) {
@@ -234,18 +252,29 @@ std::string listed(std::span<const std::string_view> words) {
 std::string cleanUtf8(std::string_view bytes, std::size_t size_max, Bidi bidi) {
     std::string text;
     while (!bytes.empty()) {
-        const std::size_t length = utf8Length(bytes);
-        const auto first = static_cast<unsigned char>(bytes[0]);
-        const bool upper_control =
-            length == 2 && first == 0xc2 && static_cast<unsigned char>(bytes[1]) < 0xa0;
-        const bool bad = length == 0 || first < 0x20 || first == 0x7f || upper_control ||
-                         (bidi == Bidi::kReplace && changesOrder(bytes.substr(0, length)));
-        const std::string_view character = bad ? std::string_view("\xef\xbf\xbd") : bytes.substr(0, length);
+        const Character next = takeCharacter(bytes, bidi);
+        const std::string_view character = next.clean ? next.bytes : std::string_view("\xef\xbf\xbd");
         if (text.size() + character.size() > size_max) {
             break;
         }
         text += character;
-        bytes.remove_prefix(length == 0 ? 1 : length);
+    }
+    return text;
+}
+
+std::string escapedUtf8(std::string_view bytes) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text;
+    while (!bytes.empty()) {
+        const Character next = takeCharacter(bytes, Bidi::kReplace);
+        if (next.clean) {
+            text += next.bytes;
+            continue;
+        }
+        for (const char c : next.bytes) {
+            const auto byte = static_cast<unsigned char>(c);
+            text.append("\\x").append({kDigits[byte / 16], kDigits[byte % 16]});
+        }
     }
     return text;
 }

@@ -58,6 +58,8 @@ enum class Bidi : std::uint8_t { kReplace, kKeep };
 /// \param size_max  bytes: the text ends before the character that would exceed it.
 [[nodiscard]] std::string cleanUtf8(std::string_view bytes, std::size_t size_max = std::string::npos,
                                     Bidi bidi = Bidi::kReplace);
+/// As cleanUtf8, but with the bytes as hexadecimal escapes, "\x1b", so that different names stay different.
+[[nodiscard]] std::string escapedUtf8(std::string_view bytes);
 /// Words of another program for a message: cleanUtf8, with spaces for control characters, and none at both ends.
 [[nodiscard]] std::string oneCleanLine(std::string_view text);
 

@@ -324,6 +324,9 @@ TEST_F(FileIo, PreflightFindsOutputsThatCannotBeWrittenAndMakesFolders) {
 TEST(QuotedPath, StaysOneLine) {
     EXPECT_EQ(quotedPath("a b/ä.relief"), "'a b/ä.relief'");
     EXPECT_EQ(quotedPath("a\nb\x1b[2J\x7f"), "'a\\x0ab\\x1b[2J\\x7f'");
+    EXPECT_EQ(quotedPath("x\xe2\x80\xaejbo.relief"), "'x\\xe2\\x80\\xaejbo.relief'") << "U+202E";
+    EXPECT_EQ(quotedPath("\xe2\x81\xa6\xc2\x9b\xff"), "'\\xe2\\x81\\xa6\\xc2\\x9b\\xff'")
+        << "U+2066, U+009B, no UTF-8";
 }
 
 }  // namespace
