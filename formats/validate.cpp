@@ -162,6 +162,12 @@ const char* faultOfHalves(std::span<const std::byte> texel) {
 
 }  // namespace
 
+std::string storedMeshName(std::string name) {
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '/' || c == '\\'; }, '_');
+    return cleanUtf8(name, kMeshNameMax);
+}
+
 bool isPlainText(std::string_view text) {
     return cleanUtf8(text, std::string::npos, Bidi::kKeep) == text;
 }

@@ -117,12 +117,6 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
     return recorded;
 }
 
-/// The name of a mesh as a container may have it: that of a node may look like a path, and be long.
-std::string storedName(std::string name) {
-    std::ranges::replace(name, '/', '_');
-    return cleanUtf8(name, kMeshNameMax);
-}
-
 void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
     if (const std::optional<std::string> warning = coarseFloatsWarning(*mesh)) {
         report.warnings.push_back(*warning);
@@ -303,8 +297,8 @@ class Bake {
         warnAbout(mesh_, jobs_, baked_.report);
         baked_.collider.bounds = mesh_->bounds;
         baked_.collider.unit = mesh_->unit;
-        baked_.collider.provenance = {storedName(mesh_->name), mesh_->content_hash, mesh_->sourceTriangles(),
-                                      "relief " RELIEF_VERSION,
+        baked_.collider.provenance = {storedMeshName(mesh_->name), mesh_->content_hash,
+                                      mesh_->sourceTriangles(), "relief " RELIEF_VERSION,
                                       effectiveOptions(jobs_, options_, baked_.collider)};
         return std::move(baked_);
     }

@@ -10,7 +10,7 @@
 
 #include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
-#include "formats/base/text.h"
+#include "formats/validate.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/scene/scene_world.h"
 
@@ -30,11 +30,11 @@ std::map<fs::path, std::string> namesOfWorld(const LoadedScene& loaded) {
     return names;
 }
 
-Result<fs::path> fileOf(const fs::path& folder, const std::string& name) {
-    if (name.empty() || name.find_first_of("/\\") != std::string::npos ||
-        name.find('\0') != std::string::npos || name == "." || name == "..") {
-        return invalidInput("'" + cleanUtf8(name) + "' is no name of a file; name the mesh in the level");
+Result<fs::path> fileOf(const fs::path& folder, const std::string& mesh) {
+    if (mesh.empty()) {
+        return invalidInput("a mesh of the world has no name; name it in the level");
     }
+    const std::string name = storedMeshName(mesh);
     for (const char* extension : {".ply", ".obj"}) {
         const fs::path file = folder / (name + extension);
         std::error_code error;
@@ -42,8 +42,7 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& name) {
             return file;
         }
     }
-    return invalidInput(quotedPath(folder) + " has no '" + cleanUtf8(name) +
-                        ".ply' or .obj for a collider; add it");
+    return invalidInput(quotedPath(folder) + " has no '" + name + ".ply' or .obj for a collider; add it");
 }
 
 /// The place of render.meshes, for messages.

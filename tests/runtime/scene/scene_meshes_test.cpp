@@ -71,6 +71,18 @@ TEST_F(DrawnMeshesTest, AMeshIsReadOnceAndDrawnForEachBody) {
     EXPECT_FALSE(places[2].moves);
 }
 
+TEST_F(DrawnMeshesTest, AFileHasTheNameThatAContainerHas) {
+    for (const char* name : {"props/chair", "props\\chair"}) {
+        folder_.write("props_chair.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        World world = namedWorld();
+        world.colliders[1].mesh = name;
+        const LoadedScene scene = loaded(world, "world = \"world.json\"\n");
+        const auto files = drawnFiles(scene);
+        ASSERT_TRUE(files) << files.error().message;
+        EXPECT_EQ(files->back(), folder_.path() / "props_chair.obj");
+    }
+}
+
 TEST_F(DrawnMeshesTest, AllFilesAreThoseOfAnyRun) {
     World world = namedWorld();
     world.colliders[0].coarse = WorldFile{"floor.coarse.relief", "", 0};
