@@ -1,6 +1,7 @@
 #include "runtime/scene/loaded_scene.h"
 
 #include <algorithm>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <map>
 #include <memory>
@@ -158,6 +159,40 @@ Result<void> checkMaterials(const Scene& scene, const LoadedScene& of) {
     return {};
 }
 
+Result<void> checkOverlap(const LoadedScene& loaded) {
+    const std::size_t count = loaded.colliders.size();
+    if (count <= kOverlapMax) {
+        return {};
+    }
+    std::vector<std::optional<Bounds>> boxes;
+    for (const auto& collider : loaded.colliders) {
+        boxes.push_back(insideBox(*collider));
+    }
+    const auto contains = [&](std::size_t body, const glm::vec3& p) {
+        const std::optional<Bounds>& box = boxes[body];
+        const glm::vec3 q = toObject(loaded.scene.colliders[body].pose, p);
+        return !box ||
+               (glm::all(glm::lessThanEqual(box->min, q)) && glm::all(glm::lessThanEqual(q, box->max)));
+    };
+    constexpr std::size_t kTried = 64;
+    for (std::size_t i = 0; i < kTried; ++i) {
+        const std::size_t tried = (i * count / kTried + i) % count;  // odd and even ones
+        const glm::vec3 center =
+            toWorld(loaded.scene.colliders[tried].pose, loaded.colliders[tried]->bounds.center());
+        std::size_t around = 0;
+        for (std::size_t body = 0; body < count; ++body) {
+            around += contains(body, center) ? 1 : 0;
+        }
+        if (around > kOverlapMax) {
+            return fail(ErrorCode::kLimit,
+                        std::to_string(around) + " bodies overlap at " + shortest(center) +
+                            ", and a particle there is tested against each; place at most " +
+                            std::to_string(kOverlapMax) + " at one place, or bake them into one collider");
+        }
+    }
+    return {};
+}
+
 Result<LoadedScene> loadAll(const fs::path& input, const SceneOverrides& overrides) {
     auto scene = RELIEF_TRY(openScene(input, overrides.root));
     return loadAll(std::move(scene), input, overrides);
@@ -230,6 +265,7 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
     }
     RELIEF_TRY(checkMaterials(scene, loaded));
     loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
+    RELIEF_TRY(inFront(quotedPath(input), checkOverlap(loaded)));
     loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters, loaded.meshes()));
     if (loaded.scene.flow) {
         auto flow = RELIEF_TRY(loadFlow(*loaded.scene.flow));

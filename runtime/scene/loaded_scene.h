@@ -55,6 +55,14 @@ struct LoadedScene {
 /// Errors: kInvalidInput, with the place in the scene and the names that there are.
 [[nodiscard]] Result<void> checkMaterials(const Scene& scene, const LoadedScene& of);
 
+/// Bodies that may overlap at one place: a particle there is tested against each of them.
+inline constexpr std::size_t kOverlapMax = 1024;
+
+/// Whether no more bodies than that have their boxes around the centre of one body, as they stand at first. Tries 64 of the
+/// bodies. A collider that has no insideBox() is everywhere.
+/// Errors: kLimit, with the number and the place.
+[[nodiscard]] Result<void> checkOverlap(const LoadedScene& loaded);
+
 /// Every file that a scene names, sorted; without the scene itself.
 [[nodiscard]] std::vector<std::filesystem::path> filesOf(const Scene& scene);
 

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <glm/glm.hpp>
+#include <memory>
 
 #include "runtime/collider/world_bodies.h"
 #include "runtime/picture/camera.h"
+#include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_pictures.h"
+#include "tests/formats/sample_colliders.h"
 #include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
 
@@ -53,6 +56,32 @@ TEST(SceneWorld, ATableOfANodeComesFirstAndKeepsWhatItLeavesOpen) {
     EXPECT_EQ(scene.colliders[2].node, "floor");
     EXPECT_EQ(scene.colliders[2].pose.position, glm::vec3(0.0F, 1.0F, 0.0F));
     EXPECT_EQ(scene.colliders[3].node, "gate");
+}
+
+// Found where every second body is elsewhere, too.
+TEST(SceneWorld, BodiesMayNotAllBeAtOnePlace) {
+    const auto collider = std::make_shared<const Collider>(test::readmeExample());
+    const auto scene = [&](std::size_t bodies, std::size_t every, float apart) {
+        LoadedScene loaded;
+        loaded.colliders.assign(bodies, collider);
+        loaded.scene.colliders.resize(bodies);
+        for (std::size_t i = 0; i < bodies; ++i) {
+            if (i % every != 0) {
+                loaded.scene.colliders[i].pose.position.x = apart * static_cast<float>(i + 1);
+            }
+        }
+        return loaded;
+    };
+    EXPECT_TRUE(checkOverlap(scene(kOverlapMax, 1, 0.0F)));
+    EXPECT_TRUE(checkOverlap(scene(8192, kOverlapMax, 10.0F))) << "apart";
+    for (const auto& [refused, words] :
+         {std::pair(scene(kOverlapMax + 1, 1, 0.0F), "1025 bodies overlap at "),
+          {scene(4096, 2, 10.0F), "2048 bodies overlap at "}}) {
+        const auto result = checkOverlap(refused);
+        ASSERT_FALSE(result) << words;
+        EXPECT_EQ(result.error().code, ErrorCode::kLimit);
+        EXPECT_TRUE(result.error().message.starts_with(words)) << result.error().message;
+    }
 }
 
 // A level is wide and low: seen from above, it fills nine tenths of the picture one way or the other.
