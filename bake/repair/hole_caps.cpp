@@ -89,80 +89,6 @@ Enclosure enclosureOf(const std::vector<std::array<Vote, 2>>& votes) {
     return {static_cast<double>(one_sided) / count, agreement / (2.0 * count)};
 }
 
-/// One step along the border of a hole.
-struct Step {
-    std::uint32_t from = 0;
-    std::uint32_t to = 0;
-    std::uint32_t edge = 0;
-    bool against = false;  ///< the edge's triangle runs the same way, and a cap's triangle the other
-};
-
-using Loop = std::vector<Step>;
-
-/// Partitions the odd edges into loops. Every vertex has an even number of odd edges, so that a walk over unused edges ends
-/// where it began; it is cut wherever it meets itself. At a fork it continues against the triangles' direction, to the lowest
-/// vertex.
-std::vector<Loop> loopsOf(const std::vector<OddEdge>& edges) {
-    std::vector<Step> steps;  // of all vertices, best first
-    steps.reserve(2 * edges.size());
-    for (std::uint32_t i = 0; i < edges.size(); ++i) {
-        steps.push_back({edges[i].to, edges[i].from, i, false});
-        steps.push_back({edges[i].from, edges[i].to, i, true});
-    }
-    std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
-        return std::tuple(a.from, a.against, a.to) < std::tuple(b.from, b.against, b.to);
-    });
-    // By rank of a vertex with odd edges: its first step that may still be free.
-    std::vector<std::uint32_t> vertices;
-    std::vector<std::size_t> next;
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        if (i == 0 || steps[i].from != steps[i - 1].from) {
-            vertices.push_back(steps[i].from);
-            next.push_back(i);
-        }
-    }
-    const std::vector<std::size_t> first = next;
-    const auto rankOf = [&](std::uint32_t vertex) {
-        return static_cast<std::size_t>(std::ranges::lower_bound(vertices, vertex) - vertices.begin());
-    };
-    std::vector<bool> taken(edges.size(), false);
-    const auto take = [&](std::size_t rank) -> const Step* {
-        const std::size_t end = rank + 1 < first.size() ? first[rank + 1] : steps.size();
-        while (next[rank] < end && taken[steps[next[rank]].edge]) {
-            ++next[rank];
-        }
-        if (next[rank] == end) {
-            return nullptr;
-        }
-        taken[steps[next[rank]].edge] = true;
-        return &steps[next[rank]];
-    };
-    constexpr auto kNotOnPath = static_cast<std::size_t>(-1);
-    std::vector<std::size_t> place(vertices.size(), kNotOnPath);  // index on the path
-    std::vector<Loop> loops;
-    for (std::size_t start = 0; start < vertices.size(); ++start) {
-        Loop path;
-        place[start] = 0;
-        std::size_t at = start;
-        while (const Step* step = take(at)) {
-            path.push_back(*step);
-            at = rankOf(step->to);
-            if (place[at] == kNotOnPath) {
-                place[at] = path.size();
-                continue;
-            }
-            const auto begin = path.begin() + static_cast<std::ptrdiff_t>(place[at]);
-            loops.emplace_back(begin, path.end());
-            for (auto inner = begin + 1; inner < path.end(); ++inner) {
-                place[rankOf(inner->from)] = kNotOnPath;
-            }
-            path.erase(begin, path.end());
-        }
-        place[start] = kNotOnPath;
-    }
-    return loops;
-}
-
 /// Appends caps to a mesh, hole by hole.
 class Capper {
   public:
@@ -170,16 +96,16 @@ class Capper {
 
     /// A hole without a fan of nonzero areas stays open: such triangles are not allowed, and leaving them out would break the
     /// parity of edges.
-    void close(const Loop& loop) {
+    void close(const BorderLoop& loop) {
         const std::size_t before = mesh_.triangles.size();
         if (loop.size() == 3 && hasArea(planeOf(at(loop[0].from), at(loop[1].from), at(loop[2].from)))) {
-            const auto against = std::ranges::count(loop, true, &Step::against);
+            const auto against = std::ranges::count(loop, true, &BorderStep::against);
             const glm::uvec3 t(loop[0].from, loop[1].from, loop[2].from);
             mesh_.triangles.push_back(against > 1 ? glm::uvec3(t.x, t.z, t.y) : t);
         } else if (const std::optional<glm::vec3> apex = apexOf(loop)) {
             const auto index = static_cast<std::uint32_t>(mesh_.positions.size());
             mesh_.positions.push_back(*apex);
-            for (const Step& step : loop) {
+            for (const BorderStep& step : loop) {
                 mesh_.triangles.push_back(step.against ? glm::uvec3(step.to, step.from, index)
                                                        : glm::uvec3(step.from, step.to, index));
             }
@@ -193,13 +119,13 @@ class Capper {
     [[nodiscard]] glm::dvec3 at(std::uint32_t vertex) const { return mesh_.positions[vertex]; }
 
     /// The centroid of the loop. If it is collinear with an edge, a point near it, and finally farther off.
-    [[nodiscard]] std::optional<glm::vec3> apexOf(const Loop& loop) const {
+    [[nodiscard]] std::optional<glm::vec3> apexOf(const BorderLoop& loop) const {
         const glm::dvec3 origin = at(loop.front().from);
         glm::dvec3 moment(0.0);
         glm::dvec3 normal(0.0);  // Newell's: twice the area of the loop
         double around = 0.0;
         double extent = 0.0;
-        for (const Step& step : loop) {
+        for (const BorderStep& step : loop) {
             const glm::dvec3 a = at(step.from) - origin;
             const glm::dvec3 b = at(step.to) - origin;
             const double edge = length(b - a);
@@ -230,11 +156,11 @@ class Capper {
     }
 
     /// The point as a float, if all triangles of its fan have an area.
-    [[nodiscard]] std::optional<glm::vec3> usable(const Loop& loop, const glm::dvec3& point) const {
+    [[nodiscard]] std::optional<glm::vec3> usable(const BorderLoop& loop, const glm::dvec3& point) const {
         // Rounding may leave the box.
         const glm::vec3 apex = glm::clamp(glm::vec3(point), mesh_.bounds.min, mesh_.bounds.max);
         const bool good = std::ranges::all_of(
-            loop, [&](const Step& step) { return hasArea(planeOf(at(step.from), at(step.to), apex)); });
+            loop, [&](const BorderStep& step) { return hasArea(planeOf(at(step.from), at(step.to), apex)); });
         return good ? std::optional(apex) : std::nullopt;
     }
 
@@ -267,6 +193,70 @@ bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& 
 
 }  // namespace
 
+// Every vertex has an even number of odd edges, so that a walk over unused edges ends
+// where it began; it is cut wherever it meets itself. At a fork it continues against the triangles' direction, to the lowest
+// vertex.
+std::vector<BorderLoop> borderLoops(const std::vector<OddEdge>& edges) {
+    std::vector<BorderStep> steps;  // of all vertices, best first
+    steps.reserve(2 * edges.size());
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+        steps.push_back({edges[i].to, edges[i].from, i, false});
+        steps.push_back({edges[i].from, edges[i].to, i, true});
+    }
+    std::sort(steps.begin(), steps.end(), [](const BorderStep& a, const BorderStep& b) {
+        return std::tuple(a.from, a.against, a.to) < std::tuple(b.from, b.against, b.to);
+    });
+    // By rank of a vertex with odd edges: its first step that may still be free.
+    std::vector<std::uint32_t> vertices;
+    std::vector<std::size_t> next;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (i == 0 || steps[i].from != steps[i - 1].from) {
+            vertices.push_back(steps[i].from);
+            next.push_back(i);
+        }
+    }
+    const std::vector<std::size_t> first = next;
+    const auto rankOf = [&](std::uint32_t vertex) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(vertices, vertex) - vertices.begin());
+    };
+    std::vector<bool> taken(edges.size(), false);
+    const auto take = [&](std::size_t rank) -> const BorderStep* {
+        const std::size_t end = rank + 1 < first.size() ? first[rank + 1] : steps.size();
+        while (next[rank] < end && taken[steps[next[rank]].edge]) {
+            ++next[rank];
+        }
+        if (next[rank] == end) {
+            return nullptr;
+        }
+        taken[steps[next[rank]].edge] = true;
+        return &steps[next[rank]];
+    };
+    constexpr auto kNotOnPath = static_cast<std::size_t>(-1);
+    std::vector<std::size_t> place(vertices.size(), kNotOnPath);  // index on the path
+    std::vector<BorderLoop> loops;
+    for (std::size_t start = 0; start < vertices.size(); ++start) {
+        BorderLoop path;
+        place[start] = 0;
+        std::size_t at = start;
+        while (const BorderStep* step = take(at)) {
+            path.push_back(*step);
+            at = rankOf(step->to);
+            if (place[at] == kNotOnPath) {
+                place[at] = path.size();
+                continue;
+            }
+            const auto begin = path.begin() + static_cast<std::ptrdiff_t>(place[at]);
+            loops.emplace_back(begin, path.end());
+            for (auto inner = begin + 1; inner < path.end(); ++inner) {
+                place[rankOf(inner->from)] = kNotOnPath;
+            }
+            path.erase(begin, path.end());
+        }
+        place[start] = kNotOnPath;
+    }
+    return loops;
+}
+
 Enclosure measureEnclosure(const MeshQuery& query) {
     return enclosureOf(voteAtSurface(query, kEnclosureProbes));
 }
@@ -285,7 +275,7 @@ Result<PreparedMesh> closeHoles(const PreparedMesh& mesh, std::size_t probes) {
     TriangleMesh with_caps = *mesh;
     with_caps.marks.clear();  // caps have no names
     Capper capper(with_caps);
-    for (const Loop& loop : loopsOf(mesh.oddEdges())) {
+    for (const BorderLoop& loop : borderLoops(mesh.oddEdges())) {
         capper.close(loop);
     }
     if (!with_caps.labels.empty()) {

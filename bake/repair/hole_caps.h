@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
+#include "bake/mesh/mesh_edges.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
 #include "formats/base/result.h"
@@ -28,6 +31,18 @@ inline constexpr double kOneSided = 0.9;
 inline constexpr double kAgreement = 0.85;
 
 [[nodiscard]] Enclosure measureEnclosure(const MeshQuery& query);
+
+/// One step along the border of a hole.
+struct BorderStep {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    std::uint32_t edge = 0;
+    bool against = false;  ///< the edge's triangle runs the same way, and a cap's triangle the other
+};
+using BorderLoop = std::vector<BorderStep>;
+
+/// Partitions the odd edges of a mesh into loops that visit no vertex twice.
+[[nodiscard]] std::vector<BorderLoop> borderLoops(const std::vector<OddEdge>& edges);
 
 /// Closes holes by fans of triangles, wound like their neighbours, at the end of the mesh, and counts them in cap_triangles
 /// and closed_holes. MeshQuery::watertight is then true, unless a hole is too small for a fan of floats. Name, hash and

@@ -180,7 +180,7 @@ class Shaper {
         RELIEF_TRY(sortSheets());
         RELIEF_TRY(closeParts());
         RELIEF_TRY(checkThickness());
-        addSheets();
+        RELIEF_TRY(addSheets());
         PreparedMesh mesh = RELIEF_TRY(union_.finish(report_.thickness));
         std::vector<std::uint32_t> part_of = union_.takePartOf();
         if (options_.voids == VoidsAs::kFull && hasSealingSheet()) {
@@ -519,7 +519,7 @@ class Shaper {
         return checkShellThickness(options_.thickness, smallest, mesh_);
     }
 
-    void addSheets() {
+    Result<void> addSheets() {
         for (const Open& part : open_) {
             if (part.role.kind == Kind::kSheet) {
                 const double size = sizeOf(part.sheet);
@@ -528,7 +528,9 @@ class Shaper {
                         ? partThickness(options_.thickness, size, options_.thickness_by_texel)
                         : options_.thickness;
                 const double right = options_.thickness_by_part ? rightThickness(thickness, size) : thickness;
-                add(part.sheet, thickened(part.sheet, thickness), PartKind::kSheet);
+                const MeshQuery query =
+                    RELIEF_TRY(MeshQuery::build(RELIEF_TRY(finishMesh(meshOf(part.sheet, mesh_.name)))));
+                add(part.sheet, thickened(part.sheet, query, thickness), PartKind::kSheet);
                 for (const std::uint32_t source : part.sheet.sources) {
                     SurfacePart& piece = collected_.parts()[collected_.partOf()[source]];
                     piece.thickness = thickness;
@@ -544,6 +546,7 @@ class Shaper {
         }
         report_.default_thickness =
             options_.thickness_by_part && report_.sheets > 0 ? options_.thickness : 0.0;
+        return {};
     }
 
     /// Shells by request have free space on both sides.

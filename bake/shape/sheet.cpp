@@ -1,11 +1,15 @@
 #include "bake/shape/sheet.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
+
+#include "bake/repair/hole_caps.h"
 
 namespace relief {
 namespace {
@@ -135,6 +139,49 @@ std::vector<std::uint32_t> joinedCorners(const Sheet& sheet) {
     return roots;
 }
 
+/// Where an offset ends that would meet one from the other side: a little beyond the middle, so that the two overlap.
+constexpr double kThinReach = 0.55;
+/// A corner's ray starts this far towards the middle of its triangle, in units of the way and of the offset: rays from
+/// vertices meet the edges of symmetric meshes.
+constexpr double kThinStart = 0.01;
+
+glm::dvec3 middleOf(const Sheet& sheet, const glm::uvec3& t) {
+    return (glm::dvec3(sheet.positions[t.x]) + glm::dvec3(sheet.positions[t.y]) +
+            glm::dvec3(sheet.positions[t.z])) /
+           3.0;
+}
+
+/// The way to what a point of a sheet faces along an offset and against it, in units of the offset: up to 2, where the
+/// offsets of both meet.
+/// \param isOwn  of a triangle: it is not faced.
+template <class IsOwn>
+std::array<double, 2> roomAt(const Sheet& sheet, const MeshQuery& query, const glm::dvec3& start,
+                             const glm::dvec3& offset, const IsOwn& isOwn) {
+    std::array<double, 2> room = {2.0, 2.0};
+    std::vector<LineHit> hits;
+    if (offset != glm::dvec3(0.0)) {
+        query.hitsAlong(start, offset, hits);
+    }
+    for (const LineHit& hit : hits) {
+        if (hit.at != 0.0 && !isOwn(sheet.triangles[hit.triangle])) {
+            double& side = room[hit.at > 0.0 ? 0 : 1];
+            side = std::min(side, std::abs(hit.at));
+        }
+    }
+    return room;
+}
+
+std::array<double, 2> roomAtCorner(const Sheet& sheet, const MeshQuery& query, const glm::uvec3& t,
+                                   int corner, const glm::dvec3& offset) {
+    const std::uint32_t vertex = t[corner];
+    const glm::dvec3 at = sheet.positions[vertex];
+    const glm::dvec3 inwards = middleOf(sheet, t) - at;
+    const double start = kThinStart * std::min(1.0, length(offset) / length(inwards));
+    return roomAt(sheet, query, at + start * inwards, offset, [&](const glm::uvec3& other) {
+        return other.x == vertex || other.y == vertex || other.z == vertex;
+    });
+}
+
 /// Drops triangles without area.
 class PartBuilder {
   public:
@@ -156,12 +203,78 @@ class PartBuilder {
         addTriangle(source, b[0], a[0], a[1]);
         addTriangle(source, b[0], a[1], b[1]);
     }
+    [[nodiscard]] glm::dvec3 at(std::uint32_t vertex) const { return part_.positions[vertex]; }
     void endSurface() { part_.surface_triangles = part_.triangles.size(); }
     SolidPart take() { return std::move(part_); }
 
   private:
     SolidPart part_;
 };
+
+/// Closes a surface where a region's offset is left out.
+struct Fan {
+    BorderLoop loop;
+    glm::vec3 apex{0.0F};
+    std::uint32_t source = 0;
+};
+
+/// The triangles of thin regions whose offset is left out: fans close what is left, within the shell's own reach.
+/// \param endOf  the offset of a triangle's corner. \param turned  the offset's triangles are wound the other way.
+/// \param fans   these fans are appended.
+template <class EndOf>
+std::vector<bool> fullRegions(const Sheet& sheet, const std::vector<std::uint8_t>& thin, const EndOf& endOf,
+                              bool turned, const PartBuilder& builder, const MeshQuery& query, double reach,
+                              std::vector<Fan>& fans) {
+    std::vector<bool> full(sheet.triangles.size(), false);
+    std::vector<bool> seen(sheet.triangles.size(), false);
+    std::vector<std::uint32_t> region;
+    for (std::uint32_t first = 0; first < sheet.triangles.size(); ++first) {
+        if (seen[first] || thin[first] == 0) {
+            continue;
+        }
+        seen[first] = true;
+        region.assign(1, first);
+        std::vector<OddEdge> border;  // as the triangles that stay have it
+        for (std::size_t k = 0; k < region.size(); ++k) {
+            for (std::uint32_t side = 0; side < 3; ++side) {
+                const std::uint32_t next = sheet.neighbours[region[k]][static_cast<int>(side)];
+                if (next == Sheet::kNoTriangle || thin[next] == 0) {
+                    const std::uint32_t from = endOf(region[k], side);
+                    const std::uint32_t to = endOf(region[k], (side + 1) % 3);
+                    border.push_back(turned ? OddEdge{from, to} : OddEdge{to, from});
+                } else if (!seen[next]) {
+                    seen[next] = true;
+                    region.push_back(next);
+                }
+            }
+        }
+        bool closes = true;
+        const std::size_t before = fans.size();
+        for (BorderLoop& loop : borderLoops(border)) {
+            if (loop.size() < 3) {
+                continue;  // there and back
+            }
+            glm::dvec3 sum(0.0);
+            for (const BorderStep& step : loop) {
+                sum += builder.at(step.from);
+            }
+            const glm::vec3 apex(sum / static_cast<double>(loop.size()));
+            closes = closes && query.closest(apex).distance <= reach &&
+                     std::ranges::all_of(loop, [&](const BorderStep& step) {
+                         return hasArea(planeOf(builder.at(step.from), builder.at(step.to), apex));
+                     });
+            fans.push_back({std::move(loop), apex, first});
+        }
+        if (!closes) {
+            fans.resize(before);
+            continue;
+        }
+        for (const std::uint32_t triangle : region) {
+            full[triangle] = true;
+        }
+    }
+    return full;
+}
 
 }  // namespace
 
@@ -201,7 +314,7 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
     return sheet;
 }
 
-SolidPart thickened(const Sheet& sheet, double thickness) {
+SolidPart thickened(const Sheet& sheet, const MeshQuery& query, double thickness) {
     const std::vector<std::uint32_t> roots = joinedCorners(sheet);
     std::vector<Mitre> mitres(roots.size());
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
@@ -211,24 +324,87 @@ SolidPart thickened(const Sheet& sheet, double thickness) {
                 normal, angleAt(sheet.positions, sheet.triangles[i], corner));
         }
     }
+    std::vector<glm::dvec3> offsets(roots.size());
+    for (std::uint32_t i = 0; i < roots.size(); ++i) {
+        offsets[i] = roots[i] == i ? 0.5 * thickness * mitres[i].solve() : offsets[roots[i]];
+    }
+    std::vector<std::array<double, 2>> room(roots.size());  // above and below, by root
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(roots.size()), [&](std::uint32_t i) {
+        room[i] = roomAtCorner(sheet, query, sheet.triangles[i / 3], static_cast<int>(i % 3), offsets[i]);
+    });
+    for (std::uint32_t i = 0; i < roots.size(); ++i) {
+        for (const std::size_t face : {0U, 1U}) {
+            room[roots[i]][face] = std::min(room[roots[i]][face], room[i][face]);
+        }
+    }
+    // By root: an edge there turns over in the offset, which then ends where there is no more room.
+    std::vector<std::array<bool, 2>> turns(roots.size());
+    for (std::uint32_t i = 0; i < roots.size(); ++i) {
+        const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+        const auto at = [&](std::uint32_t k) {
+            return glm::dvec3(sheet.positions[sheet.triangles[k / 3][static_cast<int>(k % 3)]]);
+        };
+        const glm::dvec3 side = at(next) - at(i);
+        const double change = dot(side, offsets[next] - offsets[i]);
+        for (const std::uint32_t k : {i, next}) {
+            turns[roots[k]][0] = turns[roots[k]][0] || dot(side, side) + change < 0.0;
+            turns[roots[k]][1] = turns[roots[k]][1] || dot(side, side) - change < 0.0;
+        }
+    }
     PartBuilder builder;
     std::vector<std::array<std::uint32_t, 2>> ends(roots.size());  // above and below, by root
     for (std::uint32_t i = 0; i < roots.size(); ++i) {
         if (roots[i] == i) {
             const glm::dvec3 at = sheet.positions[sheet.triangles[i / 3][static_cast<int>(i % 3)]];
-            const glm::dvec3 offset = 0.5 * thickness * mitres[i].solve();
-            ends[i] = {builder.addPosition(at + offset), builder.addPosition(at - offset)};
+            const auto reach = [&](std::size_t face) {
+                return turns[i][face] ? std::min(1.0, kThinReach * room[i][face]) : 1.0;
+            };
+            ends[i] = {builder.addPosition(at + reach(0) * offsets[i]),
+                       builder.addPosition(at - reach(1) * offsets[i])};
         }
     }
     const auto endsOf = [&](std::uint32_t triangle, std::uint32_t corner) {
         return ends[roots[3 * triangle + corner]];
     };
-    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
-        const auto [a, b, c] = std::array{endsOf(i, 0), endsOf(i, 1), endsOf(i, 2)};
-        builder.addTriangle(i, a[0], b[0], c[0]);
-        builder.addTriangle(i, a[1], c[1], b[1]);
+    std::vector<Fan> fans;
+    for (const std::size_t face : {0U, 1U}) {
+        const auto endOf = [&](std::uint32_t i, std::uint32_t corner) { return endsOf(i, corner)[face]; };
+        // All of its corners are thin, or its middle is and its offset turns over.
+        const auto isThin = [&](std::uint32_t i) {
+            const glm::uvec3& t = sheet.triangles[i];
+            bool corners = true;
+            bool turned = false;
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t next = (k + 1) % 3;
+                const glm::dvec3 from = sheet.positions[t[static_cast<int>(k)]];
+                const glm::dvec3 to = sheet.positions[t[static_cast<int>(next)]];
+                corners = corners && room[roots[3 * i + k]][face] < 2.0;
+                turned = turned || dot(to - from, builder.at(endOf(i, next)) - builder.at(endOf(i, k))) < 0.0;
+            }
+            return corners ||
+                   (turned &&
+                    roomAt(sheet, query, middleOf(sheet, t), 0.5 * thickness * unitNormal(sheet.positions, t),
+                           [&](const glm::uvec3& other) { return other == t; })[face] < 2.0);
+        };
+        std::vector<std::uint8_t> thin(sheet.triangles.size());
+        tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(thin.size()),
+                          [&](std::uint32_t i) { thin[i] = isThin(i) ? 1 : 0; });
+        const std::vector<bool> full =
+            fullRegions(sheet, thin, endOf, face == 1, builder, query, thickness, fans);
+        for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
+            if (!full[i]) {
+                builder.addTriangle(i, endOf(i, 0), endOf(i, face == 0 ? 1 : 2), endOf(i, face == 0 ? 2 : 1));
+            }
+        }
     }
     builder.endSurface();
+    for (const Fan& fan : fans) {
+        const std::uint32_t apex = builder.addPosition(fan.apex);
+        for (const BorderStep& step : fan.loop) {
+            builder.addTriangle(fan.source, step.against ? step.to : step.from,
+                                step.against ? step.from : step.to, apex);
+        }
+    }
     for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
         for (std::uint32_t side = 0; side < 3; ++side) {
             if (sheet.neighbours[i][static_cast<int>(side)] == Sheet::kNoTriangle) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bake/mesh/mesh_edges.h"
+#include "bake/mesh/mesh_query.h"
 
 namespace relief {
 
@@ -47,9 +48,11 @@ struct SolidPart {
 };
 
 /// The shell within half the thickness along the sheet's normals, with mitres at edges and flat ends at the border. Each
-/// patch of joined triangles becomes one closed surface.
+/// patch of joined triangles becomes one closed surface. A region that is thinner
+/// than the shell, such as a rod, is full: its offset would turn over and is left out.
+/// \param query      of the sheet's triangles.
 /// \param thickness  object units, above 0.
-[[nodiscard]] SolidPart thickened(const Sheet& sheet, double thickness);
+[[nodiscard]] SolidPart thickened(const Sheet& sheet, const MeshQuery& query, double thickness);
 
 /// Twice the projected areas of a sheet along the axes, equal up to the sign for a height field.
 struct Shadow {

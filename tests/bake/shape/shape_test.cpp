@@ -199,6 +199,51 @@ TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
     }
 }
 
+/// Rods thinner than their shell, a straw, a pin on a block, a pit in one, a thin bar between two ends, and a thin flange about
+/// a hollow body.
+TEST(Shape, AShellThickerThanItsPartHasNoHollowCore) {
+    const TriangleMesh rod = makeBoxMesh(glm::dvec3(0.0), {0.5, 0.02, 0.02});
+    const std::vector<TriangleMesh> meshes = {
+        rod,
+        turned(rod, {0.3, 1.0, 0.2}, 33.0),
+        makeTurned({{0.02, -0.5}, {0.02, 0.5}}),
+        makeTurned({{0.0, -0.5}, {0.5, -0.5}, {0.5, 0.0}, {0.02, 0.0}, {0.02, 0.5}, {0.0, 0.5}}),
+        makeTurned({{0.0, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {0.02, 0.5}, {0.02, 0.1}, {0.0, 0.1}}),
+        makeTurned({{0.0, -0.5},
+                    {0.3, -0.4},
+                    {0.3, -0.3},
+                    {0.02, -0.2},
+                    {0.02, 0.2},
+                    {0.3, 0.3},
+                    {0.3, 0.4},
+                    {0.0, 0.5}}),
+        makeTurned({{0.0, -0.5},
+                    {0.4, -0.3},
+                    {0.4, -0.02},
+                    {0.7, -0.02},
+                    {0.7, 0.02},
+                    {0.4, 0.02},
+                    {0.4, 0.3},
+                    {0.0, 0.5}})};
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        SCOPED_TRACE(i);
+        const MeshQuery sheet = queryOf(meshes[i]);
+        const MeshQuery shell = queryOf(shaped(meshes[i], ShapeAs::kShell, 0.1).mesh);
+        EXPECT_TRUE(shell.watertight());
+        int hollow = 0;
+        int filled = 0;
+        for (const glm::vec3& p : pointsIn(meshes[i].bounds, 20'000)) {
+            const double distance = sheet.closest(p).distance;
+            const bool beyond = i == 2 && std::abs(p.y) > 0.49F;  // the straw's flat ends
+            hollow += distance < 0.045 && !beyond && !shell.inside(p) ? 1 : 0;
+            filled += distance > 0.09 && shell.inside(p) ? 1 : 0;
+        }
+        EXPECT_EQ(hollow, 0);
+        EXPECT_EQ(filled, 0);
+    }
+    EXPECT_LT(queryOf(shaped(rod, ShapeAs::kShell, 0.1).mesh).signedDistance(glm::vec3(0.0F)), -0.06);
+}
+
 TEST(Shape, ASheetWithTwoSidesIsOneSheet) {
     const TriangleMesh plane = makePlane(0.0F, 4);
     const ShapedMesh shape = shaped(joined({plane, reversed(plane)}));
