@@ -126,11 +126,10 @@ Result<void> exportMaps(const Collider& collider, const std::filesystem::path& f
 /// Makes a folder for these files, which must replace no other file of the run.
 Result<void> prepareFolder(const std::filesystem::path& folder, const std::vector<std::string>& names,
                            const char* option, FileGuard& files) {
-    RELIEF_TRY(preflightFolder(folder, option));
     for (const std::string& name : names) {
-        RELIEF_TRY(files.writes(folder / name, option));
+        RELIEF_TRY(files.writes(folder / name, option, folder));
     }
-    return {};
+    return preflightFolder(folder, option);
 }
 
 Result<void> checkTogether(const ExportCommand& command) {

@@ -141,16 +141,15 @@ Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& cal
             return fail(ErrorCode::kUsage, "--stamp and --depfile cannot be standard output; name files");
         }
     }
-    if (!run.dry_run) {
-        RELIEF_TRY(preflightFolder(run.output_folder, "--output"));
-    }
+    const fs::path made = run.dry_run ? fs::path() : run.output_folder;
     RELIEF_TRY(files.keeps(run.output_folder / kBakeCacheName, "--output (the recipe's cache)"));
     if (call.json || (run.dry_run && options.events != "-")) {
         RELIEF_TRY(files.writes("-", call.json ? "--json" : "the list of --dry-run"));
     }
-    RELIEF_TRY(files.writes(options.stamp, "--stamp"));
-    RELIEF_TRY(files.writes(call.depfile, "--depfile"));
-    return files.writes(options.events, "--events");
+    RELIEF_TRY(files.writes(options.stamp, "--stamp", made));
+    RELIEF_TRY(files.writes(call.depfile, "--depfile", made));
+    RELIEF_TRY(files.writes(options.events, "--events", made));
+    return run.dry_run ? Result<void>() : preflightFolder(run.output_folder, "--output");
 }
 
 Result<void> printDryRun(const std::vector<AssetResult>& assets) {

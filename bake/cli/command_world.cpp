@@ -92,10 +92,10 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
     if (call.outputs.json) {
         RELIEF_TRY(call.files.writes("-", "--json"));
     }
-    RELIEF_TRY(preflightFolder(folder, "--world"));
-    RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world"));
+    RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world", folder));
     RELIEF_TRY(ownWorldFolder(folder, "--world", call.files));
-    return call.files.writes(call.outputs.depfile, "--depfile");
+    RELIEF_TRY(call.files.writes(call.outputs.depfile, "--depfile", folder));
+    return preflightFolder(folder, "--world");  // made once all is checked
 }
 
 void addWorldOption(CLI::App& verb, std::string& folder) {

@@ -32,6 +32,13 @@ std::optional<std::string> placeOfLink(const fs::path& path) {
     return error ? std::nullopt : std::optional((real / path.filename()).native());
 }
 
+/// \param folder  may be empty, which is within none.
+bool isWithin(const fs::path& folder, const fs::path& outer) {
+    std::error_code error;
+    return !folder.empty() &&
+           (destination(folder, error) / "").native().starts_with((destination(outer, error) / "").native());
+}
+
 }  // namespace
 
 FileGuard::Keys FileGuard::keysOf(const fs::path& path, int standard) {
@@ -110,11 +117,19 @@ Result<void> FileGuard::reads(const fs::path& path) {
     return {};
 }
 
-Result<void> FileGuard::writes(const fs::path& path, std::string_view option) {
+Result<void> FileGuard::writes(const fs::path& path, std::string_view option, const fs::path& made) {
     if (path.empty()) {
         return {};
     }
-    RELIEF_TRY(preflightFile(path, option));
+    if (isWithin(made, path)) {
+        return fail(ErrorCode::kIo, "cannot write " + quotedPath(path) + " of " + std::string(option) +
+                                        ": the run makes a folder there; name a file");
+    }
+    const fs::path folder = path.parent_path();
+    std::error_code error;
+    if (folder.empty() || fs::is_directory(folder, error) || !isWithin(made, folder)) {
+        RELIEF_TRY(preflightFile(path, option));
+    }
     const auto other = claim(path, option);
     return other ? refusal({path, std::string(option)}, *other) : Result<void>();
 }

@@ -57,8 +57,10 @@ class FileGuard {
     [[nodiscard]] Result<void> reads(const std::filesystem::path& path);
     /// A file that the run writes; "-" is standard output, an empty path none.
     /// \param option  that names it, for messages: "--dump".
+    /// \param made    a folder that the run makes later with its parents, which may hold the file.
     /// Errors: those of preflightFile; kUsage: it is an input, or another output.
-    [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option);
+    [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option,
+                                      const std::filesystem::path& made = {});
     /// Files that the run writes into a folder, which may be missing.
     /// Errors: as the last one's kUsage.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);

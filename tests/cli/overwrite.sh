@@ -58,6 +58,13 @@ kept "and --stamp would both write 'recipe.symbolic', which is '.*recipe/.*relie
 kept "'box.obj' and --events would both write" "${recipe[@]}" --events "$(echo recipe/*.relief)"
 kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curves.json
 
+# A refused run makes no folder.
+expect_error 2 'makes a folder there' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh
+expect_error 2 'makes a folder there' "$relief" bake --recipe world.toml -o fresh/sub --stamp fresh
+expect_error 2 'does not exist' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile missing/d
+[ ! -e fresh ] || die "a refused run has made a folder"
+expect 0 "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh/d -q
+
 # A page of a world, and the report beside a page.
 kept "is the input" "$relief" view level/world.json -o "$(echo level/*.relief)"
 kept "the report and --html would both write" "$relief" check box.relief --mesh box.obj --html /dev/stdout

@@ -72,6 +72,20 @@ TEST_F(FileGuardTest, NoOutputIsAnInput) {
     EXPECT_TRUE(guard_.writes("", "--events"));
 }
 
+TEST_F(FileGuardTest, FoldersThatAreMadeLaterHoldFiles) {
+    const fs::path made = in("new/sub");
+    for (const char* file : {"new/sub/a", "new/b", "linked/../new/sub/c", "d"}) {
+        const auto done = guard_.writes(in(file), "--new", made);
+        EXPECT_TRUE(done) << done.error().message;
+    }
+    for (const char* file : {"new", "new/sub", "linked", "missing/a", "new/sub/deeper/a"}) {
+        const auto done = guard_.writes(in(file), "--new", made);
+        ASSERT_FALSE(done) << file;
+        EXPECT_EQ(done.error().code, ErrorCode::kIo) << done.error().message;
+    }
+    EXPECT_FALSE(fs::exists(in("new")));
+}
+
 TEST_F(FileGuardTest, NoTwoOutputsAreOne) {
     fs::create_symlink("real/later", folder_ / "dangling");
     fs::create_symlink("dangling", folder_ / "twice");
