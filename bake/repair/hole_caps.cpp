@@ -193,9 +193,8 @@ bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& 
 
 }  // namespace
 
-// Every vertex has an even number of odd edges, so that a walk over unused edges ends
-// where it began; it is cut wherever it meets itself. At a fork it continues against the triangles' direction, to the lowest
-// vertex.
+// Every vertex has an even number of odd edges, so that a walk over unused edges ends where it began; it is cut wherever it
+// meets itself. At a fork it continues against the triangles' direction, to the lowest vertex.
 std::vector<BorderLoop> borderLoops(const std::vector<OddEdge>& edges) {
     std::vector<BorderStep> steps;  // of all vertices, best first
     steps.reserve(2 * edges.size());

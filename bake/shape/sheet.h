@@ -48,8 +48,8 @@ struct SolidPart {
 };
 
 /// The shell within half the thickness along the sheet's normals, with mitres at edges and flat ends at the border. Each
-/// patch of joined triangles becomes one closed surface. A region that is thinner
-/// than the shell, such as a rod, is full: its offset would turn over and is left out.
+/// patch of joined triangles becomes one closed surface. A region that is thinner than the shell, such as a rod, is full:
+/// its offset would turn over and is left out.
 /// \param query      of the sheet's triangles.
 /// \param thickness  object units, above 0.
 [[nodiscard]] SolidPart thickened(const Sheet& sheet, const MeshQuery& query, double thickness);

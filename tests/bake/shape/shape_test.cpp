@@ -189,6 +189,53 @@ TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
     EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
 }
 
+/// A mug, a bowl, a lampshade and a pipe of two open shells, whose rims are not joined; radii and heights.
+TEST(Shape, ShellsWithFacingRimsAreAWall) {
+    struct Wall {
+        TriangleMesh outer;
+        TriangleMesh inner;
+        std::vector<glm::dvec3> free;
+        std::vector<glm::dvec3> full;
+    };
+    const std::vector<Wall> walls = {{makeTurned({{0.0, 0.0}, {0.35, 0.0}, {0.5, 1.2}}),
+                                      makeTurned({{0.0, 0.02}, {0.33, 0.02}, {0.48, 1.2}}),
+                                      {{0, 0.6, 0}, {0, 1.19, 0.4}, {0.3, 0.03, 0}},
+                                      {{0, 0.01, 0.3}, {0.4926, 1.19, 0}, {0.0, 0.6, 0.415}}},
+                                     {makeTurned({{0.0, 0.0}, {0.5, 0.05}, {0.8, 0.4}, {0.85, 0.9}}),
+                                      makeTurned({{0.0, 0.05}, {0.47, 0.1}, {0.76, 0.42}, {0.81, 0.92}}),
+                                      {{0, 0.1, 0}, {0.5, 0.4, 0}, {0, 0.9, 0.79}},
+                                      {{0.0, 0.03, 0.05}, {0.0, 0.4, 0.78}, {0.82, 0.88, 0}}},
+                                     {makeTurned({{0.5, 0.0}, {0.3, 1.0}}),
+                                      makeTurned({{0.48, 0.0}, {0.28, 1.0}}),
+                                      {{0, 0.5, 0}, {0, 0.01, 0}, {0, 0.99, 0.2}},
+                                      {{0.391, 0.5, 0.0}, {0.0, 0.1, 0.47}}},
+                                     {makeTurned({{0.5, 0.0}, {0.5, 4.0}}),
+                                      makeTurned({{0.45, 0.0}, {0.45, 4.01}}),
+                                      {{0, 2, 0}, {0.4, 0.01, 0}, {0, 3.99, 0.4}},
+                                      {{0.475, 2, 0}, {0, 3.9, 0.475}}}};
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        for (const TriangleMesh& inner : {walls[i].inner, reversed(walls[i].inner)}) {
+            SCOPED_TRACE(i);
+            const ShapedMesh shape = shaped(turned(joined({walls[i].outer, inner}), {0, 0, 1}, 90.0));
+            expectKinds(shape.report, 0, 1, 0, 0);
+            const MeshQuery query = queryOf(shape.mesh);
+            EXPECT_TRUE(query.watertight());
+            const auto inside = [&](const glm::dvec3& p) {
+                return query.inside(glm::vec3(rotation(glm::dvec3(0, 0, 1), 90.0) * p));
+            };
+            EXPECT_TRUE(std::ranges::none_of(walls[i].free, inside));
+            EXPECT_TRUE(std::ranges::all_of(walls[i].full, inside));
+            EXPECT_FALSE(inside({2.0, 0.5, 0.0}));
+        }
+    }
+    // A bowl too shallow to close stays two sheets, and a box with a mouth beside another one is no wall.
+    expectKinds(
+        shaped(joined({makeTurned({{0.0, 0.0}, {1.0, 0.5}}), makeTurned({{0.0, 0.05}, {0.95, 0.52}})}))
+            .report,
+        0, 0, 2, 0);
+    expectKinds(shaped(joined({makeOpenBox(), scaled(makeOpenBox(), 1.0, {2.1, 0, 0})})).report, 0, 0, 2, 0);
+}
+
 TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
     TriangleMesh mixed = makeOpenBox();
     for (std::size_t i = 0; i < mixed.triangles.size(); i += 2) {
