@@ -15,7 +15,8 @@ fi
 folder=build/${preset/tools/release}
 if [ ! -f "$folder/build.ninja" ] ||
     { [ "$preset" = release ] && grep -q '^RELIEF_BUILD_TESTS:.*=OFF' "$folder/CMakeCache.txt"; }; then
-    cmake --preset "$preset" >&2
+    scripts/quietly.sh cmake --preset "$preset" >&2
 fi
-cmake --build --preset "$preset" ${1:+--target "$@"} >&2
+[ -z "${RELIEF_QUIET-}" ] || echo "Compiling ${*:-$preset}" >&2
+scripts/quietly.sh cmake --build --preset "$preset" ${1:+--target "$@"} >&2
 echo "$PWD/$folder/bin"

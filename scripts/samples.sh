@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
 # picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME, and of the village a film. Needs no GPU, but is faster with one.
+# With RELIEF_QUIET, as scripts/demo.sh sets it, packages and the build print a line each.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -27,7 +28,8 @@ prepare() {
     mkdir -p "$out"
     case $name in
     bunny_in_the_snow)
-        bake "$models/bunny.obj" -o "$out/bunny.relief" --prefer inside
+        cp "$models/bunny.obj" "$out/"
+        bake "$out/bunny.obj" -o "$out/bunny.relief" --prefer inside
         ;;
     catherine_wheel)
         mesh torus.obj
@@ -107,7 +109,9 @@ play() {
             "$bin/relief" slice "$out/bunny.relief" --axis $axis --at center --size 480 -o "$out/slice_$axis.png"
         done
     fi
-    "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" --json >"$out/report.json"
+    local every=()
+    [ -z "${RELIEF_QUIET-}" ] || every=(--frame-every 50)  # the six of the sheet
+    "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" "${every[@]}" --json >"$out/report.json"
     sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"
     if [ "$name" = village ]; then

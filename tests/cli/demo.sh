@@ -14,3 +14,19 @@ cat penetration.json
 json penetration.json "d['deepest_share_of_longest_side'] <= 0.0025"
 # Snow lies on the bunny: thousands of particles rest within three texels of the surface.
 json penetration.json "d['resting_on_mesh'] >= 2000"
+
+# scripts/demo.sh with tools that are built: it states its time first, prints at most 20 lines, and leaves a picture and the
+# files that the commands of README.md name.
+mkdir demo
+cp -r "$RELIEF_SOURCE/scripts" "$RELIEF_SOURCE/samples" demo/
+printf '#!/bin/sh\n' >demo/scripts/setup.sh
+printf '#!/bin/sh\necho "%s"\n' "$RELIEF_BIN" >demo/scripts/build.sh
+demo/scripts/demo.sh >log 2>&1 || die "the demo fails: $(cat log)"
+[ "$(wc -l <log)" -le 20 ] && head -2 log | grep -q 'minutes on two cores' || die "the demo prints: $(cat log)"
+grep -q 'wrong near the surface: ' log || die "the demo has no verdict: $(cat log)"
+[ -s demo/out/samples/bunny_in_the_snow/contact_sheet.png ] || die "the demo draws nothing"
+sed -n '/^After the demo/,/^With files/s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$RELIEF_SOURCE/README.md" >commands
+[ "$(wc -l <commands)" -ge 5 ] || die "README.md has $(wc -l <commands) commands for the demo's files"
+while read -r line; do
+    (cd demo/out/samples/bunny_in_the_snow && PATH=$RELIEF_BIN:$PATH bash -euc "$line") >said 2>&1 </dev/null || die "$line: $(tail -5 said)"
+done <commands

@@ -21,7 +21,7 @@ die() {
 tools() {
     cp "$mesh" bunny.obj
     cp "$(dirname "$mesh")/level.glb" .
-    printf '[collider]\nfile = "bunny.relief"\n[time]\nsteps = 20\n[render]\nsize = [160, 120]\n' >scene.toml
+    printf '[collider]\nfile = "bunny.relief"\n[time]\nsteps = 20\n[render]\nsize = [160, 120]\n' >bunny_in_the_snow.toml
     mkdir -p meshes/rocks && cp "$mesh" meshes/rocks/a.obj
     printf 'version = 1\n[[asset]]\nmesh = "meshes/**/*.obj"\noutput = "baked/{stem}.relief"\nbudget = "64kB"\n' >colliders.toml
     sed -n '/^## Use$/,/^The seventh/s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
@@ -30,7 +30,7 @@ tools() {
         bash -euc "$line" >said 2>&1 </dev/null || die "$line: $(tail -5 said)"
         echo "  $line"
     done <commands
-    for file in bunny.relief bunny.html end.ply frames/frame_0000.png baked/a.relief level/world.json; do
+    for file in bunny.relief bunny.html end.ply slice.png frames/frame_0000.png baked/a.relief level/world.json; do
         [ -s $file ] || die "no $file was written"
     done
     relief bake --recipe colliders.toml -j 2 >said 2>&1 || die "the recipe fails the second time: $(tail -5 said)"

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# quietly.sh COMMAND…: runs it. With RELIEF_QUIET its output is shown only if it fails.
+set -euo pipefail
+[ -n "${RELIEF_QUIET-}" ] || exec "$@"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+"$@" >"$log" 2>&1 || {
+    code=$?
+    cat "$log" >&2
+    exit "$code"
+}
