@@ -77,7 +77,9 @@ rm large.raw
 expect_error 5 "hills.png.*--heights" "$relief" bake hills.png -o bad.relief
 expect_error 1 "--budget" "$relief" bake hills.png --heights $settings -o bad.relief --budget 1MB
 expect_error 1 "two ways" "$relief" bake hills.png --heights $settings -o bad.relief --world v
-expect_error 1 "is required" "$relief" bake hills.png --heights $settings
+expect 0 "$relief" bake hills.png --heights $settings -q
+[ -s hills.relief ] || die "without -o: $(ls)"
+expect_error 1 "is required" "$relief" bake --heights $settings
 expect_error 1 "--heights" "$relief" check ground.relief --heights $settings
 expect_error 6 "10000000" "$relief" check ground.relief --mesh hills.png --samples 10000001
 tetrahedron t.obj
