@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `relief`: the offline tool. Verbs are in bake/cli/command_VERB.cpp; exit codes are those of formats/base/result.h.
 #include "bake/cli/command.h"
 #include "bake/recipe/child_process.h"

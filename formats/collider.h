@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider: a set of depth maps that together represent the outer shape of an object, and its value at
 // a point. CPU truth of shaders/collider/collider.glsl.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels as a zstd frame (RFC 8878). compression.cpp uses libzstd, web/compression.cpp the page's own decoder.
 #pragma once
 

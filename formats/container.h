@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Collider as the bytes of a `.relief` file and back. Layout: README.md beside this file, which wins where
 // the two disagree.
 #pragma once

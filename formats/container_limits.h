@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The version of the container format, what readers take at most, and how a payload lies in a file.
 #pragma once
 

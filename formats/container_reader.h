@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one walk over a container. Each step checks before it believes, and notes what is wrong as an issue. Loading
 // (container.cpp) refuses a file with any error; inspect.cpp reports all of them, and what is left of the file.
 #pragma once

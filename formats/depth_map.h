@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One depth map: its place in object space, its texels, and its vote for a point. CPU truth of
 // shaders/collider/collider.glsl.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that is wrong with a container, as numbered issues. readContainer refuses a file with any error; this goes on
 // with whatever can still be read, adds suspicions, and names the parts of the file that may be trusted. README.md
 // beside this file, "Issues", lists the codes; they keep their meaning from version to version.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The numbered issues of a container. README.md beside this file, "Issues", lists the codes; they keep their
 // meaning from version to version.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Responses of materials by name, as scenes and worlds give them in place of the containers' own.
 #pragma once
 

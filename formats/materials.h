@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The materials of a collider: names, responses, and an octree of which surface is of which. README.md beside this file,
 // "Materials", in words; shaders/collider/materials.glsl is materialAt() on the GPU.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nearest surface of a collider, found by evaluating its maps repeatedly; README.md, "The nearest surface", in
 // words.
 //

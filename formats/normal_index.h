@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Unit vectors as two bytes: the L1 (octahedral) parametrisation of the paper, section 4.2, equation 3.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map of patches: the surface in small depth maps of its own, in the leaves of an octree. Each patch looks along whichever
 // of 13 axes sees its piece of the surface best, so that no part of a mesh is out of sight. formats/README.md has it in words,
 // shaders/collider/patches.glsl is the same in GLSL; all three change together.

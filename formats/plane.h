@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a writer of maps with Decode::kPlane needs: where a texel's ray runs in object space, and which planes
 // keep their promise at grazing texels. All in double; pure functions.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "formats/row_spans.h"
 
 #include <algorithm>

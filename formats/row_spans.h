@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a row of a front-back map's image takes up: between its first and its last texel that is not empty. A silhouette
 // fills some seven tenths of the rectangle round it, so that files and GPUs hold rows without their empty ends.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One texel of a depth map in each of the formats: what it holds and how its bytes are laid out.
 //
 //     format            bytes  channels

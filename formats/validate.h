@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The invariants of a collider, as formats/README.md words them. The container's writer and its reader both
 // use them, so that whatever is written can be read back.
 #pragma once

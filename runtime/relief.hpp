@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that a program needs which embeds Relief: colliders, particles, pictures. Installed as <relief/relief.hpp>.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes glTF for the scripts beside it: meshes, nodes that place them, materials and clips. The same calls give the same bytes."""
 import base64
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the corner of a kitchen, as glTF whose parts have materials: kitchen.py OUT.gltf
 
 Beside it OUT.ply has their colours, for pictures.

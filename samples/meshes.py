@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the meshes of the samples from formulas: meshes.py torus|basin|terrain OUT.obj
 
 The same arguments give the same bytes. Needs nothing but Python itself.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes a village from formulas: village.py OUT
 
 Writes OUT/village.glb, some five hundred things on a terrain with a material for each of their parts, and OUT/meshes, one

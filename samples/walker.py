@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes a figure of capsules that walks on the spot, as glTF with materials and one clip: walker.py OUT.gltf
 
 The same argument gives the same bytes. Needs nothing but Python itself.

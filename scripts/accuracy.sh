@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Wrong points per byte, on the meshes that bake/measure/README.md writes about: distance volumes, dense and sparse, the
 # paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes forty minutes on
 # two cores. Further arguments go to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds

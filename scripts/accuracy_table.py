@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
 
 A row for each mesh and budget; then, for each budget, ratios, geometric means over meshes, and the verdict on the claims of

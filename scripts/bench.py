@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Builds the benchmarks and prints the ratios that Relief promises, from one run on this machine.
 
   scripts/bench.py [MESH]                    all of them; run it twice before you believe a change

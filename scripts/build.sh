@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds one preset of CMakePresets.json: scripts/build.sh release|tools|debug|sanitize|fuzz|web [TARGET]…
 # Prints the folder of the executables. web is the runtime as WebAssembly (runtime/web/README.md), which needs packages
 # of its own and installs them.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How wrong `relief bake` is on meshes as artists make them: what scripts/accuracy.sh --corpus runs.
 
 corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs the default tier in a build of its own, and writes how much of the sources they run:
 # out/coverage/index.html, and a summary. scripts/coverage.sh [CTEST OPTION]…, such as -R Voxels
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # "Bunny in the snow": bakes the Stanford bunny, lets snow fall on it without a window, and leaves a contact sheet of frames
 # and slices, out/samples/bunny_in_the_snow/contact_sheet.png. Needs no GPU.
 cat <<'T'

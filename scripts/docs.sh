@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds the reference of the public headers and of the Python package, with the guides as its pages:
 # scripts/docs.sh [FOLDER] (default out/docs). Fails on any warning of Doxygen and on any link that leads nowhere.
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What makes builds fast and changes nothing else: the fastest linker there is, a compiler cache where there is one,
 # precompiled headers, and sources joined.
 find_program(RELIEF_LINKER NAMES mold ld.lld)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief_folder(FOLDER [UNITY] [NUMBERS] [READER] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
 # Makes a library of every .cpp of FOLDER, except those named after EXCEPT. The target's name is FOLDER with _ for /.
 #

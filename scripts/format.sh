@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Formats every C++ file by .clang-format; with --check, only says which are not, and fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."

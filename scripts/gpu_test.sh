@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs every GL test on a real driver: OpenGL 3.3 and OpenGL ES 3.0, by fragment and by compute shaders. Builds the runtime
 # without the baker. scripts/gpu_test.sh [--allow-software] [build|run [FOLDER]]
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Ten meshes by lot, which nobody has tuned anything for: scripts/accuracy.sh --lot and --draw run this.
 
 lot.py FOLDER             unpacks the meshes of lot.txt into FOLDER, and prints their paths

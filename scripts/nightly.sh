@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs the long tests: scripts/nightly.sh [OPTION]… [JOB|nightly|weekly]…, by default the group nightly. tests/README.md
 # describes the jobs; tests/long/jobs.sh contains them. A job that fails does not stop the others. Prints one line per job:
 # name, state, seconds and figures. Exits with 1 if a job failed.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # quietly.sh COMMAND…: runs it. With RELIEF_QUIET its output is shown only if it fails.
 set -euo pipefail
 [ -n "${RELIEF_QUIET-}" ] || exec "$@"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
 # picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME, and of the village a film. Needs no GPU, but is faster with one.
 # With RELIEF_QUIET, as scripts/demo.sh sets it, packages and the build print a line each.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs the Debian 12 packages that Relief needs to build, test and run. Does nothing, and needs no network, when all are
 # there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the packages that they need besides.
 #

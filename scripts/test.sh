@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds the product once, and tests it. Needs no GPU. scripts/test.sh [--quick|--gpu]
 #
 #   (nothing)  the default tier: every area of the product, the sanitizers over everything that reads untrusted bytes, and the

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Checks C++ files by clang-tidy and .clang-tidy: scripts/tidy.sh [COMMIT | --all]
 # By default those that differ from main, committed or not; --all takes an hour or so.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what tests/web/package.json names from the npm registry into build/web, exactly as its lock file says. Does
 # nothing, and needs no network, when that is there already. Prints the folder that holds node_modules.
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief_embed_shaders(OUTPUT): makes OUTPUT, a C++ file with the text of every shader and with the constants that C++ shares
 # with them (shader_sources.h).
 #

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of this folder, embedded at build time.
 #pragma once
 

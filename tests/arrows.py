@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Every #include goes along an arrow of the build files: arrows.py SOURCE FOLDERS_TXT
 
 FOLDERS_TXT is what CMake writes of relief_folder(): "FOLDER: USED USED…", a line each. Also fails on circles among

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """scripts/bench.py and scripts/accuracy_table.py, on figures made up here: bench.py SOURCE_DIR"""
 import json
 import os

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """html_links.py FOLDER: every link of the HTML below FOLDER leads to a file, and its #anchor to an element."""
 import html.parser
 import pathlib

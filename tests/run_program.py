@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs the cases of one GoogleTest program in one process, and names each failing case.
 
     run_program.py PROGRAM [--shard I/N] [--skip PATTERNS] [--only PATTERNS] [--timeout SECONDS]

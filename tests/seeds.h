@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The seeds of generated cases. Those of a usual run are always the same; RELIEF_TEST_SEED makes others.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief-accuracy: wrong points per byte of distance volumes, dense and sparse, of the paper's maps, and of ours, as JSON.
 // scripts/accuracy.sh runs it on its list of meshes, and makes tables of it.
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rivals that keep distances near the surface alone: bricks of 8-bit nodes in a sparse grid, as Unreal, PhysX and newton
 // bake them, or in an octree (Frisken 2000), made as strong as they can be for their bytes.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rival: a dense signed distance volume, as Unity, Unreal and Godot bake it, made as strong as it can be
 // for its bytes, so that a comparison with it is worth something.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of `relief`, and what its verbs share. One file a verb defines its options and runs it.
 #pragma once
 

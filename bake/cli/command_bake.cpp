@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief bake: a mesh becomes a collider.
 #include <spdlog/spdlog.h>
 

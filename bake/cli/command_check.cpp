@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief check: whether a container is sound, and how well a collider keeps to its mesh.
 #include <span>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief export: every map as OpenEXR; or what a program of one's own uploads.
 #include <spdlog/spdlog.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `relief bake --heights`: a height map becomes a collider, or with --world a folder of tiles and the file that places them.
 // `relief check` of either against the height map.
 #pragma once

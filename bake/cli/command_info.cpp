@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief info: what is in a container, or in a world.
 
 #include "bake/cli/command.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief query: the field at points.
 #include <spdlog/spdlog.h>
 #include <tbb/parallel_for.h>

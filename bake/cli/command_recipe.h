@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of `relief bake` about its output, and those of --recipe with what they do.
 #pragma once
 

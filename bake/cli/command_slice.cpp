@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief slice: the field on a plane, as a figure.
 #include <spdlog/spdlog.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief view: a page to turn a collider round in, drop particles on it, and see where it is wrong.
 #include "bake/cli/command_view.h"
 

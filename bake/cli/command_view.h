@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by `relief view` and `relief check`: the options about a mesh, and the page.
 #pragma once
 

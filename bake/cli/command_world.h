@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `relief bake --world`: a level becomes a folder of colliders and the file that places them. `relief check` of such a file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that decides what a bake makes, and how it goes about it. The options of `relief bake`, the keys of recipes, the
 // arguments of relief.bake() in Python and the provenance of a collider are derived from fields().
 #pragma once

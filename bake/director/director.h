@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bake from the request to the collider: import, repair, solid, plan, maps, measurement and warnings. The command line,
 // Python, recipes, advice and benchmarks call this.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider measured against the mesh that it was baked from: for `relief check --mesh`, `relief view --mesh` and
 // relief.check() in Python.
 #pragma once

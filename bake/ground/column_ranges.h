@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The range of heights below each cell of a quadtree over the squares of a height map.
 #pragma once
 

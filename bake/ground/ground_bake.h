@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A height map baked into one collider, or into tiles and the world file that places them (formats/world).
 //
 //      squares of a row:  0 ... 1020 1024 1028 ... 2044 2048 2052

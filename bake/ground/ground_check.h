@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Baked ground measured against its height map, whatever its size: the map is read twice, row by row, and of each row only the
 // squares with a point are looked at. Truth is the bilinear surface between the samples, in closed form.
 //

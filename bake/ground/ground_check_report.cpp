@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/ground/ground_check_report.h"
 
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tree of patches straight from heights, without a mesh: each leaf holds 4² squares of the height map, with its own heights.
 //
 //        root: 64 squares                        the cells of one root, from the side:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // EXR images of one channel, row by row.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A height map from its file, row by row: PNG, EXR, or raw samples of 16 bits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/heights/heights_spec.h"
 
 #include <cmath>

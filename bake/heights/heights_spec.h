@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of a height map: `relief bake --heights`.
 //
 //     spacing=1,low=0,high=500           a grey image of whole numbers: 0 stands for low, the largest for high

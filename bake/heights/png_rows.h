@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grey PNG images row by row, however large they are; beside runtime/files/png.cpp the only user of libpng.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The samples of a height map as its file has them, one row after the other from the first.
 #pragma once
 

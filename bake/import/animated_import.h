@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Animated meshes: glTF files with skins, morph targets, moving nodes and clips, and clips of other files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The animations of a glTF file as clips of an animated mesh. Errors name a place in the document, and no file.
 #pragma once
 

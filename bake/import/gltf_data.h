@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of a glTF file, and the numbers in them: the chunks of a GLB, the buffers in it, in the JSON or beside it, and
 // accessors, sparse and quantised ones too. Errors name a place in the document, and no file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The JSON of a glTF file: read strictly, and values that know where they stand. Errors here name a place in the document,
 // as "meshes[0].primitives[2].mode", and no file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The meshes and skins of a glTF file: triangles, positions, joints and morph targets. Errors name a place in the document, and
 // no file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // EXT_meshopt_compression: what a buffer view of a glTF file holds, unpacked by meshoptimizer.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nodes of a glTF file: the trees that they form, their transforms, and those that its scene shows. Errors name a place in
 // the document, and no file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <assimp/BaseImporter.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options and limits of an import as fields: of the verbs that read a mesh, and between the importer's two programs.
 #pragma once
 

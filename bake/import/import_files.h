@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files that an import may read: the mesh, from memory, and regular files below its folder. No other path can be
 // reached: the kernel resolves each beneath the folder (openat2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The formats of mesh files as a table, and the format of a file by its first bytes, whatever its name.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The request to an importer, and the importer itself.
 #pragma once
 

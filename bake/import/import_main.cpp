@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `relief-import`: reads one mesh file for its parent (import_protocol.h), with limits and without rights, so
 // that a hostile file can harm only this process. Started by importMeshInWorker; not for direct use.
 #include <fcntl.h>

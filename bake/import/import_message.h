@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh or an error as bytes, from the import worker to its parent, which checks them like any file: a u32 that is 0 or an
 // ErrorCode; then the members of a TriangleMesh (import_message.cpp: exchange), or the error's text. A u64 precedes each text,
 // list and array: its length. The byte order is the machine's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
 //     relief-import PATH MEMORY SECONDS TRIANGLES KIND [FIELD VALUE]… names [NAME…]

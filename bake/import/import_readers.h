@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The readers of single formats, without those that the runtime has too (formats/polygons) and glTF's.
 // Errors name the line of a text, but not the file: kInvalidInput, kLimit, kUnsupported.
 #pragma once

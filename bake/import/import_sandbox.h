@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rights that the import worker gives up before it reads a file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The result of a reader, surfaces and the nodes that place them, and its conversion to one TriangleMesh.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The steps of an import before and after the importer itself: the same for an import in this process and for
 // one in a worker.
 #pragma once

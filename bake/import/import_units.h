@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Units of length and axes of mesh files, and their conversion to metres and +Y up.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // importMeshInWorker: starts relief-import, waits for it, and checks its answer.
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A level: each different mesh of a file once, however many nodes place it.
 #pragma once
 

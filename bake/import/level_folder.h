@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A level of a file, or of a folder of mesh files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files of every format of import_format.cpp, as one TriangleMesh: imported by a process of their own
 // (importMeshInWorker), as in every tool, or in this one (importMesh), for trusted files.
 #pragma once

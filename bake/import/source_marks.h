@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of a file that assimp drops: which nodes are hidden or are levels of detail, and references to missing objects.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts with a collider and the materials that they should find: what a tree of materials is fitted to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface of a mesh as it was imported, with a material for each triangle.
 #pragma once
 

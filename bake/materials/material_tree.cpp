@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/materials/material_tree.h"
 
 #include <tbb/parallel_for.h>

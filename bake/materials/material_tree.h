@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The materials of a mesh as a collider keeps them (formats/materials.h): made from the triangles as they were imported, so that
 // caps, rims and unions, which are no surface of the source, have the material of the nearest that is.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The accuracy of a field against a mesh, for colliders and their rivals alike.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The accuracy of a field for each part of a mesh, at the part's own scale: a prop on a terrain is judged as if baked alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fine a map of patches is: by its finest cell alone nothing can be told of a place, for cells grow where little is to see.
 #pragma once
 

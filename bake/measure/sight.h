@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The visibility of a surface to the maps of a collider or of a plan.
 #pragma once
 

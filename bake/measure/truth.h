@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random points on and near a mesh with the truth at each of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The places where a collider is most wrong, with causes.
 #pragma once
 

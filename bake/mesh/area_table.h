@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Choosing triangles and points of a mesh by area.
 #pragma once
 

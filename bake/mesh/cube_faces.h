@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The faces of a cube map, as OpenGL has them.
 #pragma once
 

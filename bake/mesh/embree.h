@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Embree calls that differ between versions 3 and 4 (CMake: -DRELIEF_EMBREE=3|4), and how Embree is configured.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directions of rays that tell the inside of a mesh from its outside.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops over indices: on all cores, and by bucket.
 #pragma once
 

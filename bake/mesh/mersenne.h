@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generators of random bits: SplitMix64, and the 64-bit Mersenne Twister (Nishimura 2000) for few numbers from many seeds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A triangle mesh in object space, as importers make it and bakes take it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/mesh/mesh_edges.h"
 
 #include <tbb/parallel_sort.h>

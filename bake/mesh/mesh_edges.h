@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges of a mesh. Equal positions are one vertex, as importers repeat positions along seams.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Point and ray queries of a mesh, by Embree: the truth that colliders are measured against.
 #pragma once
 

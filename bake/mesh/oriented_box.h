@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The oriented bounding box of least volume. Many parts are built along its axes, however they lie in their file.
 #pragma once
 

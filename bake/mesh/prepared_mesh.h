@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh with its derived data that all stages of a bake share: edges, winding, and the tree for rays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of a mesh: connected pieces of one node and one material, each judged by itself and its own size.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plane of a triangle in double precision: the one source of depths and normals, so that both are the same on every
 // processor, independent of the ray tracer's arithmetic.
 #pragma once

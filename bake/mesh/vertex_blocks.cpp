@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/mesh/vertex_blocks.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The support function of a mesh's vertices, without visiting each of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free space within a mesh that no way from outside reaches.
 #pragma once
 

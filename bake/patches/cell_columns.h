@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inside of a mesh in one cell of a grid, on lines along the axis of a patch.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth planes: leaves inside a mesh whose plane, or that of the split cell above, does not belong to the nearest face get planes
 // of their own.
 #pragma once

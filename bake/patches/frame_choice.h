@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The axis of a cell's patches, by the normals of the surface in it.
 #pragma once
 

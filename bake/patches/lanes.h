@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Four floats at a time. They are added up in one order everywhere, so that all compilers and processors find the same sums.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits what a leaf may hold to its cell.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tree of patches, planned, as a map.
 #pragma once
 

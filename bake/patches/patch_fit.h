@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The heights of one patch, fitted to the inside of its cell.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cell of a tree of patches that is being planned, and the contents that a leaf may have.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tree of patches: which cells are split, and how many heights each leaf has, within a number of bytes by what a byte more
 // would mend there, or by the texel that is wanted everywhere.
 #pragma once

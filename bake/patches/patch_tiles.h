@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tree of patches cut into tiles: boxes of its roots, as trees of their own.
 //
 //      roots     0 … 31 32 33 … 63 64 65 … 95

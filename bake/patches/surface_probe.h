@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points beside the surface in a cell, which tell whether a patch holds it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture in memory that is drawn on, in pixels from its upper left corner; the only user of Cairo.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/picture/map_image.h"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps as images, for `relief export`.
 //
 // Channels Z and N.X N.Y N.Z: the surface of the map, or the front one of a front-back map, with the back one in ZBack and

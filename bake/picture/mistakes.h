@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small part of a plane, coloured by where a collider is right and where it is wrong.
 #pragma once
 

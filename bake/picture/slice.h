@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The combined field of a collider on a plane across an axis.
 #pragma once
 

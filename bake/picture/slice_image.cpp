@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A slice as a figure.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pipeline: mesh -> views -> samples -> texels -> collider.
 #pragma once
 

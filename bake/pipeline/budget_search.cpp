@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/pipeline/budget_search.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chosen views, baked for a budget of bytes, and the least budget that keeps a promise: bakes at growing numbers of bytes until few enough points near the
 // surface are on the wrong side, then narrows the last step down.
 #pragma once

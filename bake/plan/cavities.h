@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places within a mesh for cube maps, which see what no view from outside does.
 #pragma once
 

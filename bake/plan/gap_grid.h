@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An estimate of a map of gaps (bake/texels/gap_map.h) on a coarse grid of lines of sight: enough to choose the maps after
 // it, and for the extent of its rows.
 #pragma once

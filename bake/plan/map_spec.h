@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of one map: `FORMAT[:key=value,...]` of `relief bake --map`, and the keys of a [[map]] in a plan file
 // (plan_file.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Views of a whole mesh from outside: candidates for the planner.
 #pragma once
 

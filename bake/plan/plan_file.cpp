@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/plan/plan_file.h"
 
 #include "formats/base/file_io.h"

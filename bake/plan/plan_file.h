@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plan files: the maps of a bake as TOML, to read and to edit. `relief bake --plan-out` writes them, `relief bake --plan`
 // bakes from them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sample points of a plan, and the service of a view to a point.
 #pragma once
 

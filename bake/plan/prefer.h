@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings of a bake of planes beside its maps.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The number of texels in the rows of a front-back map (formats/row_spans.h), before any ray is traced.
 #pragma once
 

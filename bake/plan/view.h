@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The geometry of a map: its frame, its volume, and one ray per texel.
 //
 // The frame of an orthographic view along d is r (right), u (up), d with r = d × u, so that the image is not mirrored and the

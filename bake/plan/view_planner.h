@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans the maps of a mesh: directions and places, and sizes for a budget of bytes.
 //
 // Points are drawn just outside the surface. A view serves the points that it sees, less at a grazing angle, where a texel

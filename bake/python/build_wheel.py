@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds the wheel that `pip install .` installs: the backend that pyproject.toml names (PEP 517).
 
 CMake builds and installs the component `python`; its files and their metadata are the wheel. Nothing but Python's own library

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Long work that Ctrl-C ends, though the work knows nothing of Python.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief._relief: the compiled part of the package relief. relief/__init__.py documents it for users.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>

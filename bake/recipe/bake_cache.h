@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inputs of each output of a recipe, so that only stale outputs are baked again.
 //
 // An entry records hashes of inputs and of their output, the options and the program. Baking is deterministic, so an

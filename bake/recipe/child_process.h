@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This program run again, several times at once: each in a process group of its own, which shares nothing with this
 // process but its arguments, so that a crash affects that child alone.
 #pragma once

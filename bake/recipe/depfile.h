@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depfiles: which files an output was made from, in the syntax that Make and Ninja read.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Patterns of file names, as recipes have them: rocks/*.obj, **/*.glb.
 //
 // A pattern is a relative path. In a part of it `*` stands for any characters, `?` for one, `[a-f]` and

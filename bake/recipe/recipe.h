@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recipes: many bakes in one TOML file, for people to write. bake/recipe/README.md is the normative
 // description.
 #pragma once

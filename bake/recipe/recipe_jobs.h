@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bakes of a recipe, file by file: patterns matched, outputs named, and none that would overwrite an input or another
 // output.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bakes the stale assets of a recipe: each by a process of its own, so that one that crashes, hangs or takes all memory
 // fails alone.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Caps over the holes of nearly closed meshes: a scan without its bottom, a model whose exporter lost a triangle. Without
 // them, views through a hole see the inner side of the surface and take the inside for free.
 #pragma once

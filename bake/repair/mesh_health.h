@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts of the faults that keep a mesh from bounding a solid. Equal positions are one vertex throughout, as importers
 // repeat positions along seams.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wraps of meshes by CGAL, whose exceptions become errors.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage between reading a mesh and baking it: counts its faults, refuses or repairs it on request, and winds it outwards.
 #pragma once
 

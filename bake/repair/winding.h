@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orients triangles outwards by rays and volumes, whatever the order of their corners in the file.
 #pragma once
 

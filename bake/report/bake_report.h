@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of `relief bake`: the maps, the reasons for them, and the time it took.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/report/check_report.h"
 
 #include <glm/geometric.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider measured against its mesh, as `relief check` reports it: numbers, a verdict, the places where it is wrong most
 // and what to do about them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider as `relief info` and `relief bake` report it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/report/inspect_report.h"
 
 #include "bake/report/report_text.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A container by itself, as `relief check FILE` reports it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of a mesh that a collider loses: which they are, how large, and what would keep them.
 #pragma once
 

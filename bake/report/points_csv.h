@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points in and field samples out, as comma-separated text. No locale.
 #pragma once
 

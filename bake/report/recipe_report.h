@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reports of a run of a recipe: events for programs while it runs, and its end for both people and programs.
 #pragma once
 

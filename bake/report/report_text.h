@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers, sizes and tables as reports show them to people.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/shape/near_copies.h"
 
 #include <algorithm>

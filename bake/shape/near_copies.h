@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed parts that coincide with another one but for rounding, as in an export of two copies, one grown by a millionth. The
 // space between them is thinner than any wall of a collider, and would make the solid hollow.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The connected parts of a mesh: by edges, with equal positions as one vertex, and by kind.
 #pragma once
 

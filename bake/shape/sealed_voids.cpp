@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/shape/sealed_voids.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free space that the sheets and solids of a union enclose together, such as that of a pot under its lid.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/shape/shape.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classifies the parts of a mesh and makes the solid that is baked. Parts are connected by edges (equal positions are one
 // vertex) between triangles of one kind:
 //

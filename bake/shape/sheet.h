@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solids from surfaces without thickness: shells around sheets, and the ground below terrains.
 //
 //            top: + thickness/2                    terrain:    surface

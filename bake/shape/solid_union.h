@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed surfaces that replace a mesh.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Deep solid: points around which the texel's whole cross-section is solid, and which no plane may cut.
 //
 // The sample points that planes are chosen by lie near the surface (refine.h). A steep plane reaches far deeper, and so does

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes hits as texels: depth and outward normal, quantised by the map's format.
 #pragma once
 

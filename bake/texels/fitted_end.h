@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One end of a view for the fits of its texels (plane_fit.h), seen from where its rays start.
 #pragma once
 

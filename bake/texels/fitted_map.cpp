@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/texels/fitted_map.h"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map of supporting planes (plane_fit.h): traces the footprint of every texel and fits a plane to it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map of gaps between solids (Compare::kGap): insides of cupboards, and the space between shelves, leaves and rails, which
 // rays from outside do not reach.
 //

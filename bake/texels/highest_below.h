@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The highest plane, on average, below all of some points: the supporting plane of a texel (plane_fit.h) whose rays are
 // parallel and all meet a surface.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Supporting planes: the plane that a texel stores when its map's decode is "plane".
 //
 // A texel's footprint is sampled by a block of rays. Candidate planes take their normals from the footprint. Each is pushed

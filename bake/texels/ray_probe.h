@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single rays of one end of a view, by Embree: between texels, where scan_convert.h has no result.
 #pragma once
 

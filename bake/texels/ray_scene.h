@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mesh that rays are traced in, and their hits.
 #pragma once
 

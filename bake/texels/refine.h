@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refines texels in view of the other maps.
 //
 // A supporting plane is pushed outwards until no surface point of its texel lies in front of it, as if its map were alone

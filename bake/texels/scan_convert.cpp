@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/texels/scan_convert.h"
 
 #include <tbb/parallel_for.h>

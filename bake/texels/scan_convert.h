@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scan conversion in double precision: the triangles that the rays of all texels meet, triangle by triangle and row by row.
 // The rays of an orthographic view are parallel and those of a cube's face start in one point. Several times as fast as
 // tracing, for both ends of the view at once, and independent of a ray tracer's arithmetic.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depths of a triangle's plane on the rays of a view.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider's field on a grid: for tools that read distance volumes or meshes.
 #pragma once
 

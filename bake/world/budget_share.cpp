@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/world/budget_share.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a level shares its bytes among its colliders: so that the next byte goes where it mends most.
 //
 // The mistakes of a mesh fall with its bytes along a curve. A small plan gives the beginning, a power law goes on from there.

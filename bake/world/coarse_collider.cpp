@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/world/coarse_collider.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coarse likenesses of a level's colliders, which stand in for them while a program loads these (runtime/stream).
 #pragma once
 

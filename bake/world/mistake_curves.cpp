@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/world/mistake_curves.h"
 
 #include <cmath>

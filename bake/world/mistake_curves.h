@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The curves by which the bytes of a level are shared, kept beside its containers, so that a run with nothing to do plans
 // nothing.
 //

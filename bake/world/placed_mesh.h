@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh of a level where a node places it: the truth of a check.
 #pragma once
 

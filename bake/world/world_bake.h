@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A level baked into a world: each different mesh into a container of its own, or a very large one into tiles
 // (world_tiles.h), those that are up to date left as they are, and last the file that places them (formats/world).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world measured against the level that it was baked from. Truth is the union of the level's meshes where its nodes place
 // them, each by Embree in its own space: a point beside one body may be inside another.
 #pragma once

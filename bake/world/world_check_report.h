@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of relief check of a world.
 #pragma once
 

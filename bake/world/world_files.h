@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of a world in its folder: the one that names the others is written last, and then those go that only the one
 // before named.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The place where a body of a world is typically wrong: why, and a picture of the union of all bodies there.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/world/world_report.h"
 
 #include "bake/report/report_text.h"

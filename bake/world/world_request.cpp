@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of a level, and those of each mesh of it.
 #include <array>
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Very large colliders of a world cut into tiles, each a collider and a body of the world, so that a part of a mesh can be on
 // the GPU without the others. bake/patches/patch_tiles.h has the cuts.
 #pragma once

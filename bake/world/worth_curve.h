@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mistakes of a mesh that a byte more mends, against the bytes that it has.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "formats/animation/animated_mesh.h"
 
 #include <algorithm>

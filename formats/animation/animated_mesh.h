@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh that moves as glTF has it: nodes in trees, vertices that joints and morph targets move, and clips of keys. Data
 // alone; mesh_pose.h poses it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of an animated mesh by name: vertex groups, which are what a joint carries, and materials.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of an animated mesh: by a clip at a time, or by a program. CPU truth of shaders/collider/skin.vert.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // File descriptors that are owned, and calls that go on where a signal interrupted them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A struct, described once: beside it stands one function that visits its fields, and from that are derived the readers,
 // the writers, the schemas and the tables of the documentation.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The types of fields without templates: a visitor of fields (formats/base/field.h) gets each value as a FieldRef, a pointer
 // and a description of its type. The description is static data and a few function pointers, which formats/base/field.h makes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the files of a run apart: no output replaces a file that the run reads or owns, or another output.
 #pragma once
 

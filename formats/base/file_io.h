@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole files in and out. Libraries and tools read and write through this file, so that limits, messages and the
 // promise of whole outputs are the same everywhere. (Below it lies temporary_file.h.)
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // std::from_chars and std::to_chars of floating-point numbers, also where the standard library has only those of
 // integers (LLVM's up to version 16, which Debian's emscripten has).
 #pragma once

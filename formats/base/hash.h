@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // XXH3 of bytes: the checksums of the container, and the content hash that names a mesh.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The heap of a tool that allocates much for a short time.
 #pragma once
 

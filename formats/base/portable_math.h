@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elementary functions with the same bits on every processor and by every compiler. Those of libm vary: glibc
 // has several of each, and takes the one that suits the processor. Here are sums, products, quotients and
 // roots alone, which IEEE 754 rounds exactly.

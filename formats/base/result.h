@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How every library function of Relief reports failure: a Result, never an exception, exit or message.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The limits of the numbers of a scene. Generous, yet small enough that nothing overflows a float within a lifetime.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The place of a value in the file that it was read from.
 #pragma once
 

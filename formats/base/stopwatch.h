@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long work took, for reports; no time reaches an output.
 #pragma once
 

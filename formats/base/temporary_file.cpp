@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "formats/base/temporary_file.h"
 
 #include <sys/random.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file that a new version is written into before it takes the place of the older one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and words of the command line and of text files: strict, exact, and the same in every locale.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines and words of a text file: the one tokenizer of the text formats that Relief reads or checks itself.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances near a surface as a GPU filters them: what `relief-accuracy --atlas` writes of the rivals that it measures, for
 // `relief-bench step --bricks` to read. A dense volume is one brick.
 //

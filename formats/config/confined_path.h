@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paths that a scene file names lead inside the scene's folder and nowhere else, so that a scene from elsewhere
 // reads no files but its own. The command line may allow one folder more (--root).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one way to include toml++: with what it needs so that no file, however hostile, meets undefined
 // behaviour.
 #pragma once

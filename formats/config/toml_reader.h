@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a table of a TOML file into a struct with fields() (formats/base/field.h). Unknown keys, wrong types, values out of
 // their range and keys that exclude each other are mistakes, each reported as "file:line:column: table.key …; the cure".
 #pragma once

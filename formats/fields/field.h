@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What fields() of reports need beside formats/base/field.h: a report is only written, and visits expressions as well as
 // members.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A struct with fields() as the text of JSON, and the JSON Schema of that. The tools write their reports with it. Values of
 // JSON are in formats/fields/json_value.h.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values with fields() as values of JSON, for sources that build JSON or schemas by hand.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A struct that is read from files (formats/config/toml_reader.h), described for people, editors and fuzzers: tables of
 // Markdown, JSON Schema and dictionaries. All are made of one tree.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON from outside, parsed without what nlohmann's parser lets pass.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of fields as words: of a command line, of Python's arguments, of a container's provenance.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers of the text formats that are read here: OBJ, OFF and STL.
 #pragma once
 

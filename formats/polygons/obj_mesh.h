@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wavefront OBJ: the statements v, f, l, p, g, o, usemtl and mtllib. Free forms are counted, all other statements passed
 // over.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of a binary little-endian PLY, in the order of the file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "formats/polygons/ply_mesh.h"
 
 #include <algorithm>

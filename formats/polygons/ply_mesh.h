@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PLY meshes, read here and not by assimp, which keeps one triangle of a strip and passes over what it does not know
 // without a word.
 #pragma once

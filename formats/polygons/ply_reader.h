@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PLY files, read: the header and the numbers behind it. The caller decides what a file must hold.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface of a file in polygons: what the readers of OBJ, OFF, PLY and STL make of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world: colliders, and the bodies that are placed instances of them, in one readable file beside the colliders' files.
 //
 //     {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The field of a world at a point: the union of its bodies, as shaders make it of theirs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forces on a particle besides collision and gravity: moving air, which acts through drag, and fields,
 // which accelerate. Plain settings; shaders/air/air.glsl computes with them, and air_block.h brings them there.
 #pragma once

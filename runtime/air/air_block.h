@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // AirSettings on the GPU: a uniform block and, for a flow, a 3-D texture, read by shaders/air/air.glsl.
 #pragma once
 

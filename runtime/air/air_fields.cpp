@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/air/air.h"
 #include "runtime/air/curl_noise.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turbulence: the curl of a random potential, which therefore has no divergence: particles neither gather nor
 // thin out. Settings of shaders/air/curl_noise.glsl.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Velocities on a grid over a box: for reliefFlow() in shaders/air/air.glsl.
 #pragma once
 

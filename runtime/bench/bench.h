@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by the cases of relief-bench: options, and works that are timed in turns. Nothing here is a test: machines are
 // shared and noisy.
 #pragma once

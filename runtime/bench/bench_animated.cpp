@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider that plays its first clip.
 #include <memory>
 #include <nlohmann/json.hpp>

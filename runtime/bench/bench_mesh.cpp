@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider that wobbles.
 #include "runtime/bench/bench.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture of particles, born all through the collider's box. `bare` draws the same points, as large and opaque as they
 // are, in one colour; then the parts of a picture one by one, and
 // all of them. A software renderer draws points on either path.

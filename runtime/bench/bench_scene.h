@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene of the cases, and particle systems that differ in a single feature each.
 #pragma once
 

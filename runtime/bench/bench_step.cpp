@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cost of a step over a bare copy of the state, and feature by feature. Before each block all particles are born anew,
 // so that blocks are alike; births and the first step are not timed.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of a flight over a world that is streamed: whether any takes longer than the others.
 #include <algorithm>
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/bench/brick_step.h"
 
 #include <algorithm>

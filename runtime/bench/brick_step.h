@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A step of the scene's particles among bricks of distances, with the forces, types, uniforms and state of ours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief-bench CASE FILE: prints JSON, times of the runtime's parts on this machine. scripts/bench.py reads it.
 #include <CLI/CLI.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One call of C: its arguments looked at, its outcome kept for relief_error(). No exception passes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The objects behind the handles of relief.h, and what its functions share.
 #pragma once
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Relief from C and from whatever calls C: colliders on the CPU and on the GPU, particles, pictures of both.
  *
  * librelief.so exports these functions and nothing else; librelief_c.a has the same ones. No exception leaves one.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider that moves as a glTF's clips, or the program, would have it: a character, a machine. Its mesh is posed on the
 // GPU (skin_pass.h) and drawn into the maps of a LiveCollider, whose box goes with it:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The broad phase of a world: which bodies a point may be in. Plain arithmetic, no GL.
 //
 // A body's box goes to the level whose cells are some times smaller, a power of 2, and there into the cells that it meets, turned

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies of a world as words, for the texture that shaders/collider/world.glsl reads: maps, poses, and the broad phase of
 // those at rest and of those that move. Plain arithmetic, no GL.
 #pragma once

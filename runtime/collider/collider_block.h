@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps and bodies as shaders/collider/collider.glsl reads them, and what that shader is compiled for.
 #pragma once
 

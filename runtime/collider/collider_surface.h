@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface of a collider as triangles, found from its field alone: for what needs the surface and not the field, as emitters do.
 #pragma once
 

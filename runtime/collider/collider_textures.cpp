@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/collider/collider_textures.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders on the GPU: three textures and a uniform block, read by shaders/collider/collider.glsl. One collider in
 // its own object space, or a world of bodies with poses, which takes a fourth texture (body_table.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The upload of ColliderTextures as bytes: for loaders of your own (LAYOUT.md). Needs no GL.
 #pragma once
 

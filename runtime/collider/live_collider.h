@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider that deforms: a mesh whose vertices move, and its depth maps, which the GPU renders anew before
 // the particles move (Kolb, Latta and Rezk-Salama 2004, section 5). Beside each texel it keeps how far the
 // surface there has gone since the update before: the velocity that a particle is met with.

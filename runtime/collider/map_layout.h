@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The layout of all maps of some colliders in the three textures of ColliderTextures. Plain arithmetic, no GL.
 #pragma once
 

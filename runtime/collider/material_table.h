@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The materials of bodies as words, for the texture that shaders/collider/materials.glsl reads. Plain arithmetic, no GL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pose of a body: a rigid transform with one scale for all axes.
 #pragma once
 

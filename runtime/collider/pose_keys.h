@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A trajectory through the world: poses at times, with straight lines and even turns between them.
 #pragma once
 

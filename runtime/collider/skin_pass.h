@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses an animated mesh on the GPU, by shaders/collider/skin.vert and transform feedback into a buffer: for
 // LiveCollider::setPositions(buffer), and for the mesh's picture.
 //

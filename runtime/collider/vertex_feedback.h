@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vertices that a vertex shader makes on the GPU, by transform feedback into a buffer; nothing is rasterised.
 #pragma once
 

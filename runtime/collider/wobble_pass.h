@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the vertices of a mesh wobble, on the GPU, by shaders/collider/wobble.vert and transform feedback into a buffer:
 // for LiveCollider::setPositions(buffer), and for the mesh's picture.
 //

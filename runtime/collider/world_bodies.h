@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies of a world (formats/world) as ColliderTextures takes them.
 //
 //     const LoadedWorld level = *loadWorld("level/world.json");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by the command lines of both executables: help, version, and errors of usage.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/command_line/option_values.h"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The values of options: validators and transformers for CLI11 that stand in front of a typed field. Those of CLI11
 // would take 0x10, -1 for a large number, and nan, and their messages name no cure.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/command_line/progress.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of long work: a line on standard error, for people, only where that is a terminal; and an end to it when its time is
 // up.
 #pragma once

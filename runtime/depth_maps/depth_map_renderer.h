@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Front-back maps of planes in 16 bits, drawn on the GPU from a mesh that moves: the texels are those of
 // formats/README.md, as `relief bake` makes them from one ray through the centre of each texel, to a unit of the last place
 // of the depth.

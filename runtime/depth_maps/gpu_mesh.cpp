@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/depth_maps/gpu_mesh.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A triangle mesh on the GPU whose triangles stay and whose vertices may move: what depth maps are rendered
 // from (depth_map_renderer.h).
 //

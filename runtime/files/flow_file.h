@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flow fields from files.
 #pragma once
 

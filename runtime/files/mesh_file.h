@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files for the picture of a collider, OBJ and PLY, for bodies that move and for surfaces that give birth. Positions and faces are read;
 // polygons become fans of triangles. Files are untrusted.
 #pragma once

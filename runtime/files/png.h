@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures as PNG bytes. png.cpp uses libpng; beside it only bake/heights does, for height maps.
 #pragma once
 

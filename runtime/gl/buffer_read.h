@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Buffers that the GPU has written, back in memory.
 #pragma once
 

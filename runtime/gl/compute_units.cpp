@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/gl/compute_units.h"
 
 #include "runtime/gl/gl_functions.h"

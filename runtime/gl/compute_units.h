@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The image units and shader storage blocks of compute passes. They save what PassState leaves out, since few passes use
 // them; both need hasCompute().
 #pragma once

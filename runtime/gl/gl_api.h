@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two APIs that every shader and every class of runtime/ works with.
 #pragma once
 

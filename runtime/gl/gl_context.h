@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An OpenGL context without a window, through EGL: for the command-line tools and the tests. A program that
 // has a context of its own does not need this.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Failures of the GPU although the calls are right: a reset, no room, a side beyond the limit. All functions need a
 // current context, and read the GL's error flags: those of the caller are lost.
 #pragma once

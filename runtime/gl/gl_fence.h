@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mark in the GPU's commands.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL's functions and numbers: libepoxy's, or in a browser those of WebGL2 under their names of OpenGL ES 3.0.
 // Everything that calls the GL includes this.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL names as move-only values. Every constructor needs a current context, and so does every destructor
 // of a non-empty object. Nothing here binds more than it must; what is bound is restored.
 #pragma once

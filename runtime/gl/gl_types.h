@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenGL's types, as every GL header defines them: repeated, they agree. So no public header brings a loader of the GL
 // along, and a program may include its own before or after.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GL state in which a pass of Relief runs, whatever the caller's was.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One particle to be born.
 #pragma once
 

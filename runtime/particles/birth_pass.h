@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes newborn particles into the state textures: as points that are drawn, or by a compute shader.
 #pragma once
 

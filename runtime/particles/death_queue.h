@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The deaths to come: a calendar queue (Brown 1988) of fixed days, so that no step pays for more than its own
 // deaths and a sixty-fourth of a second's share of the rest. A heap costs log n cache misses a death, and a
 // hierarchy of wheels stalls whenever a coarse slot is poured out.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births of particles: places, velocities and moments of birth, on the CPU. The same settings and seed
 // give the same births, bit for bit, on every machine (runtime/particles/random.h), however time is cut into
 // steps.

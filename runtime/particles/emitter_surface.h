@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles that give birth: uniform by their area, which moves and bends with its vertices.
 //
 //     EmitterSurface surface = *EmitterSurface::create(triangles, weights, positions);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The events of a step as lists on the GPU, and its way back to the CPU some steps later.
 //
 // The step writes what happened to each particle into two textures (shaders/particles/step_event.glsl). The list is made of them

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which texels hold live particles. Hands out the smallest free index, so that live particles stay packed at
 // the front of the state textures and only the rows up to extent() need to be simulated (paper, section 3.2).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh that bends, at the last two moments that were shown: between these fall the births on its surface.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events of particles in a step: hits and deaths.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The particle simulation: state in float textures, moved by fragment shaders (paper, section 3). Nothing is
 // read back and nothing waits for the GPU but in readState().
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Types of particles: how each moves and collides.
 #pragma once
 

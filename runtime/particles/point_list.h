@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points of a surface, from a file: places of birth for an emitter.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random numbers and what is drawn with them: the same seed gives the same bits on every machine. Sampling
 // uses integers, + − × ÷ and square roots alone (IEEE 754 rounds all of them exactly), never the sines and
 // logarithms of a C library, whose last bits differ from one to the next.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births where particles hit or die: splashes, debris, sparks. On the CPU, from the events that a particle system lists;
 // the same events, settings and seed give the same births, bit for bit, on every machine.
 #pragma once

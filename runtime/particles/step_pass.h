@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program of one simulation step, compiled for what a scene uses and no more (shaders/particles/step.glsl).
 #pragma once
 

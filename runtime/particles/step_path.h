@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GPU path of the work on particles: steps, births, the depth sort, their pictures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A perspective camera without roll.
 #pragma once
 

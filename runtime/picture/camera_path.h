@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera that moves: where it is at a time, from keys.
 #pragma once
 

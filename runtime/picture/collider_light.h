@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light among a collider, kept so that a particle looks up a few texels (shaders/picture/particle_light.glsl) instead of
 // following rays: the collider seen from the sun, and the share of the sky that each place sees. Both are made anew
 // only when the collider has moved or changed its shape.

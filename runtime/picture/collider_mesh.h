@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mesh that a collider was baked from, on the GPU, for the collider's picture: it has the detail that depth maps
 // leave out.
 #pragma once

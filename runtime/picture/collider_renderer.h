@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a collider on a floor before a background: from its mesh, or from its own depth maps if there is
 // none. Rays through the combined field cost much and collider and camera mostly stand still, so the picture
 // is kept and drawn again from a texture until camera, size or style change.

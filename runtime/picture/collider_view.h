@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider as renderers see it, and the passes that follow rays through its field (shaders/picture/light.glsl,
 // trace.glsl).
 #pragma once

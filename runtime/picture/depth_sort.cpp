@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/picture/depth_sort.h"
 
 #include <algorithm>

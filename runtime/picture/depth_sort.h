@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which particles are to be drawn so that they blend: farthest from the viewer first. Nothing is read
 // back and nothing waits for the GPU.
 //

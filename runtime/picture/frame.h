@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture off screen: linear colour and depth, drawn larger than it is shown and averaged down.
 #pragma once
 

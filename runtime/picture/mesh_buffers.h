@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh of a picture in buffers of the GPU.
 //
 //     bytes on the GPU = 24 · vertices + 4 · corners, and 4 · vertices with colours

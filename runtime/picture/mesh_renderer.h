@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws meshes in their colours, under a sun and a sky, wet or snowed on: the picture of a world, whose field would take too
 // long to follow rays through. Shadows come from a depth map towards the sun, what rain and snow reach from one towards the
 // zenith, and the shade of corners from the picture's own depths.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The look of particles of a type over their age: key-frames, and the texture that shaders/picture/look.glsl reads
 // them from.
 //

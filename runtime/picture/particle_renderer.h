@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws the particles of a ParticleSystem as sprites that face the viewer, straight from its state textures.
 #pragma once
 

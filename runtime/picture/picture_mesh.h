@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles as a picture needs them. The runtime takes them raw; relief-sim reads them from files
 // (mesh_file.h).
 #pragma once

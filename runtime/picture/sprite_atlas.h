@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures for sprites: cells of equal size in one texture.
 //
 //     ┌───┬───┬───┐      cells are counted row by row from the top left; a texel is linear and premultiplied

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws sprites by compute shaders, tile by tile (shaders/picture/tile.glsl), where ParticleRenderer draws them as the GL's points
 // or triangles otherwise: GPUs that compute more than they draw are several times as fast so.
 //

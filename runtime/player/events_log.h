@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hits of a run as lines of JSON, which grow while it goes on.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colliders of a scene as pictures show them: by the meshes of render.meshes, along their clips and waves, under the
 // scene's weather, with the prints that figures have left up to then.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The outputs of a run in progress: pictures, dumps, hits; each only if requested.
 #pragma once
 

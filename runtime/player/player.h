@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays a scene without a window: the work of relief-sim between its command line and its report.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The check of a scene and of every file that it names, without a GPU.
 #pragma once
 

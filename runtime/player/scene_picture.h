@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pictures of a run: everything that draws a scene, made only where frames are wanted.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Warnings of what is valid in a scene, and probably not meant.
 #pragma once
 

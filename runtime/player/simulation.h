@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The moving parts of a scene, emitters, particles and colliders, on the GPU and stepped together.
 #pragma once
 

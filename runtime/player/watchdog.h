@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Notices that the GPU no longer answers. For programs: the library waits without end.
 #pragma once
 

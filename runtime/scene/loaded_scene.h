@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene with every file that it names, read and complete.
 #pragma once
 

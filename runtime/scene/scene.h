@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene file as plain structs. Every key is declared once, in fields() beside its struct; README.md beside this file lists
 // them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The emitters of a scene, with the points and surfaces that they name, ready to give birth.
 #pragma once
 

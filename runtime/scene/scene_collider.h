@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colliders of a scene: files, poses, and trajectories through the world.
 #pragma once
 

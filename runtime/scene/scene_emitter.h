@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The emitters of a scene, [emitter] or several [[emitter]], and its [[spawn]].
 #pragma once
 

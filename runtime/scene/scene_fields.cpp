@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of a scene file.
 #include "runtime/scene/scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene's collider that wobbles: a mesh instead of a container, how it moves, and what its maps are.
 #pragma once
 

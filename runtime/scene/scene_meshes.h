@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The meshes that stand for a scene's colliders in its pictures, and the weather that they stand in.
 #pragma once
 

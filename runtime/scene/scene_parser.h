@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene file: TOML to the structs of scene.h.
 #pragma once
 

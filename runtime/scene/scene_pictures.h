@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of a scene: the files that they need, the style of its particles, and its camera.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene's collider that plays a clip of its container.
 #pragma once
 

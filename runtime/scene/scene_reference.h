@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that is derived from the fields of a scene and checked in; scripts/generate.sh writes it.
 #pragma once
 

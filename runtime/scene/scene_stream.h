@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world of a scene that has only what is needed of it on the GPU.
 #pragma once
 

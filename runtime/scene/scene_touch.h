@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births of a surface where it touches another: emitter.touching of a scene.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of a scene that have formats of their own.
 #include <algorithm>
 #include <array>

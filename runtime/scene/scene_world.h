@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies of a scene's world as colliders of the scene.
 #pragma once
 

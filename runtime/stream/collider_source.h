@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders of a world from elsewhere: files that a thread reads, or whatever a program has.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which colliders of a world are wanted on the GPU, from the places that matter. Plain arithmetic, no GL.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Room for the texels of colliders that come and go: ranges of one row of texels, the first that fits.
 #pragma once
 

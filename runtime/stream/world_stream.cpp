@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "runtime/stream/world_stream.h"
 
 #include <algorithm>

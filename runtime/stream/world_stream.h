@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world whose colliders come to the GPU when they are needed. A coarse likeness of each always lies there, so that nothing
 // falls through; its own maps come by a thread that loads and by an upload of a few bytes at each update, and go by
 // least recent use.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief-vdb.so: VdbWriter by OpenVDB.
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>

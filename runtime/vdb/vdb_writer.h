@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The writer of OpenVDB files. It lies in a module of its own, relief-vdb.so, which is loaded when it is needed: the library
 // brings others along that start threads in whatever program loads them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Functions for relief.js beside those of runtime/c_api: scenes, and facts about a collider. Objects of this file
 // are pointers; every function but those that end one fails by returning null or a negative number, as relief_error() has it.
 // All that touch the GL need a current context, whose state they leave as it was.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files by fetch(), for relief.js: colliders, and the containers that a world names. No WebAssembly here.
 
 export class ReliefError extends Error {

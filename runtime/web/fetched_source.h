@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders of a world that a page fetches: it takes the requests, and gives the bytes when they have come.
 #pragma once
 

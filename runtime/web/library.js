@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The functions of JavaScript that stand_ins.cpp calls. emscripten puts them into its module, whose GLctx is the
 // current context.
 mergeInto(LibraryManager.library, {

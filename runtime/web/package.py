@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes what of the npm package is text: a package is read far from the sources, so no link may leave it.
 
     package.py SOURCE PACKAGE VERSION

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PassState in a browser: a WebGL2 context as the WebAssembly sees it, which leaves the page's state as it was.
 //
 // A browser answers some questions about the state at once (bindings, switches) and others only after a round trip to its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures in a browser: PNG by stb_image, as no package has libpng for WebAssembly.
 #include "runtime/files/png.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief-particles: particles that collide with baked meshes, in WebGL2.
 //
 // Lengths are in the collider's units, times in seconds, angles in degrees, colours in sRGB. Points and other lists are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief-particles: Relief's runtime in a browser. relief.d.ts documents it.
 //
 // One WebAssembly instance serves all contexts of a page. Whatever draws or steps leaves the context's state as it was.

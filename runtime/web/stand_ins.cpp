@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stand-ins for files of the desktop: what a WebGL2 context can do, the state around a pass, reading back, zstd by the
 // page's decoder, a world's files without a thread; and the calls of OpenGL ES 3.1 that a context has not: hasCompute() is false, and nothing reaches them.
 #include <cstdlib>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Blender add-on: bakes the selected object into a collider of Relief, shows where it is wrong, and plays particles.
 
 Needs the package relief of Python: python3-relief, or the build's python/ folder in PYTHONPATH. README.md beside this file

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A collider in an engine of one's own: OpenGL ES 3.0, jansson for the JSON, and no Relief library.
  *
  *     relief export bunny.relief --gpu bunny/

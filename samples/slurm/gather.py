@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """One report of all tasks: gather.py REPORTS TASKS
 
 Reads REPORTS/1.jsonl … REPORTS/TASKS.jsonl (bake/recipe/README.md, "Events"); writes report.json and failures.txt, and

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Bakes a recipe on a cluster of Slurm: submit.sh RECIPE OUTPUT_FOLDER [TASKS] [-- OPTION…]
 #
 # Submits a job array of TASKS tasks (16), each of which bakes one shard of the recipe, and a job after them that gathers

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Snow of Relief in a scene of three.js: it settles on three's own mesh, and each hides the other where it is nearer.
 import * as THREE from "three";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";

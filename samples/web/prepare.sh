@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Puts the sample together as one static folder: samples/web/prepare.sh [FOLDER]   (default: out/samples/web)
 # Then serve that folder, as by `python3 -m http.server -d out/samples/web`. RELIEF_BIN: where `relief` is.
 set -euo pipefail

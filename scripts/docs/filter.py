@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """filter.py FILE: a guide or a header as Doxygen takes it.
 
 Titles of guides get the path as their id, links between guides become references, and other links (to sources, to folders

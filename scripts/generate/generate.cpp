@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief-generate ROOT [--check]: writes the files and parts of files that are derived from fields(), or names the stale ones.
 // relief-generate --schemas FOLDER: writes the JSON Schemas.
 #include <cstdio>

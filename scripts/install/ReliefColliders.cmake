@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Colliders as part of a build: CMake, Make and Ninja bake again exactly what changed.
 #
 #   relief_add_colliders(<target> RECIPE <recipe.toml> [OUTPUT_DIR <dir>])

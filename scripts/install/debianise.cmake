@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Run by cpack before it packs: gives each component's tree what Debian's policy asks for beyond an installed tree.
 # gzip -n: the same sources give the same bytes.
 find_program(gzip gzip REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # `cpack` makes the .deb files of Debian 12, one of each component: relief, librelief1, librelief-dev and python3-relief.
 # README.md beside this file shows how.
 set(RELIEF_MAINTAINER "Relief maintainers <maintainers@relief.example>" CACHE STRING

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the manual pages of executables, which show their --help, in man(7) macros and without a date: pages.py FOLDER TOOL…"""
 import pathlib
 import re

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Forces on a particle besides collision and gravity. runtime/air/air_block.h lists the defines. In a scene without any,
 // none of it is compiled and the functions return 0.
 //

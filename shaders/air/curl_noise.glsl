@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turbulence without divergence, by runtime/air/curl_noise.h. Casts between int and uint keep the bits; uint arithmetic wraps
 // at 2^32.
 

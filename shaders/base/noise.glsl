@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uniform in [0, 1), different for every seed (PCG's output permutation).
 float noise(inout uint seed) {
     seed = seed * 747796405u + 2891336453u;

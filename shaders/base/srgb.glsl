@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linear light, 0…1, as sRGB values (IEC 61966-2-1).
 vec3 srgbOf(vec3 linear) {
     vec3 curve = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One colour. RELIEF_ALPHA: how opaque.
 layout(location = 0) out vec4 o_texel;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cheapest draw of particles as points of their sprites' size: the baseline of `relief-bench picture`.
 uniform highp sampler2D u_position;
 uniform mat4 u_clip;

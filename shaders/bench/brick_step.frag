@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A step among distances in a sparse grid of bricks, as engines have them, in place of depth maps: the rival of `relief-bench step
 // --bricks`. All but the solid is the step of particles/step.frag. With RELIEF_DENSE there is one brick and no index.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies of a world (world.glsl): their motion, and their union.
 
 // The place at the end of the step of a point of a body at its beginning, and back.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The method's core: the distance of a point to a collider by its depth maps. formats/depth_map.cpp and
 // formats/collider.cpp are the same in C++, formats/README.md in words; all three change together.
 //

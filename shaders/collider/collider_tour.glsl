@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A single collider in a step as a tour: one map of one point at a time, so that each invocation goes on to the next piece of
 // its path as soon as a point is decided. In a loop over pieces all lanes of a warp wait at each for the one that needs most
 // maps. Where reliefSolid() is inside, a tour gives the same.

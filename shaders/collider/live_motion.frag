@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Copies the motion of the surface in the texels of a map from DepthMapRenderer's textures (depth_map_renderer.h) to those of
 // collider.glsl.
 uniform highp sampler2D u_motion_xy;  // x of either end, then y

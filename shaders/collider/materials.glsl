@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The material of a contact: formats/materials.cpp has the same in C++. The octree of a collider is a top grid here, with bricks
 // of 4^3 entries where it goes on, two levels each: fewer fetches that wait for one another. The data lie in one texture, as
 // runtime/collider/material_table.h writes them, texel i at (i mod width, i / width):

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The vote of a map of patches: formats/patch_tree.h says how its texels lie, formats/patch_tree.cpp is the same in C++.
 
 // The two halves of a texel.

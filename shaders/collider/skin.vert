@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses the vertices of an animated mesh, for transform feedback; nothing is rasterised. formats/animation/mesh_pose.h has
 // the truth.
 layout(location = 0) in vec3 a_position;  // before joints and targets move it

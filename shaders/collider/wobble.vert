@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the vertices of a mesh at rest wobble, for transform feedback; nothing is rasterised. The formula is in
 // runtime/collider/wobble_pass.h.
 layout(location = 0) in vec3 a_position;  // object space, at rest

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data of a world, as body_table.h writes it: all in one texture of words, texel i at (i mod width, i / width), since a
 // block of uniforms is too small for more than a few bodies, and OpenGL ES 3.0 has no other buffers.
 //

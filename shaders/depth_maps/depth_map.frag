@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One texel of a front-back map: of the triangle that the rasteriser found, the plane at the texel's centre as the container
 // stores it (formats/README.md), and its motion, each in all channels that either end may keep.
 //!include depth_maps/normal_index.glsl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh into a depth map: GpuMesh's slots (runtime/depth_maps/gpu_mesh.h), DepthMapRenderer's frame. The flat outputs
 // are those of the provoking corner, which is the triangle's own.
 layout(location = 0) in uint a_vertex;

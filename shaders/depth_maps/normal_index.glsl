@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packed normals, as formats/normal_index.cpp has them: 256 * s + t.
 
 vec3 reliefUnpackNormal(uint code) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plane of one triangle a texel, for GpuMesh::planes(): unit normal and packed indices of both sides.
 //!include depth_maps/normal_index.glsl
 uniform highp sampler2D u_positions;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births, where there are compute shaders: an invocation for one particle.
 layout(local_size_x = RELIEF_BIRTH_GROUP) in;
 layout(rgba32f, binding = 0) writeonly uniform highp image2D u_position_out;

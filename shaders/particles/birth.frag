@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births: a fragment for one particle.
 flat in vec3 v_position;
 flat in vec3 v_velocity;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births: one point for one particle, placed on the texel of its index.
 layout(location = 0) in uint a_index;
 layout(location = 1) in vec3 a_position;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sum of RELIEF_EVENTS_COUNTED entries in a row, for each list: of particles with an event that counts or, with
 // RELIEF_EVENT_SUMS, of counts.
 #if defined(RELIEF_EVENT_SUMS)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists of a step's events in ascending order of index, one below the other: fragment k of a list finds the k-th event that
 // counts there, down the levels of counts.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The events of a step, as step_event.glsl writes them.
 uniform highp sampler2D u_event_surface;
 uniform highp sampler2D u_birth;

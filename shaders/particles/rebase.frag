@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves the zero of the clock, so that times stay small enough for a float: both times of the birth texture
 // fall by as much as the clock does.
 uniform highp sampler2D u_birth;

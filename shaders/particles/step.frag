@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A step among the floor and, with RELIEF_COLLIDER, colliders. As a compute shader an invocation is a particle.
 #if defined(RELIEF_MASKS)
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One step of the simulation: age, forces, collision reaction, Euler or Verlet. A fragment is a particle, or with
 // RELIEF_COMPUTE an invocation. step_solid.glsl defines the solids.
 //!include particles/step_state.glsl

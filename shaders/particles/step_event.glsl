@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For step.glsl: the event of a particle in a step, with RELIEF_EVENTS.
 //
 //     velocity texture  x y z   world units a second, in the step

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For step.glsl: the solids of a step. Without RELIEF_COLLIDER there is the floor alone; with RELIEF_BODIES there are
 // bodies that may move in the step, and may be live; else one collider in its own object space.
 #if !defined(RELIEF_BODIES)

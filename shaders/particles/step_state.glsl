@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of a particle, as the textures hold it.
 //
 //     position texture   x y z   world space

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path of a particle in a step: sweepOf() finds the solid that it hits, sweepEnd() its position at the step's end after
 // a reaction that left it with velocity v on a surface of velocity `carried`. Without RELIEF_SWEEP only the end of the step
 // is tested, as in the paper.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The collider by its depth maps, on an infinite floor. For each pixel the ray is followed through the combined field, in
 // two passes (trace.glsl).
 //

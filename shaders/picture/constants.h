@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Constants of pictures that C++ and GLSL share (shaders/embed.cmake).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colour and depth of a stored picture into the bound framebuffer, pixel by pixel.
 //!include base/srgb.glsl
 uniform highp sampler2D u_color;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light that a point among collider and floor receives: a sun of some width, and a sky, both hidden by the collider's own
 // field along rays. For the collider's picture, which is kept; particles look the same light up (particle_light.glsl). Needs
 // collider.glsl.

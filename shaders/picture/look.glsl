@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The look of a particle at its age: key-frames of its type, from the texture of runtime/picture/particle_look.h.
 uniform highp sampler2D u_looks;  // a row for each type
 

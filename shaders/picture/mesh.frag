@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The normal of the mesh at each pixel; collider_view.frag shades it.
 in vec3 v_normal;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The soles of figures, seen along the zenith's map: what is no higher above its surface than u_sole.
 uniform highp sampler2D u_zenith;
 uniform float u_sole;  // window depth

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The meshes' colours in the light of sun and sky, under rain and snow, in fog.
 //!include picture/sky.glsl
 //!include base/srgb.glsl

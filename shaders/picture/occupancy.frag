@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The share of a voxel that the collider takes: 1 where its middle is inside, and from there down to 0 at a distance of one
 // voxel. So a sheet between two middles, however thin, is at least ½.
 //!include collider/collider.glsl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light that a particle receives among the collider, looked up in the textures of runtime/picture/collider_light.h: the
 // collider seen from the sun, and the visible share of the sky at each place. The collider's own maps are not used.
 //!include picture/sky.glsl

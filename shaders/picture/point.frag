@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One sprite: a soft round sprite or, with RELIEF_CELLS, a cell of the atlas; either shaded as the half of a ball that
 // faces the viewer.
 //!include picture/sprite_paint.glsl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Particles as sprites that face the viewer, straight from the state textures: nothing is read back. A particle is one
 // point or, with RELIEF_QUADS, two triangles of six vertices:
 //

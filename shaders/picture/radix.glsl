@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stable sort by digits of RELIEF_RADIX_DIGITS values, the least one first (LSD radix sort): for each digit of the
 // keys radix_count.comp counts each value by blocks, radix_scan.comp makes of that the places where the elements of each
 // value and block begin, and radix_move.comp moves them there. No two invocations store the same word but by sums and

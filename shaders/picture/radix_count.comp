@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the digits of each block. The first digit's pass also makes the elements, in the order of the indices.
 //!include picture/radix.glsl
 #if defined(RELIEF_RADIX_FIRST)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves the elements of each block to where its digits begin, those of one digit in the order in which they are. The
 // last digit's pass moves them to the order texture.
 //!include picture/radix.glsl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A group a digit: its counts become sums over the blocks before, and b_totals has the sum over all.
 //!include picture/radix.glsl
 layout(std430, binding = 2) buffer Counts { uint b_counts[]; };

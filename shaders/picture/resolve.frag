@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mean of factor × factor linear pixels, as sRGB.
 //!include base/srgb.glsl
 uniform highp sampler2D u_color;

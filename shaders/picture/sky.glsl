@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light of all pictures.
 const vec3 SUN_COLOR = vec3(1.02, 0.97, 0.88);
 const vec3 SKY_COLOR = vec3(0.40, 0.46, 0.56);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The share of the sky from above, cosine-weighted, that each voxel sees past the collider: rays through the occupied
 // voxels, a voxel at a time, as long as shade reaches. All voxels send the same rays, so that neighbours agree.
 //!include picture/sky.glsl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sort key of a particle: the bits of its squared distance to the eye, which grow as it does; 0 for the dead.
 //
 // As uints the keys have one order on every machine: no NaN, no flushed denormal, no fused multiply in the way.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refreshes the keys of an order for the present places of particles and viewer; the order itself stays.
 //
 //     order texture, uint    x   index of the particle that is drawn rank-th

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One pass of Batcher's odd-even merge sort. Blocks of u_block ranks, both halves of which are sorted, are
 // merged by passes of strides u_block/2, u_block/4, … 1; of a block of 8 ranks, o pairs with the next o:
 //

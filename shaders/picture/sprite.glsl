@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the sprite of the particle that is drawn i-th: its look at its age, its place in view space, and the light that it
 // receives. With RELIEF_LIT the collider shades the particles (particle_light.glsl); else they lie in the open.
 //!include picture/look.glsl

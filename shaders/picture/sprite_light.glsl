@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light on a sprite: on the half of a ball that faces the viewer, where its normal in view space is n.
 //!include picture/sky.glsl
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colour of a sprite at a pixel.
 //!include picture/sprite_shading.glsl
 //!include picture/sprite_light.glsl

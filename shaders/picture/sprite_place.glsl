@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The place of a sprite in the picture. Needs sprite.glsl.
 uniform mat4 u_projection;
 uniform vec2 u_target;            // pixels

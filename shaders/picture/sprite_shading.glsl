@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shading of a sprite, passed from vertices to fragments. Setting up flat varyings for each small point, and unpacking
 // them in each fragment, is most of its cost. So all is packed into three words, and light that is constant over a sprite is
 // already in its colour:

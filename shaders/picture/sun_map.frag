@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The collider seen from the sun, along parallel rays from a plane beyond it, in two passes (trace.glsl), for
 // particle_light.glsl. Parts thinner than four texels across the rays may be missed.
 //!include picture/trace.glsl

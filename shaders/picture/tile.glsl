@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points painted tile by tile (runtime/picture/tile_painter.h): the picture is cut into tiles, each tile gets a list of the
 // sprites that reach it, in the order in which they are drawn, and a work group paints it from the last sprite to the first.
 //

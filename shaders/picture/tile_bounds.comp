@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds each tile's entries among all. A work group paints those of its tile one by one, so that a whole cloud in a few
 // tiles would take longer than drawing its points: then these are drawn.
 layout(local_size_x = RELIEF_RADIX_DIGITS) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes an entry for each tile of each sprite.
 //!include picture/radix.glsl
 //!include picture/tile.glsl

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Blends the layer of the tiles over the target, as one sprite.
 uniform highp sampler2D u_layer;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A work group paints a tile: its sprites from the last to the first, which is the nearest to the farthest where they are
 // sorted, until nothing behind is visible.
 layout(local_size_x = RELIEF_TILE_SIDE, local_size_y = RELIEF_TILE_SIDE) in;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One work group: the first entry of each group of sprites, and whether there is room for all.
 //!include picture/radix.glsl
 layout(std430, binding = 2) buffer Counts { uint b_counts[]; };  // of u_blocks groups

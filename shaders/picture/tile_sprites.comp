@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the sprites, each once, and counts the tiles of each group of them.
 //!include picture/radix.glsl
 //!include picture/sprite.glsl

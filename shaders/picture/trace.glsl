@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays through the collider's combined field, in steps of about a texel, to the first change of sign. A ray that is longer than
 // u_steps_max of these takes longer ones, so that each reaches its end.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A volume of cubic voxels, drawn as a picture of its layers, which then are copied into a 3-D texture:
 //
 //     ┌─────┬─────┬─────┐

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes made by formula, closed and wound outwards, and helpers to bake and read them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Views and sizes in one call.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random points in a box, the same by every compiler.
 #pragma once
 

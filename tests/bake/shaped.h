@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes shaped as the tool shapes them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solids of unit cubes on integer coordinates: every vertex, edge and face lies on a plane that axis-aligned rays run
 // along, and inside and distance are known exactly.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Meshes that ask for much: of slivers, of walls in layers, and of parts far apart. Each must end within tight limits of memory
 and time, with a result or with a line that names the file and no option that nobody gave. Containers: tests/cli/appetite.sh."""
 

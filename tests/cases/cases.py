@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random cases, as scripts/nightly.sh cases runs them: the frame that the generators beside this file share.
 
 A generator is a program, NAME_cases.py BIN [--seed N] [--cases N]. It draws its cases from Cases.random alone, so that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Containers by hand (formats/README.md), so that a few kilobytes can hold maps of any size."""
 
 import ctypes

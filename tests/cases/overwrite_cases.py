@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random outputs of both tools onto their inputs, through links, and onto each other: no input may change, no output
 may be lost to another, and a refusal names what it refuses."""
 

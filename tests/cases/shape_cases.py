@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Turned boxes of random sizes, plates and rods among them, alone or as shells, against their closed form: the side of each
 point that is not next to the surface, and in solid ones the plane that decides up to 0.45 of the thickness."""
 

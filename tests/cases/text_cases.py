@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random valid files of the text formats, written as people write them: relief-import must read the polygons that were written.
 Every fourth case is a file with one word spoilt, which must be refused with its line.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Meshes that move: animated ones, baked, checked, from recipes and played; and ones that relief-sim deforms. Unit tests show
 # the import, the poses, the scene's keys and what is refused.
 . "$(dirname "$0")/lib.sh"

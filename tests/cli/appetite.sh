@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Small containers take little memory, whatever they claim; a refusal names the option that allows it. The limit of memory is
 # that of the process, by setrlimit. tests/cases/appetite_cases.py draws meshes.
 source "$RELIEF_SOURCE/tests/cli/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every file that relief writes is whole, the old one or the new one: after SIGKILL or an error at any system call of
 # the writing, on a full disk, with many writers at once, and after signals at any time.
 #   RELIEF_ATOMIC_PAGE=FILE  also writes what was counted, for bake/measure/trust.md

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Wrong calls and hostile files: one line that names the option or the file, the exit code that the manual gives, and an older
 # output that stays as it was. Unit tests show which values and files are refused; here every code, verb and kind of file
 # appears once.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What a bake's options leave in the container, as `relief info` tells; and that threads, folder and name change no byte.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* relief.h from C99: a query, particles, a world; tests/runtime/c_api calls every function. c_api POINTS.csv COLLIDER.relief WORLD.json prints x,y,z,f,nx,ny,nz,map of the
  * points. */
 #include <EGL/egl.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief.h, librelief.so and librelief_c.a, as installed: a program in C99 links with either, its answers are
 # those of `relief query`, and the shared library exports what the header declares and nothing else.
 . "$(dirname "$0")/lib.sh"

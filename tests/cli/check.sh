@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief check, with a mesh and without: report, JSON, page, exit codes, and advice that is worth what it promises. Unit tests
 # show the causes of errors and the codes of damage.
 . "$(dirname "$0")/lib.sh"

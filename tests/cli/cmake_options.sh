@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Options of the build: without the baker only the runtime library is built, and what is missing is named with its cure.
 . "$(dirname "$0")/lib.sh"
 

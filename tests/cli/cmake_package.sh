@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The installed tree from outside: the links of its pages work; Python imports its package; the CMake project of scripts/install/README.md builds, runs,
 # and bakes again exactly what changed; the sample in a window builds by pkg-config alone.
 . "$(dirname "$0")/lib.sh"

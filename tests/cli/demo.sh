@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The demo's own collider and scene: no particle ends inside the bunny beyond the bound, and snow lies on it.
 #
 # The bound is the one for the paper's maps, of eight times the bytes: a point that such a map calls outside lies at most

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Ninja, Make and CMake read the depfiles: a second build does nothing, and a change of any file that a mesh refers to
 # bakes it again.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The choice of Embree: what calls it compiles as of Embree 4 (tests/bake/mesh/embree4), and another number is refused.
 # scripts/nightly.sh embree4 builds all of it so, and compares bytes.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Emitters that move, runs that begin before time 0, and frames from one step to another, as files show them. Unit tests show
 # the births themselves.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief-sim --events and [[spawn]]: the hits of a run and the births that they cause, as closed forms and the particles' own
 # counts give them, for each API and path.
 . "$(dirname "$0")/lib.sh"

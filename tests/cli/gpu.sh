@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # GPU devices: chosen, missing, and hanging.
 . "$(dirname "$0")/lib.sh"
 

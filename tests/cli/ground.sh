@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Height maps: one collider or tiles, the same from every file, and checks against the height map. Unit tests show the
 # error's bound, drops on seams, and which settings and files are refused.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, step65 (at sample 65) or rgb; by the name of FILE a PNG or raw samples.
 
 heights.py --below DUMP.ply HIGH MOST: fails if one of more than 3,000 particles lies MOST below such hills at 1 m, whose sample

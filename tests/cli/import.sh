@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A worker reads meshes: its limits, its death, its parent's death; units and axes reach the container. Unit tests show what
 # each format may contain.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The import worker killed and failed at its system calls, and its parent short of descriptors, processes and memory: the
 # collider is the same, or one line says what the system says and what helps; the older file stays, and nothing else.
 #   RELIEF_FAULTS_PAGE=FILE  tries every call, not every ninth of the dynamic loader's, and writes what was counted,

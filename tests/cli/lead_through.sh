@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # samples/in_….md, as a newcomer follows them: files are what the pages say, and their commands run in order, with what is
 # installed. No page is longer than a screen.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a small level as glTF: level.py OUT.gltf|OUT.glb [KEY=VALUE…]
 
 Nodes: a floor, and three boxes by one mesh, turned and scaled, and one that is stretched. x=3 moves the first box, high=2

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by every test of this folder: a scratch folder, and what a test may expect.
 set -euo pipefail
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """links.py FOLDER: every relative link of every .md below FOLDER leads to a file, and its #heading to a heading."""
 import pathlib
 import re

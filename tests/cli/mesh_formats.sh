@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every verb on the bunny and on meshes of other formats: glTF, COLLADA, STL, PLY, OFF, 3DS and more.
 . "$(dirname "$0")/lib.sh"
 

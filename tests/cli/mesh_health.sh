@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The report of `relief bake` on broken meshes, --strict and --repair, and what it loses, by each part's own size. Unit tests
 # show the faults, the repairs and the accuracy of parts.
 . "$(dirname "$0")/lib.sh"

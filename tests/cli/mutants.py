@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Gives `relief bake` broken meshes (mutate.py), and says what came of them.
 
     mutants.py RELIEF COUNT [--jobs N] [--hang SECONDS] [--models FOLDER] [--page FILE]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Broken meshes, sixty by default: baked soundly or refused in one line, and nothing is left behind.
 . "$(dirname "$0")/lib.sh"
 run=(python3 -B "$RELIEF_SOURCE/tests/cli/mutants.py")

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Broken mesh files, the same ones on every machine: mutant N is of the seed mesh N mod (their number).
 
     mutate.py N FOLDER    writes mutant N, and what it refers to, into FOLDER

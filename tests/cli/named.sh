@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # --as NAME=KIND on command lines and in recipes: the container remembers it, a check rebuilds the same solid, and queries answer
 # by it. Unit tests show names in each format and what each kind makes.
 . "$(dirname "$0")/lib.sh"

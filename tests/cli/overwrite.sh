@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # No tool writes over what it reads, nor two outputs into one file: by the same name, a symbolic link, or a hard one. The
 # combinations are drawn by tests/cases/overwrite_cases.py; this script has those that need a shell or several runs.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # samples/own_engine: a loader in C without Relief's library, compiled as its page says. It answers as `relief query`
 # does for every format; what it lets fall comes to lie on the surface. The example of LAYOUT.md is what the tool writes.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Manual pages, made of --help: formatters accept them, and each has every option of its
 # --help. bash completes verbs, options and values.
 . "$(dirname "$0")/lib.sh"

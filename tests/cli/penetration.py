@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How deep particles lie inside a mesh, and how many rest on it, counted to 3,000:
 
     penetration.py MESH.obj PARTICLES.ply    prints a JSON object

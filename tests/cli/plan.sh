@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Planned bakes: the report, writing and reading plan files, --max-error, and which options go together. Unit tests show the
 # planners, the search and the errors of plan files.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads binary PLY files of relief-sim without its code: read(path) -> a list of rows, each a dict by property."""
 import struct
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Which processes run. One that has ended does not, though nobody has waited for it: not every container's first process
 waits for orphans.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Recipes: what is baked and what is not, and one bad asset among good ones. Unit tests show what a recipe may contain and
 # which changes count.
 . "$(dirname "$0")/lib.sh"

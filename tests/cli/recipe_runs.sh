@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Runs of recipes as processes: crashes, shards, signals, readers that go away; keys for other caches; the pages' examples.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Levels and height maps in recipes: the same bytes as by hand, baked again when a file of theirs or a container changed and
 # never else, whatever else fails; and no output in another's folder. Unit tests show the rules of folders, links and options.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # --root DIR: scenes may name files of one folder more than their own, and of no other.
 . "$(dirname "$0")/lib.sh"
 

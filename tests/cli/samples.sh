@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The samples' scenes with a fortieth of their particles: every scene is valid and plays, pictures show something, and particles
 # are outside the bodies that rest, by the formulas that these were made from. Unit tests show those that move.
 . "$(dirname "$0")/lib.sh"

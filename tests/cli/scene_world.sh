@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Worlds in scenes: the same particles as of colliders that are placed by hand, bodies that move, worlds that stream. Unit tests
 # show keys, names and limits.
 . "$(dirname "$0")/lib.sh"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Plays scenes at random within the ranges that runtime/scene/README.md gives, ends included.
 
     scenes.py RELIEF_SIM COLLIDER COUNT

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Scenes at random within all ranges, forty by default: no particle's number is none, or a line says why.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The JSON Schemas of the build are valid and closed, and describe everything; real outputs of each verb satisfy
 # them, and documents with anything added, missing or changed do not.
 . "$(dirname "$0")/lib.sh"

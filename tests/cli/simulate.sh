@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief-sim from outside: what it needs, --check, and its outputs, which a reader reads that shares no code with it.
 . "$(dirname "$0")/lib.sh"
 

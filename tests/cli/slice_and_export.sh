@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Slices and exported maps, read back with OpenEXR's own tool.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Preloaded into an executable: a GPU that never finishes. libepoxy's entry points are pointers, replaced
 // here before the first call.
 #include <epoxy/gl.h>

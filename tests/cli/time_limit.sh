@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief bake --time-limit: ends at the time with one line that says what took it, leaves the older files, nothing half
 # written and no worker; and the line of progress that says the same to people.
 . "$(dirname "$0")/lib.sh"

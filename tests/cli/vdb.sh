@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # OpenVDB: particles of relief-sim as points, and a collider's field as a level set and as a mesh, held against vdb_print and
 # relief query; or, in a build without it, one line that says so.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # relief view: a page that holds everything itself, of colliders, of meshes beside them, of scenes and worlds; and what may be
 # wrong with them. A stub stands for the page: tests/web looks at the real one.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A scene that is valid and probably not meant gets a warning with the cure, and one that is meant gets none.
 . "$(dirname "$0")/lib.sh"
 

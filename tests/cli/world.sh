@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Levels: each different mesh baked once, only what has changed again, the world file last; and checks of worlds. Unit tests show
 # shares of budgets, tiles, and which world files are refused.
 . "$(dirname "$0")/lib.sh"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Levels by names, by texel and by threads, and their pages: what takes longer than tests/cli/world.sh.
 . "$(dirname "$0")/lib.sh"
 

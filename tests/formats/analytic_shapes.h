@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes whose rays have closed-form hits, and depth maps made of them in double precision: the truth that
 // the code under test is held against. Nothing here calls vote(), cubeCoordinates() or cubeDirection().
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Votes against closed-form shapes: signs, scale, normals, and what a map says where it knows nothing.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Containers made by hand, with correct checksums and one lie each: checksums guard against accidents, the
 // reader's own checks against people. Every issue code of formats/README.md has a file here that shows it.
 #include <flatbuffers/flatbuffers.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the writer writes, the reader reads; and no damage, by a bit or by a cut, goes unseen.
 #include "formats/container.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `relief check FILE`: what is said of sound files, and of the maps that are left of damaged ones. container_hostile_test has
 // a file for every issue.
 #include "formats/inspect.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees of materials: lookups in closed form, what readers refuse, and the container's bytes.
 #include "formats/materials.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The search for the nearest surface against shapes whose distance is known in closed form.
 //
 // What a collider of planes stands for differs from the shape by its texels: a plane is the surface's at the texel's

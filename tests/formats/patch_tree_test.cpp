@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees of patches: records against the points that they were made for, and every way in which a tree can be broken.
 #include "formats/patch_tree.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Containers of every version that has been written, as bytes: each must be read as on the day that it was written.
 #include <gtest/gtest.h>
 

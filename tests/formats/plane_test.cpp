@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Votes of planes where analytic_test does not have them, and the helpers that writers of planes use.
 #include "formats/plane.h"
 

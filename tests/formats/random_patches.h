@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps of patches with every kind of record, for tests that compare readers.
 #pragma once
 

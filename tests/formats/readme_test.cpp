@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The worked example of formats/README.md against the code: the page is normative, so it must not drift.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows without their empty ends: nothing is lost, nothing is kept that need not be.
 #include "formats/row_spans.h"
 

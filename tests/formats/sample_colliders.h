@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small colliders for the tests of the container, and the worked example of formats/README.md.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // AC3D: whatever the bytes, parts whose corners exist and nodes that form trees, or one line.
 #include <span>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small meshes of bad habits: solids on integers that touch, overlap, lie within each other, in the same place or inside
 // out; sheets, slivers and loose triangles. The sides of 2,000 points are compared with exact arithmetic, and none that
 // is deep in the solid may be outside of what is baked.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Containers: whatever the bytes, a collider that can be written again or an error.
 #include <cmath>
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF and GLB: whatever the bytes, triangles of positions that exist, or an error of one line.
 #include <algorithm>
 #include <span>

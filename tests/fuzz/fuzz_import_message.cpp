@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the import worker answers: whatever its bytes, a mesh that the baker may walk through or one line that
 // names the mesh file.
 #include <stdlib.h>

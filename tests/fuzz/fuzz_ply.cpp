@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OBJ, OFF, PLY and STL, and what a file is: whatever the bytes, polygons whose corners exist, or one line.
 #include <numeric>
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists of points, of an emitter (PLY or text) and of `relief query`.
 #include <cmath>
 #include <string_view>

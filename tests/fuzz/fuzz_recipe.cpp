@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recipes: assets whose options an ordinary bake could be given, or one line that names file, line and
 // column.
 #include "bake/recipe/recipe.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene files: a scene or one line that names file, line and column.
 #include <string_view>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // World files: a world that is written back the same, or one line.
 #include <cmath>
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mutants of a checksummed format die at the checksum. So most of them get all of theirs mended, and what
 // lies behind is met.
 #include <cstring>

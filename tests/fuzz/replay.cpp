@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Feeds a fuzz target every file of the folders named on the command line: relief_replay_X FOLDER….
 #include <algorithm>
 #include <cstdio>

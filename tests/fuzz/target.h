@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every fuzz target is: libFuzzer's entry point. The same file is linked with libFuzzer (clang,
 // RELIEF_BUILD_FUZZERS) to look for trouble, and with replay.cpp to see that what was found stays mended.
 #pragma once

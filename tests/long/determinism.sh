@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Bakes meshes in surroundings that must not matter, and compares the bytes: tests/long/determinism.sh [--quick | --page].
 # Prints a table of SHA-256 and ends with 0 if no mesh has two; 7 if one has.
 #

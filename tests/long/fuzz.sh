@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Looks for bugs with libFuzzer, under the sanitizers: tests/long/fuzz.sh [SECONDS [TARGET…]], by default 60 seconds a
 # target and all of tests/fuzz. What it finds is in out/fuzz/: fix the bug, and put the input into tests/fuzz/corpus/.
 set -euo pipefail

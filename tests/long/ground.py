@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Hills for scripts/nightly.sh ground: heights that are a sum of one over x and one over z, so that any is known at once.
 
 ground.py write OUT.r16 SIDE [--high 300]             samples of 16 bits

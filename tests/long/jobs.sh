@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The jobs of scripts/nightly.sh: tests/long/jobs.sh JOB runs one and shows all of its output; without JOB it prints name, group
 # and minutes of each. A job ends with an error if a command fails, and prints its figures as "JOB: …". tests/README.md
 # says what each proves.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes a level to judge colliders by: level.py OUT.glb [--props 200] [--size 1000] [--cells 500] [--seed 1]
 
 A terrain of hills, a node, and as many pieces of Debian's sweethome3d-furniture on it, 1.6 m long, a node each: fifty

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Gives relief broken meshes (tests/cli/mutants.sh) and every file of assimp-testmodels, and prints what became of them:
 # tests/long/mutants.sh [COUNT] [--page], 2000 by default; with --page also into bake/measure/trust.md.
 set -euo pipefail

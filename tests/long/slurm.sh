@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # samples/slurm on a cluster of this machine only: slurm.sh FOLDER, with RELIEF naming the executable. Bakes models and a level
 # with a task that is requeued, a task that is killed, and broken meshes; a second run bakes the rest, a third nothing, and
 # a fourth the level, of which a container is gone. Needs root.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Tries installed packages as their users would: try_packages.sh MESH PART…, on a system that has nothing else of Relief.
 # Part `tools` also reads level.glb from the folder of MESH. `scripts/nightly.sh packages` runs it in a bare Debian. Parts:
 #

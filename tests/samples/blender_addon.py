@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """blender -b --factory-startup --python-exit-code 1 -P blender_addon.py -- ADDON RELIEF RELIEF_SIM FOLDER [PICTURE.png]
 
 Bakes, checks and plays in Blender, and holds it against the tools and against closed forms. PYTHONPATH names the package.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A body that plays a clip pushes particles as in relief-sim; set() changes its clip, and pose() has a pose of the page's own.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

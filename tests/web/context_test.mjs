@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GPU is reset in the middle of stepping (WEBGL_lose_context): said by a ReliefError, and once the browser gives the
 // context back, restart() and new GpuColliders go on.
 import assert from "node:assert/strict";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials and [[spawn]] in the browser: as many births on one material as relief-sim has, where it has them, and as many
 // deaths on another; and the hits that a page gets to know, from a WebGL2 that maps no buffers, are those that relief-sim lists.
 import assert from "node:assert/strict";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a page does wrong is answered by a ReliefError of one sentence that names the thing, and leaves the rest usable.
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the page of `relief view` behaves without being told: it snows, keeps up on a slow machine, and shows
 // no control that does nothing.
 import assert from "node:assert/strict";

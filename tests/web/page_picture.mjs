@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the README's picture of the page: node tests/web/page_picture.mjs FILE.jpg, after scripts/build.sh release and web.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene by its meshes in a browser: the picture that relief-sim makes, snow and footprints included; and the page of
 // `relief view` of such a scene.
 import assert from "node:assert/strict";

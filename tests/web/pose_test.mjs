@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // set() moves a collider while it plays: as relief-sim moves one by its keys.
 import assert from "node:assert/strict";
 import test from "node:test";

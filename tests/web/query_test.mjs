@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider of every format, asked at 10,000 points in the browser: by the same C++ as WebAssembly, which must give what
 // the native tool gives, digit by digit; and by the shader in WebGL2.
 //

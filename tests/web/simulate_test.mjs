@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // 300 steps of snow on the bunny, in the browser and by relief-sim.
 //
 // Both give birth to the same particles with the same draws. Then two drivers' shaders differ in the last bits of some

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Relief leaves a page's WebGL2 context as it found it: a page sets every piece of its state to something odd, then loads,
 // steps, draws, asks, starts over and disposes, and finds all of it unchanged after each.
 import assert from "node:assert/strict";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world of tiles that is streamed: which files come when, that drops lie on the ground that has come, and what of it that is
 // missing or damaged does. The hills of tests/cli/heights.py have a closed form.
 import assert from "node:assert/strict";

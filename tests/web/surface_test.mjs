@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The picture of a collider holds all of it: against rays that ask the CPU's maps step by step. Sheets and struts thinner than
 // any grid would find, in the formats that there are.
 import assert from "node:assert/strict";

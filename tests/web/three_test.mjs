@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // samples/web: particles in a picture of three.js hide its meshes, and are hidden by them.
 //
 // A wall of particles that stay where they are is seen straight on. A ball before it and one that it cuts through hide it;

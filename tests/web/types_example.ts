@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything of relief-particles once, for the compiler: types_test.mjs.
 import Relief, { Collider, GpuCollider, ParticleSystem, ReliefError, World, init, load, streamWorld } from "relief-particles";
 import type { Answers, Birth, Scene } from "relief-particles";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // relief.d.ts holds for an example that uses everything, by `tsc --strict`; and it names what relief.js exports.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";

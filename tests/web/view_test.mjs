@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page of `relief view`: opened from disk with a bunny in it, each of its features once, and everything that may be
 // given to it by mistake. Nothing may be said on the console, and no GL error may be left.
 import assert from "node:assert/strict";

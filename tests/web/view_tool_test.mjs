@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pages as `relief view` makes them: a checked sheet, a scene of several bodies, and a world.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The package as a web developer has it: packed by npm, installed into a fresh folder beside Vite, bundled, and played.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";

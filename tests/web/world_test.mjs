@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world of the level that tests/cli/level.py makes, in the browser: as relief-sim plays it, and while a body of it moves; asked on
 // the CPU; and what is no world.
 import assert from "node:assert/strict";

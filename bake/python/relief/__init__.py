@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Relief: meshes baked into depth maps that points and particles collide with.
 
     import relief

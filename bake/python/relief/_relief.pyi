@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the compiled module offers to relief/__init__.py, which documents it for users."""
 import os
 from typing import Any, Optional, Union

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Assembles the page of `relief view` into one HTML file: a page that is opened from disk may import no other file.
 
     assemble.py VIEW_FOLDER SCRIPT RELIEF_WASM OUTPUT

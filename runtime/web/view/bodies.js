@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bodies of a scene by their names: which one is under the pointer, what is known of it, and what is wrong near it.
 import { bindTexture, drawScreen, kScreenVertex, program } from "./gl.js";
 import { inverse, length, mix, shortNumber, sub, transform } from "./math.js";

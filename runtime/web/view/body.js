@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider in space: its textures, the box that it is drawn in, and the programs that evaluate it.
 import { GpuCollider } from "relief-particles";
 import { add, boxOf, identity, sub } from "./math.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shaders that draw a body: what its maps see, its mesh, a slice through it, the floor.
 import { kColorsGlsl } from "./colors.js";
 import { kRayGlsl } from "./ray_shader.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera that goes round a point: by mouse, by touch with two fingers, by arrow keys.
 import { add, boxOf, clamp, cross, length, lookAt, multiply, normalize, perspective, scale, sub } from "./math.js";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Free space that a ray through a collider may skip: a grid of cells, 255 where a map sees all of the cell outside, else 0.
 import { add, dot, scale } from "./math.js";
 import { treeOf, visitLeaves } from "./patches.js";

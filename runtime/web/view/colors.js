@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The false colours of maps and of slices.
 
 /** Of map i, for the page: mapColor() below. */

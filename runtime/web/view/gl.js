@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Objects of WebGL2 for every pass: programs, targets, buffers.
 
 /** Whether no GPU draws. */

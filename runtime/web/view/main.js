@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page of `relief view`: what it shows, and the loop that draws it.
 import { init, load } from "relief-particles";
 import { Bodies } from "./bodies.js";

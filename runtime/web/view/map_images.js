@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The maps as pictures, and where each looks in space.
 import { levelCss } from "./colors.js";
 import { treeOf, visitLeaves } from "./patches.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data that `relief view` put into the page.
 
 function fromBase64(text, what) {

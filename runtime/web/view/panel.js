@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The panel and the title: what the buttons do.
 import { kLegend, mapCss } from "./colors.js";
 import { drawMap, mapTitle } from "./map_images.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The particles on the page: one system of Relief, with rain, snow or the page's scene in it.
 import { ParticleSystem } from "relief-particles";
 

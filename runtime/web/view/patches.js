@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tree of a map of patches, as formats/patch_tree.h has it.
 
 const kKinds = ["outside", "inside", "split", "patch"];

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the page moving where a machine is slow: while frames take long, fewer pixels are drawn.
 const kPixels = [1, 0.71, 0.5]; // of each side: half as many pixels each time
 const kFrames = 10; // of which the middle one counts

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ray through a collider's maps, without steps that a thin sheet could slip through: within a texel the side that a map sees
 // changes only where the ray meets the texel's planes or its border, and those are found in closed form; so it is within a square
 // between four heights of a patch. While one map sees outside, the ray is outside; so it goes on to where that map's stretch ends,

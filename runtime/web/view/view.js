@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws all there is. The bodies are drawn when something about them changes, and kept: particles fall before the kept
 // picture, by its depths.
 import { Geometry, Target, bindTexture, drawScreen, drawnBySoftware, kScreenVertex, program } from "./gl.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of the panel that are about the bodies of a world: the one that was picked, and the errors of a check.
 import { bytesText, kWrongLegend } from "./bodies.js";
 import { shortNumber } from "./math.js";

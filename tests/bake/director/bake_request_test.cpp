@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A request and its fields: read from words, written as a command line, and read from what containers record.
 #include "bake/director/bake_request.h"
 

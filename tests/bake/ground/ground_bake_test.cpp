@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Height maps baked into tiles: seams against the exact surface, and drops that fall on them.
 #include "bake/ground/ground_bake.h"
 

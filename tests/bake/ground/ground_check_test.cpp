@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ground measured against its height map: what is off by a known length, and what is lost, must be found.
 #include "bake/ground/ground_check.h"
 

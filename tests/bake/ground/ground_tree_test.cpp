@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees of patches from heights against closed forms and the exact bilinear surface.
 #include "bake/ground/ground_tree.h"
 

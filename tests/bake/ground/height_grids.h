@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Height maps in closed form, and the exact surface of any.
 #pragma once
 

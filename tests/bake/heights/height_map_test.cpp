@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings of height maps, and their files, sound and hostile.
 #include "bake/heights/height_map.h"
 

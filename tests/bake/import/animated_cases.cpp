@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/bake/import/animated_cases.h"
 
 #include <array>

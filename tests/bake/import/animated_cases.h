@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small glTF files that move, made of numbers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Animated meshes of glTF files: their poses against closed forms and another reader, and what is refused.
 #include "bake/import/animated_import.h"
 

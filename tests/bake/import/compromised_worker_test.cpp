@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A worker that a hostile file has taken over: a process with the worker's own descriptors that enters the worker's
 // sandbox and then tries, by bare system calls, whatever could reach beyond it.
 #include <fcntl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/bake/import/gltf_cases.h"
 
 #include <array>

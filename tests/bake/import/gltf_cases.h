@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small glTF files of every kind that the specification allows, by a seed, and what may go wrong with them.
 #pragma once
 

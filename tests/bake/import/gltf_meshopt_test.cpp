@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // EXT_meshopt_compression: what the library packs comes back, filters against their formulas, and hostile sizes.
 #include "bake/import/gltf_meshopt.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another reader of glTF, as short as the specification allows, for small files with one buffer: what bake/import is compared with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // AC3D: objects as nodes, placed by all that is above them; surfaces of every kind; text as TORCS and people write it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contents decide what a file is: each format under every name, and what is no mesh at all.
 #include "bake/import/import_format.h"
 

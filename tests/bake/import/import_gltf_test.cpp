@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF, right and wrong: each file is read as the specification says, or refused in one line.
 #include <gtest/gtest.h>
 

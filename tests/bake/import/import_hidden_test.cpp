@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Geometry that a file has and does not show, and instances of what it does not have.
 #include <gtest/gtest.h>
 

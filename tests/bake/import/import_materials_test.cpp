@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials of mesh files: names by surface, responses of KHR_physics_rigid_bodies, and what of them makes meshes of a level differ.
 #include <gtest/gtest.h>
 

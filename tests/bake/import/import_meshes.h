@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tetrahedron with corners at the origin and at 1, 2 and 3 along x, y and z, as text in several mesh
 // formats: no turn, mirroring or scale leaves its bounds as they are. And what tests of imports share.
 #pragma once

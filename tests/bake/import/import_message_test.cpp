@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a worker that a hostile mesh has taken over may answer.
 #include "bake/import/import_message.h"
 

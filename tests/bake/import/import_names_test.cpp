@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which triangles have the names that somebody asks for, in files as exporters write them and as nobody should.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything in a mesh file but triangles is counted, named or refused; nothing is left out without a warning.
 #include "bake/import/import_scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PLY files whose surface is known in closed form: faces, strips, and what is neither.
 #include "formats/polygons/ply_mesh.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One tetrahedron in every format, with units and axes: it must lie at the same coordinates.
 #include "bake/import/import_units.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hostile meshes through the worker: right, or refused with one clear line; and nothing outside the folder is
 // opened. What needs real limits of memory is in tests/cli/import.sh: the address sanitizer knows none.
 #include <gtest/gtest.h>

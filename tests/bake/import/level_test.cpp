@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Levels: each different mesh once, placed by poses where these keep its shape.
 #include "bake/import/level_folder.h"
 

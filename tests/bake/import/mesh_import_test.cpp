@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files of several formats, right ones and wrong ones, all written here.
 #include "bake/import/mesh_import.h"
 

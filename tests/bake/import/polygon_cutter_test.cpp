@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Polygons are cut without slits and overlaps, wherever they lie.
 #include "bake/import/polygon_cutter.h"
 

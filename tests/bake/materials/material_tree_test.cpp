@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which surface is of which material: at contacts with baked maps of every format, against meshes whose borders are known in
 // closed form. A tree whose cells are too large, not dilated or turned the wrong way is wrong at more than a hundredth of them.
 #include "bake/materials/material_tree.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The yardstick against closed forms: truth, the shares that it finds for fields whose mistakes are known,
 // the distance volume that colliders are compared with, and the report.
 #include "bake/measure/accuracy.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sparse rivals against closed forms, and their bytes against counts by hand.
 #include "bake/bench/brick_volume.h"
 

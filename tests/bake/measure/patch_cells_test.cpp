@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A tree made by hand, whose leaves and their sizes are known: a patch that is not counted, a child that is taken for its
 // sibling, and heights of a leaf of another side.
 #include "bake/measure/patch_cells.h"

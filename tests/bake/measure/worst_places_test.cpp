@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The worst places against closed forms: where maps are tampered with, what no map sees, what is finer than a texel, what
 // lies behind another part, sheets and open meshes.
 #include "bake/measure/worst_places.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles by their share of the area, against a sum over all of them.
 #include "bake/mesh/area_table.h"
 

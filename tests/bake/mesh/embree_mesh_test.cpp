@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // As many meshes at once as a level may have: a device for each would end at the thousandth.
 #include <gtest/gtest.h>
 

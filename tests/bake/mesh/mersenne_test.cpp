@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same numbers as the standard library's engine.
 #include "bake/mesh/mersenne.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The axes of the oriented box, against shapes whose least box is known and against random frames, and on points without a
 // volume; then what the planner makes of them.
 #include "bake/mesh/oriented_box.h"

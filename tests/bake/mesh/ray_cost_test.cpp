@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray through a mesh costs, against counts by hand.
 #include "bake/mesh/ray_cost.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts by labels, and those that lie astray.
 #include "bake/mesh/surface_parts.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The farthest vertex along a direction, against a look at each.
 #include "bake/mesh/vertex_blocks.h"
 

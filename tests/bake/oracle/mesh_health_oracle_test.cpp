@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What inspectMesh counts on real meshes against CGAL's halfedges.
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Baked colliders against CGAL, which decides inside and outside by exact predicates.
 //
 // Bound. Let P be voted outside by an orthographic map, and Q the point of its texel's centre ray of P's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inside a thick plate the face that is nearer decides, and its normal is exact, however the plate is turned.
 #include "bake/patches/depth_planes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees of patches against closed forms, the mesh's own rays, and their bytes.
 #include "bake/patches/patch_planner.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees cut into tiles: their union against the whole tree and against closed forms, at seams as elsewhere.
 #include "bake/patches/patch_tiles.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exported maps, read back by OpenEXR's own reader.
 #include "bake/picture/exr.h"
 

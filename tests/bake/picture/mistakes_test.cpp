@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of mistakes: the plane that shows a surface, and the colours that show a verdict.
 #include "bake/picture/mistakes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Baked maps against closed forms: a box, a torus and a plane, in every format, direction and compare. What would break
 // these: a wrong sign, scale, axis, face, border, rounding, or a normal that points inwards.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The least budget for a promise: kept, not wasteful, within its bounds, and honest where it cannot be kept.
 #include "bake/pipeline/budget_search.h"
 

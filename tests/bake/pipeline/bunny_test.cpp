@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole pipeline on a real mesh: determinism, provenance, round trip, and known signs.
 #include <algorithm>
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Front-back maps of planes that DepthMapRenderer draws against baked ones, on real meshes: two programs that share the view
 // and the meaning of a texel, and no arithmetic.
 #include <gtest/gtest.h>

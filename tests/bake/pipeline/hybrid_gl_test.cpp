@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders baked from meshes, of patches beside maps and cubes: the shader and the CPU give the same field.
 #include <random>
 

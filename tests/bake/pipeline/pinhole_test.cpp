@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays that are aimed exactly at vertices and edges of closed meshes: none may pass through. Voxels.* has solids whose vertices
 // lie over texel centres.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Supporting planes and planned views: promises of plane_fit.h, fitted_map.h and view_planner.h, first on
 // shapes with a closed form, then by the yardstick.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What rows will take is known before a ray is traced: never less than what the baked maps have, and hardly more.
 #include "bake/plan/silhouette.h"
 

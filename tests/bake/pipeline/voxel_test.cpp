@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nothing deep in a solid is ever outside: against solids of unit cubes, whose insides and distances are exact, and
 // whose vertices, edges and faces lie under texel centres and borders in every way. Some cubes have their centre on the
 // surface: their rays may run through the solid.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/plan/map_spec.h"
 
 #include <gtest/gtest.h>

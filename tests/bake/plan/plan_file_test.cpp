@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plan files: what is written reads back as the same specs, to the last bit, and whatever is wrong in a file
 // is told with its place.
 #include "bake/plan/plan_file.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frames of views: right, up and direction by the fixed rule, tight boxes, and rays that the map's own
 // transform agrees with.
 #include "bake/plan/view.h"

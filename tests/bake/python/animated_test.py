@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Animated colliders in Python: baked with the options of the tool, and played by a scene."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the package makes of arguments that are wrong, odd or hostile: never a silent answer, never an error of the binding."""
 import copy
 import gc

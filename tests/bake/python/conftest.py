@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keeps a preloaded sanitizer runtime from the programs that the package starts: these have their own."""
 import os
 

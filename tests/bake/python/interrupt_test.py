@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ctrl-C, a real SIGINT to a program of its own, is obeyed within about a second, whatever the package is at."""
 import os
 import pathlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A cube of side 2 as glTF, whose node moves as clips say: lift.py FILE NAME=X,Y,Z…, the place within 1 s."""
 import base64
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """relief.bake() and relief.check() are `relief bake` and `relief check`: the same options, bytes and verdicts."""
 import inspect
 import json

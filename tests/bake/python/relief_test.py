@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The package relief against the tools and against closed forms."""
 import json
 import os

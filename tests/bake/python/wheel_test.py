@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`pip install .` in a fresh virtual environment, without a network: what it installs bakes, and lacks nothing."""
 import base64
 import hashlib

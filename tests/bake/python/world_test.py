@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Worlds in Python: the union of placed colliders, by numpy from the colliders themselves."""
 import json
 import os

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cache of a recipe: what is up to date is recognised, and every single change is; a file of somebody
 // else's making never passes for one of ours. And depfiles, in both programs' syntax.
 #include "bake/recipe/bake_cache.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Patterns of file names against what they should and should not match, and no way to make them slow.
 #include "bake/recipe/glob.h"
 

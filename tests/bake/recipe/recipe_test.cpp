@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recipes: what is read, merged and found, and that whatever is wrong is told with its place and nothing
 // outside of the folders is reached.
 #include "bake/recipe/recipe.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Caps over the holes of nearly closed meshes: promises of hole_caps.h and mesh_edges.h.
 #include "bake/repair/hole_caps.h"
 

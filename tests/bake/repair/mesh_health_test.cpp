@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is counted, refused, repaired and turned: promises of mesh_health.h, mesh_repair.h and winding.h.
 #include "bake/repair/mesh_health.h"
 

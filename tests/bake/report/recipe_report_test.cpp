@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bake/report/recipe_report.h"
 
 #include <gtest/gtest.h>

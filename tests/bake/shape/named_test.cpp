@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What has a name in the mesh file is taken for what its name says; and what options and containers say of that.
 #include <gtest/gtest.h>
 

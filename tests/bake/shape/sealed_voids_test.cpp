@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Space that sheets seal off together: promises of sealed_voids.h, on a shape whose inside has a formula.
 #include "bake/shape/sealed_voids.h"
 

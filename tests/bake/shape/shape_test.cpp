@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What parts of a mesh are taken for, and the solids that stand for them: promises of shape.h and sheet.h.
 #include "bake/shape/shape.h"
 

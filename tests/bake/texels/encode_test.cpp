@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoded texels against encodeTexel of formats/texel.h, which is proven there.
 #include "bake/texels/encode.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps of gaps: shapes whose gaps have a closed form, and the promises of gap_map.h.
 #include "bake/texels/gap_map.h"
 

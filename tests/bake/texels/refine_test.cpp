@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texels that know the other maps, and the bias that users ask for: measured by points that the refinement
 // never saw.
 #include "bake/texels/refine.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scan conversion against whole numbers, which know exactly which triangles cover a sample, and against Embree's rays.
 #include "bake/texels/scan_convert.h"
 

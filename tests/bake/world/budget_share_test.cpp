@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes of a level, shared.
 #include "bake/world/budget_share.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Levels written as OBJ into a folder of a test's own, and baked into worlds beside them.
 #pragma once
 

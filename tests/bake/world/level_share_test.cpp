@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the bytes of a level are shared, in whole bakes of it.
 #include "bake/world/budget_share.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file of the curves that a level's bytes are shared by.
 #include "bake/world/mistake_curves.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds measured against their levels, of which a thin part is lost.
 #include "bake/world/world_check.h"
 

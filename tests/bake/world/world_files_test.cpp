@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values written into a world.json by hand are there after the next bake.
 #include "bake/world/world_files.h"
 

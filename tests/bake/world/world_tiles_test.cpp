@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A level whose terrain is cut into tiles: against its closed form and its mesh, and what is baked again.
 #include "bake/world/world_tiles.h"
 #include "bake/world/coarse_collider.h"

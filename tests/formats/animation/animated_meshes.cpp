@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/formats/animation/animated_meshes.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Animated meshes with poses in closed form.
 #pragma once
 

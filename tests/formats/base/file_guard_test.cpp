@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No output of a run is one of its inputs or another output, whatever names and links lead there.
 #include "formats/base/file_guard.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The heap's first part consists of large pages where the system has them, and freed memory stays.
 #include "formats/base/heap.h"
 

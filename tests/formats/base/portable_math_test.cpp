@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Against libm in long double; and the very bits, which no compiler or processor may change.
 #include "formats/base/portable_math.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs that are started: what they get of this process, and how their end is told.
 #include "formats/base/process.h"
 #include "formats/base/descriptor.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Words and lines of text files, however they are written.
 #include "formats/base/text_scanner.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The file between the two benchmarks: it comes back as it was, and nothing else is taken for one.
 #include "formats/bricks/brick_atlas.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paths of a scene: inside its folder, whatever links and dots they are made of.
 #include "formats/config/confined_path.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A table read into a struct: every form of a value, and every mistake with its place and its cure.
 #include "formats/config/toml_reader.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is derived from fields(): JSON and its schema, tables, dictionaries.
 #include "formats/fields/json_value.h"
 

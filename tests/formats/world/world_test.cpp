@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // World files from outside: what is read is a world, and what is none is refused with its place.
 #include "formats/world/world.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shaders/air/air.glsl in OpenGL 3.3 and OpenGL ES 3.0: against closed forms, and what curl noise promises.
 //
 // Tolerance of sums and pinned numbers: a GL may fuse operations, and takes a few ulp for division and square root. What

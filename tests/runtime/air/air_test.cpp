@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Air and fields on the CPU: the noise's clock, Stokes drag, and every wrong setting.
 #include "runtime/air/air.h"
 

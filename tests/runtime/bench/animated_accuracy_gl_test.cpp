@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GPU's maps of a mesh that plays its clips, against the solid of the mesh that the CPU has posed. RELIEF_ANIMATED names a
 // container of one's own: every frame of every clip, at 30 a second.
 #include <gtest/gtest.h>

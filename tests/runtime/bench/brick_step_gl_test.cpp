@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rival of relief-bench on the GPU against the volume on the CPU: would it be wrong, a comparison with it would be worth
 // nothing.
 #include "runtime/bench/brick_step.h"

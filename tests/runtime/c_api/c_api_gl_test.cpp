@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whatever is passed to a function of relief.h is answered by an error that names it, and leaves the rest as it was: every
 // argument NULL, freed, of another kind, out of range; every field of every structure no number; every size but the right one.
 #include <epoxy/egl.h>

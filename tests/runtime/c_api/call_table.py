@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """relief.h as tables for C++: call_table.py RELIEF_H OUT_INC
 
 Every function with its arguments, and every structure with its fields, so that no test can leave out one that is new. What

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births on the surfaces of a character and of a collider, through C.
 #include <gtest/gtest.h>
 

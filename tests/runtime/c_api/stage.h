@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Good arguments for every function of relief.h, and one of them exchanged for another. call_table.py makes the tables of
 // relief.h itself, so that what is new there is tested without being named here.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders made from closed-form shapes, so that tests of the runtime need no mesh and no baker, and have the truth at every
 // point. tests/formats/analytic_shapes.h makes their texels.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders that clips move: vertices and fields against the CPU's poses, and the motion that particles are met with.
 #include "runtime/collider/animated_collider.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A container of an animated mesh, for the tests of what plays it.
 #pragma once
 

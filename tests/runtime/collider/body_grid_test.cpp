@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The broad phase against a look at every box.
 #include "runtime/collider/body_grid.h"
 

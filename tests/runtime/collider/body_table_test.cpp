@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The words of a world's bodies, and what of them changes when bodies move.
 #include "runtime/collider/body_table.h"
 

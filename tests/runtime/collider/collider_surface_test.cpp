@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface of a collider from its field: near closed forms, closed, outwards.
 #include "runtime/collider/collider_surface.h"
 

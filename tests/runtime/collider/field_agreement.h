@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GPU's answers at many points against the CPU's.
 //
 // Tolerance. Both sides evaluate the same formulas in floats, but not in the same order (the shader's rows

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evaluates a collider at many points on the GPU, with the very shader code that the simulation runs: the proof that
 // shaders/collider/collider.glsl is formats/collider.cpp.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shaders/collider/collider.glsl against formats/collider.cpp, point by point. The maps are random bytes in random
 // frames: the two must agree on whatever lies in a texture, not only on what a baker writes.
 

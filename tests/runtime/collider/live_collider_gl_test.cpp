@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colliders that deform: their maps against the CPU's field of the same texels and against closed forms, the
 // motion that a particle is met with, and a mesh that never stops.
 #include "runtime/collider/live_collider.h"

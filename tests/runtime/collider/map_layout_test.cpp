@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How maps are laid out to be drawn to.
 #include "runtime/collider/map_layout.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance and the normal that a map of patches has at a point, each with a bound of what rounding may add to it.
 //
 // The formulas of formats/patch_tree.cpp and shaders/collider/patches.glsl are evaluated once more, in doubles, and every

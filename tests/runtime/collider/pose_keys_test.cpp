@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ways through the world: straight lines, even turns, and the velocities that belong to them, by differences.
 #include "runtime/collider/pose_keys.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world for tests of what places it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A wobble by transform feedback against its formula; the caller's state.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world of a file as bodies for the GPU.
 #include "runtime/collider/world_bodies.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What options take, and what they say of what they do not take.
 #include "runtime/command_line/option_values.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth maps rendered from meshes whose every texel is known in closed form, against the CPU's encoders.
 #include "runtime/depth_maps/depth_map_renderer.h"
 

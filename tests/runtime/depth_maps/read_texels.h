@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The last map of a renderer, read back.
 #pragma once
 

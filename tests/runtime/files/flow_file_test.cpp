@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Flows from files, and what hostile files are refused with.
 #include "runtime/files/flow_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files by hand, good and hostile; and the normals made for them.
 #include "runtime/files/mesh_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reader of PNG that the browser has, against libpng.
 #include <gtest/gtest.h>
 #include <png.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GL state of a caller that shares its context with Relief.
 #pragma once
 

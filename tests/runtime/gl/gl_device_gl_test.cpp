@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Platforms and devices that a context comes from, present and missing; and what goes without a context.
 #include "runtime/gl/gl_context.h"
 

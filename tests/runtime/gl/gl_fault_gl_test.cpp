@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults put into the GL: libepoxy's entry points are pointers, replaced for a while by functions that fail.
 #include "runtime/gl/gl_fault.h"
 

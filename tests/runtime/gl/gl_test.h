@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A current OpenGL context for each test, once for OpenGL 3.3 core and once for OpenGL ES 3.0. A test fails,
 // and is not skipped, if there is no context: Mesa's llvmpipe gives one on every machine.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Programs of the tests that evaluate a shader of Relief's at the texels of a picture.
 #pragma once
 

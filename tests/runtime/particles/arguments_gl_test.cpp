@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arguments that are refused: the CPU decides alone, so one API is enough.
 #include <gtest/gtest.h>
 

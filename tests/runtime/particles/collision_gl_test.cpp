@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collision beyond the paper's single body: poses, motion, types, Verlet, swept steps, rest. Closed forms,
 // in OpenGL 3.3 and in OpenGL ES 3.0. particle_system_gl_test.cpp has the CPU's step particle by particle.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A particle system among colliders, for the tests of collision.
 #pragma once
 

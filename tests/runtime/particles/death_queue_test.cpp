@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The calendar of deaths against a sorted multimap, which is slow and plainly right.
 #include "runtime/particles/death_queue.h"
 

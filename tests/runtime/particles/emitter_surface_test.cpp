@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births on surfaces that move and bend: against closed forms, for fixed seeds.
 #include "runtime/particles/emitter_surface.h"
 

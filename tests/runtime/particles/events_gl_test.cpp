@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The list of what happened in a step: closed forms, counts that must agree with the particles' own, and nothing of it
 // where nobody asks. step_path_gl_test.cpp compares the paths.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The allocator against a std::set of free indices, which is slow and plainly right.
 #include "runtime/particles/index_allocator.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials of contacts on the GPU: thousands of drops on a checkerboard whose squares are known in closed form, what they make of
 // the speed and the life of particles, and numbers of names over several colliders.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulation on the GPU, in OpenGL 3.3 and in OpenGL ES 3.0: against a CPU step particle by particle,
 // against closed forms, and for what must hold whatever the input.
 #include "runtime/particles/particle_system.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists of points: both kinds of files, every encoding, and what is no such file.
 #include "runtime/particles/point_list.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is drawn with random numbers, against closed forms.
 #include "runtime/particles/random.h"
 

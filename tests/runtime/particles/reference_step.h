@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The step of shaders/particles/step.glsl on the CPU: float32, the same operations in the same order, the field from
 // formats/. Written from the rule (paper, section 3.3.2), and the truth that the GPU
 // is held to.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births by hits and deaths, in closed form.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far random draws, made with fixed seeds, are from their distribution.
 #pragma once
 

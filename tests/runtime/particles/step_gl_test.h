@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests of the simulation: once for each path that a step can take, in both APIs.
 #pragma once
 

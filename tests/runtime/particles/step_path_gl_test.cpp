@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The paths of a step: the same particles and events, whichever is taken.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds of many bodies: the broad phase gives what asking every body gives, bit by bit, and what moves is found where it is.
 #include <gtest/gtest.h>
 

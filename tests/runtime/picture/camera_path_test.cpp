@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera's path: through its keys, and never without an upper side.
 #include "runtime/picture/camera_path.h"
 

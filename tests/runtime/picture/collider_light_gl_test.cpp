@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light among a collider in closed form: a sphere's shade, a plate's, and that both follow what moves.
 #include "runtime/picture/collider_light.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A collider drawn from its mesh, against the same one drawn from its depth maps and against the closed form.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depth sort, on each path: against std::stable_sort, as fragments against the network pass by pass; and while particles
 // move, are born and die, and while the viewer moves: what must hold in every frame, and how far from sorted the order is.
 #include "runtime/picture/depth_sort.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture of meshes, judged at points of the world: a roof over a meadow, in sun, rain, snow and fog.
 #include <gtest/gtest.h>
 

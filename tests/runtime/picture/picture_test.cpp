@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PNG and PLY bytes: read back by libpng, or by hand from the format's definition.
 #include <gtest/gtest.h>
 

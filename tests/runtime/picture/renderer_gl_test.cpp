@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pictures: what hides what, and where; and that none of Relief's passes leaves a trace in the caller's
 // state or is spoilt by it.
 #include <gtest/gtest.h>

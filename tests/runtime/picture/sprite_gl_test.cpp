@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sprites in closed form: unlit sprites on a float target, so that every pixel is colour times opacity.
 #include <gtest/gtest.h>
 

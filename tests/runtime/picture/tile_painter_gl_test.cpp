@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sprites painted by tiles against the same sprites drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style,
 // before and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
 #include "runtime/gl/compute_units.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes with animated colliders, played: what rains on them stays outside.
 #include "runtime/player/simulation.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births on the surfaces of colliders that move and bend, as a scene plays them.
 #include <gtest/gtest.h>
 

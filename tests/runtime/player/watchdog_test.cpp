@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The watchdog ends the process once it starves, and not before.
 #include "runtime/player/watchdog.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene's air and fields: what their keys set, and what the report has of them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene's colliders, their ways through the world, and what types of particles do. pose_keys_test.cpp has poses between keys.
 #include "runtime/scene/scene_collider.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [emitter], [[emitter]] and [[spawn]]: what their keys mean, and what is filled in.
 #include "runtime/scene/scene_emitter.h"
 

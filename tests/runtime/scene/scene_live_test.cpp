@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene's colliders that deform: what is read, and what is filled in.
 #include "runtime/scene/scene_live.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene's looks, sprites and camera path.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[material]] of scenes, "materials" of worlds and [[spawn]] material: what is read, and whom it reaches.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The meshes of a scene's pictures: which file stands for which collider, and the weather over time.
 #include "runtime/scene/scene_meshes.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mistakes in a scene's text, with their line and column. Ranges, types of values and unknown keys are the reader's
 // (toml_reader_test.cpp); these are the scene's own rules.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene's colliders that play clips: what is filled in, and their colours.
 #include "runtime/scene/scene_play.h"
 

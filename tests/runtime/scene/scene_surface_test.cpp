@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emitters of a surface: which area they have, and what is no surface.
 #include "runtime/scene/scene_births.h"
 

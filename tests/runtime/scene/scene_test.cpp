@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene file: what its keys mean, what is filled in, and hostile bytes. scene.schema.json pins ranges of keys.
 #include "runtime/scene/scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes written in tests, and mistakes in them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Births where a surface touches another: of the same births without that rule exactly those that closed forms keep.
 #include "runtime/scene/scene_touch.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene's world: its bodies among the colliders, in which order, and what tables change of them.
 #include "runtime/scene/scene_world.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds whose colliders come and go: the field is that of the colliders that are there, bit by bit, and nothing falls through
 // while others are missing.
 #include "runtime/stream/world_stream.h"

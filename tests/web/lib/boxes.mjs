@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Boxes as OBJ text, and the smallest body for tests that are not about the collider.
 import { writeFileSync } from "node:fs";
 import path from "node:path";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A real browser for tests: Debian's Chromium without a window, its WebGL2 drawn by the processor (SwiftShader).
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";

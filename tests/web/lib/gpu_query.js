@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evaluates a GpuCollider at points by a shader of the page's own, as a user would. For a page.
 
 /** @returns { distance, normal, map } of each point: x, y, z of the first, then of the second */

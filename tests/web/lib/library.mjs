@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A page with the library in it, as `relief` and `gl`, and a folder of the test's files under /files.
 import path from "node:path";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The native tools, which the browser is compared with.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sets every piece of a WebGL2 context's state to something odd, and notes all of it. For a page.
 
 /** Everything there is to set, to a value that is not its first one. What it made is kept alive by what it returns. */

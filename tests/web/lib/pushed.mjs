@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Particles at rest above a cube of side 2, which pushes them upwards as it moves: the page against relief-sim.
 import assert from "node:assert/strict";
 

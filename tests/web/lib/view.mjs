@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page of `relief view`, filled as the tool fills it, and opened from disk.
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";

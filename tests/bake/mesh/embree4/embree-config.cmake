@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A package of Embree 4 to test with: include/embree4 says what it is.
 find_library(EMBREE3_LIBRARY embree3 REQUIRED)
 add_library(embree SHARED IMPORTED)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stands for <embree4/rtcore.h> where there is no Embree 4: the names and signatures in which Embree 4 differs from 3, as
 // its manual gives them, done by Embree 3. With it -DRELIEF_EMBREE=4 compiles and bakes
 // (tests/cli/embree4.sh, scripts/nightly.sh embree4).
