@@ -9,6 +9,7 @@
 
 #include "bake/ground/ground_check_report.h"
 #include "bake/ground/ground_report.h"
+#include "bake/import/import_format.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
@@ -64,12 +65,30 @@ Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
     return {};
 }
 
+bool isHeightMapExtension(const std::string& extension) {
+    constexpr std::array<std::string_view, 5> kExtensions = {".png", ".exr", ".raw", ".r16", ".hgt"};
+    return std::ranges::find(kExtensions, lowerCase(extension)) != kExtensions.end();
+}
+
+/// \param mesh  of --mesh.
+Result<HeightsSpec> recorded(const WorldField& field, const std::string& name, const std::string& mesh) {
+    Result<HeightsSpec> heights = recordedHeights(field, name);
+    const std::string extension = std::filesystem::path(mesh).extension().string();
+    if (heights || isHeightMapExtension(extension)) {
+        return heights;
+    }
+    return fail(ErrorCode::kUnsupported, shownInput(mesh) + ": no mesh format has the extension '" +
+                                             cleanUtf8(extension) + "', and " + heights.error().message);
+}
+
 }  // namespace
 
 bool namesHeightMap(const std::string& file) {
-    constexpr std::array<std::string_view, 4> kExtensions = {".png", ".exr", ".raw", ".r16"};
-    const std::string extension = lowerCase(std::filesystem::path(file).extension().string());
-    return std::ranges::find(kExtensions, extension) != kExtensions.end();
+    const std::string extension = std::filesystem::path(file).extension().string();
+    const bool mesh = !extension.empty() && meshFormat(extension.substr(1)) != nullptr;
+    std::error_code error;
+    return !mesh &&
+           (file == "-" || isHeightMapExtension(extension) || std::filesystem::is_regular_file(file, error));
 }
 
 Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call) {
@@ -82,7 +101,7 @@ Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call
     }
     const WorldField field = RELIEF_TRY(fieldOf(file, world.limits));
     if (!heights) {
-        heights = RELIEF_TRY(recordedHeights(field, name));
+        heights = RELIEF_TRY(recorded(field, name, world.request.mesh));
     }
     Progress progress({quotedPath(world.request.mesh), !call.quiet, {}});
     progress.begin("measuring the ground");

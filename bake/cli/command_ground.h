@@ -14,7 +14,8 @@ namespace relief {
 /// Errors: those of settingsOf, HeightMap::open and bakeGroundOf; kUsage, kIo.
 [[nodiscard]] Result<void> runGroundCommand(const std::string& folder, const WorldCall& call);
 
-/// Whether `relief check` takes the file of --mesh for a height map without --heights: by its extension.
+/// Whether `relief check` takes the file of --mesh for a height map without --heights: a file, or standard input, whose extension
+/// is that of no mesh format.
 [[nodiscard]] bool namesHeightMap(const std::string& file);
 
 struct GroundCheckCall {
@@ -24,7 +25,8 @@ struct GroundCheckCall {
 };
 
 /// \param file  the container or the world.
-/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kDifference: more than max_error.
+/// Errors: those of readColliderFile, loadWorld, recordedHeights and checkGround; kUsage; kUnsupported: neither a height map by its
+/// extension nor by what the ground records; kDifference: more than max_error.
 [[nodiscard]] Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call);
 
 }  // namespace relief

@@ -53,6 +53,18 @@ grep -q 'warning: hills.r16 is another file' stderr || die "another file: $(cat 
 heights larger.png 140
 expect_error 3 "larger.png" "$relief" check ground.relief --mesh larger.png
 
+# Whatever the file is called: the bake took it, and its settings are recorded.
+for file in c.bil c.bin c.dem c; do
+    cp hills.r16 $file
+    expect 0 "$relief" bake $file --heights $settings,width=130 -o c.relief
+    expect 0 "$relief" check c.relief --mesh $file --samples 500 --json
+    json stdout "d['heights'] == '$settings,width=130' and d['near']['wrong_percent'] < 1 and d['warnings'] == []"
+done
+"$relief" check c.relief --mesh - --samples 500 <c.bil >stdout || die "a height map from standard input"
+"$relief" check - --mesh c.bil --samples 500 <c.relief >stdout || die "a collider from standard input"
+expect 0 "$relief" bake c.bil --heights $settings,width=130,tile=64 --world cw
+expect 0 "$relief" check cw/world.json --mesh c.bil --samples 500
+
 # Cliffs are named, one beside a seam once.
 heights wide.png 130 step65
 expect 0 "$relief" bake wide.png --heights low=0,high=655.35,tile=64 --world wide
@@ -86,3 +98,4 @@ expect_error 6 "10000000" "$relief" check ground.relief --mesh hills.png --sampl
 tetrahedron t.obj
 "$relief" bake t.obj -o t.relief --map cube:size=16 -q
 expect_error 1 "t.relief" "$relief" check t.relief --mesh hills.png
+expect_error 5 "c.bil.*t.relief was not baked from a height map" "$relief" check t.relief --mesh c.bil
