@@ -11,6 +11,7 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "formats/nearest_surface.h"
+#include "formats/world/world_field.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 
@@ -41,6 +42,29 @@ std::vector<FieldSample> sampled(const Collider& collider, std::span<const glm::
     return samples;
 }
 
+/// Of a world: the body takes the place of the map.
+Result<std::vector<FieldSample>> sampledWorld(const QueryCommand& command, std::span<const glm::vec3> points,
+                                              FileGuard& files) {
+    if (command.distance == DistanceTo::kNearest) {
+        return fail(ErrorCode::kUsage,
+                    quotedPath(command.file) +
+                        " is a world, whose distances are those to planes; give --distance "
+                        "plane, or query one of its colliders");
+    }
+    const WorldField field(RELIEF_TRY(loadWorld(command.file, command.limits)));
+    const std::filesystem::path folder = std::filesystem::path(command.file).parent_path();
+    for (const WorldCollider& collider : field.world().colliders) {
+        RELIEF_TRY(files.reads(folder / collider.file));
+        RELIEF_TRY(files.reads(collider.coarse ? folder / collider.coarse->file : std::filesystem::path()));
+    }
+    std::vector<FieldSample> samples(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+        const WorldSample sample = field.evaluate(points[i]);
+        samples[i] = {sample.distance, sample.normal, sample.body};
+    });
+    return samples;
+}
+
 Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     if (command.file == "-" && command.points == "-") {
         return fail(ErrorCode::kUsage,
@@ -49,14 +73,16 @@ Result<void> runQuery(const QueryCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.points));
     RELIEF_TRY(files.writes(command.output, "-o"));
-    const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
+    const bool world = namesWorld(command.file);
+    const Collider collider = world ? Collider() : RELIEF_TRY(loadCollider(command.file, command.limits));
     const std::vector<std::byte> text = RELIEF_TRY(readFile(command.points));
     const std::vector<glm::vec3> points =
         RELIEF_TRY(parsePoints({reinterpret_cast<const char*>(text.data()), text.size()},
                                command.points == "-" ? "standard input" : command.points));
     const std::vector<FieldSample> samples =
-        sampled(collider, points, command.distance == DistanceTo::kPlane);
-    const std::string csv = formatSamples(points, samples);
+        world ? RELIEF_TRY(sampledWorld(command, points, files))
+              : sampled(collider, points, command.distance == DistanceTo::kPlane);
+    const std::string csv = formatSamples(points, samples, world ? "body" : "map");
     return writeFile(command.output, std::as_bytes(std::span(csv)));
 }
 
@@ -69,10 +95,13 @@ void addQuery(CLI::App& app, Action& action) {
         "Evaluates the field at points\n\nA line of the output is x,y,z,f,nx,ny,nz,map: signed "
         "distance to the nearest surface, its normal, its map.\nf is negative inside, inf where a point "
         "is outside and no more is known, and empty where no map votes.\nWith --distance plane they are "
-        "those of the plane that decides the side; the side is the same",
+        "those of the plane that decides the side; the side is the same.\n"
+        "Of a world they are always those of planes, and the last number is the body",
         "relief query bunny.relief --points in.csv -o out.csv\n"
         "echo 0,0.1,0 | relief query bunny.relief --points - -o - --distance plane");
-    addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
+    addOption(verb, "FILE", command->file, "The collider, or the world; - for standard input")
+        ->typeName("")
+        ->required();
     addOption(verb, "--points", command->points, "Lines x,y,z in object space; - for standard input")
         ->valueText("IN.csv")
         ->required();

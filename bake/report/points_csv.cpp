@@ -60,8 +60,9 @@ Result<std::vector<glm::vec3>> parsePoints(std::string_view text, const std::str
     return points;
 }
 
-std::string formatSamples(std::span<const glm::vec3> points, std::span<const FieldSample> samples) {
-    std::string text = "x,y,z,f,nx,ny,nz,map\n";
+std::string formatSamples(std::span<const glm::vec3> points, std::span<const FieldSample> samples,
+                          std::string_view decides) {
+    std::string text = "x,y,z,f,nx,ny,nz," + std::string(decides) + "\n";
     const auto addVector = [&](const glm::vec3& v) {
         for (int i = 0; i < 3; ++i) {
             appendShortest(text, v[i]);

@@ -21,7 +21,9 @@ namespace relief {
 
 /// `x,y,z,f,nx,ny,nz,map`, a header line and then one line a point, shortest decimals that read back exactly.
 /// f is "inf" for kFarOutside; f, nx, ny, nz and map are empty where no map votes.
+/// \param decides  the last column's name.
 [[nodiscard]] std::string formatSamples(std::span<const glm::vec3> points,
-                                        std::span<const FieldSample> samples);
+                                        std::span<const FieldSample> samples,
+                                        std::string_view decides = "map");
 
 }  // namespace relief

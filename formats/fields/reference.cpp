@@ -33,13 +33,29 @@ std::string prettyNumber(double value) {
     return shortest(static_cast<float>(value));
 }
 
+/// Whole numbers of a few values: "0 … 2" would stand for 0.5 too.
+std::string listOfWhole(const FieldReference& field) {
+    constexpr double kMost = 4.0;
+    const FieldRange& range = field.info.range;
+    const auto type = field.type.schema.find("type");
+    std::string text;
+    if (type != field.type.schema.end() && *type == "integer" && range.high - range.low <= kMost) {
+        for (double value = range.low; value <= range.high; ++value) {
+            text += (text.empty() ? "" : ", ") + prettyNumber(value);
+        }
+    }
+    return text;
+}
+
 std::string rangeText(const FieldReference& field) {
     const FieldRange& range = field.info.range;
     std::string text;
     for (const std::string_view word : field.type.words) {
         text += (text.empty() ? "\"" : ", \"") + std::string(word) + "\"";
     }
-    if (std::isfinite(range.high)) {
+    if (const std::string list = listOfWhole(field); !list.empty()) {
+        text = list;
+    } else if (std::isfinite(range.high)) {
         text = range.low == -range.high ? "±" + prettyNumber(range.high)
                                         : (range.low_included ? "" : "above ") + prettyNumber(range.low) +
                                               " … " + prettyNumber(range.high);

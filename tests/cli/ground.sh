@@ -35,6 +35,22 @@ json stdout "len(d['tiles']) == 9 and d['output'] == 'w' and d['removed'] == []"
 json w/world.json "d['unit'] == 'm' and [b['node'] for b in d['bodies']][:4] == ['tile 0 0', 'tile 1 0', 'tile 2 0', 'tile 0 1']"
 json w/world.json "d['bodies'][4]['position'] == [64, 0, 64]"
 expect 0 "$relief" check w/world.json
+# The same sides, and the body that decides, which lies in the point's own tile.
+expect 0 "$relief" query w/world.json --points points.csv -o world.csv
+expect 0 "$relief" query ground.relief --points points.csv -o plane.csv --distance plane
+python3 - <<'P' || die "a world's points are not those of its ground"
+import csv
+world, ground = (list(csv.DictReader(open(name))) for name in ('world.csv', 'plane.csv'))
+assert len(world) == len(ground) == 2000
+for w, g in zip(world, ground):
+    assert (float(w['f']) < 0) == (float(g['f']) < 0), (w, g)
+    column, row = (min(max(float(w[axis]) // 64, 0), 2) for axis in 'xz')
+    if float(w['f']) < 0 and all(4 < float(w[axis]) % 64 < 60 for axis in 'xz'):
+        assert int(w['body']) == 3 * row + column, w
+P
+expect_error 1 "w/world.json.*--distance plane" "$relief" query w/world.json --points points.csv -o bad.csv --distance nearest
+expect_error 1 "is the input" "$relief" query w/world.json --points points.csv -o "$(echo w/*-0-0-*.relief)"
+expect_error 2 "missing/world.json" "$relief" query missing/world.json --points points.csv -o bad.csv
 expect 0 "$relief" bake hills.png --heights $settings,tile=100,offset=5/-3/1 --world w --json
 json stdout "len(d['tiles']) == 4 and len(d['removed']) == 9"
 json w/world.json "d['bodies'][3]['position'] == [105, -3, 101]"

@@ -120,11 +120,13 @@ struct Thing {
     float size = 0.5F;
     std::uint32_t least = 1;
     std::uint32_t most = 2;
+    int power = 2;
     std::vector<Place> places;
 };
 void fields(FieldVisitor& visit, Thing& thing) {
     visit("size", thing.size, {"Diameter", "m", {0.0, 1e6, false}, {}, {.needs = "count"}});
     visit("count", FieldSpan{thing.least, thing.most}, {"Number"});
+    visit("power", thing.power, {"Exponent", {}, {0.0, 2.0}});
     visit("place", thing.places, {"Places", {}, {}, {}, {.most = 3}});
 }
 
@@ -132,7 +134,8 @@ TEST(Reference, Markdown) {
     EXPECT_EQ(markdownTable(referenceOf<Thing>()),
               "| key | meaning | default | range |\n| --- | --- | --- | --- |\n"
               "| `size` | Diameter, m; needs `count` | 0.5 | above 0 … 10⁶ |\n"
-              "| `count` | Number | [1, 2] |  |\n");
+              "| `count` | Number | [1, 2] |  |\n"
+              "| `power` | Exponent | 2 | 0, 1, 2 |\n");
     static constexpr std::array<std::string_view, 1> kNames{"place"};
     EXPECT_EQ(markdownTables(referenceOf<Thing>(), kNames),
               "| key | meaning | default | range |\n| --- | --- | --- | --- |\n"
