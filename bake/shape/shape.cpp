@@ -654,7 +654,8 @@ class Shaper {
                 if (cappedVolume(wall, {}) >= kWallVolume * cappedVolume(outer.mesh, outer.places)) {
                     continue;  // one beside the other
                 }
-                const Closed solid = RELIEF_TRY(close(RELIEF_TRY(finishMesh(std::move(wall))), true));
+                const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(wall)));
+                const Closed solid = RELIEF_TRY(close(finished, true));
                 if (solid.mesh) {
                     add(solid);
                     ++report_.solids_with_holes;
@@ -725,8 +726,8 @@ class Shaper {
                         ? partThickness(options_.thickness, size, options_.thickness_by_texel)
                         : options_.thickness;
                 const double right = options_.thickness_by_part ? rightThickness(thickness, size) : thickness;
-                const MeshQuery query =
-                    RELIEF_TRY(MeshQuery::build(RELIEF_TRY(finishMesh(meshOf(part.sheet, mesh_.name)))));
+                TriangleMesh finished = RELIEF_TRY(finishMesh(meshOf(part.sheet, mesh_.name)));
+                const MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(finished)));
                 add(part.sheet, thickened(part.sheet, query, thickness), PartKind::kSheet);
                 for (const std::uint32_t source : part.sheet.sources) {
                     SurfacePart& piece = collected_.parts()[collected_.partOf()[source]];
