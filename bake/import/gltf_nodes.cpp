@@ -69,8 +69,8 @@ Result<bool> animatesVisibility(const GltfValue& document) {
     for (const GltfValue& animation : RELIEF_TRY(document.objects("animations"))) {
         for (const GltfValue& channel : RELIEF_TRY(animation.objects("channels"))) {
             const auto target = RELIEF_TRY(channel.object("target"));
-            const auto pointer = RELIEF_TRY(inside(
-                target ? RELIEF_TRY(target->object("extensions")) : std::nullopt, "KHR_animation_pointer"));
+            const auto extensions = target ? RELIEF_TRY(target->object("extensions")) : std::nullopt;
+            const auto pointer = RELIEF_TRY(inside(extensions, "KHR_animation_pointer"));
             const std::string path = pointer ? RELIEF_TRY(pointer->get<std::string>("pointer", "")) : "";
             if (path.ends_with("/KHR_node_visibility/visible")) {
                 return true;
