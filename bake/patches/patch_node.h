@@ -54,7 +54,6 @@ struct PatchNode {
     std::array<double, kPatchShapes.size()>
         mistakes;             ///< of each tried: volume, object units, times its costs
     double pair_least = 0.0;  ///< mistakes of the best pair there could be
-    double byte_least = 0.0;  ///< misclassified volume that a byte has to save, object units cubed
     double passed_by = 0.0;   ///< volume between the lines, counted with each one's mistakes
     double bytes = 0.0;       ///< of the tree below it, as it was chosen
     double wrong = 0.0;       ///< mistakes of that

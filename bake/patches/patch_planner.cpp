@@ -47,7 +47,7 @@ constexpr double kDearer = 1.05;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
-/// The least worth of a byte where a triangle lies, in its area times its longest edge. A cube of 12 triangles, seen by it, is
+/// The least worth of a byte below a root with a triangle, in its area times its longest edge. A cube of 12 triangles, seen by it, is
 /// off by some 1e-6 of its side on average; a mesh of many triangles is not held back by it at any usual size.
 constexpr double kLeastByte = 5e-12;
 /// Cells do not end in the planes of even numbers, in which models have walls.
@@ -152,6 +152,7 @@ class Planner {
         roots_.origin =
             glm::dvec3(held_.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
         nodes_.clear();
+        root_bytes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
         nodes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const glm::dvec3 at(i % roots_.count.x, i / roots_.count.x % roots_.count.y,
@@ -186,11 +187,13 @@ class Planner {
         forEachIndex(0, nodes_.size(), 16, [&](std::size_t i) {
             MeshCell& cell = nodes_[i].cell;
             cell.bodies = query_.bodiesAt(glm::vec3(cell.low + cell.size * MeshCell::kKnown));
-            nodes_[i].byte_least = leastByte(cell);
+            root_bytes_[i] = leastByte(cell);
         });
     }
 
-    /// Misclassified volume, object units cubed, that a byte has to save in a cell.
+    /// Misclassified volume, object units cubed, that a byte has to save below a root; infinity without triangles. A root and all
+    /// below it have one such worth: with one for each cell, a split that finds what the lines of its cell missed does not pay if
+    /// it also splits a flat face.
     [[nodiscard]] double leastByte(const MeshCell& cell) const {
         const TriangleMesh& mesh = query_.mesh();
         double least = std::numeric_limits<double>::infinity();
@@ -218,9 +221,7 @@ class Planner {
             std::array<MeshCell, 8> cells =
                 childrenOf(query_, node.cell, unitTriangles(query_.mesh(), node.cell));
             for (std::size_t i = 0; i < 8; ++i) {
-                PatchNode& child = (*node.children)[i];
-                child.cell = std::move(cells[i]);
-                child.byte_least = leastByte(child.cell);
+                (*node.children)[i].cell = std::move(cells[i]);
             }
         }
     }
@@ -230,10 +231,6 @@ class Planner {
         if (static_cast<double>(++looked_at_) > kCellsPerByte * bytes_) {
             return;  // chooseAll() discards it all
         }
-        if (byte > node.byte_least) {
-            all_least_ = false;
-        }
-        byte = std::max(byte, node.empty() ? 0.0 : node.byte_least);
         fitter_.tryWorth(node, byte);
         node.chooseLeaf(byte);
         if (node.seenEmpty() || level == kLevels || node.wrong < trialBytes(node) * byte) {
@@ -260,7 +257,11 @@ class Planner {
         looked_at_ = 0;
         all_least_ = true;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
-            choose(nodes_[i], byte, 0);
+            const double least = root_bytes_[i];
+            if (byte > least) {
+                all_least_ = false;
+            }
+            choose(nodes_[i], std::isfinite(least) ? std::max(byte, least) : byte, 0);
             report(kSearchShare * std::min(1.0, taken_ / bytes_));
         });
         if (static_cast<double>(looked_at_) > kCellsPerByte * bytes_) {
@@ -537,14 +538,16 @@ class Planner {
     LeafFitter fitter_;
     PatchRoots roots_;
     std::vector<PatchNode> nodes_;
+    std::vector<double> root_bytes_;  // leastByte() of each
     DepthPlaneChoice depth_planes_;
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the tree tried last
     std::vector<MistakePoint> tried_;
     std::atomic<std::size_t> looked_at_ = 0;
-    std::atomic<bool> all_least_ = false;  // in the tree tried last, a byte was worth its least in each cell
-    double texel_ = 0.0;                   // that the nodes were chosen by
-    std::uint32_t levels_ = 0;             // below the roots, by texel
+    std::atomic<bool> all_least_ =
+        false;                  // in the tree tried last, a byte was worth its least below each root
+    double texel_ = 0.0;        // that the nodes were chosen by
+    std::uint32_t levels_ = 0;  // below the roots, by texel
     std::atomic<std::uint64_t> texels_ = 0;  // of leaves so far, by texel
     std::uint64_t texels_most_ = 0;
     std::atomic<std::size_t> roots_done_ = 0;
