@@ -8,9 +8,8 @@
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,6 +23,7 @@
 #include "bake/repair/winding.h"
 #include "bake/shape/near_copies.h"
 #include "bake/shape/parts.h"
+#include "bake/shape/rims.h"
 #include "bake/shape/sealed_voids.h"
 #include "bake/shape/sheet.h"
 #include "bake/shape/solid_union.h"
@@ -57,12 +57,6 @@ constexpr double kTwice = 0.9;
 constexpr double kTerrainCover = 0.98;
 constexpr std::size_t kTerrainTriangles = 200;
 constexpr double kTerrainExtent = 0.8;
-/// Rims of the two shells of a wall: all of either is this near to the other, in units of its longest side, and the wall has at
-/// most this share of the volume within its outer shell.
-constexpr double kRimGap = 0.2;
-constexpr double kWallVolume = 0.95;
-/// Limit of the pairs of corners that are compared.
-constexpr std::size_t kRimPairs = 100'000'000;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
@@ -134,97 +128,6 @@ Result<bool> isCutOffBelow(const PreparedMesh& closed, bool z_is_up) {
         hidden += seen ? 0 : 1;
     }
     return static_cast<double>(hidden) > kFootHidden * kEnclosureProbes;
-}
-
-/// A border of an open part, in the direction of a cap's triangles.
-using Rim = std::vector<glm::dvec3>;
-
-glm::dvec3 normalOf(const Rim& rim) {
-    glm::dvec3 normal(0.0);
-    for (std::size_t i = 0; i < rim.size(); ++i) {
-        normal += cross(rim[i] - rim[0], rim[(i + 1) % rim.size()] - rim[0]);
-    }
-    return normal;
-}
-
-/// The largest distance of a rim's corners from another rim.
-double distanceTo(const Rim& from, const Rim& to) {
-    double largest = 0.0;
-    for (const glm::dvec3& p : from) {
-        double least = std::numeric_limits<double>::max();
-        for (std::size_t i = 0; i < to.size(); ++i) {
-            const glm::dvec3& a = to[i];
-            least = std::min(least, distance(p, closestOnTriangle(p, a, to[(i + 1) % to.size()], a)));
-        }
-        largest = std::max(largest, least);
-    }
-    return largest;
-}
-
-bool meets(const Bounds& a, const Bounds& b) {
-    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
-}
-
-Bounds rimBounds(const Rim& rim) {
-    Bounds box;
-    for (const glm::dvec3& p : rim) {
-        box.add(p);
-    }
-    return box;
-}
-
-bool faceEachOther(const Rim& a, const Rim& b) {
-    const Bounds of_a = rimBounds(a);
-    const Bounds of_b = rimBounds(b);
-    const double gap = kRimGap * double{of_b.longestSide()};
-    const glm::dvec3 apart =
-        glm::max(glm::abs(glm::dvec3(of_a.min - of_b.min)), glm::abs(glm::dvec3(of_a.max - of_b.max)));
-    return std::max({apart.x, apart.y, apart.z}) <= gap && a.size() * b.size() <= kRimPairs &&
-           distanceTo(b, a) <= gap && distanceTo(a, b) <= gap;
-}
-
-/// Of triangles that are wound consistently, and caps over rims of theirs.
-double cappedVolume(const TriangleMesh& mesh, const std::vector<Rim>& rims) {
-    const glm::dvec3 center = mesh.bounds.center();
-    double volume = 0.0;
-    const auto add = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-        volume += dot(a - center, cross(b - center, c - center)) / 6.0;
-    };
-    for (const glm::uvec3& t : mesh.triangles) {
-        add(mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]);
-    }
-    for (const Rim& rim : rims) {
-        for (std::size_t i = 1; i + 1 < rim.size(); ++i) {
-            add(rim[0], rim[i], rim[i + 1]);
-        }
-    }
-    return std::abs(volume);
-}
-
-/// Appends the ring between two rims that run the same way.
-void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vector<std::uint32_t> b) {
-    const auto apart = [&](std::uint32_t i, std::uint32_t k) {
-        return distance(glm::dvec3(mesh.positions[i]), glm::dvec3(mesh.positions[k]));
-    };
-    const auto nearest = std::ranges::min_element(b, {}, [&](std::uint32_t k) { return apart(a[0], k); });
-    std::rotate(b.begin(), nearest, b.end());
-    std::size_t i = 0;
-    std::size_t k = 0;
-    while (i < a.size() || k < b.size()) {
-        const std::uint32_t here = a[i % a.size()];
-        const std::uint32_t there = b[k % b.size()];
-        const std::uint32_t next = a[(i + 1) % a.size()];
-        const std::uint32_t beyond = b[(k + 1) % b.size()];
-        if (k == b.size() || (i < a.size() && apart(next, there) <= apart(here, beyond))) {
-            mesh.triangles.emplace_back(here, next, there);
-            ++i;
-        } else {
-            mesh.triangles.emplace_back(here, beyond, there);
-            ++k;
-        }
-        ++mesh.cap_triangles;
-    }
-    ++mesh.closed_holes;
 }
 
 class Shaper {
@@ -544,8 +447,11 @@ class Shaper {
         const std::vector<bool> joined = RELIEF_TRY(joinRims(holed));
         std::vector<Result<Closed>> closed(holed.size(), Closed{});
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
+            if (joined[i]) {
+                return;
+            }
             const Result<TriangleMesh> mesh = finishMesh(meshOf(holed[i]->sheet, mesh_.name));
-            if (mesh && !joined[i]) {  // else too small for a mesh
+            if (mesh) {  // else too small for a mesh
                 closed[i] = close(*mesh, holed[i]->role.kind == Kind::kHoled);
             }
         });
@@ -576,90 +482,42 @@ class Shaper {
     /// Joins outer and inner shells whose rims face each other: they are a wall, and the space within is free.
     /// \return per part: it is joined to another one.
     Result<std::vector<bool>> joinRims(const std::vector<Open*>& parts) {
-        struct Shell {
-            std::size_t part;
-            TriangleMesh mesh;
-            std::vector<std::vector<std::uint32_t>> rims;
-            std::vector<Rim> places;
-        };
         std::vector<bool> joined(parts.size(), false);
-        std::vector<Shell> shells;
+        std::vector<std::size_t> candidates;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (parts[i]->role.kind != Kind::kHoled || parts[i]->as != ShapeAs::kAuto) {
-                continue;
+            if (parts[i]->role.kind == Kind::kHoled && parts[i]->as == ShapeAs::kAuto) {
+                candidates.push_back(i);
             }
-            Result<TriangleMesh> mesh = finishMesh(meshOf(parts[i]->sheet, mesh_.name));
-            if (!mesh) {
-                continue;  // too small for a mesh
-            }
-            const PreparedMesh open(std::move(*mesh));
-            Shell shell{i, *open, {}, {}};
-            for (const BorderLoop& loop : borderLoops(open.oddEdges())) {
-                shell.rims.emplace_back();
-                shell.places.emplace_back();
-                for (const BorderStep& step : loop) {
-                    shell.rims.back().push_back(step.from);
-                    shell.places.back().emplace_back(open->positions[step.from]);
-                }
-            }
-            shells.push_back(std::move(shell));
         }
-        std::ranges::stable_sort(shells, std::greater(), [](const Shell& shell) {
-            const glm::dvec3 size = shell.mesh.bounds.size();
+        if (candidates.size() < 2) {
+            return joined;
+        }
+        std::vector<std::pair<std::size_t, OpenShell>> shells;  // and their parts
+        for (const std::size_t i : candidates) {
+            Result<TriangleMesh> mesh = finishMesh(meshOf(parts[i]->sheet, mesh_.name));
+            if (mesh) {  // else too small for a mesh
+                shells.emplace_back(i, openShellOf(std::move(*mesh)));
+            }
+        }
+        std::ranges::stable_sort(shells, std::greater(), [](const auto& shell) {
+            const glm::dvec3 size = shell.second.mesh.bounds.size();
             return size.x * size.y * size.z;
         });
         for (std::size_t i = 0; i < shells.size(); ++i) {
-            for (std::size_t k = i + 1; k < shells.size() && !joined[shells[i].part]; ++k) {
-                const Shell& outer = shells[i];
-                const Shell& inner = shells[k];
-                if (joined[inner.part] || !meets(outer.mesh.bounds, inner.mesh.bounds)) {
+            const auto& [outer_part, outer] = shells[i];
+            for (std::size_t k = i + 1; k < shells.size() && !joined[outer_part]; ++k) {
+                const auto& [inner_part, inner] = shells[k];
+                std::optional<TriangleMesh> wall =
+                    joined[inner_part] ? std::nullopt : wallBetween(outer, inner);
+                if (!wall) {
                     continue;
                 }
-                const auto first = static_cast<std::uint32_t>(outer.mesh.positions.size());
-                bool turn = false;
-                std::vector<bool> taken(outer.rims.size(), false);
-                std::vector<std::array<std::vector<std::uint32_t>, 2>> rings;
-                for (std::size_t b = 0; b < inner.rims.size(); ++b) {
-                    for (std::size_t a = 0; a < outer.rims.size(); ++a) {
-                        if (taken[a] || !faceEachOther(outer.places[a], inner.places[b])) {
-                            continue;
-                        }
-                        taken[a] = true;
-                        std::vector<std::uint32_t> rim = inner.rims[b];
-                        for (std::uint32_t& vertex : rim) {
-                            vertex += first;
-                        }
-                        turn = dot(normalOf(outer.places[a]), normalOf(inner.places[b])) > 0.0;
-                        if (!turn) {
-                            std::reverse(rim.begin(), rim.end());
-                        }
-                        rings.push_back({outer.rims[a], std::move(rim)});
-                        break;
-                    }
-                }
-                if (rings.empty() || rings.size() < inner.rims.size()) {
-                    continue;
-                }
-                TriangleMesh wall = outer.mesh;
-                wall.positions.insert(wall.positions.end(), inner.mesh.positions.begin(),
-                                      inner.mesh.positions.end());
-                for (const glm::uvec3& t : inner.mesh.triangles) {
-                    wall.triangles.push_back(first + (turn ? glm::uvec3(t.x, t.z, t.y) : t));
-                }
-                wall.labels.insert(wall.labels.end(), inner.mesh.labels.begin(), inner.mesh.labels.end());
-                for (const auto& [a, b] : rings) {
-                    addRing(wall, a, b);
-                }
-                wall.labels.resize(wall.triangles.size(), kNoLabel);
-                if (cappedVolume(wall, {}) >= kWallVolume * cappedVolume(outer.mesh, outer.places)) {
-                    continue;  // one beside the other
-                }
-                const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(wall)));
+                const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(*wall)));
                 const Closed solid = RELIEF_TRY(close(finished, true));
                 if (solid.mesh) {
                     add(solid);
                     ++report_.solids_with_holes;
-                    joined[outer.part] = joined[inner.part] = true;
+                    joined[outer_part] = joined[inner_part] = true;
                 }
             }
         }

@@ -140,7 +140,7 @@ std::vector<std::uint32_t> joinedCorners(const Sheet& sheet) {
     return roots;
 }
 
-/// Where an offset ends that would meet one from the other side: a little beyond the middle, so that the two overlap.
+/// An offset that would meet the one from the other side ends this share of the way to that side: they overlap a little.
 constexpr double kThinReach = 0.55;
 /// A corner's ray starts this far towards the middle of its triangle, in units of the way and of the offset: rays from
 /// vertices meet the edges of symmetric meshes.
