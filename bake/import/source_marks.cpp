@@ -147,6 +147,9 @@ class ColladaReader {
         while (!pending_.empty()) {
             const pugi::xml_node node = pending_.back();
             pending_.pop_back();
+            if (!visited_.insert(node).second) {
+                continue;
+            }
             if (isHidden(node)) {
                 nodes_.hidden.insert(node.attribute(node.attribute("id") ? "id" : "sid").value());
             }
@@ -191,7 +194,7 @@ class ColladaReader {
         return parseDouble(trimmed(value)) == 0.0;
     }
 
-    /// Of a node, or of <scene>.
+    /// Visits the instances of a node or of <scene>.
     Result<void> visitInstances(const pugi::xml_node& node) {
         for (const pugi::xml_node instance : node.children()) {
             const std::string_view element = instance.name();
@@ -218,13 +221,10 @@ class ColladaReader {
         if (kind == "geometry") {
             return object.child("mesh") ? Result<void>() : miss(node, instance, url, "has no <mesh>");
         }
-        if (!visited_.insert(object).second) {
-            return {};
-        }
         if (kind == "controller") {
-            return visit(node, instance,
-                         object.child("skin").attribute("source").as_string(
-                             object.child("morph").attribute("source").value()));
+            const char* const source = object.child("skin").attribute("source").as_string(
+                object.child("morph").attribute("source").value());
+            return visited_.insert(object).second ? visit(node, instance, source) : Result<void>();
         }
         pending_.push_back(object);
         return {};
@@ -266,8 +266,8 @@ class ColladaReader {
 /// Chunks of a 3DS file.
 class HiddenOf3ds {
   public:
-    /// \param text  of the chunks inside another. \param object  the name of the object that they describe; "" outside.
-    void read(std::string_view text, const std::string& object = "") {
+    /// \param text  of the chunks inside a chunk `parent`. \param object  the name of the object that they describe.
+    void read(std::string_view text, std::uint16_t parent = 0, const std::string& object = "") {
         constexpr std::size_t kHeader = 6;
         while (text.size() >= kHeader) {
             std::uint16_t id = 0;
@@ -278,12 +278,12 @@ class HiddenOf3ds {
             }
             const std::string_view inside = text.substr(kHeader, size - kHeader);
             text.remove_prefix(size);
-            if (object.empty() && (id == kMain || id == kEditor)) {
-                read(inside);
-            } else if (object.empty() && id == kObject) {
+            if ((parent == 0 && id == kMain) || (parent == kMain && id == kEditor)) {
+                read(inside, id);
+            } else if (parent == kEditor && id == kObject) {
                 const std::string name(inside.substr(0, inside.find('\0')));
-                read(inside.substr(std::min(inside.size(), name.size() + 1)), name);
-            } else if (id == kHidden) {
+                read(inside.substr(std::min(inside.size(), name.size() + 1)), id, name);
+            } else if (parent == kObject && id == kHidden) {
                 hidden_.insert(object);
             }
         }
