@@ -40,8 +40,8 @@ inline constexpr double kObjectPerMapTolerance = 1e-3;  ///< relative, against t
 /// The error of one map with its index in front.
 [[nodiscard]] Error inMap(std::size_t index, const Error& error);
 
-/// The name of a mesh as a container has it, and the file of render.meshes in a scene: with '_' for '/' and '\', cleanUtf8, of
-/// at most kMeshNameMax bytes. That of a node may look like a path.
+/// The name of a mesh in a container, and of its file in a scene's render.meshes: cleanUtf8 with '_' for '/' and '\', at most
+/// kMeshNameMax bytes. The name of a node may look like a path.
 [[nodiscard]] std::string storedMeshName(std::string name);
 
 /// Well-formed UTF-8 (no overlong forms, no surrogates) without control characters.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // relief check: whether a container is sound, and how well a collider keeps to its mesh.
 #include <span>
+#include <tuple>
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_ground.h"
@@ -27,7 +28,6 @@ namespace {
 struct CheckCommand {
     CommonOptions common;
     std::vector<std::string> files;
-    std::string file;  ///< one of them
     CheckRequest request;
     ContainerLimits limits;
     std::string heights;
@@ -73,28 +73,28 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
     return {};
 }
 
-void addAdvice(const CheckCommand& command, MeshCheck& run) {
+void addAdvice(const CheckCommand& command, const std::string& file, MeshCheck& run) {
     // Of one that moves, all maps are given.
     if (run.recorded.request.animated ||
         (run.passes(command.max_error) && (command.max_error || run.wrongPercent() <= kGoodPercent))) {
         return;
     }
-    run.advice = adviceFor(run, command.request.mesh, command.file == "-" ? "out.relief" : command.file);
+    run.advice = adviceFor(run, command.request.mesh, file == "-" ? "out.relief" : file);
 }
 
-Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container, const MeshCheck& run,
-                       FileGuard& files) {
+Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container,
+                       const MeshCheckReport& report, FileGuard& files) {
     if (command.html.empty()) {
         return {};
     }
-    const std::string page = RELIEF_TRY(
-        makeCheckPage(inputName(command.file), std::move(container), run, command.max_error, files));
+    const std::string page =
+        RELIEF_TRY(makeCheckPage(report.file, std::move(container), report.run, report.max_error, files));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
-std::string checkText(const CheckCommand& command, const MeshCheck& run) {
+std::string checkText(const MeshCheckReport& report) {
+    const MeshCheck& run = report.run;
     const auto& [samples, accuracy] = run.judged();
-    const MeshCheckReport report{run, inputName(command.file), command.max_error};
     std::string text = report.file + ": " + report.verdict() + "\n";
     if (const std::string inside = insideVerdictText(accuracy.field.inside); !inside.empty()) {
         text += report.file + ": " + inside + "\n";
@@ -103,10 +103,10 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
         const std::string repaired = "the mesh repaired by " + run.recorded.request.repair.method + ", " +
                                      std::to_string(run.baked->triangles.size()) + " triangles";
         const std::string original = run.mesh->name + " as it came";
-        const double other =
-            command.max_error ? run.wrongPercent() : run.original.accuracy.field.near.total();
-        text += "That is against " + (command.max_error ? original : repaired) + "; against " +
-                (command.max_error ? repaired : original) + ": " + shortNumber(other) + " %\n";
+        const auto& [judged, other, wrong] =
+            report.max_error ? std::tuple(original, repaired, run.wrongPercent())
+                             : std::tuple(repaired, original, run.original.accuracy.field.near.total());
+        text += "That is against " + judged + "; against " + other + ": " + shortNumber(wrong) + " %\n";
     }
     for (const std::string& part :
          {partsText(run.part_accuracy, run.parts, run.collider), placesText(run.places, run.collider),
@@ -122,35 +122,34 @@ std::string checkText(const CheckCommand& command, const MeshCheck& run) {
            accuracyText(accuracy, samples, run.collider.unit);
 }
 
-Result<void> runCheck(const CheckCommand& command, FileGuard& files) {
+Result<void> runCheck(const CheckCommand& command, const std::string& file, FileGuard& files) {
     const WorldCheckCall world{command.request, command.within, command.limits, command.max_error,
                                command.html,    command.json,   files};
     if (!command.heights.empty() || namesHeightMap(command.request.mesh)) {
-        return runGroundCheck(command.file, {world, command.heights, command.common.quiet});
+        return runGroundCheck(file, {world, command.heights, command.common.quiet});
     }
-    if (namesWorld(command.file)) {
-        return runWorldCheck(command.file, world);
+    if (namesWorld(file)) {
+        return runWorldCheck(file, world);
     }
     if (command.within) {
         return fail(ErrorCode::kUsage,
                     "--within is for worlds and ground; leave it out for a collider of a mesh");
     }
     if (command.request.mesh.empty()) {
-        return checkFile(command.file, command.json, command.limits);
+        return checkFile(file, command.json, command.limits);
     }
-    RELIEF_TRY(preflightPage(command.file, command.request.mesh, command.html, files));
-    auto [container, collider] = RELIEF_TRY(readColliderFile(command.file, command.limits));
+    RELIEF_TRY(preflightPage(file, command.request.mesh, command.html, files));
+    auto [container, collider] = RELIEF_TRY(readColliderFile(file, command.limits));
     MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
     showCheckWarnings(run);
     // The files that the mesh refers to are known only now.
-    for (const std::string& file : run.imported->dependencies) {
-        RELIEF_TRY(files.reads(file));
+    for (const std::string& read : run.imported->dependencies) {
+        RELIEF_TRY(files.reads(read));
     }
-    addAdvice(command, run);
-    RELIEF_TRY(writePage(command, std::move(container), run, files));
-    RELIEF_TRY(printOut(command.json
-                            ? jsonTextOf(MeshCheckReport{run, inputName(command.file), command.max_error})
-                            : checkText(command, run)));
+    addAdvice(command, file, run);
+    const MeshCheckReport report{run, inputName(file), command.max_error};
+    RELIEF_TRY(writePage(command, std::move(container), report, files));
+    RELIEF_TRY(printOut(command.json ? jsonTextOf(report) : checkText(report)));
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {
         return fail(ErrorCode::kDifference, *lostPartsWarning(run.part_accuracy, run.parts, run.collider) +
@@ -232,10 +231,8 @@ void addCheck(CLI::App& app, Action& action) {
             if (command->files.size() > 1 && !command->request.mesh.empty()) {
                 return fail(ErrorCode::kUsage, "--mesh is for one FILE; check each collider by itself");
             }
-            return forEachFile(command->files, [&](const std::string& file) {
-                command->file = file;
-                return runCheck(*command, files);
-            });
+            return forEachFile(command->files,
+                               [&](const std::string& file) { return runCheck(*command, file, files); });
         };
     });
 }

@@ -42,7 +42,7 @@ std::vector<FieldSample> sampled(const Collider& collider, std::span<const glm::
     return samples;
 }
 
-/// Of a world: the body takes the place of the map.
+/// Samples a world; FieldSample::map is the body.
 Result<std::vector<FieldSample>> sampledWorld(const QueryCommand& command, std::span<const glm::vec3> points,
                                               FileGuard& files) {
     if (command.distance == DistanceTo::kNearest) {

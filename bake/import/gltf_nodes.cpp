@@ -156,7 +156,7 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     return {};
 }
 
-/// What the nodes' extensions hide. Levels of detail below the first are usually in no scene.
+/// Marks the nodes that extensions hide. Lower levels of detail are usually in no scene.
 Result<void> hideNodes(std::vector<GltfNode>& nodes) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));

@@ -126,7 +126,7 @@ inline constexpr const char* kAnimatedVisibility =
 /// Objects that an import leaves out because the file does not show them.
 class LeftOutObjects {
   public:
-    /// \return whether it is left out. \param name  as the file has it.
+    /// Counts an object that is left out. \param name  as stored in the file. \return whether it is left out.
     bool leaveOut(Shown shown, const std::string& name, HiddenAs hidden);
     /// One line for each kind. \param warnings  receives them.
     void warn(std::vector<std::string>& warnings) const;

@@ -39,7 +39,7 @@ struct WrongShare {
 
 void fields(FieldVisitor& visit, const WrongShare& share);
 
-/// What particles that are inside get, at TruthSamples::inside.
+/// Accuracy of the votes at TruthSamples::inside.
 struct InsideAccuracy {
     std::uint64_t points = 0;
     /// Points at which the nearest face does not decide: they are called outside, the normal points away from it, or the depth is

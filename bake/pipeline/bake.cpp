@@ -520,7 +520,7 @@ namespace {
 /// Measured: a house at (4e5, 0, 8e5) m, a ball there.
 constexpr double kWrongPerStep = 0.1;
 
-/// Of the mesh from the origin, along an axis.
+/// The largest magnitude of a coordinate of the mesh's box.
 float farthestOf(const TriangleMesh& mesh) {
     const glm::vec3 corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
     return std::max({corner.x, corner.y, corner.z});

@@ -70,7 +70,7 @@ Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     return entry;
 }
 
-/// Of the report of a bake: its own, or that of the worst collider of a world; nullopt if any was not measured.
+/// `wrong_percent` of a bake's report; of a world that of its worst collider, nullopt unless all were measured.
 std::optional<double> wrongPercentOf(const nlohmann::json& report) {
     const auto of = [](const nlohmann::json& json) {
         const auto found = json.find("wrong_percent");

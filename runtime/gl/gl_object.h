@@ -119,7 +119,7 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
     return makeFramebuffer(std::span(color_textures.begin(), color_textures.size()), depth_texture);
 }
 
-/// What a shader that leaves Relief begins with.
+/// The first lines of an exported shader.
 inline constexpr std::string_view kShaderLicence =
     "// SPDX-License-Identifier: Apache-2.0\n"
     "// From Relief, for any program: no part of it is under the GNU GPL.\n";

@@ -69,7 +69,7 @@ grep -q 'warning: hills.r16 is another file' stderr || die "another file: $(cat 
 heights larger.png 140
 expect_error 3 "larger.png" "$relief" check ground.relief --mesh larger.png
 
-# Whatever the file is called: the bake took it, and its settings are recorded.
+# The bake read the file and recorded its settings, so check accepts any file name.
 for file in c.bil c.bin c.dem c; do
     cp hills.r16 $file
     expect 0 "$relief" bake $file --heights $settings,width=130 -o c.relief
