@@ -144,7 +144,8 @@ Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) 
     }
     const std::string& output = folder.empty() ? call.output : folder;
     if (call.outputs.json) {
-        return printOut(jsonTextOf(GroundJson{result, output, toString(heights), total.ms()}));
+        return printOut(jsonTextOf(
+            GroundJson{result, output, toString(completed(heights, call.request.mesh)), total.ms()}));
     }
     if (!call.common.quiet) {
         std::fputs(groundText(result, cleanUtf8(output), total.ms()).c_str(), stderr);

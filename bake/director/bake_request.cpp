@@ -364,14 +364,15 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
     visit("heights", request.heights,
           {.help =
                "Bake the ground below a height map, in place of a mesh: a grey PNG of 16 or 8 bits, an EXR\n"
-               "image of one channel in metres, whose NaN are holes, or raw samples of 16 bits, "
-               "little-endian.\n"
+               "image of one channel in metres, whose NaN are holes, or raw samples (.raw, .r16, .hgt).\n"
                "Heights go along +y, columns along +x, rows along +z. key=value,... with\n"
                "spacing  metres between samples, 1 by default\n"
-               "low      height of sample 0, not of EXR\n"
+               "low      height of sample 0, of unsigned samples\n"
                "high     height of sample 65535, or 255 of 8 bits\n"
                "hole     sample that is none; squares at holes have no ground\n"
                "width    samples in a row of a raw file, which else is square\n"
+               "type     of raw samples: uint16, or int16 or float32 in metres\n"
+               "order    byte order of raw samples: little or big\n"
                "offset   x/y/z: place of the first sample at height 0\n"
                "tile     with --world, squares along a tile's side, 1024 by default",
            .value = "SPEC",

@@ -18,6 +18,7 @@
 #include "bake/world/world_files.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
+#include "formats/base/text.h"
 #include "formats/container.h"
 
 namespace relief {
@@ -132,7 +133,7 @@ class GroundBaker {
     Result<GroundResult> run() {
         RELIEF_TRY(checkPlace());
         RELIEF_TRY(options_.folder.empty() ? bakeWhole() : bakeTiles());
-        warnOfSteep();
+        warn();
         return std::move(result_);
     }
 
@@ -172,7 +173,7 @@ class GroundBaker {
         if (ground.squares == 0) {
             return baked;
         }
-        HeightsSpec recorded = heights();
+        HeightsSpec recorded = map_.spec();
         recorded.tile = options_.folder.empty() ? HeightsSpec().tile : recorded.tile;
         Collider collider;
         collider.bounds = ground.bounds;
@@ -305,17 +306,41 @@ class GroundBaker {
         return baked;
     }
 
-    void warnOfSteep() {
+    void warn() {
         std::uint64_t steep = 0;
+        std::uint64_t squares = 0;
         for (const GroundTile& tile : result_.tiles) {
             steep += tile.steep;
+            squares += tile.squares;
         }
+        const std::string cause = causeOfSteep(2 * steep > squares);
         if (steep > 0) {
             result_.warnings.push_back(
                 map_.name() + ": " + std::to_string(steep) +
                 " squares are steep: they rise by more than 2.9 of their side, 64 degrees along a diagonal "
                 "and 71 along a row; walls stand up to 0.15 of a square beside their place there");
         }
+        if (!cause.empty()) {
+            result_.warnings.push_back(map_.name() + ": " + cause);
+        }
+    }
+
+    /// Settings that seem not to be those of the file. \param most  of its squares are steep.
+    [[nodiscard]] std::string causeOfSteep(bool most) const {
+        const std::optional<LoneSample> lone = map_.lone();
+        if (lone && lone->gap > kSteepest * heights().spacing) {
+            return std::string("its ") + (lone->lowest ? "lowest" : "highest") + " sample, " +
+                   shortest(lone->sample) + ", lies far " + (lone->lowest ? "below" : "above") +
+                   " all others; if it stands for no data, give --heights hole=" + shortest(lone->sample);
+        }
+        if (const std::string format = map_.likelierFormat(); !format.empty()) {
+            const bool metres = map_.hasLow() && format.find("type=") != std::string::npos;
+            return "its samples look like those of another format; try --heights " + format +
+                   (metres ? ", without low and high" : "");
+        }
+        return most ? std::string("most of its squares are steep; check --heights spacing") +
+                          (map_.hasLow() ? ", low and high" : "") + (map_.isRaw() ? ", type and order" : "")
+                    : std::string();
     }
 
     HeightMap& map_;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A height map from its file, row by row: PNG, EXR, or raw samples of 16 bits.
+// A height map from its file, row by row: PNG, EXR, or raw samples.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +21,35 @@
 namespace relief {
 
 inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
+
+/// The lowest or the highest value of all samples, if more than half of their range lies between it and the others.
+struct LoneSample {
+    float sample = 0.0F;  ///< as the file has it
+    bool lowest = false;
+    double gap = 0.0;  ///< to the next sample, metres
+};
+
+/// The two lowest and the two highest values.
+class SampleRange {
+  public:
+    void add(float sample) {
+        if (sample < low_[1] && sample != low_[0]) {
+            low_[1] = std::max(sample, low_[0]);
+            low_[0] = std::min(sample, low_[0]);
+        }
+        if (sample > high_[1] && sample != high_[0]) {
+            high_[1] = std::min(sample, high_[0]);
+            high_[0] = std::max(sample, high_[0]);
+        }
+    }
+    /// Its gap is in samples. nullopt also of fewer than three values.
+    [[nodiscard]] std::optional<LoneSample> lone() const;
+
+  private:
+    static constexpr float kNone = std::numeric_limits<float>::infinity();
+    std::array<float, 2> low_{kNone, kNone};
+    std::array<float, 2> high_{-kNone, -kNone};
+};
 
 class HeightMap {
   public:
@@ -33,6 +66,16 @@ class HeightMap {
     }                                                                ///< 2 or more
     [[nodiscard]] const std::string& name() const { return name_; }  ///< of the file, without its folder
     [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of its bytes
+    /// The settings, with those that the file's name implies.
+    [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
+    /// Of the rows read so far, holes left out.
+    [[nodiscard]] std::optional<LoneSample> lone() const;
+    /// Settings of raw samples by which neighbours differ far less: "order=big". Empty: there are none.
+    [[nodiscard]] std::string likelierFormat() const;
+    /// Whether nothing in the file states the format of its samples.
+    [[nodiscard]] bool isRaw() const;
+    /// Whether samples stand for heights from low to high.
+    [[nodiscard]] bool hasLow() const { return rows_->most() > 0; }
 
     /// \param out  columns() heights of the next row, metres; NaN is a hole.
     /// Errors, with the file in front: kInvalidInput, kUnsupported.
@@ -53,6 +96,7 @@ class HeightMap {
     double unit_ = 1.0;  // height of a sample's step
     bool has_hole_ = false;
     float hole_ = 0.0F;  // as the file has it
+    SampleRange range_;
 };
 
 }  // namespace relief

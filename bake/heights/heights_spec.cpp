@@ -106,6 +106,17 @@ Result<HeightsSpec> parseHeightsSpec(std::string_view text) {
     return spec;
 }
 
+HeightsSpec completed(HeightsSpec spec, const std::filesystem::path& file) {
+    if (lowerCase(file.extension().string()) == ".hgt") {
+        spec.type = spec.type.value_or(SampleType::kInt16);
+        spec.order = spec.order.value_or(ByteOrder::kBig);
+        if (!spec.hole && spec.type == SampleType::kInt16) {
+            spec.hole = -32768.0;
+        }
+    }
+    return spec;
+}
+
 std::string toString(const HeightsSpec& spec) {
     std::string text = "spacing=" + numberWord(spec.spacing);
     for (const FieldWords& field : changedFields(spec)) {
@@ -124,7 +135,7 @@ void fields(FieldVisitor& visit, HeightsSpec& spec) {
           {.help = "Between samples, metres",
            .range = {1e-6, 1e6},
            .must = "a length from 0.000001 to 1000000"});
-    visit("low", spec.low, number("Height of sample 0, of images of whole numbers"));
+    visit("low", spec.low, number("Height of sample 0, of unsigned samples"));
     visit("high", spec.high, number("Height of the largest sample, 65535 or 255"));
     visit("hole", spec.hole,
           {.help = "Sample that is none, as the file has it",
@@ -132,6 +143,8 @@ void fields(FieldVisitor& visit, HeightsSpec& spec) {
            .must = "a finite number"});
     visit("width", spec.width,
           {.help = "Samples in a row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
+    visit("type", spec.type, {.help = "Samples of a raw file; int16 and float32 are metres"});
+    visit("order", spec.order, {.help = "Byte order of a raw file"});
     visit("offset", spec.offset,
           {.help = "Place of the first sample at height 0", .must = "three numbers x/y/z from -1e9 to 1e9"});
     visit("tile", spec.tile, {.help = "Squares along a tile's side, with --world", .range = {64.0, 8192.0}});

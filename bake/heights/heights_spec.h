@@ -4,12 +4,15 @@
 //     spacing=1,low=0,high=500           a grey image of whole numbers: 0 stands for low, the largest for high
 //     spacing=0.5,hole=-9999             an EXR image of metres
 //     low=-10,high=90,width=2048,hole=0  raw samples of 16 bits, little-endian
+//     spacing=30,type=int16,order=big    raw samples of metres, big-endian, as .hgt has them
 //
 // Columns of samples run along +x, rows along +z, and heights along +y, as glTF has it. The surface is bilinear between four
 // samples, and the ground is solid below it. Squares of which a corner is a hole have no ground.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -28,12 +31,22 @@ struct HeightsOffset {
 [[nodiscard]] bool readForm(std::string_view word, HeightsOffset& offset);
 [[nodiscard]] std::string formText(const HeightsOffset& offset);
 
+/// Of raw samples. Signed ones and floats are metres.
+enum class SampleType : std::uint8_t { kUint16, kInt16, kFloat32 };
+template <>
+inline constexpr std::array<std::string_view, 3> kWordsOf<SampleType>{"uint16", "int16", "float32"};
+enum class ByteOrder : std::uint8_t { kLittle, kBig };
+template <>
+inline constexpr std::array<std::string_view, 2> kWordsOf<ByteOrder>{"little", "big"};
+
 struct HeightsSpec {
     double spacing = 1.0;
     std::optional<double> low;
     std::optional<double> high;
     std::optional<double> hole;
     std::optional<std::uint32_t> width;
+    std::optional<SampleType> type;
+    std::optional<ByteOrder> order;
     HeightsOffset offset;
     std::uint32_t tile = 1024;
 };
@@ -46,6 +59,8 @@ void fields(FieldVisitor& visit, HeightsSpec& spec);
 
 /// Errors: kUsage, naming the key and the cure.
 [[nodiscard]] Result<HeightsSpec> parseHeightsSpec(std::string_view text);
+/// With the settings that the extension implies where none are given: .hgt is of big-endian int16, -32768 where there are none.
+[[nodiscard]] HeightsSpec completed(HeightsSpec spec, const std::filesystem::path& file);
 /// Every setting that is not the default: parseHeightsSpec() reads it back.
 [[nodiscard]] std::string toString(const HeightsSpec& spec);
 

@@ -40,7 +40,7 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(path));
     const std::string extension = lowerCase(path.extension().string());
     if (extension.empty() || meshFormat(extension.substr(1)) == nullptr) {
-        constexpr std::array<std::string_view, 4> kHeightMaps = {".png", ".exr", ".raw", ".r16"};
+        constexpr std::array<std::string_view, 5> kHeightMaps = {".png", ".exr", ".raw", ".r16", ".hgt"};
         const bool image = std::find(kHeightMaps.begin(), kHeightMaps.end(), extension) != kHeightMaps.end();
         return fail(ErrorCode::kUnsupported,
                     quotedPath(path) + ": no mesh format has the extension '" + cleanUtf8(extension) + "'; " +

@@ -168,6 +168,33 @@ TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
     }
 }
 
+/// Settings that are not those of the file are named, as far as they can be known.
+TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
+    const auto warned = [&](const std::string& settings) {
+        std::string all;
+        for (const std::string& warning : bake("h.raw", parseHeightsSpec(settings).value()).warnings) {
+            all += warning + "\n";
+        }
+        return all;
+    };
+    write("h.raw", 17, 17, hills);
+    EXPECT_EQ(warned("low=-20,high=44"), "");
+    EXPECT_NE(warned("low=-20,high=44,order=big")
+                  .find("h.raw: its samples look like those of another format; try --heights order=little\n"),
+              std::string::npos);
+    EXPECT_NE(warned("low=-2000,high=4400")
+                  .find("h.raw: most of its squares are steep; check --heights spacing, low "),
+              std::string::npos);
+    write("h.raw", 17, 17,
+          [](double x, double z) { return x == 9 && z == 4 ? double{kHole} : hills(x, z) + 25.0; });
+    const std::string hole = warned("low=-20,high=44");
+    EXPECT_NE(hole.find("h.raw: its lowest sample, 0, lies"), std::string::npos) << hole;
+    EXPECT_NE(hole.find(" far below all others; if it stands for no data, give --heights hole=0\n"),
+              std::string::npos)
+        << hole;
+    EXPECT_EQ(warned("low=-20,high=44,hole=0"), "");
+}
+
 /// A square along whose diagonal the ground rises by 66° has no bound, though each of its sides rises by 58°.
 TEST_F(GroundBakes, SteepSquaresAreCountedByTheirRiseAndHaveNoBound) {
     const auto report = [&](double slope, double kink) {

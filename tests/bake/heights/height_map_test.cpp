@@ -12,6 +12,7 @@
 #include <png.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -193,7 +194,7 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
     EXPECT_EQ(heights[5], 0.1F);
     EXPECT_TRUE(std::isnan(heights[2]));
     EXPECT_TRUE(std::isnan(heights[4]));
-    refuses(path, "low=0,high=1", "a.exr': --heights low is for images of whole numbers", ErrorCode::kUsage);
+    refuses(path, "low=0,high=1", "a.exr': --heights low is for unsigned samples", ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
     refuses(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
     writeParts(folder_ / "parts.exr");
@@ -215,15 +216,141 @@ TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
     EXPECT_EQ(heightsOf(square, "low=0,high=1").size(), 49U);
     const fs::path cut = writeRaw("b.raw", std::vector<std::uint16_t>(48, 7));
     refuses(cut, "low=0,high=1",
-            "b.raw': it has 96 bytes, which are no square of samples of 16 bits; give --heights width=N");
+            "b.raw': it has 96 bytes, which are no square of samples of 16 bits; give --heights width=N or "
+            "type=");
     refuses(cut, "low=0,high=1,width=7", "no rows of 7 samples");
     refuses(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
     refuses(write("none.raw", {}), "low=0,high=1", "0 bytes");
     refuses(square, "low=0", "needs high=, the height of sample 65535", ErrorCode::kUsage);
     refuses(square, "high=0", "needs low=, the height of sample 0", ErrorCode::kUsage);
     refuses(square, "low=0,high=1,hole=0.5", "whole number from 0 to 65535", ErrorCode::kUsage);
-    refuses(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1", "name it .r16", ErrorCode::kUnsupported);
+    refuses(writeRaw("a.bin", {1, 2, 3, 4}), "low=0,high=1",
+            "give --heights type= or width=", ErrorCode::kUnsupported);
     EXPECT_EQ(heightsOf(folder_ / "a.bin", "low=0,high=1,width=2").size(), 4U);
+}
+
+TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
+    const auto write = [&](const char* name, std::initializer_list<unsigned> values) {
+        std::vector<std::byte> bytes;
+        for (const unsigned value : values) {
+            bytes.push_back(static_cast<std::byte>(value));
+        }
+        return HeightMaps::write(name, bytes);
+    };
+    const fs::path big = write("a.raw", {0x00, 0x07, 0xff, 0xf1, 0x80, 0x00, 0x01, 0x00});
+    EXPECT_EQ(heightsOf(big, "type=int16,order=big"), (std::vector<float>{7.0F, -15.0F, -32768.0F, 256.0F}));
+    EXPECT_EQ(heightsOf(big, "order=big,low=0,high=65535"),
+              (std::vector<float>{7.0F, 65521.0F, 32768.0F, 256.0F}));
+    EXPECT_EQ(heightsOf(big, "type=int16"), (std::vector<float>{1792.0F, -3585.0F, 128.0F, 1.0F}));
+    const fs::path floats =
+        write("f.bin", {0x3f, 0xc0, 0, 0, 0xc2, 0x28, 0, 0, 0, 0, 0, 0, 0x7f, 0xc0, 0, 0});
+    const std::vector<float> metres = heightsOf(floats, "type=float32,order=big");
+    EXPECT_EQ(std::vector<float>(metres.begin(), metres.begin() + 3),
+              (std::vector<float>{1.5F, -42.0F, 0.0F}));
+    EXPECT_TRUE(std::isnan(metres[3]));
+    refuses(floats, "type=float32,width=3", "no rows of 3 samples of 32 bits; give another width or type");
+    refuses(big, "type=float32", "no square of samples of 32 bits");
+    refuses(big, "type=int16,low=0", "low is for unsigned samples, and these are heights", ErrorCode::kUsage);
+    refuses(big, "type=int16,hole=40000", "whole number from -32768 to 32767", ErrorCode::kUsage);
+    const fs::path png = writePng("p.png", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
+    refuses(png, "type=int16", "type is for raw samples", ErrorCode::kUsage);
+    refuses(png, "low=0,high=1,order=big", "order is for raw samples", ErrorCode::kUsage);
+
+    // As SRTM has it, with or without the width; what is given comes first.
+    const fs::path hgt = write("N00E000.HGT", {0x00, 0x07, 0xff, 0xf1, 0x80, 0x00, 0x01, 0x00});
+    for (const char* const settings : {"spacing=30", "spacing=30,width=2"}) {
+        const std::vector<float> heights = heightsOf(hgt, settings);
+        EXPECT_EQ(heights[1], -15.0F);
+        EXPECT_TRUE(std::isnan(heights[2]));
+        EXPECT_EQ(heights[3], 256.0F);
+    }
+    EXPECT_EQ(heightsOf(hgt, "order=little,hole=1")[0], 1792.0F);
+    const HeightsSpec implied = HeightMap::open(hgt, parseHeightsSpec("spacing=30").value())->spec();
+    EXPECT_EQ(toString(implied), "spacing=30,hole=-32768,type=int16,order=big");
+}
+
+/// Ground of 65² samples about 40 m high, which the sea cuts, written in every format and read as each.
+TEST_F(HeightMaps, ALikelierFormatOfRawSamplesIsFound) {
+    std::vector<double> ground;
+    for (int i = 0; i < 65 * 65; ++i) {
+        ground.push_back(
+            std::round(3000.0 * std::sin(i % 65 / 9.0) + 2000.0 * std::cos(i / 65 / 5.0) + 1500.0));
+    }
+    const auto bytesOf = [&](const std::string& type, const std::string& order) {
+        std::vector<std::byte> bytes;
+        for (const double height : ground) {
+            const auto number = static_cast<std::int16_t>(height);
+            const auto metres = static_cast<float>(1.0001 * height);
+            std::array<std::byte, 4> word{};
+            const std::size_t size = type == "float32" ? 4 : 2;
+            std::memcpy(word.data(), size == 4 ? static_cast<const void*>(&metres) : &number, size);
+            if (order == "big") {
+                std::reverse(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(size));
+            }
+            bytes.insert(bytes.end(), word.begin(), word.begin() + static_cast<std::ptrdiff_t>(size));
+        }
+        return bytes;
+    };
+    const auto found = [&](const std::vector<std::byte>& bytes, const std::string& type,
+                           const std::string& order) {
+        const std::string settings =
+            "width=65,type=" + type + ",order=" + order + (type == "uint16" ? ",low=0,high=65535" : "");
+        return HeightMap::open(write("g.raw", bytes), parseHeightsSpec(settings).value())->likelierFormat();
+    };
+    const std::array<std::string, 2> orders = {"little", "big"};
+    for (const std::string& order : orders) {
+        const std::string& other = orders[order == "little" ? 1 : 0];
+        const std::vector<std::byte> shorts = bytesOf("int16", order);
+        EXPECT_EQ(found(shorts, "int16", order), "");
+        EXPECT_EQ(found(shorts, "int16", other), "order=" + order);
+        EXPECT_EQ(found(shorts, "uint16", order), "type=int16");
+        EXPECT_EQ(found(shorts, "uint16", other), "type=int16,order=" + order);
+        const std::vector<std::byte> floats = bytesOf("float32", order);
+        EXPECT_EQ(found(floats, "float32", order), "");
+        EXPECT_EQ(found(floats, "float32", other), "order=" + order);
+        EXPECT_EQ(found(floats, "uint16", order), "type=float32");
+        EXPECT_EQ(found(floats, "int16", other), "type=float32,order=" + order);
+    }
+    // Right as they are: heights without a sign up to the largest, walls of two levels, and 8 bits that were spread.
+    const std::vector<double> hills = ground;
+    for (double& height : ground) {
+        height = 6.0 * height + 33000.0;
+    }
+    std::vector<std::uint16_t> samples(ground.begin(), ground.end());
+    EXPECT_EQ(found({std::as_bytes(std::span(samples)).begin(), std::as_bytes(std::span(samples)).end()},
+                    "uint16", "little"),
+              "");
+    for (const unsigned step : {65535U, 256U, 257U}) {
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const bool wall = i % 7 == 0;
+            samples[i] = static_cast<std::uint16_t>(
+                step == 65535U ? (wall ? step : 0U)
+                               : step * static_cast<unsigned>((hills[i] + 3500.0) / 40.0));
+        }
+        const auto bytes = std::as_bytes(std::span(samples));
+        EXPECT_EQ(found({bytes.begin(), bytes.end()}, "uint16", "little"), "") << step;
+    }
+    refuses(write("f.raw", bytesOf("float32", "big")), "type=float32",
+            "beyond 1e9; give --heights order=big");
+}
+
+TEST_F(HeightMaps, ALoneSampleFarFromAllOthersIsFound) {
+    const auto lone = [](std::initializer_list<float> samples) {
+        SampleRange range;
+        for (const float sample : samples) {
+            range.add(sample);
+        }
+        const std::optional<LoneSample> found = range.lone();
+        return found ? std::string(found->lowest ? "low " : "high ") + std::to_string(std::lround(found->gap))
+                     : "";
+    };
+    EXPECT_EQ(lone({3.0F, -9999.0F, 5.0F, -9999.0F, 4.0F}), "low 10002");
+    EXPECT_EQ(lone({-400.0F, 8848.0F, 100.0F, -9999.0F}), "low 9599");
+    EXPECT_EQ(lone({65535.0F, 100.0F, 30000.0F, 65535.0F}), "high 35535");
+    EXPECT_EQ(lone({0.0F, 65535.0F}), "");
+    EXPECT_EQ(lone({7.0F, 7.0F}), "");
+    EXPECT_EQ(lone({}), "");
+    EXPECT_EQ(lone({1.0F, 2.0F, 3.0F}), "");
 }
 
 TEST_F(HeightMaps, GreyMayBeSavedInColourAndOpaque) {

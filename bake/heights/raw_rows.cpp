@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake/heights/raw_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace relief {
+namespace {
+
+/// Of raw samples.
+struct RawFormat {
+    SampleType type = SampleType::kUint16;
+    ByteOrder order = ByteOrder::kLittle;
+    friend bool operator==(const RawFormat&, const RawFormat&) = default;
+
+    [[nodiscard]] std::size_t bytes() const { return type == SampleType::kFloat32 ? 4 : 2; }
+};
+
+RawFormat formatOf(const HeightsSpec& spec) {
+    return {spec.type.value_or(SampleType::kUint16), spec.order.value_or(ByteOrder::kLittle)};
+}
+
+/// Numbers without a header.
+class RawRows : public SampleRows {
+  public:
+    RawRows(std::span<const std::byte> bytes, std::uint64_t columns, const RawFormat& format)
+        : left_(bytes), format_(format) {
+        columns_ = columns;
+        rows_ = bytes.size() / format.bytes() / columns;
+        most_ = format.type == SampleType::kUint16 ? 65535 : 0;
+    }
+    Result<void> next(std::span<float> out) override {
+        switch (format_.type) {
+            case SampleType::kUint16:
+                decode<2>(out, [](std::uint32_t bits) { return static_cast<float>(bits); });
+                break;
+            case SampleType::kInt16:
+                decode<2>(out, [](std::uint32_t bits) {
+                    return static_cast<float>(static_cast<std::int16_t>(bits));
+                });
+                break;
+            case SampleType::kFloat32:
+                decode<4>(out, [](std::uint32_t bits) { return std::bit_cast<float>(bits); });
+        }
+        return {};
+    }
+
+  private:
+    template <std::size_t kBytes, class Value>
+    void decode(std::span<float> out, const Value& value) {
+        const std::size_t turned = format_.order == ByteOrder::kBig ? kBytes - 1 : 0;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            std::uint32_t bits = 0;
+            for (std::size_t byte = 0; byte < kBytes; ++byte) {
+                bits |= std::to_integer<std::uint32_t>(left_[kBytes * i + (byte ^ turned)]) << 8U * byte;
+            }
+            out[i] = value(bits);
+        }
+        left_ = left_.subspan(kBytes * out.size());
+    }
+
+    std::span<const std::byte> left_;
+    RawFormat format_;
+};
+
+/// Samples in a row of a raw file of so many bytes; 0: it has no such rows.
+std::uint64_t columnsOf(std::size_t bytes, std::optional<std::uint32_t> width, const RawFormat& format) {
+    const std::uint64_t samples = bytes / format.bytes();
+    const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(samples)));
+    const std::uint64_t columns = width ? *width : side;
+    const bool whole = bytes % format.bytes() == 0 && columns > 0 && samples % columns == 0;
+    return whole && (width || side * side == samples) ? columns : 0;
+}
+
+/// How much neighbours differ.
+struct Variation {
+    double between = 0.0;  ///< neighbours of a row, on average
+    double spread = 0.0;   ///< from the mean, on average
+
+    /// Of smooth ground far below 1, of noise some 1.3.
+    [[nodiscard]] double roughness() const {
+        return spread > 0.0 ? between / spread : std::numeric_limits<double>::infinity();
+    }
+};
+
+/// Of at most 64 rows of a raw file. nullopt: it is not of this format, as it has no such rows, or too many of its samples are no
+/// heights.
+std::optional<Variation> variationOf(std::span<const std::byte> bytes, std::optional<std::uint32_t> width,
+                                     const RawFormat& format) {
+    constexpr std::uint64_t kRows = 64;
+    constexpr std::uint64_t kSamples = std::uint64_t{1} << 20;
+    const std::uint64_t columns = columnsOf(bytes.size(), width, format);
+    if (columns == 0) {
+        return std::nullopt;
+    }
+    const std::uint64_t rows = bytes.size() / format.bytes() / columns;
+    const std::uint64_t read = std::min({rows, kRows, 1 + kSamples / columns});
+    std::vector<float> samples(read * columns);
+    for (std::uint64_t i = 0; i < read; ++i) {
+        const std::span<const std::byte> row = bytes.subspan(i * rows / read * columns * format.bytes());
+        static_cast<void>(
+            RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
+    }
+    const auto isHeight = [](float sample) { return std::abs(double{sample}) <= kHeightMax; };
+    double sum = 0.0;
+    double count = 0.0;
+    Variation variation;
+    double pairs = 0.0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!isHeight(samples[i])) {
+            continue;
+        }
+        sum += double{samples[i]};
+        ++count;
+        if (i % columns > 0 && isHeight(samples[i - 1])) {
+            variation.between += std::abs(double{samples[i]} - double{samples[i - 1]});
+            ++pairs;
+        }
+    }
+    if (count < 0.5 * static_cast<double>(samples.size()) || pairs == 0.0) {
+        return std::nullopt;
+    }
+    variation.between /= pairs;
+    for (const float sample : samples) {
+        variation.spread += isHeight(sample) ? std::abs(double{sample} - sum / count) / count : 0.0;
+    }
+    return variation;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes, const HeightsSpec& spec) {
+    const RawFormat format = formatOf(spec);
+    const std::uint64_t columns = columnsOf(bytes.size(), spec.width, format);
+    if (columns == 0) {
+        const std::string size = "it has " + std::to_string(bytes.size()) + " bytes, which are no ";
+        const std::string samples = " samples of " + std::to_string(8 * format.bytes()) + " bits; give ";
+        return invalidInput(spec.width ? size + "rows of " + std::to_string(*spec.width) + samples +
+                                             "another width or type, or copy it again"
+                                       : size + "square of" + samples +
+                                             "--heights width=N or type=, or copy it again");
+    }
+    return std::make_unique<RawRows>(bytes, columns, format);
+}
+
+std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
+    const RawFormat own = formatOf(spec);
+    const auto variation = [&](const RawFormat& format) {
+        return variationOf(bytes, spec.width, format).value_or(Variation());
+    };
+    // Of both signs the other one only if its jumps are few, and it is more than a step between two levels.
+    const auto ofTwoBytes = [&](ByteOrder order) {
+        const RawFormat given{own.bytes() == 2 ? own.type : SampleType::kUint16, order};
+        const RawFormat other{given.type == SampleType::kInt16 ? SampleType::kUint16 : SampleType::kInt16,
+                              order};
+        const Variation of_other = variation(other);
+        const bool fewer = 4.0 * of_other.between < variation(given).between && of_other.spread > 2.0;
+        return fewer ? other : given;
+    };
+    const std::array<RawFormat, 4> formats = {ofTwoBytes(ByteOrder::kLittle), ofTwoBytes(ByteOrder::kBig),
+                                              RawFormat{SampleType::kFloat32, ByteOrder::kLittle},
+                                              RawFormat{SampleType::kFloat32, ByteOrder::kBig}};
+    RawFormat best = own.bytes() == 2 ? ofTwoBytes(own.order) : own;
+    if (best == own) {
+        constexpr double kNoise = 1.3;
+        double least = 0.5 * std::min(variation(own).roughness(), kNoise);
+        for (const RawFormat& format : formats) {
+            if (const double roughness = variation(format).roughness(); roughness < least) {
+                least = roughness;
+                best = format;
+            }
+        }
+    }
+    const std::string type = "type=" + std::string(wordOf(best.type));
+    const std::string order = "order=" + std::string(wordOf(best.order));
+    return best == own               ? std::string()
+           : best.order == own.order ? type
+           : best.type == own.type   ? order
+                                     : type + "," + order;
+}
+
+}  // namespace relief
