@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/recipe/recipe_run.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -13,6 +11,7 @@
 
 #include "bake/recipe/child_process.h"
 #include "formats/base/file_io.h"
+#include "formats/base/temporary_file.h"
 #include "formats/base/text.h"
 #include "formats/world/world.h"
 
@@ -26,22 +25,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kCacheInterval = std::chrono::seconds(2);
 constexpr std::string_view kErrorStart = "relief: error: ";
 constexpr std::string_view kWarningStart = "relief: warning: ";
-
-/// Removes the unfinished output of a child that was killed (formats/base/file_io.cpp names it).
-void removeTemporaries(const fs::path& folder, pid_t pid) {
-    const std::string start = ".relief-" + std::to_string(pid) + "-";
-    std::error_code error;
-    std::vector<fs::path> left;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
-        if (name.starts_with(start) && name.ends_with(".tmp")) {
-            left.push_back(entry->path());
-        }
-    }
-    for (const fs::path& path : left) {
-        ::unlink(path.c_str());
-    }
-}
 
 /// The output of a job as an entry of the cache: its bytes and hashes. Errors: none, or no world.
 Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
@@ -242,7 +225,7 @@ class Runner {
             }
         }
         if (end.signal != 0) {
-            removeTemporaries(asset.job.output_path.parent_path(), end.pid);
+            TemporaryFile::removeLeftovers(asset.job.output_path.parent_path());
             if (children_.askedToEnd() == 0) {
                 failAsset(asset, {ErrorCode::kFailure,
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +

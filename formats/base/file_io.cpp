@@ -9,7 +9,9 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -134,6 +136,17 @@ Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes
     return {};
 }
 
+/// Of processes that were killed, once in each folder.
+void removeLeftoversOnce(const fs::path& folder) {
+    static std::mutex mutex;
+    static std::set<fs::path> done;
+    std::error_code error;
+    const std::scoped_lock lock(mutex);
+    if (done.insert(fs::absolute(folder, error)).second) {
+        TemporaryFile::removeLeftovers(folder);
+    }
+}
+
 /// \param older_mode  permission bits of the file that is replaced, if there is one.
 Result<void> replaceFile(const fs::path& target, const std::string& name, std::span<const std::byte> bytes,
                          std::optional<mode_t> older_mode) {
@@ -151,6 +164,7 @@ Result<void> replaceFile(const fs::path& target, const std::string& name, std::s
     if (code != 0) {
         return ioError("write", name, code);
     }
+    removeLeftoversOnce(folder);
     // A folder that may be written but not read cannot be synced: the file is whole all the same.
     if (const Descriptor opened(openRetry(folder.c_str(), O_RDONLY | O_DIRECTORY)); opened) {
         if (const int sync_code = syncToDisk(opened.get())) {

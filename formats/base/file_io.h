@@ -37,7 +37,7 @@ namespace relief {
 /// temporary file is left. If only the last fsync fails, the message says that the new file is in place.
 ///
 /// A new file has the permissions that the umask leaves. An older file's permission bits are kept; its owner,
-/// ACLs and other names (hard links) are not. A symbolic link stays, and the file that it points to is
+/// ACLs and other names (hard links) are not. Temporary files that killed processes left in the folder are removed. A symbolic link stays, and the file that it points to is
 /// replaced. "-" writes standard output; /dev/stdout, /dev/fd/N and devices (/dev/full) are written in place.
 /// Errors: kIo, with the system's words.
 [[nodiscard]] Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);

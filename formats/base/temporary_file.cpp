@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/base/temporary_file.h"
 
+#include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 
@@ -8,9 +9,14 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 namespace relief {
 
@@ -24,6 +30,38 @@ struct TemporaryFile::Slot {
     static std::array<Slot, 32> all;  ///< where a signal handler finds them
 };
 std::array<TemporaryFile::Slot, 32> TemporaryFile::Slot::all;
+
+namespace {
+
+/// Takes a decimal number without zeros in front, and the character behind it, from the front.
+std::optional<std::uint64_t> takeNumber(std::string_view& text, char behind) {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto length = static_cast<std::size_t>(end - text.data());
+    if (error != std::errc() || length == text.size() || *end != behind || (text[0] == '0' && length > 1)) {
+        return std::nullopt;
+    }
+    text.remove_prefix(length + 1);
+    return number;
+}
+
+/// Of a name that create() makes.
+std::optional<pid_t> processOf(std::string_view name) {
+    constexpr std::string_view kStart = ".relief-";
+    constexpr std::string_view kEnd = ".tmp";
+    constexpr std::size_t kRandomDigits = 8;
+    if (!name.starts_with(kStart) || !name.ends_with(kEnd)) {
+        return std::nullopt;
+    }
+    name.remove_prefix(kStart.size());
+    const std::optional<std::uint64_t> process = takeNumber(name, '-');
+    const bool right = process && *process > 0 && *process <= INT_MAX && takeNumber(name, '-') &&
+                       name.size() == kRandomDigits + kEnd.size() &&
+                       name.find_first_not_of("0123456789abcdef") == kRandomDigits;
+    return right ? std::optional(static_cast<pid_t>(*process)) : std::nullopt;
+}
+
+}  // namespace
 
 TemporaryFile::~TemporaryFile() {
     if (slot_ != nullptr) {
@@ -58,6 +96,8 @@ int TemporaryFile::create(const fs::path& folder, mode_t mode) {
         slot_->live = false;
         return code;
     }
+    // For removeLeftovers() of others; not every file system has locks.
+    static_cast<void>(::flock(file_.get(), LOCK_EX | LOCK_NB));
     return 0;
 }
 
@@ -90,6 +130,25 @@ void TemporaryFile::removeAll() {
         }
     }
     errno = before;
+}
+
+void TemporaryFile::removeLeftovers(const fs::path& folder) {
+    std::error_code error;
+    std::vector<fs::path> left;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::optional<pid_t> process = processOf(entry->path().filename().native());
+        if (process && ::kill(*process, 0) != 0 && errno == ESRCH) {
+            left.push_back(entry->path());
+        }
+    }
+    for (const fs::path& path : left) {
+        const Descriptor file(openRetry(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK));
+        struct stat status {};
+        if (file && ::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode) &&
+            status.st_uid == ::geteuid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) {
+            ::unlink(path.c_str());
+        }
+    }
 }
 
 void endCleanlyOnSignals() {

@@ -13,7 +13,7 @@
 namespace relief {
 
 /// A temporary file beside the file that it will replace, `.relief-PID-N-RANDOM.tmp`. Removed unless it has been renamed: by
-/// the destructor, and by removeAll(). After SIGKILL or a power cut it stays.
+/// the destructor, and by removeAll(). After SIGKILL or a power cut it stays, until removeLeftovers().
 class TemporaryFile {
   public:
     TemporaryFile() = default;
@@ -29,6 +29,10 @@ class TemporaryFile {
 
     /// Removes all of this process, before it ends. Safe in a signal handler.
     static void removeAll();
+
+    /// Removes those in a folder whose process has ended: own regular files of exactly such a name that no process has locked,
+    /// so that those of another machine or container stay while they are written.
+    static void removeLeftovers(const std::filesystem::path& folder);
 
   private:
     struct Slot;

@@ -2,6 +2,9 @@
 #include "formats/base/temporary_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 
 #include <csignal>
 #include <fstream>
@@ -59,6 +62,58 @@ TEST_F(TemporaryFiles, ASignalThatEndsTheProgramRemovesThem) {
         EXPECT_EXIT(work(), testing::KilledBySignal(number), "");
         EXPECT_TRUE(names().empty()) << number;
     }
+}
+
+TEST_F(TemporaryFiles, ThoseOfAKilledProcessGoWithTheNextOutput) {
+    const pid_t killed = ::fork();
+    if (killed == 0) {
+        TemporaryFile file;
+        ::_exit(file.create(folder_, 0600) == 0 ? ::raise(SIGKILL) : 1);
+    }
+    int status = 0;
+    ::waitpid(killed, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    ASSERT_EQ(names().size(), 1U);
+    ASSERT_TRUE(writeFile(folder_ / "a", {}));
+    EXPECT_EQ(names(), std::set<std::string>{"a"});
+
+    // All others stay: of a live process, of one elsewhere that still writes, links, folders, pipes, and other names.
+    const std::string dead = ".relief-" + std::to_string(killed) + "-";
+    const fs::path other = folder_ / "other";
+    fs::create_directory(other);
+    std::set<std::string> kept = {".relief-" + std::to_string(::getpid()) + "-0-01234567.tmp",
+                                  ".relief-" + std::to_string(::getppid()) + "-0-01234567.tmp",
+                                  dead + "0-0123456.tmp",
+                                  dead + "0-012345678.tmp",
+                                  dead + "0-0123456G.tmp",
+                                  dead + "0-01234567.tmp~",
+                                  dead + "-01234567.tmp",
+                                  dead + "0x0-01234567.tmp",
+                                  ".relief-0" + std::to_string(killed) + "-0-01234567.tmp",
+                                  ".relief-0-0-01234567.tmp",
+                                  ".relief--1-0-01234567.tmp",
+                                  ".relief-99999999999999999999-0-01234567.tmp",
+                                  "x" + dead + "0-01234567.tmp",
+                                  dead + "9-01234567.tmp"};
+    for (const std::string& name : kept) {
+        std::ofstream(other / name) << "kept";
+    }
+    const Descriptor locked(openRetry((other / (dead + "9-01234567.tmp")).c_str(), O_RDWR));
+    ASSERT_EQ(::flock(locked.get(), LOCK_EX), 0);
+    std::ofstream(other / "target") << "kept";
+    fs::create_symlink("target", other / (dead + "1-01234567.tmp"));
+    fs::create_directory(other / (dead + "2-01234567.tmp"));
+    ASSERT_EQ(::mkfifo((other / (dead + "3-01234567.tmp")).c_str(), 0600), 0);
+    std::ofstream(other / (dead + "4-01234567.tmp")) << "gone";
+    std::ofstream(other / (dead + "4000000000-89abcdef.tmp")) << "gone";
+    ASSERT_TRUE(writeFile(other / "a", {}));
+    kept.insert({"a", "target", dead + "1-01234567.tmp", dead + "2-01234567.tmp", dead + "3-01234567.tmp"});
+    std::set<std::string> found;
+    for (const auto& entry : fs::directory_iterator(other)) {
+        found.insert(entry.path().filename());
+    }
+    EXPECT_EQ(found, kept);
+    EXPECT_EQ(fs::file_size(other / "target"), 4U);
 }
 
 TEST_F(TemporaryFiles, AnIgnoredSignalStaysIgnored) {
