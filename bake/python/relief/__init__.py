@@ -15,12 +15,14 @@ wrong type is a TypeError.
 from __future__ import annotations
 
 import dataclasses
+import difflib
+import functools
 import inspect
 import os
 import re
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, NoReturn, Optional, Union
+from typing import Any, NamedTuple, NoReturn, Optional, TypeVar, Union
 
 import numpy as np
 
@@ -53,6 +55,30 @@ def _named(fields: list[tuple[str, str, str]]) -> dict[str, _Field]:
 _BAKE = _named(_relief.bake_fields())
 _CHECK = _named(_relief.check_fields())
 _ARGUMENTS = {"--" + field.name.replace("_", "-"): name for name, field in {**_BAKE, **_CHECK}.items()}
+
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def _hinting(function: _Function) -> _Function:
+    """The function, whose error about an unknown argument names the nearest one."""
+    known = list(inspect.signature(function).parameters)
+    name = function.__qualname__.removesuffix(".__init__")
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **named: Any) -> Any:
+        for argument in named:
+            if argument not in known:
+                near = difflib.get_close_matches(argument, known, 1)
+                raise TypeError(f"{name}() has no argument {argument!r}; "
+                                + (f"did you mean {near[0]!r}?" if near else f"see help(relief.{name})"))
+        return function(*arguments, **named)
+
+    return call  # type: ignore[return-value]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__", "__doc__", "__name__", "__file__"]
 
 
 class ReliefWarning(UserWarning):
@@ -94,6 +120,9 @@ class DepthMap:
             return self.__dict__["_about"][name]
         except KeyError:
             raise AttributeError(name) from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._about]
 
     @property
     def texels(self) -> np.ndarray:
@@ -152,6 +181,7 @@ class Collider:
     def maps(self) -> list[DepthMap]:
         return [DepthMap(self, i) for i in range(self._handle.map_count)]
 
+    @_hinting
     def query(self, points: Any, distance: str = "plane") -> Samples:
         """Evaluates it at points, (n, 3).
 
@@ -162,10 +192,12 @@ class Collider:
             raise UsageError(f"distance is {distance!r} but must be 'plane' or 'nearest'")
         return Samples(*self._handle.query(_coordinates(points, "points"), distance))
 
+    @_hinting
     def save(self, path: Path, compression: int = 0) -> None:
         """Writes a .relief file, whole or not at all. compression: zstd's level, 1 to 19; 0: none."""
         _relief.save(self._handle, _path(path), _whole(compression, "compression", 0, 19))
 
+    @_hinting
     def to_bytes(self, compression: int = 0) -> bytes:
         """What save() writes, for load()."""
         return _relief.to_bytes(self._handle, _whole(compression, "compression", 0, 19))
@@ -178,6 +210,7 @@ class World:
     """The world.json of `relief bake --world`, with its colliders. Body i is the file's i-th. Nothing changes one: arrays are
     copies."""
 
+    @_hinting
     def __init__(self, path: Path) -> None:
         self._handle = _relief.load_world(_path(path))
         self._nodes = list(self._handle.nodes)
@@ -376,10 +409,11 @@ def _run(work: Callable[..., tuple[Any, list[str]]], *arguments: Any) -> Any:
     except Error as error:
         raise type(error)(_in_python(str(error))) from None
     for text in said:
-        warnings.warn(_in_python(text), ReliefWarning, stacklevel=3)
+        warnings.warn(_in_python(text), ReliefWarning, stacklevel=4)
     return made
 
 
+@_hinting
 def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
          # generated: bake-arguments by scripts/generate.sh
          maps: Union[str, Sequence[str], None] = None,
@@ -428,6 +462,7 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
     return Collider(_run(_relief.bake, words, *_source(mesh, triangles, name)))
 
 
+@_hinting
 def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
     """A .relief file, or its bytes."""
     if isinstance(source, (bytes, bytearray, memoryview)):
@@ -435,6 +470,7 @@ def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
     return Collider(_relief.load(_path(source, "source")))
 
 
+@_hinting
 def check(collider: Collider, mesh: Any, triangles: Any = None, *,
           # generated: check-arguments by scripts/generate.sh
           samples: Optional[Number] = None,
@@ -497,6 +533,7 @@ def _of_state(name: str, about: str) -> Any:
 class Simulation:
     """A scene of `relief-sim`, without a window. It belongs to the thread that makes it; several may take turns there."""
 
+    @_hinting
     def __init__(self, scene: Path, *, seed: Optional[int] = None, root: Optional[Path] = None,
                  hits: bool = False) -> None:
         """seed: of every emitter, instead of the scene's. root: a folder whose files the scene may name beside those of

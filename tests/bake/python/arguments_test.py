@@ -2,6 +2,7 @@
 """What the package makes of arguments that are wrong, odd or hostile: never a silent answer, never an error of the binding."""
 import copy
 import gc
+import inspect
 import multiprocessing
 import pickle
 import threading
@@ -26,6 +27,31 @@ def scene(tmp_path, collider):
     collider.save(tmp_path / "c.relief")
     (tmp_path / "s.toml").write_text(SCENE)
     return tmp_path / "s.toml"
+
+
+def test_unknown_arguments_are_named_with_the_nearest_one(collider, scene):
+    calls = [
+        (lambda: relief.bake(VERTICES, TRIANGLES, budgte="20kB"), r"bake\(\) has no argument 'budgte'; did you mean 'budget'\?"),
+        (lambda: relief.bake(VERTICES, TRIANGLES, map="cube"), "'map'; did you mean 'maps'"),
+        (lambda: relief.bake(VERTICES, TRIANGLES, zzz=1), r"bake\(\) has no argument 'zzz'; see help\(relief.bake\)"),
+        (lambda: relief.check(collider, VERTICES, TRIANGLES, sample=5), r"check\(\) .*'sample'; did you mean 'samples'"),
+        (lambda: collider.query(VERTICES, distances="plane"), r"query\(\) .*did you mean 'distance'"),
+        (lambda: collider.save("x.relief", compress=3), r"save\(\) .*did you mean 'compression'"),
+        (lambda: collider.to_bytes(compress=3), r"to_bytes\(\) .*did you mean 'compression'"),
+        (lambda: relief.Simulation(scene, sed=1), r"Simulation\(\) .*did you mean 'seed'"),
+        (lambda: relief.World(paht="w"), r"World\(\) .*did you mean 'path'"),
+        (lambda: relief.load(sauce="x"), r"load\(\) .*did you mean 'source'"),
+    ]
+    for call, words in calls:
+        with pytest.raises(TypeError, match=words):
+            call()
+
+
+def test_dir_shows_the_api_only(collider):
+    assert set(dir(relief)) == {*relief.__all__, "__version__", "__doc__", "__name__", "__file__"}
+    assert all(hasattr(relief, name) for name in dir(relief))
+    assert {"format", "width", "height", "texels"} <= set(dir(collider.maps[0]))
+    assert list(inspect.signature(relief.bake).parameters)[:4] == ["mesh", "triangles", "name", "maps"]
 
 
 @pytest.mark.parametrize("number", [2**32 + 1, 2**64 - 1])
