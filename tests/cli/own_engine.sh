@@ -4,9 +4,11 @@
 . "$(dirname "$0")/lib.sh"
 
 sample=$RELIEF_SOURCE/samples/own_engine
-command=$(sed -n 's/^ *\(cc -std.*\)/\1/p' "$sample/README.md")
-cp "$sample/own_engine.c" .
-sh -c "$command -Wall -Wextra -Wpedantic -Werror" || die "own_engine.c does not compile as its page says"
+cp "$sample"/*.c .
+[ "$(wc -l <minimal.c)" -le 80 ] || die "minimal.c has more than 80 lines"
+sed -n 's/^ *\(cc -std.*\)/\1/p' "$sample/README.md" | while read -r command; do
+    sh -c "$command -Wall -Wextra -Wpedantic -Werror" || die "it does not compile as its page says: $command"
+done
 
 python3 - <<'P'
 import random
@@ -25,6 +27,11 @@ while read -r specs; do
     ./own_engine gpu points.csv --fall >fallen.csv
     "$relief" query body.relief --points points.csv -o reference.csv --distance plane
     "$relief" query body.relief --points fallen.csv -o fallen_reference.csv --distance plane
+    for row in 1000 5000; do
+        # shellcheck disable=SC2046
+        ./minimal gpu $(sed -n "${row}p" points.csv | tr ',' ' ') | cmp - <(sed -n "${row}p" own.csv | cut -d, -f4-7) ||
+            die "minimal and own_engine disagree at point $row: $specs"
+    done
     python3 - "$specs" <<'P' || die "own_engine and relief query disagree: $specs"
 import csv, sys
 own = [[float(x) for x in row] for row in csv.reader(open('own.csv'))]
