@@ -10,7 +10,13 @@ threads=$(($(nproc) + 1)) # some tests wait more than they work
 jobs=()
 
 # job GROUP MINUTES NAME: declares the function job_NAME below it.
-job() { jobs+=("$3 $1 $2"); }
+job() {
+    ! declare -F "job_$3" >/dev/null || {
+        echo "jobs.sh: two jobs are called '$3'" >&2
+        exit 2
+    }
+    jobs+=("$3 $1 $2")
+}
 
 say() { echo "$name: $*"; }
 
@@ -257,14 +263,6 @@ job_packages() {
     say "removed, they leave nothing behind"
 }
 
-# The README's test command where nothing is installed.
-job nightly 15 bare
-job_bare() {
-    make_bare git,ca-certificates
-    git clone -q . "$work/bare/srv/relief"
-    in_bare 'cd /srv/relief && time scripts/test.sh'
-}
-
 # --- weekly ---
 
 job weekly 45 clang
@@ -482,7 +480,8 @@ make_bare() {
     echo 'cafile=/etc/ssl/certs/ca-certificates.crt' >"$work/bare/etc/npmrc"
 }
 
-job weekly 60 bare
+# The README's test command where nothing is installed; then without root, and without a GL.
+job nightly 25 bare
 job_bare() {
     make_bare ca-certificates,git
     git clone -q --no-hardlinks . "$work/bare/srv/relief"
