@@ -138,8 +138,8 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     // Cheap checks come first.
     FileGuard guard = options.guard;
     RELIEF_TRY(checkOutputs(options, guard));
-    const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
-    std::vector<std::string> warnings = sceneWarnings(loaded);
+    auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
+    std::vector<std::string> warnings = fitSweep(loaded);
     RELIEF_TRY(checkFrames(options, loaded, guard));
     const auto context = RELIEF_TRY(makeContext(options));
     auto simulation =

@@ -29,7 +29,7 @@ CheckedFile checkedFile(const fs::path& path, const char* kind) {
 }  // namespace
 
 Result<CheckReport> checkScene(const PlayerOptions& options) {
-    const auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
+    auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
     const auto& render = loaded.scene.render;
     if (std::uint64_t{render.width} * render.height > Frame::kPixelsMax) {
         return fail(ErrorCode::kLimit, quotedPath(options.input) + ": render.size has more than " +
@@ -89,7 +89,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     }
     report.steps = loaded.scene.time.steps;
     report.capacity = loaded.scene.particles.capacity;
-    report.warnings = sceneWarnings(loaded);
+    report.warnings = fitSweep(loaded);
     return report;
 }
 

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
 
 #include "formats/base/file_io.h"
 #include "formats/nearest_surface.h"
+#include "runtime/particles/step_pass.h"
 
 namespace relief {
 namespace {
@@ -98,16 +100,28 @@ struct Thin {
     float step = 0.0F;
 };
 
-/// Of several, the thinnest decides the cure.
-std::string thinWarning(std::span<const Thin> all) {
+/// Of several, the thinnest decides the cure; `sweeps`: collision.sweep can be one.
+std::string thinWarning(std::span<const Thin> all, bool sweeps) {
     const Thin& worst = *std::min_element(all.begin(), all.end(),
                                           [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
     const bool several = all.size() > 1;
     return "at a speed of " + number(double{worst.speed}) + " a step is " + number(double{worst.step}) +
            " long, and " + worst.file + " mostly " + number(double{worst.thick}) + " thick" +
            (several ? ", the thinnest of " + std::to_string(all.size()) + " such colliders" : "") +
-           ": particles may pass through " + (several ? "them" : "it") +
-           "; set collision.sweep = " + number(0.5 * double{worst.thick}) + ", or a smaller time.dt";
+           ": particles may pass through " + (several ? "them" : "it") + "; set " +
+           (sweeps ? "collision.sweep = " + number(0.5 * double{worst.thick}) + ", or " : "") +
+           "a smaller time.dt";
+}
+
+/// Half of the thinnest, or what the pieces of a sweep reach in the longest step.
+float sweepFor(std::span<const Thin> all) {
+    float half = std::numeric_limits<float>::max();
+    float longest = 0.0F;
+    for (const Thin& thin : all) {
+        half = std::min(half, 0.5F * thin.thick);
+        longest = std::max(longest, thin.step);
+    }
+    return std::max(half, longest / static_cast<float>(StepPass::kSweepPieces - 1));
 }
 
 /// Mostly from one side of a body to the other, in units of its object space; nullopt: too little of it is seen.
@@ -137,9 +151,8 @@ std::optional<float> typicalThickness(const Collider& collider) {
     return *middle;
 }
 
-}  // namespace
-
-std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
+/// Of the colliders, those that are thinner than a step; each file once.
+std::vector<Thin> thinColliders(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     std::vector<Birth> births;
     const auto motions = emitterMotions(scene.emitters, scene.colliders);
@@ -154,14 +167,11 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
         of_groups.push_back(fastestAt(i, loaded, births));
     }
     std::map<const Collider*, std::optional<float>> thicknesses;
-    std::set<std::string> warned;  // names of files: a world has a file many times
+    std::set<std::string> found;  // names of files: a world has a file many times
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
         const Fastest fastest = of_groups[std::min(body.tile_of.value_or(i), of_groups.size() - 1)];
-        const float speed = fastest.speed;
-        const float step = scene.collision.sweep > 0.0F
-                               ? std::min(speed * scene.time.dt, scene.collision.sweep)
-                               : speed * scene.time.dt;
+        const float step = fastest.speed * scene.time.dt;
         const Collider& collider = *loaded.colliders[i];
         const auto known = thicknesses.find(&collider);
         const auto thickness = known != thicknesses.end() ? known->second
@@ -169,11 +179,29 @@ std::vector<std::string> sceneWarnings(const LoadedScene& loaded) {
                                                           : typicalThickness(collider);
         thicknesses.emplace(&collider, thickness);
         const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
-        if (thickness && step > thick && warned.insert(body.path.string()).second) {
-            thin.push_back({quotedPath(body.path.filename()), thick, speed, step});
+        if (thickness && step > thick && found.insert(body.path.string()).second) {
+            thin.push_back({quotedPath(body.path.filename()), thick, fastest.speed, step});
         }
     }
-    return thin.empty() ? std::vector<std::string>() : std::vector{thinWarning(thin)};
+    return thin;
+}
+
+}  // namespace
+
+std::vector<std::string> fitSweep(LoadedScene& loaded) {
+    std::vector<Thin> thin = thinColliders(loaded);
+    std::optional<float>& sweep = loaded.scene.collision.sweep;
+    const bool chosen = !sweep && !thin.empty();
+    if (chosen) {
+        sweep = sweepFor(thin);
+    }
+    if (sweep.value_or(0.0F) > 0.0F) {
+        std::erase_if(thin, [&](Thin& each) {
+            each.step = std::min(each.step, *sweep);
+            return each.step <= each.thick;
+        });
+    }
+    return thin.empty() ? std::vector<std::string>() : std::vector{thinWarning(thin, !chosen)};
 }
 
 std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {

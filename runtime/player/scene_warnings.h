@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warnings of what is valid in a scene, and probably not meant.
+// What is valid in a scene, and probably not meant.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,13 @@
 
 namespace relief {
 
-/// One line at most: bodies whose thickness is below the length of a step, so that particles pass through them; how many there
-/// are, the thinnest, and the cure for all. Bodies that deform are left out.
-[[nodiscard]] std::vector<std::string> sceneWarnings(const LoadedScene& loaded);
+/// Chooses collision.sweep if the scene does not state it and a step is longer than a collider is thick: half of the thinnest, or
+/// what the pieces of a sweep reach. Colliders that deform are left out.
+/// \return one line at most: colliders that are still thinner than a step or than the sweep, so that particles pass through
+/// them; how many there are, the thinnest, and the cure for all.
+[[nodiscard]] std::vector<std::string> fitSweep(LoadedScene& loaded);
 
-/// The same, of a run: most births found no free place.
+/// Of a run: most births found no free place.
 [[nodiscard]] std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity);
 
 }  // namespace relief

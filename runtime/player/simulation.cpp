@@ -43,7 +43,7 @@ Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
     if (!scene.types.empty()) {
         RELIEF_TRY(particles.setTypes(particleTypes(scene)));
     }
-    RELIEF_TRY(particles.setSweep(scene.collision.sweep));
+    RELIEF_TRY(particles.setSweep(scene.collision.sweep.value_or(0.0F)));
     RELIEF_TRY(particles.setAir(scene.air));
     return particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
 }

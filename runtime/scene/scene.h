@@ -52,7 +52,7 @@ void fields(FieldVisitor& visit, SceneForces& forces);
 
 struct SceneCollision : Collision {
     SceneCollision() : Collision{0.0F, 1.0F, 0.0F} {}
-    float sweep = 0.0F;  ///< as ParticleSystem::setSweep
+    std::optional<float> sweep;  ///< as ParticleSystem::setSweep; fitSweep() chooses it
 };
 
 void fields(FieldVisitor& visit, SceneCollision& c);

@@ -308,7 +308,10 @@ void fields(FieldVisitor& visit, SceneCollision& c) {
     visit("friction_threshold", c.friction_threshold,
           {"Speed below which there is no friction", "1/s", kSpeedRange});
     visit("sweep", c.sweep,
-          {"Longest distance between two tests of a step; 0: only its ends are tested", {}, kLengthRange});
+          {"Longest distance between two tests of a step; 0: only its ends are tested",
+           {},
+           kLengthRange,
+           "half the thickness of the thinnest collider if a step is longer, otherwise 0"});
 }
 
 void fields(FieldVisitor& visit, SceneStream& stream) {
