@@ -22,12 +22,12 @@ tools=(
     glmark2-data imagemagick python3 webp
 )
 test=(
-    assimp-testmodels clang clang-format libcgal-demo libclang-rt-dev libgtest-dev libstb-dev
+    assimp-testmodels clang clang-format libcgal-demo libclang-rt-dev libgtest-dev libstb-dev make openexr
     pybind11-dev python3-dev python3-jsonschema python3-numpy python3-pytest
 )
 everything=(
     bsdextrautils doxygen groff-base libglew-dev libglfw3-dev libjansson-dev libopenvdb-dev libopenvdb-tools libsdl2-dev
-    make man-db mandoc openexr python3-matplotlib python3-pip python3-venv qemu-user-static strace xauth xvfb
+    man-db mandoc python3-matplotlib python3-pip python3-venv qemu-user-static strace xauth xvfb
 )
 case ${1-} in
     tools)
