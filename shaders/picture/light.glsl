@@ -4,6 +4,7 @@
 // collider.glsl.
 //!include picture/sky.glsl
 //!include base/noise.glsl
+//!include picture/ray.glsl
 
 uniform vec3 u_bounds_min;    // of the collider, with a small margin
 uniform vec3 u_bounds_max;
@@ -13,11 +14,8 @@ uniform vec3 u_sun;           // unit vector towards it
 
 // The part of a ray p + t d, t in [t_min, t_max], that lies in the bounds; empty where x > y.
 vec2 clipToBounds(vec3 p, vec3 d, float t_min, float t_max) {
-    vec3 safe = vec3(abs(d.x) < 1e-9 ? 1e-9 : d.x, abs(d.y) < 1e-9 ? 1e-9 : d.y, abs(d.z) < 1e-9 ? 1e-9 : d.z);
-    vec3 a = (u_bounds_min - p) / safe;
-    vec3 b = (u_bounds_max - p) / safe;
-    vec3 near = min(a, b);
-    vec3 far = max(a, b);
+    vec3 near, far;
+    slabs(p, d, u_bounds_min, u_bounds_max, near, far);
     return vec2(max(max(near.x, near.y), max(near.z, t_min)), min(min(far.x, far.y), min(far.z, t_max)));
 }
 
@@ -27,8 +25,10 @@ bool blocked(vec3 p, vec3 d, float reach, int steps, float jitter) {
         return false;
     }
     float stride = (span.y - span.x) / float(steps);
+    float next = span.x;
     for (int i = 0; i < steps; ++i) {
-        if (reliefInside(reliefSolid(p + (span.x + (float(i) + jitter) * stride) * d))) {
+        float t = span.x + (float(i) + jitter) * stride;
+        if (t >= next && insideAt(p, d, t, 0.0, span.y, next)) {
             return true;
         }
     }
