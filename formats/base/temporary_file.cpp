@@ -33,6 +33,8 @@ std::array<TemporaryFile::Slot, 32> TemporaryFile::Slot::all;
 
 namespace {
 
+constexpr int kAttempts = 8;
+
 /// Takes a decimal number without zeros in front, and the character behind it, from the front.
 std::optional<std::uint64_t> takeNumber(std::string_view& text, char behind) {
     std::uint64_t number = 0;
@@ -79,6 +81,15 @@ int TemporaryFile::create(const fs::path& folder, mode_t mode) {
         return EMFILE;
     }
     slot_ = &*slot;
+    // Another machine or container takes a file that it sees before the lock for a leftover: then the next name.
+    int code = EAGAIN;
+    for (int attempt = 0; code == EAGAIN && attempt < kAttempts; ++attempt) {
+        code = createOnce(folder, mode);
+    }
+    return code;
+}
+
+int TemporaryFile::createOnce(const fs::path& folder, mode_t mode) {
     static std::atomic<unsigned> counter = 0;
     unsigned random = 0;  // stays 0 where the system has none to give: O_EXCL keeps this safe
     [[maybe_unused]] const ssize_t got = ::getrandom(&random, sizeof(random), GRND_NONBLOCK);
@@ -96,9 +107,10 @@ int TemporaryFile::create(const fs::path& folder, mode_t mode) {
         slot_->live = false;
         return code;
     }
-    // For removeLeftovers() of others; not every file system has locks.
-    static_cast<void>(::flock(file_.get(), LOCK_EX | LOCK_NB));
-    return 0;
+    // Not every file system has locks, which is another error.
+    const bool held = ::flock(file_.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+    struct stat status {};
+    return held && (::fstat(file_.get(), &status) != 0 || status.st_nlink > 0) ? 0 : EAGAIN;
 }
 
 int TemporaryFile::fill(std::span<const std::byte> bytes, std::optional<mode_t> mode) {
@@ -108,10 +120,7 @@ int TemporaryFile::fill(std::span<const std::byte> bytes, std::optional<mode_t> 
     if (mode && ::fchmod(file_.get(), *mode) != 0) {
         return errno;
     }
-    if (const int code = syncToDisk(file_.get())) {
-        return code;
-    }
-    return file_.close();
+    return syncToDisk(file_.get());
 }
 
 int TemporaryFile::renameTo(const fs::path& target) {
@@ -119,6 +128,7 @@ int TemporaryFile::renameTo(const fs::path& target) {
         return errno;
     }
     slot_->live = false;
+    static_cast<void>(file_.close());  // and with it the lock; it is on disk
     return 0;
 }
 

@@ -23,7 +23,7 @@ class TemporaryFile {
 
     /// All members: \return 0 or an errno.
     [[nodiscard]] int create(const std::filesystem::path& folder, mode_t mode);
-    /// Writes, sets the permissions, syncs.
+    /// Writes, sets the permissions, syncs. The file stays locked until renameTo().
     [[nodiscard]] int fill(std::span<const std::byte> bytes, std::optional<mode_t> mode);
     [[nodiscard]] int renameTo(const std::filesystem::path& target);
 
@@ -36,6 +36,8 @@ class TemporaryFile {
 
   private:
     struct Slot;
+
+    [[nodiscard]] int createOnce(const std::filesystem::path& folder, mode_t mode);
 
     Descriptor file_;
     Slot* slot_ = nullptr;  // of the list of names

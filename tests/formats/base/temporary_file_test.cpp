@@ -43,6 +43,9 @@ TEST_F(TemporaryFiles, AreRemovedUnlessTheyAreRenamed) {
     TemporaryFile file;
     ASSERT_EQ(file.create(folder_, 0600), 0);
     ASSERT_EQ(file.fill(std::as_bytes(std::span("whole", 5)), std::nullopt), 0);
+    // Until then it is no leftover to a process that does not see this one.
+    const Descriptor other(openRetry((folder_ / *names().begin()).c_str(), O_RDWR));
+    EXPECT_NE(::flock(other.get(), LOCK_EX | LOCK_NB), 0);
     ASSERT_EQ(file.renameTo(folder_ / "a"), 0);
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
