@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/mesh/flat_faces.h"
 #include "bake/mesh/loops.h"
 #include "bake/patches/depth_planes.h"
 #include "bake/patches/leaf_fitter.h"
@@ -47,9 +48,9 @@ constexpr double kDearer = 1.05;
 /// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
 /// among flat faces, trees are larger without end.
 constexpr double kCellsPerByte = 0.6;
-/// The least worth of a byte below a root with a triangle, in its area times its longest edge. A cube of 12 triangles, seen by it, is
-/// off by some 1e-6 of its side on average; a mesh of many triangles is not held back by it at any usual size.
-constexpr double kLeastByte = 5e-12;
+/// The least worth of a byte below a root with a flat face, in its area times its length. A cube, seen by it, is off by some 1e-6 of its
+/// side on average; a curved mesh of many triangles is not held back by it at any usual size.
+constexpr double kLeastByte = 2.5e-12;
 /// Cells do not end in the planes of even numbers, in which models have walls.
 constexpr double kBesideMesh = 1.01;
 constexpr double kBesideRoots = 1.00137;
@@ -75,6 +76,7 @@ class Planner {
   public:
     Planner(const MeshQuery& query, const PatchOptions& options)
         : query_(query),
+          faces_(flatFacesOf(query.mesh())),
           options_(options),
           held_(query.mesh().bounds),
           bytes_(static_cast<double>(options.bytes)),
@@ -195,14 +197,12 @@ class Planner {
     /// below it have one such worth: with one for each cell, a split that finds what the lines of its cell missed does not pay if
     /// it also splits a flat face.
     [[nodiscard]] double leastByte(const MeshCell& cell) const {
-        const TriangleMesh& mesh = query_.mesh();
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t triangle : cell.triangles) {
-            const auto [a, b, c] = cornersOf(mesh, triangle);
-            const double area = 0.5 * static_cast<double>(length(cross(b - a, c - a)));
-            const double edge =
-                static_cast<double>(std::max({distance(a, b), distance(b, c), distance(c, a)}));
-            least = std::min(least, kLeastByte * area * edge);
+            const FlatFace& face = faces_[triangle];
+            if (face.area > 0.0) {
+                least = std::min(least, kLeastByte * face.area * face.length);
+            }
         }
         return least;
     }
@@ -532,6 +532,7 @@ class Planner {
     }
 
     const MeshQuery& query_;
+    std::vector<FlatFace> faces_;  // per triangle
     const PatchOptions& options_;
     Bounds held_;  // of the mesh, and of what the roots are to hold beside it
     double bytes_;

@@ -192,6 +192,33 @@ TEST(PatchPlanner, FlatShapesTakeTheBytesThatTheyNeed) {
     }
 }
 
+/// Each triangle as four.
+TriangleMesh divided(const TriangleMesh& mesh) {
+    TriangleMesh fine;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto [a, b, c] = cornersOf(mesh, i);
+        const auto first = static_cast<std::uint32_t>(fine.positions.size());
+        for (const glm::vec3& p : {a, b, c, 0.5F * (a + b), 0.5F * (b + c), 0.5F * (c + a)}) {
+            fine.positions.push_back(p);
+        }
+        for (const glm::uvec3& t : {glm::uvec3(0, 3, 5), {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}) {
+            fine.triangles.push_back(first + t);
+        }
+    }
+    fine.bounds = mesh.bounds;
+    return fine;
+}
+
+TEST(PatchPlanner, DividedFacesTakeNoMoreBytesThanWhole) {
+    const TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    const DepthMap whole = checked(queryOf(box), 2'000'000);
+    const MeshQuery query = queryOf(divided(divided(box)));
+    const DepthMap map = checked(query, 2'000'000);
+    EXPECT_LE(map.texels.size(), whole.texels.size() + whole.texels.size() / 4);
+    EXPECT_LT(map.texels.size(), 1'500'000);
+    EXPECT_EQ(wrongPercent(query, map, 20'000), 0.0);
+}
+
 TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
     // Both sides of a wall lie in one cell, and so thin a wall has too little volume to be worth a cell of its own size.
     const glm::dmat3 axes = rotation({1, 2, 0}, 35.0);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake/mesh/flat_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+
+#include "bake/mesh/mesh_edges.h"
+
+namespace relief {
+namespace {
+
+constexpr double kFlat = 1e-4;
+
+/// Twice the area along the normal.
+glm::dvec3 normalOf(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto [a, b, c] = cornersOf(mesh, triangle);
+    return cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
+}
+
+double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto [a, b, c] = cornersOf(mesh, triangle);
+    return static_cast<double>(std::max({distance(a, b), distance(b, c), distance(c, a)}));
+}
+
+}  // namespace
+
+std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
+    const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+    const TriangleNeighbours neighbours = neighboursOf(edgesOf(mesh).uses);
+    std::vector<FlatFace> faces(count);
+    std::vector<bool> seen(count);
+    std::vector<std::uint32_t> face;
+    for (std::uint32_t first = 0; first < count; ++first) {
+        if (seen[first]) {
+            continue;
+        }
+        const glm::dvec3 normal = normalOf(mesh, first);
+        FlatFace whole;
+        face.assign(1, first);
+        seen[first] = true;
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            whole.area += 0.5 * length(normalOf(mesh, face[i]));
+            whole.length = std::max(whole.length, longestEdge(mesh, face[i]));
+            for (int side = 0; side < 3; ++side) {
+                const std::uint32_t next = neighbours.across[face[i]][side];
+                if (next == TriangleNeighbours::kNone || seen[next]) {
+                    continue;
+                }
+                const glm::dvec3 other = normalOf(mesh, next);
+                const double both = length(normal) * length(other);
+                if (dot(normal, other) > 0.0 && length(cross(normal, other)) < kFlat * both) {
+                    seen[next] = true;
+                    face.push_back(next);
+                }
+            }
+        }
+        whole.length = std::max(whole.length, std::sqrt(whole.area));
+        for (const std::uint32_t triangle : face) {
+            faces[triangle] = whole;
+        }
+    }
+    return faces;
+}
+
+}  // namespace relief
