@@ -95,7 +95,12 @@ Result<void> runRelief(int argc, char** argv) {
     Action action;
     defineRelief(app, action);
     FileGuard files;
-    return RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv))) ? action(files) : Result<void>();
+    if (!RELIEF_TRY(parseCommandLine(app, argumentsOf(argc, argv)))) {
+        return {};
+    }
+    RELIEF_TRY(action(files));
+    files.keepFolders();
+    return {};
 }
 
 Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits) {

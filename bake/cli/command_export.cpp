@@ -130,7 +130,7 @@ Result<void> prepareFolder(const std::filesystem::path& folder, const std::vecto
     for (const std::string& name : names) {
         RELIEF_TRY(files.writes(folder / name, option, folder));
     }
-    return preflightFolder(folder, option);
+    return files.makes(folder, option);
 }
 
 Result<void> checkTogether(const ExportCommand& command) {

@@ -96,7 +96,7 @@ Result<void> preflightWorld(const fs::path& folder, const WorldCall& call) {
     RELIEF_TRY(call.files.writes(folder / kWorldFileName, "--world", folder));
     RELIEF_TRY(ownWorldFolder(folder, "--world", call.files));
     RELIEF_TRY(call.files.writes(call.outputs.depfile, "--depfile", folder));
-    return preflightFolder(folder, "--world");  // made once all is checked
+    return call.files.makes(folder, "--world");  // made once all is checked
 }
 
 void addWorldOption(CLI::App& verb, std::string& folder) {

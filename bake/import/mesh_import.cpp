@@ -39,7 +39,9 @@ Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, con
         return tl::unexpected<Error>(polygons.error());
     }
     if (polygons->positions.empty()) {
-        return invalidInput("it has no vertices, and is probably no ." + job.extension + " file");
+        // Any text is an OBJ; the other formats are known by their beginning.
+        return invalidInput(job.extension == "obj" ? "it has no vertices, and is probably no .obj file"
+                                                   : "it has no triangles; export the mesh again");
     }
     ImportScene scene;
     RELIEF_TRY(addPolygons(*polygons, apart, job, scene));

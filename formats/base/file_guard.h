@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "formats/base/made_folders.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -66,6 +68,12 @@ class FileGuard {
     /// Errors: as the last one's kUsage.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
+    /// A folder that the run fills: MadeFolders::make(). Without keepFolders(), and if nothing is in it then, the last copy of
+    /// this guard removes it.
+    [[nodiscard]] Result<void> makes(const std::filesystem::path& folder, std::string_view option) {
+        return folders_->make(folder, option);
+    }
+    void keepFolders() { folders_->keep(); }
     /// A cache. A link of that name is replaced, not followed; several caches may be one file. The folder may be missing.
     /// \param option  that names its folder. Errors: kUsage, as writes().
     [[nodiscard]] Result<void> keeps(const std::filesystem::path& path, std::string_view option);
@@ -91,6 +99,7 @@ class FileGuard {
     void add(const Keys& keys, File file);
     [[nodiscard]] static Result<void> refusal(const File& file, const File& other);
 
+    std::shared_ptr<MadeFolders> folders_ = std::make_shared<MadeFolders>();
     std::vector<File> files_;
     std::map<std::string, std::size_t> by_key_;  // in files_
     std::multimap<std::string, Series> series_;  // by the folder's destination

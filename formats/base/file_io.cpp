@@ -28,11 +28,11 @@ constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes a system call, fo
 constexpr int kLinksMax = 40;                         // as Linux follows
 
 /// What a person can do about an errno.
-const char* cure(int code) {
+const char* cure(int code, bool reads) {
     switch (code) {
         case ENOENT:
         case ENOTDIR:
-            return "check the path; a folder is not created for you";
+            return reads ? "check the path" : "check the path; a folder is not created for you";
         case EISDIR:
             return "name a file, not a folder";
         case EACCES:
@@ -54,8 +54,9 @@ const char* cure(int code) {
 }
 
 tl::unexpected<Error> ioError(const char* action, const std::string& name, int code) {
+    const bool reads = std::string_view(action) == "read";
     return fail(ErrorCode::kIo, std::string("cannot ") + action + " " + name + ": " +
-                                    std::system_category().message(code) + "; " + cure(code));
+                                    std::system_category().message(code) + "; " + cure(code, reads));
 }
 
 /// A path that the system would cut short or take for something else.

@@ -59,7 +59,7 @@ Outputs::~Outputs() {
     }
 }
 
-Result<void> Outputs::open() {
+Result<void> Outputs::open(FileGuard& guard) {
     if (!options_.frames.empty()) {
         picture_ = RELIEF_TRY(watched(options_.watchdog, "the shaders of pictures", [&] {
             return ScenePicture::create(loaded_, textures_, options_.path);
@@ -69,10 +69,9 @@ Result<void> Outputs::open() {
         events_ = RELIEF_TRY(EventsLog::create(options_.events, options_.events_min_speed.value_or(0.0F)));
     }
     if (!options_.frames.empty()) {
-        RELIEF_TRY(preflightFolder(options_.frames, "--frames"));
+        RELIEF_TRY(guard.makes(options_.frames, "--frames"));
     }
-    return options_.dump_frames.empty() ? Result<void>{}
-                                        : preflightFolder(options_.dump_frames, "--dump-frames");
+    return options_.dump_frames.empty() ? Result<void>{} : guard.makes(options_.dump_frames, "--dump-frames");
 }
 
 Result<void> Outputs::writeFrame(const ParticleSystem& particles, PlayerReport& report) {

@@ -31,8 +31,8 @@ class Outputs {
     Outputs(const Outputs&) = delete;
     Outputs& operator=(const Outputs&) = delete;
 
-    /// Makes what is wanted. Fails as ScenePicture and EventsLog do; kIo for folders.
-    [[nodiscard]] Result<void> open();
+    /// Makes what is wanted, folders by the guard. Fails as ScenePicture and EventsLog do; kIo for folders.
+    [[nodiscard]] Result<void> open(FileGuard& guard);
 
     /// Pictures or dumps are written between steps.
     [[nodiscard]] bool hasFrames() const { return picture_ || !options_.dump_frames.empty(); }

@@ -145,7 +145,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     auto simulation =
         RELIEF_TRY(Simulation::create(loaded, {.path = options.path, .watchdog = options.watchdog}));
     Outputs outputs(options, loaded, simulation.textures());
-    RELIEF_TRY(outputs.open());
+    RELIEF_TRY(outputs.open(guard));
     if (EventsLog* events = outputs.events(); events != nullptr) {
         const std::span<const std::string> materials = simulation.textures().materialNames();
         RELIEF_TRY(simulation.listHits(
@@ -166,6 +166,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
         report.warnings.push_back(std::move(*refused));
     }
+    guard.keepFolders();
     return report;
 }
 

@@ -63,6 +63,8 @@ kept "and --depfile would both write" "${level[@]}" --depfile level/.relief-curv
 expect_error 2 'makes a folder there' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh
 expect_error 2 'makes a folder there' "$relief" bake --recipe world.toml -o fresh/sub --stamp fresh
 expect_error 2 'does not exist' "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile missing/d
+expect_error 2 "missing.obj': No such file or directory; check the path\$" "$relief" bake missing.obj --world fresh/sub
+expect_error 2 'missing.png' "$relief" bake missing.png --heights low=0,high=1 --world fresh
 [ ! -e fresh ] || die "a refused run has made a folder"
 expect 0 "$relief" bake box.obj --world fresh/sub --budget 20kB --depfile fresh/d -q
 

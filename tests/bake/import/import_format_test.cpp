@@ -78,6 +78,11 @@ TEST(ImportFormat, WhatIsNoMeshIsRefused) {
         }
     }
     expectRefused(importText("a.obj", "hello\n"), "no vertices, and is probably no .obj file");
+    for (const auto& [name, text] : {std::pair<const char*, std::string>{"a.stl", std::string(84, '\0')},
+                                     {"b.stl", "solid none\nendsolid none\n"},
+                                     {"a.off", "OFF\n0 0 0\n"}}) {
+        expectRefused(importText(name, text), "it has no triangles; export");
+    }
 }
 
 TEST(ImportFormat, BlendFilesAreOftenPacked) {

@@ -198,6 +198,33 @@ TEST_F(FileGuardTest, KeptFilesAreSharedAndReplaceLinks) {
     expectUsage(guard_.keeps(in("scene"), "--world"), "scene", "is the input");
 }
 
+TEST_F(FileGuardTest, FoldersThatItMadeAndThatStayEmptyAreRemoved) {
+    fs::create_directory(folder_ / "empty");
+    const auto make = [&](bool keep) {
+        FileGuard guard;
+        for (const char* name : {"a/b/", "a/c", "d/e", "empty/f", "empty"}) {
+            EXPECT_TRUE(guard.makes(in(name), "--new")) << name;
+            EXPECT_TRUE(fs::is_directory(in(name))) << name;
+        }
+        std::ofstream(folder_ / "a/c/file") << "x";
+        if (keep) {
+            guard.keepFolders();
+        }
+        const FileGuard copy = guard;
+    };
+    make(false);
+    EXPECT_TRUE(fs::exists(in("a/c/file")) && fs::exists(in("empty")));
+    EXPECT_FALSE(fs::exists(in("a/b")) || fs::exists(in("d")) || fs::exists(in("empty/f")));
+    make(true);
+    EXPECT_TRUE(fs::exists(in("a/b")) && fs::exists(in("d/e")) && fs::exists(in("empty/f")));
+    for (const char* name : {"scene", "scene/a", "real/input/b"}) {
+        const auto made = guard_.makes(in(name), "--new");
+        ASSERT_FALSE(made) << name;
+        EXPECT_EQ(made.error().code, ErrorCode::kIo);
+        EXPECT_NE(made.error().message.find("cannot make the folder '"), std::string::npos);
+    }
+}
+
 TEST_F(FileGuardTest, NumbersHaveFourDigitsOrMore) {
     const NumberedFiles files{"f", "p_", ".ply", 20'000};
     EXPECT_EQ(files.path(7), "f/p_0007.ply");

@@ -193,8 +193,11 @@ TEST_F(FileIo, RefusesFoldersAndPathsThatLeadNowhere) {
                               in(std::string("a\0b", 3))};
     for (const fs::path& path : paths) {
         EXPECT_TRUE(failsWith(writeFile(path, toBytes("x")), "cannot write '")) << path;
-        EXPECT_TRUE(failsWith(readFile(path), "cannot read '")) << path;
+        const auto read = readFile(path);
+        EXPECT_TRUE(failsWith(read, "cannot read '")) << path;
+        EXPECT_EQ(read.error().message.find("created for you"), std::string::npos) << read.error().message;
     }
+    EXPECT_TRUE(failsWith(writeFile(in("missing/b"), toBytes("x")), "a folder is not created for you"));
     EXPECT_EQ(names(), (std::set<std::string>{"a", "folder"}));
     EXPECT_TRUE(fs::is_empty(in("folder")));
     EXPECT_TRUE(writeFile(in(std::string(255, 'n')), toBytes("x"))) << "the longest: a suffix would not fit";
