@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -13,6 +14,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/temporary_file.h"
 #include "formats/base/text.h"
+#include "formats/container_reader.h"
 #include "formats/world/world.h"
 
 namespace relief {
@@ -74,12 +76,35 @@ std::optional<double> wrongPercentOf(const nlohmann::json& report) {
     return worst;
 }
 
+/// A file that no bake is known to have made is replaced only by one of its kind: meshes may refer to it.
+Result<void> checkReplaced(const RecipeJob& job) {
+    constexpr std::size_t kBegin = 4096;
+    std::error_code error;
+    if (!fs::is_regular_file(job.output_path, error)) {
+        return {};
+    }
+    std::string begin(kBegin, '\0');
+    std::ifstream file(job.output_path, std::ios::binary);
+    file.read(begin.data(), kBegin);
+    begin.resize(static_cast<std::size_t>(file.gcount()));
+    const auto& signature = ContainerHeader::kSignature;
+    const bool ours = job.world
+                          ? begin.find(kWorldFormat) != std::string::npos
+                          : std::ranges::equal(std::string_view(begin).substr(0, signature.size()), signature,
+                                               {}, [](char c) { return static_cast<std::uint8_t>(c); });
+    return ours || begin.empty()
+               ? Result<void>()
+               : fail(ErrorCode::kUsage, "the output " + quotedPath(job.output_path) + " exists and is no " +
+                                             (job.world ? "world" : "collider") +
+                                             ", and would be lost; remove it, or name another output");
+}
+
 class Runner {
   public:
     Runner(const RecipeRun& run, std::string tool) : run_(run), tool_(std::move(tool)) {}
 
     Result<RecipeResult> go(std::vector<RecipeJob> jobs) {
-        findStale(std::move(jobs));
+        RELIEF_TRY(findStale(std::move(jobs)));
         if (!run_.dry_run) {
             bakeStale();
         }
@@ -109,7 +134,7 @@ class Runner {
         }
     }
 
-    void findStale(std::vector<RecipeJob> jobs) {
+    Result<void> findStale(std::vector<RecipeJob> jobs) {
         Result<BakeCacheEntries> cache = loadBakeCache(run_.output_folder);
         if (!cache) {
             tell(run_.warn, cache.error().message + "; everything is baked again");
@@ -125,6 +150,9 @@ class Runner {
                 children_.askedToEnd() != 0
                     ? "not looked at"
                     : staleness(asset.job, known ? &entry->second : nullptr, tool_, folder);
+            if (!known) {
+                RELIEF_TRY(checkReplaced(asset.job));
+            }
             if (!reason) {
                 made(asset, AssetState::kUpToDate, entry->second);
             } else {
@@ -132,6 +160,7 @@ class Runner {
             }
             result_.assets.push_back(std::move(asset));
         }
+        return {};
     }
 
     void made(AssetResult& asset, AssetState state, const BakeCacheEntry& entry) {

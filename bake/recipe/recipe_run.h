@@ -59,7 +59,8 @@ struct RecipeResult {
     int signal = 0;                   ///< that ended the run early; its children are gone
 };
 
-/// Errors: kIo: the program itself cannot be read, or the cache file not written. Errors of single assets are in their
+/// Errors: kIo: the program itself cannot be read, or the cache file not written; kUsage: an output would replace a file that is
+/// neither known nor of its kind. Errors of single assets are in their
 /// results.
 [[nodiscard]] Result<RecipeResult> runRecipe(std::vector<RecipeJob> jobs, const RecipeRun& run);
 

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "bake/recipe/recipe_jobs.h"
+#include "bake/recipe/recipe_run.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -291,6 +292,39 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
     fails(output("stem}.relief"), "} without {");
     fails(output("hill.relief") + "plan = '../p.toml'\n",
           "plan '../p.toml' leads out of the recipe's folder");
+}
+
+TEST_F(RecipeJobsTest, FilesOfOtherKindsAreNotReplaced) {
+    RecipeRun run;
+    run.recipe = folder_ / "r.toml";
+    run.output_folder = folder_;
+    run.dry_run = true;
+    const auto outcome = [&](const std::vector<std::string>& outputs) {
+        std::string assets;
+        for (const std::string& output : outputs) {
+            assets += "[[asset]]\nmesh = 'hill.off'\noutput = '" + output + "'\n";
+        }
+        const auto result = runRecipe(jobs(assets)->jobs, run);
+        EXPECT_TRUE(result || result.error().code == ErrorCode::kUsage);
+        return result ? "" : result.error().message;
+    };
+    put("rock.relief");  // as a material library may be called
+    put("w/world.json");
+    fs::create_symlink("rocks/b.mtl", folder_ / "link.relief");
+    for (const char* file : {"rock.relief", "link.relief"}) {
+        EXPECT_NE(outcome({file}).find(file + std::string("' exists and is no collider")), std::string::npos);
+    }
+    EXPECT_NE(outcome({"w/world.json"}).find("w/world.json' exists and is no world"), std::string::npos);
+    std::ofstream(folder_ / "rock.relief") << "\xabRELIEF\xbb\r\n\x1a\n and damaged";
+    std::ofstream(folder_ / "w/world.json") << "{\"format\": \"relief-world\", damaged";
+    std::ofstream(folder_ / "none.relief");
+    put("known.relief");
+    BakeCacheEntry entry;
+    entry.tool = "t";
+    entry.inputs = {{"hill.off", "x"}};
+    ASSERT_TRUE(updateBakeCache(folder_, {{"known.relief", entry}}));
+    EXPECT_EQ(outcome({"rock.relief", "w/world.json", "none.relief", "fresh.relief", "known.relief"}), "")
+        << "the last one was made by a bake, and is damaged";
 }
 
 TEST(RecipeShards, EveryOutputIsInExactlyOne) {
