@@ -34,18 +34,16 @@ std::string inQuotes(const std::string& text) {
     return "'" + cleanUtf8(text, 400) + "'";
 }
 
-/// A link in a folder that leads out of `root`, so that anybody's file would be read or written there.
-/// \param inside  the folder, from `root`; may be missing.
-/// \param ending  of the names that matter; empty: all do.
-std::optional<std::string> linkOut(const fs::path& root, const fs::path& inside, std::string_view ending) {
+/// A link in a folder that leads out of `root`, so that anybody's file would be read there.
+/// \param inside  the folder, from `root`.
+std::optional<std::string> linkOut(const fs::path& root, const fs::path& inside) {
     std::set<std::string> out;
     std::error_code error;
     for (fs::directory_iterator entry(root / inside, error), end; !error && entry != end;
          entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         std::error_code unknown;
-        if (name.ends_with(ending) && entry->is_symlink(unknown) &&
-            !resolveInside(root, (inside / name).string())) {
+        if (entry->is_symlink(unknown) && !resolveInside(root, (inside / name).string())) {
             out.insert(name);
         }
     }
@@ -157,12 +155,6 @@ class Expander {
     }
 
     Result<void> checkWorldFolder(const RecipeJob& job, const RecipePlace& place) {
-        const fs::path inside = fs::path(job.output).parent_path();
-        if (const auto link = linkOut(output_folder_, inside, kColliderExtension)) {
-            return at(place, "the folder of the output " + inQuotes(job.output) + " has a link " +
-                                 inQuotes(*link) + ", which leads out of the output folder " +
-                                 quotedPath(output_folder_) + "; remove it");
-        }
         const auto owned = ownWorldFolder(job.output_path.parent_path(), bakeOf(job), result_.files);
         return owned ? Result<void>() : at(place, owned.error().message);
     }
@@ -246,7 +238,7 @@ class Expander {
         std::error_code error;
         job.mesh_is_folder = fs::is_directory(*path, error);
         if (job.mesh_is_folder) {
-            if (const auto link = linkOut(folder_, mesh, "")) {
+            if (const auto link = linkOut(folder_, mesh)) {
                 return at(asset.mesh_place, "mesh " + inQuotes(mesh) + " has a link " + inQuotes(*link) +
                                                 ", which leads out of the recipe's folder; remove it");
             }

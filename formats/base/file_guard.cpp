@@ -40,6 +40,15 @@ bool isWithin(const fs::path& folder, const fs::path& outer) {
            (destination(folder, error) / "").native().starts_with((destination(outer, error) / "").native());
 }
 
+/// Who fills a folder writes nothing elsewhere.
+Result<void> checkLink(const fs::path& path, const fs::path& folder, std::string_view option) {
+    std::error_code error;
+    return fs::is_symlink(fs::symlink_status(path, error)) && !isWithin(path, folder)
+               ? fail(ErrorCode::kUsage, quotedPath(path) + " of " + std::string(option) +
+                                             " is a link that leads out of its folder; remove it")
+               : Result<void>();
+}
+
 }  // namespace
 
 FileGuard::Keys FileGuard::keysOf(const fs::path& path, int standard) {
@@ -131,8 +140,10 @@ Result<void> FileGuard::writes(const fs::path& path, std::string_view option, co
     if (folder.empty() || fs::is_directory(folder, error) || !isWithin(made, folder)) {
         RELIEF_TRY(preflightFile(path, option));
     }
-    const auto other = claim(path, option);
-    return other ? refusal({path, std::string(option)}, *other) : Result<void>();
+    if (const auto other = claim(path, option)) {
+        return refusal({path, std::string(option)}, *other);
+    }
+    return isWithin(folder, made) ? checkLink(path, made, option) : Result<void>();
 }
 
 std::optional<FileGuard::File> FileGuard::claim(const fs::path& path, std::string_view option) {
@@ -209,6 +220,7 @@ Result<void> FileGuard::writesSeries(const fs::path& folder, const HoldsName& ho
         if (other && (other->use != Use::kOneOfMany || find({keys.back()}))) {
             return refusal(file, *other);
         }
+        RELIEF_TRY(checkLink(file.path, folder, option));
     }
     for (auto& [keys, file] : found) {
         add(keys, std::move(file));

@@ -60,12 +60,12 @@ class FileGuard {
     [[nodiscard]] Result<void> reads(const std::filesystem::path& path);
     /// A file that the run writes; "-" is standard output, an empty path none.
     /// \param option  that names it, for messages: "--dump".
-    /// \param made    a folder that the run makes later with its parents, which may hold the file.
-    /// Errors: those of preflightFile; kUsage: it is an input, or another output.
+    /// \param made    a folder that the run fills, and makes later with its parents, which may hold the file.
+    /// Errors: those of preflightFile; kUsage: it is an input, or another output, or a link out of `made`.
     [[nodiscard]] Result<void> writes(const std::filesystem::path& path, std::string_view option,
                                       const std::filesystem::path& made = {});
-    /// Files that the run writes into a folder, which may be missing.
-    /// Errors: as the last one's kUsage.
+    /// Files that the run writes into a folder, which may be missing. Errors: kUsage, as the last one; a link out of the folder
+    /// that one of them would be written through.
     [[nodiscard]] Result<void> writes(const NumberedFiles& files, std::string_view option);
     [[nodiscard]] Result<void> writes(const FilesByEnding& files, std::string_view option);
     /// A folder that the run fills: MadeFolders::make(). Without keepFolders(), and if nothing is in it then, the last copy of

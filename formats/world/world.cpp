@@ -120,6 +120,13 @@ std::string placeOf(const World& world, std::size_t collider, WorldDetail detail
     return placeOf("colliders", collider) + (coarse ? ".coarse" : "");
 }
 
+/// A container ready to be opened; links may not lead out of the world's folder.
+Result<fs::path> pathOf(const World& world, std::size_t collider, WorldDetail detail,
+                        const fs::path& folder) {
+    return inFront(placeOf(world, collider, detail) + ".file",
+                   resolveInside(folder, fileOf(world.colliders[collider], detail).file, "world"));
+}
+
 template <class T>
 void appendLines(std::string& text, const char* name, const std::vector<T>& all) {
     text += std::string("  \"") + name + "\": [";
@@ -190,7 +197,15 @@ const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail) {
 
 Result<World> loadWorldFile(const fs::path& path) {
     const auto bytes = RELIEF_TRY(readFile(path, kWorldBytesMax));
-    return inFront(quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+    World world = RELIEF_TRY(
+        inFront(quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
+    for (std::size_t i = 0; i < world.colliders.size(); ++i) {
+        for (const WorldDetail detail : {WorldDetail::kFine, WorldDetail::kCoarse}) {
+            static_cast<void>(
+                RELIEF_TRY(inFront(quotedPath(path), pathOf(world, i, detail, path.parent_path()))));
+        }
+    }
+    return world;
 }
 
 Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldDetail detail,
@@ -216,8 +231,7 @@ Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldD
 Result<Collider> loadWorldCollider(const World& world, std::size_t index, WorldDetail detail,
                                    const fs::path& folder, const ContainerLimits& limits) {
     const std::string place = placeOf(world, index, detail);
-    const fs::path path = RELIEF_TRY(inFront(
-        place + ".file", resolveInside(folder, fileOf(world.colliders[index], detail).file, "world")));
+    const fs::path path = RELIEF_TRY(pathOf(world, index, detail, folder));
     const auto bytes = RELIEF_TRY(inFront(place, readFile(path, containerSizeMax(limits))));
     return readWorldCollider(world, index, detail, bytes, limits);
 }

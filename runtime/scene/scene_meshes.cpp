@@ -11,6 +11,7 @@
 
 #include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
+#include "formats/config/confined_path.h"
 #include "formats/validate.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/scene/scene_world.h"
@@ -40,7 +41,10 @@ Result<fs::path> fileOf(const fs::path& folder, const std::string& mesh) {
         const fs::path file = folder / (name + extension);
         std::error_code error;
         if (fs::is_regular_file(file, error)) {
-            return file;
+            return resolveInside(folder, name + extension)
+                       ? Result<fs::path>(file)
+                       : invalidInput(quotedPath(file) +
+                                      " is a link out of its folder; put the file itself there");
         }
     }
     return invalidInput(quotedPath(folder) + " has no '" + name + ".ply' or .obj for a collider; add it");

@@ -33,7 +33,7 @@ struct DrawnMeshes {
 /// The files of render.meshes that the scene's colliders are drawn from, sorted; none is read. That of a world's collider has the storedMeshName of its mesh, that of another one the name of its
 /// container; of one that plays a clip it is the container's own.
 /// \param loaded  with render.meshes.
-/// Errors: kInvalidInput (no such file; a mesh without a name); messages begin with the place in the scene.
+/// Errors: kInvalidInput (no such file, or a link out of the folder; a mesh without a name); messages begin with the place in the scene.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> drawnFiles(const LoadedScene& loaded);
 
 /// Every file that a scene may read, whatever a run of it reads: those that it names, the containers of its world, fine

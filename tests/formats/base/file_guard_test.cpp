@@ -159,14 +159,14 @@ TEST_F(FileGuardTest, FilesByEndingAreThoseThereAndThoseToCome) {
     std::ofstream(folder_ / "real/a.relief") << "container";
     fs::create_symlink("real/a.relief", folder_ / "to_container");
     fs::create_hard_link(folder_ / "real/a.relief", folder_ / "same_container");
-    fs::create_symlink("../scene", folder_ / "real/b.relief");
+    fs::create_symlink("old", folder_ / "real/b.relief");
     ASSERT_TRUE(containers("linked/"));
     refuses("real/a.relief", "--world and --new would both write '");
     refuses("to_container", "to_container', which is '");
     refuses("to_container", "linked/a.relief'; choose another place for one of them");
     refuses("same_container", "same_container', which is '");
     refuses("real/later.relief", "--world and --new");
-    refuses("scene", "--world and --new");
+    refuses("real/old", "--world and --new");
     EXPECT_FALSE(guard_.reads(in("real/a.relief")));
     writes("real/deps.d", "--depfile");
     writes("real2.relief", "-o");
@@ -186,6 +186,31 @@ TEST_F(FileGuardTest, FilesByEndingReplaceNoOther) {
     fs::create_directory(folder_ / "three");
     fs::create_symlink("../one/a.relief", folder_ / "three/a.relief");
     EXPECT_FALSE(containers("three"));
+}
+
+TEST_F(FileGuardTest, WhoFillsAFolderWritesNothingElsewhere) {
+    fs::create_directory(folder_ / "out");
+    for (const char* target : {"../real/old", "../real/later"}) {
+        for (const char* name : {"a.relief", "frame_0001.png", "world.json"}) {
+            fs::create_symlink(target, folder_ / "out" / name);
+        }
+        const std::string says = " is a link that leads out of its folder; remove it";
+        expectUsage(containers("out"), "out", "out/a.relief' of --world" + says);
+        refusesFrames("out", "out/frame_0001.png' of --frames" + says);
+        expectUsage(FileGuard().writes(in("out/world.json"), "--world", in("out")), "out",
+                    "out/world.json' of --world" + says);
+        writes("out/world.json", "-o");  // which names the link itself
+        guard_ = FileGuard();
+        for (const char* name : {"a.relief", "frame_0001.png", "world.json"}) {
+            fs::remove(folder_ / "out" / name);
+            fs::create_symlink("stays", folder_ / "out" / name);
+        }
+        EXPECT_TRUE(FileGuard().writes(FilesByEnding{in("out"), ".relief"}, "--world"));
+        EXPECT_TRUE(FileGuard().writes(in("out/world.json"), "--world", in("out")));
+        for (const char* name : {"a.relief", "frame_0001.png", "world.json"}) {
+            fs::remove(folder_ / "out" / name);
+        }
+    }
 }
 
 TEST_F(FileGuardTest, KeptFilesAreSharedAndReplaceLinks) {

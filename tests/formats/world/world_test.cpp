@@ -202,6 +202,23 @@ TEST_F(WorldFolder, ContainersAreThereAndTheOnesThatWereMeant) {
     fs::remove(folder_.parent_path() / (folder_.filename().string() + ".relief"));
 }
 
+/// Also of containers that are not read now: pages hold their bytes.
+TEST_F(WorldFolder, NoContainerIsALinkOutOfIt) {
+    const test::TemporaryFolder elsewhere;
+    const fs::path secret = elsewhere.write("secret", "x");
+    world_.colliders[0].coarse = world_.colliders[0];
+    world_.colliders[0].coarse->file = "c.relief";
+    fs::copy_file(folder_ / "a.relief", folder_ / "c.relief");
+    EXPECT_TRUE(load(WorldDetail::kCoarse));
+    fs::remove(folder_ / "a.relief");
+    fs::create_symlink(secret, folder_ / "a.relief");
+    const Result<LoadedWorld> loaded = load(WorldDetail::kCoarse);
+    ASSERT_FALSE(loaded);
+    EXPECT_NE(loaded.error().message.find("world.json': colliders[0].file: 'a.relief' leads out"),
+              std::string::npos)
+        << loaded.error().message;
+}
+
 TEST_F(WorldFolder, ACoarseColliderIsReadInPlaceOfTheOther) {
     const Collider fine = collider_;
     collider_.maps = {test::makeMap(*test::makeSphere({0, 0, 0}, 0.5),

@@ -84,6 +84,19 @@ TEST_F(DrawnMeshesTest, AFileHasTheNameThatAContainerHas) {
     }
 }
 
+TEST_F(DrawnMeshesTest, LinksOutOfTheFolderAreNotRead) {
+    const test::TemporaryFolder elsewhere;
+    fs::rename(folder_.path() / "floor.obj", folder_.path() / "stored");
+    fs::create_symlink("stored", folder_.path() / "floor.obj");
+    const LoadedScene scene = loaded(namedWorld(), "world = \"world.json\"\n");
+    EXPECT_TRUE(drawnFiles(scene)) << "a link that stays inside";
+    const fs::path secret = elsewhere.write("secret.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    fs::remove(folder_.path() / "floor.obj");
+    fs::create_symlink(secret, folder_.path() / "floor.obj");
+    expectErrorOf(drawnFiles(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
+    expectErrorOf(loadDrawnMeshes(scene), "scene.toml:5:", "floor.obj' is a link out of its folder");
+}
+
 TEST_F(DrawnMeshesTest, AllFilesAreThoseOfAnyRun) {
     World world = namedWorld();
     world.colliders[0].coarse = WorldFile{"floor.coarse.relief", "", 0};
