@@ -303,6 +303,10 @@ Result<void> saveCollider(const std::filesystem::path& path, const Collider& col
 
 Result<void> refuseMeshName(const std::filesystem::path& path) {
     const std::string extension = lowerCase(path.extension().native());
+    if (extension == ".json") {
+        return fail(ErrorCode::kInvalidInput,
+                    quotedPath(path) + " is no collider; of a world name a container, which lies beside it");
+    }
     if (std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) == kMeshExtensions.end()) {
         return {};
     }

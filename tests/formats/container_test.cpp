@@ -370,6 +370,9 @@ TEST(Files, SaveAndLoadNameTheFile) {
     expectNamed(loadCollider(folder.path() / "b.relief"), ErrorCode::kIo, "b.relief");
     ASSERT_TRUE(writeFile(path, test::toBytes("solid cube")));
     expectNamed(loadCollider(path), ErrorCode::kInvalidInput, "a.relief");
+    ASSERT_TRUE(writeFile(folder.path() / "w.json", test::toBytes("{}")));
+    expectNamed(loadCollider(folder.path() / "w.json"), ErrorCode::kInvalidInput,
+                "of a world name a container");
     Collider broken = oneMapOfEveryFormat();
     broken.maps[0].width = 0;
     expectNamed(saveCollider(path, broken), ErrorCode::kInvalidInput, "a.relief");
