@@ -52,7 +52,9 @@ Result<WorldField> fieldOf(const std::string& file, const ContainerLimits& limit
 }
 
 Result<void> checkOptions(const std::string& file, const WorldCheckCall& call) {
-    const std::string of_import = importOptionOf(call.request.import, call.request.import_limits);
+    ImportLimits of_mesh;
+    of_mesh.triangles = call.request.import_limits.triangles;
+    const std::string of_import = importOptionOf(call.request.import, of_mesh);
     const std::string option = !call.html.empty() ? "--html" : call.request.detail ? "--detail" : of_import;
     if (!option.empty()) {
         return fail(ErrorCode::kUsage,
@@ -107,6 +109,7 @@ Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call
     progress.begin("measuring the ground");
     GroundCheckRequest request{world.request.mesh, *heights, world.request.samples, world.request.seed, {}};
     request.within = world.within;
+    request.limits = world.request.import_limits;
     request.progress = [&](double share) { progress.set(share); };
     const GroundAccuracy accuracy = RELIEF_TRY(checkGround(request, field, name));
     progress.finish();

@@ -48,7 +48,8 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
 
 /// Options of a mesh beside those of a height map.
 std::string otherThanHeights(const BakeRequest& request) {
-    constexpr std::array<std::string_view, 3> kOfBoth = {"heights", "threads", "time_limit"};
+    constexpr std::array<std::string_view, 5> kOfBoth = {"heights", "threads", "time_limit", "import_memory",
+                                                         "import_time"};
     for (const FieldWords& field : changedFields(request)) {
         if (std::ranges::find(kOfBoth, field.name) == kOfBoth.end()) {
             return optionName(field.name) + " is for meshes, and does nothing with --heights; leave it out";

@@ -377,7 +377,7 @@ Result<GroundResult> bakeGroundOf(const BakeRequest& request, GroundOptions opti
     if (request.threads) {
         control.emplace(tbb::global_control::max_allowed_parallelism, *request.threads);
     }
-    HeightMap map = RELIEF_TRY(HeightMap::open(request.mesh, options.heights));
+    HeightMap map = RELIEF_TRY(HeightMap::open(request.mesh, options.heights, request.import_limits));
     GroundResult result = RELIEF_TRY(bakeGroundOf(map, options));
     result.inputs.push_back({request.mesh, map.hash()});
     return result;

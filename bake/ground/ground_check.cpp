@@ -559,7 +559,7 @@ Result<GroundAccuracy> checkGround(const GroundCheckRequest& request, const Worl
         return fail(ErrorCode::kLimit, "--samples is " + std::to_string(request.samples) + "; the limit is " +
                                            std::to_string(kGroundSamplesMax) + " for a height map");
     }
-    HeightMap map = RELIEF_TRY(HeightMap::open(request.map, request.heights));
+    HeightMap map = RELIEF_TRY(HeightMap::open(request.map, request.heights, request.limits));
     return GroundChecker(request, field, name, map).run();
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "bake/heights/heights_spec.h"
+#include "bake/import/import_job.h"
 #include "bake/measure/accuracy.h"
 #include "formats/base/result.h"
 #include "formats/world/world_field.h"
@@ -32,6 +33,7 @@ struct GroundCheckRequest {
     std::uint64_t seed = 1;
     /// How far from the surface points near it lie, along y, in metres; nullopt: the distance between samples.
     std::optional<double> within;
+    ImportLimits limits{};  ///< of an image
     std::function<void(double)>
         progress{};  ///< called now and then with the share of the work done; may be empty
 };

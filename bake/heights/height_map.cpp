@@ -2,14 +2,14 @@
 #include "bake/heights/height_map.h"
 
 #include <algorithm>
-#include <array>
+#include <cerrno>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "bake/heights/exr_rows.h"
-#include "bake/heights/png_rows.h"
 #include "bake/heights/raw_rows.h"
+#include "bake/import/image_rows.h"
+#include "bake/import/import_process.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/base/text.h"
@@ -21,41 +21,19 @@ namespace {
 /// Floats, and some room for the headers of images that do not shrink.
 constexpr std::uint64_t kFileMax = 4 * kHeightSamplesMax + (std::uint64_t{64} << 20);
 
-bool beginsWith(std::span<const std::byte> bytes, std::span<const unsigned char> signature) {
-    if (bytes.size() < signature.size()) {
-        return false;
-    }
-    for (std::size_t i = 0; i < signature.size(); ++i) {
-        if (std::to_integer<unsigned char>(bytes[i]) != signature[i]) {
-            return false;
-        }
-    }
-    return true;
-}
-
-constexpr std::array<unsigned char, 8> kPng = {0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
-constexpr std::array<unsigned char, 4> kExr = {0x76, 0x2f, 0x31, 0x01};
-
-bool isImage(std::span<const std::byte> bytes) {
-    return beginsWith(bytes, kPng) || beginsWith(bytes, kExr);
-}
-
-Result<std::unique_ptr<SampleRows>> openRows(const std::filesystem::path& path,
-                                             std::span<const std::byte> bytes, const HeightsSpec& spec) {
-    if (isImage(bytes)) {
-        if (spec.width || spec.type || spec.order) {
-            const char* const key = spec.width ? "width" : spec.type ? "type" : "order";
-            return fail(ErrorCode::kUsage, std::string("--heights ") + key +
-                                               " is for raw samples, and this is an image; leave it out");
-        }
-        return beginsWith(bytes, kPng) ? openPngRows(bytes) : openExrRows(bytes);
+/// Whether the settings are for such a file.
+Result<void> checkKind(const std::filesystem::path& path, bool image, const HeightsSpec& spec) {
+    const char* const raw = spec.width ? "width" : spec.type ? "type" : spec.order ? "order" : nullptr;
+    if (image && raw != nullptr) {
+        return fail(ErrorCode::kUsage, std::string("--heights ") + raw +
+                                           " is for raw samples, and this is an image; leave it out");
     }
     const std::string extension = lowerCase(path.extension().string());
-    if (extension != ".raw" && extension != ".r16" && !spec.width && !spec.type && !spec.order) {
+    if (!image && raw == nullptr && extension != ".raw" && extension != ".r16") {
         return fail(ErrorCode::kUnsupported,
                     "it is no PNG or EXR image; if it holds raw samples, give --heights type= or width=");
     }
-    return openRawRows(bytes, spec);
+    return {};
 }
 
 Result<void> checkSize(const SampleRows& rows) {
@@ -101,15 +79,25 @@ Result<void> checkSettings(const SampleRows& rows, const HeightsSpec& spec) {
 
 }  // namespace
 
-Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const HeightsSpec& spec) {
+Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const HeightsSpec& spec,
+                                  const ImportLimits& limits) {
     HeightMap map;
-    map.path_ = path;
+    map.limits_ = limits;
     map.spec_ = completed(spec, path);
     map.shown_ = path == "-" ? "standard input" : quotedPath(path);
     map.name_ = path == "-" ? "standard input" : cleanUtf8(path.filename().string(), 255);
     map.bytes_ = RELIEF_TRY(readFile(path, kFileMax));
     map.hash_ = xxh3_128Hex(map.bytes_);
-    RELIEF_TRY(map.rewind());
+    const bool image = isImage(map.bytes_);
+    RELIEF_TRY(inFront(map.shown_, checkKind(path, image, map.spec_)));
+    if (image) {
+        map.image_ = sharedBytes(map.bytes_);
+        if (!map.image_) {
+            return inFront(map.shown_, Result<HeightMap>(ImportProcess::notStarted(errno)));
+        }
+        map.bytes_ = {};
+    }
+    map.rows_ = RELIEF_TRY(map.openRows());
     RELIEF_TRY(inFront(map.shown_, checkSize(*map.rows_)));
     RELIEF_TRY(inFront(map.shown_, checkSettings(*map.rows_, map.spec_)));
     if (map.rows_->most() > 0) {
@@ -149,12 +137,21 @@ std::string HeightMap::likelierFormat() const {
 }
 
 bool HeightMap::isRaw() const {
-    return !isImage(bytes_);
+    return !image_;
+}
+
+Result<std::unique_ptr<SampleRows>> HeightMap::openRows() const {
+    return inFront(shown_,
+                   isRaw() ? openRawRows(bytes_, spec_) : openImageRowsInWorker(image_.get(), limits_));
 }
 
 Result<void> HeightMap::rewind() {
-    rows_.reset();  // they borrow the bytes
-    rows_ = RELIEF_TRY(inFront(shown_, openRows(path_, bytes_, spec_)));
+    std::unique_ptr<SampleRows> again = RELIEF_TRY(openRows());
+    if (again->columns() != rows_->columns() || again->rows() != rows_->rows() ||
+        again->most() != rows_->most()) {
+        return invalidInput(shown_ + ": the importer answers with another size; save it again");
+    }
+    rows_ = std::move(again);
     return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A height map from its file, row by row: PNG, EXR, or raw samples.
+// A height map from its file, row by row: PNG and EXR, decoded by a process of their own, or raw samples.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "bake/heights/heights_spec.h"
-#include "bake/heights/sample_rows.h"
+#include "bake/import/import_job.h"
+#include "bake/import/sample_rows.h"
+#include "formats/base/descriptor.h"
 #include "formats/base/result.h"
 
 namespace relief {
@@ -55,8 +57,10 @@ class HeightMap {
   public:
     /// Reads the file, and the image's header; its rows are decoded one by one.
     /// Errors, with the file in front: those of readFile; kInvalidInput, kUnsupported (no such image); kLimit (more samples
-    /// than kHeightSamplesMax); kUsage (settings that are not for such an image, or are missing).
-    [[nodiscard]] static Result<HeightMap> open(const std::filesystem::path& path, const HeightsSpec& spec);
+    /// than kHeightSamplesMax); kUsage (settings that are not for such an image, or are missing); those of
+    /// openImageRowsInWorker.
+    [[nodiscard]] static Result<HeightMap> open(const std::filesystem::path& path, const HeightsSpec& spec,
+                                                const ImportLimits& limits = {});
 
     [[nodiscard]] std::uint32_t columns() const {
         return static_cast<std::uint32_t>(rows_->columns());
@@ -78,19 +82,22 @@ class HeightMap {
     [[nodiscard]] bool hasLow() const { return rows_->most() > 0; }
 
     /// \param out  columns() heights of the next row, metres; NaN is a hole.
-    /// Errors, with the file in front: kInvalidInput, kUnsupported.
+    /// Errors, with the file in front: kInvalidInput, kUnsupported; those of openImageRowsInWorker.
     [[nodiscard]] Result<void> next(std::span<float> out);
 
     /// Begins again before the first row. Errors: those of open(), with the file in front.
     [[nodiscard]] Result<void> rewind();
 
   private:
-    std::filesystem::path path_;
+    [[nodiscard]] Result<std::unique_ptr<SampleRows>> openRows() const;
+
+    ImportLimits limits_;
     HeightsSpec spec_;
     std::string shown_;  // the path in quotes
     std::string name_;
     std::string hash_;
-    std::vector<std::byte> bytes_;
+    std::vector<std::byte> bytes_;  // of raw samples
+    Descriptor image_;              // sharedBytes() of an image
     std::unique_ptr<SampleRows> rows_;
     double low_ = 0.0;   // height of sample 0
     double unit_ = 1.0;  // height of a sample's step

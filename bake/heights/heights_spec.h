@@ -18,6 +18,7 @@
 #include <string>
 #include <string_view>
 
+#include "bake/import/sample_rows.h"
 #include "formats/base/field.h"
 #include "formats/base/result.h"
 
@@ -53,7 +54,6 @@ struct HeightsSpec {
 
 inline constexpr double kHeightMax = 1e9;         ///< of low, high, offset and heights, either sign; metres
 inline constexpr double kHoleMax = 3.4028235e38;  ///< the largest float, as it is written
-inline constexpr std::uint32_t kHeightsSideMax = 1U << 24;  ///< samples in a row
 
 void fields(FieldVisitor& visit, HeightsSpec& spec);
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bake/heights/heights_spec.h"
-#include "bake/heights/sample_rows.h"
+#include "bake/import/sample_rows.h"
 #include "formats/base/result.h"
 
 namespace relief {

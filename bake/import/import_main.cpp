@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-import`: reads one mesh file for its parent (import_protocol.h), with limits and without rights, so
-// that a hostile file can harm only this process. Started by importMeshInWorker; not for direct use.
+// `relief-import`: reads one mesh file or image for its parent (import_protocol.h), with limits and without rights, so
+// that a hostile file can harm only this process. Started by ImportProcess; not for direct use.
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
@@ -14,7 +14,9 @@
 #include <filesystem>
 #include <new>
 #include <span>
+#include <vector>
 
+#include "bake/import/image_rows.h"
 #include "bake/import/import_fields.h"
 #include "bake/import/import_message.h"
 #include "bake/import/import_protocol.h"
@@ -77,6 +79,35 @@ int sendMessage(const Result<TriangleMesh>& raw) {
     return code == 0 ? kImportExitMessage : exitOf(code);
 }
 
+/// \return an exit code.
+int sendError(const Error& error) {
+    const std::array<std::uint32_t, 2> head = {static_cast<std::uint32_t>(error.code),
+                                               static_cast<std::uint32_t>(error.message.size())};
+    int code = writeAll(kImportResultFd, std::as_bytes(std::span(head)));
+    code = code != 0 ? code : writeAll(kImportResultFd, std::as_bytes(std::span(error.message)));
+    return code == 0 ? kImportExitMessage : exitOf(code);
+}
+
+/// \return an exit code.
+int sendRows(std::span<const std::byte> image) {
+    const Result<std::unique_ptr<SampleRows>> rows = openImageRows(image);
+    if (!rows) {
+        return sendError(rows.error());
+    }
+    const std::uint32_t good = 0;
+    const ImageSize size{(*rows)->columns(), (*rows)->rows(), (*rows)->most()};
+    int code = writeAll(kImportResultFd, std::as_bytes(std::span(&good, 1)));
+    code = code != 0 ? code : writeAll(kImportResultFd, std::as_bytes(std::span(&size, 1)));
+    std::vector<float> row(1 + size.columns);  // whose first one, 0, has the bytes of `good`
+    for (std::uint64_t i = 0; i < size.rows && code == 0; ++i) {
+        if (const Result<void> read = (*rows)->next(std::span(row).subspan(1)); !read) {
+            return sendError(read.error());
+        }
+        code = writeAll(kImportResultFd, std::as_bytes(std::span(row)));
+    }
+    return code == 0 ? kImportExitMessage : exitOf(code);
+}
+
 int work(std::span<char*> arguments) {
     constexpr std::array kBegun = {std::byte{1}};
     if (const int code = writeAll(kImportAliveFd, kBegun)) {
@@ -86,7 +117,8 @@ int work(std::span<char*> arguments) {
     const std::uint64_t memory = parseUnsigned(arguments[2]).value_or(0);
     const std::uint64_t seconds = parseUnsigned(arguments[3]).value_or(0);
     const std::uint64_t triangles = parseUnsigned(arguments[4]).value_or(0);
-    const std::optional<ImportKind> kind = fromWord<ImportKind>(arguments[5]);
+    const bool image = arguments[5] == kImportImage;
+    const std::optional<ImportKind> kind = image ? ImportKind::kMesh : fromWord<ImportKind>(arguments[5]);
     if (!kind) {
         return kImportExitArguments;
     }
@@ -107,16 +139,21 @@ int work(std::span<char*> arguments) {
     const Result<void> limited =
         enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder, kImportResultFd);
     if (!limited) {
-        return sendMessage(fail(limited.error().code, "cannot read the mesh " + quotedPath(path) + ": " +
-                                                          limited.error().message +
-                                                          ", and so does not begin; raise the limits of "
-                                                          "this process (ulimit -a)"));
+        const Error error{limited.error().code, limited.error().message +
+                                                    ", and so does not begin; raise the limits of this "
+                                                    "process (ulimit -a)"};
+        return image ? sendError(error)
+                     : sendMessage(inFront("cannot read the mesh " + quotedPath(path),
+                                           Result<TriangleMesh>(tl::unexpected<Error>(error))));
     }
     if (orphaned()) {
         return kImportExitArguments;
     }
     prepareHeap(static_cast<std::size_t>(std::min(memory / 4, kHeapBytes)));  // within the limit
     std::set_new_handler([] { ::_exit(kImportExitMemory); });
+    if (image) {
+        return sendRows({static_cast<const std::byte*>(pages), size});
+    }
     const Result<TriangleMesh> raw = importRaw({quotedPath(path),
                                                 path.filename().string(),
                                                 lowerCase(path.extension().string().substr(1)),

@@ -6,6 +6,10 @@
 // PATH is the mesh as the user named it (for messages, its name and extension); MEMORY in bytes; TRIANGLES as
 // ImportLimits; KIND a word of ImportKind; FIELD and VALUE as fields() of ImportOptions has them; each NAME one of ImportOptions::names.
 // Nothing is read from standard input or written to standard output.
+//
+// For an image, KIND is kImportImage and the result is a pipe, which is kImportAliveFd as well. Behind the first byte it gets an
+// ImageSize and then each row, floats, each behind a u32 that is 0. Any other u32 is an ErrorCode, behind which the length of the
+// error's text, a u32, and the text are the last. The byte order is the machine's.
 #pragma once
 
 #include <fcntl.h>
@@ -18,9 +22,18 @@ namespace relief {
 
 inline constexpr std::string_view kImportNamesFollow = "names";  ///< the end of the fields
 
-inline constexpr int kImportMeshFd = 3;    ///< the mesh file's bytes, sealed, memfd
+inline constexpr std::string_view kImportImage = "image";
+
+struct ImageSize {
+    std::uint64_t columns = 0;
+    std::uint64_t rows = 0;
+    std::uint64_t most = 0;  ///< SampleRows::most()
+};
+
+inline constexpr int kImportMeshFd = 3;    ///< the file's bytes, sealed, memfd
 inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none
-inline constexpr int kImportResultFd = 5;  ///< memfd, large enough for any message; cut to size and sealed
+inline constexpr int kImportResultFd =
+    5;  ///< memfd, large enough for any message; cut to size and sealed. Or a pipe
 /// A pipe's writing end: gets a byte when the worker starts, before it reads anything; closes as it ends.
 inline constexpr int kImportAliveFd = 6;
 

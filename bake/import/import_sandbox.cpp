@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -147,9 +148,6 @@ constexpr Refused kRefused[] = {
     {SCMP_SYS(access), EACCES},   {SCMP_SYS(faccessat), EACCES},  {SCMP_SYS(faccessat2), EACCES},
     {SCMP_SYS(readlink), EACCES}, {SCMP_SYS(readlinkat), EACCES}, {SCMP_SYS(getcwd), EACCES},
     {SCMP_SYS(ioctl), ENOTTY},    {SCMP_SYS(writev), EPERM},
-#ifndef RELIEF_SANITIZED
-    {SCMP_SYS(write), EPERM},
-#endif
 };
 
 constexpr auto kThread = static_cast<scmp_datum_t>(CLONE_VM | CLONE_SIGHAND | CLONE_THREAD);
@@ -171,8 +169,8 @@ class Rules {
     static scmp_arg_cmp is(unsigned index, scmp_datum_t value) { return {index, SCMP_CMP_EQ, value, 0}; }
 
     void allow(int call, std::initializer_list<scmp_arg_cmp> where = {}) { add(SCMP_ACT_ALLOW, call, where); }
-    void refuse(const Refused& refused) {
-        add(SCMP_ACT_ERRNO(static_cast<unsigned>(refused.error)), refused.call, {});
+    void refuse(const Refused& refused, std::initializer_list<scmp_arg_cmp> where = {}) {
+        add(SCMP_ACT_ERRNO(static_cast<unsigned>(refused.error)), refused.call, where);
     }
     /// \return 0 or the errno of the first rule that could not be added.
     [[nodiscard]] int failure() const { return failure_; }
@@ -190,6 +188,11 @@ class Rules {
     int failure_ = 0;
 };
 
+bool isPipe(int file) {
+    struct stat status {};
+    return ::fstat(file, &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
 void addRules(Rules& rules, int folder, int result) {
     for (const int call : kAllowed) {
         rules.allow(call);
@@ -205,8 +208,17 @@ void addRules(Rules& rules, int folder, int result) {
         // A filter cannot check the path: Landlock does.
         rules.allow(SCMP_SYS(openat2), {Rules::is(0, static_cast<scmp_datum_t>(folder))});
     }
-    if (result >= 0) {
-        const auto file = static_cast<scmp_datum_t>(result);
+    const auto file = static_cast<scmp_datum_t>(result);
+    const bool pipe = isPipe(result);
+#ifndef RELIEF_SANITIZED
+    if (pipe) {
+        rules.allow(SCMP_SYS(write), {Rules::is(0, file)});
+        rules.refuse({SCMP_SYS(write), EPERM}, {{0, SCMP_CMP_NE, file, 0}});
+    } else {
+        rules.refuse({SCMP_SYS(write), EPERM});
+    }
+#endif
+    if (result >= 0 && !pipe) {
         rules.allow(SCMP_SYS(mmap),
                     {Rules::masked(2, PROT_EXEC, 0), Rules::masked(3, shared, shared), Rules::is(4, file)});
         rules.allow(SCMP_SYS(ftruncate), {Rules::is(0, file)});

@@ -21,7 +21,8 @@ struct SandboxLimits {
 /// open nothing but files below `folder`, for reading. Where it has seccomp, few system calls are left: any other ends it by
 /// SIGSYS. Call it while there is one thread.
 /// \param folder  descriptor; -1 for none.
-/// \param result  descriptor of the memory that may still be shared, cut and sealed; -1 for none.
+/// \param result  descriptor of the memory that may still be shared, cut and sealed, or of the pipe that may still be written;
+/// -1 for none.
 /// Errors: kFailure.
 [[nodiscard]] Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of floats and of words as OpenEXR files, written; bake/heights reads those of heights. The only users of OpenEXR.
+// Images of floats and of words as OpenEXR files, written; bake/import reads those of heights. The only users of OpenEXR.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures as PNG bytes. png.cpp uses libpng; beside it only bake/heights does, for height maps.
+// Pictures as PNG bytes. png.cpp uses libpng; beside it only bake/import does, for height maps.
 #pragma once
 
 #include <cstddef>

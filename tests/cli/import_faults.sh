@@ -185,6 +185,36 @@ if setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null; then
     [ "$code" -eq 4 ] && grep -q 'ulimit.*-u' stderr || die "no processes: exit code $code: $(cat stderr)"
 fi
 
+# A worker that lies about an image: one line.
+python3 "$RELIEF_SOURCE/tests/cli/heights.py" hills.png 33
+cat >bin/relief-import <<'W'
+#!/usr/bin/env bash
+printf '\1' >&6
+cat "$ANSWER" >&5
+W
+size() { # COLUMNS ROWS MOST
+    python3 -c 'import struct, sys; sys.stdout.buffer.write(struct.pack("<IQQQ", 0, *map(int, sys.argv[1:])))' "$@"
+}
+lies() { # CODE PATTERN
+    ANSWER=answer expect_error "$1" "'hills\.png': $2" bin/relief bake hills.png --heights low=0,high=9 -o x.relief
+}
+: >answer
+lies 4 'the importer gave no answer'
+size 33 33 65535 | head -c 20 >answer
+lies 4 'the importer gave no answer'
+size 33 33 7 >answer
+lies 3 'the importer answers with a size that no image has'
+size 1099511627776 33 65535 >answer
+lies 6 'it has 1099511627776x33 samples'
+{ size 33 33 255 && head -c 1000 /dev/zero; } >answer
+lies 4 'the importer gave no answer'
+printf '\x63\0\0\0\0\0\0\0' >answer
+lies 3 'the importer answers with an error that there is not'
+printf '\x03\0\0\0\xff\xff\xff\xff boom' >answer
+lies 4 'the importer gave no answer'
+printf '\x03\0\0\0\x06\0\0\0a\nb\x1bcd' >answer
+lies 3 'a.b.*cd$'
+
 cat >counts <<C
 | what | times | another collider, a torn file or a process left |
 | --- | ---: | ---: |

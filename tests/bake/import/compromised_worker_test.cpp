@@ -27,6 +27,7 @@
 #include <iterator>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/import/import_protocol.h"
@@ -51,7 +52,8 @@ constexpr int kNoSandbox = 2;
 /// What the worker finds, as in import_protocol.h.
 class Place {
   public:
-    Place() {
+    /// \param rows  a pipe is the result.
+    explicit Place(bool rows = false) {
         fs::create_directory(folder_.path() / "in");
         folder_.write("in/inside", std::string(kPage, 'i'));
         folder_.write("outside", std::string(kPage, 'o'));
@@ -66,6 +68,9 @@ class Place {
         alive_ = ends[0];
         files_[kImportAliveFd] = ends[1];
         files_[kLeakedFd] = ::open((folder_.path() / "leaked").c_str(), O_RDWR | O_CLOEXEC);
+        if (rows) {
+            ::close(std::exchange(files_[kImportResultFd], ::fcntl(ends[1], F_DUPFD_CLOEXEC, 0)));
+        }
         for (int file = 0; file < kImportMeshFd; ++file) {
             files_[static_cast<std::size_t>(file)] = ::open("/dev/null", O_RDWR | O_CLOEXEC);
         }
@@ -380,6 +385,26 @@ TEST(CompromisedWorker, CanDoItsWork) {
         return false;
     });
     EXPECT_EQ(aborted.signal, SIGABRT);
+}
+
+TEST(CompromisedWorker, OfAnImageWritesIntoItsPipeOnly) {
+    const Place place(true);
+    ASSERT_TRUE(place.ready());
+    static char byte = 'X';
+    EXPECT_EQ(ask(place, true, [] { return raw(SYS_write, kImportResultFd, &byte, 1) == 1; }).code, kDone);
+    for (const auto& what : std::vector<std::function<bool()>>{
+             [] { return sharesForWriting(kLeakedFd); },
+             [] { return raw(SYS_writev, kImportResultFd, nullptr, 0) == 0; },
+             [] { return raw(SYS_ftruncate, kLeakedFd, 1) == 0; },
+             [] { return raw(SYS_fcntl, kImportResultFd, F_SETFL, O_NONBLOCK) == 0; },
+#ifndef RELIEF_SANITIZED
+             [] { return raw(SYS_write, kLeakedFd, &byte, 1) == 1; },
+             [] { return raw(SYS_write, STDOUT_FILENO, &byte, 1) == 1; },
+#endif
+         }) {
+        EXPECT_TRUE(ask(place, true, what).refused());
+    }
+    EXPECT_EQ(place.contents("leaked"), std::string(kPage, 'l'));
 }
 
 TEST(CompromisedWorker, HasTheLimitsOfTheKernel) {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "bake/heights/sample_rows.h"
+#include "bake/import/sample_rows.h"
 #include "formats/base/result.h"
 
 namespace relief {

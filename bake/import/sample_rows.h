@@ -9,6 +9,8 @@
 
 namespace relief {
 
+inline constexpr std::uint32_t kHeightsSideMax = 1U << 24;  ///< samples in a row
+
 class SampleRows {
   public:
     SampleRows() = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/heights/png_rows.h"
+#include "bake/import/png_rows.h"
 
 #include <png.h>
 

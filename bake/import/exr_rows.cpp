@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/heights/exr_rows.h"
+#include "bake/import/exr_rows.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -17,7 +17,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "bake/heights/heights_spec.h"
 #include "formats/base/text.h"
 
 namespace relief {
