@@ -175,11 +175,14 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
             const LostParts& first = accuracy->lost.front();
             return fail(ErrorCode::kDifference, "mesh '" + first.mesh + "': " + first.text);
         }
+        const bool floats = accuracy->places.front().cause == WorldCause::kFloats;  // of the worst body
         return fail(ErrorCode::kDifference,
                     shortNumber(accuracy->all.total()) +
                         " % of the points near the surface are on the wrong side, more than "
                         "--max-error " +
-                        shortest(*call.max_error) + " %; bake the level with a larger --budget");
+                        shortest(*call.max_error) +
+                        (floats ? " %; move its meshes to their origins"
+                                : " %; bake the level with a larger --budget"));
     }
     return {};
 }

@@ -453,11 +453,13 @@ class WorldBaker {
         }
         collider.warnings = result.baked.report.warnings;
         if (collider.wrong && collider.wrong->total() > kWarnFrom) {
-            collider.warnings.push_back(collider.mesh + ": " + shortNumber(collider.wrong->total()) +
-                                        " % wrong near the surface with its " +
-                                        (collider.budget ? "share of " + bytesText(*collider.budget) +
-                                                               "; give the level a larger --budget"
-                                                         : "texel; give the level a smaller --texel"));
+            const bool floats = floatsLimit(*result.mesh.mesh, collider.wrong->total());
+            collider.warnings.push_back(
+                collider.mesh + ": " + shortNumber(collider.wrong->total()) + " % wrong near the surface" +
+                (floats            ? "; move it to the origin"
+                 : collider.budget ? " with its share of " + bytesText(*collider.budget) +
+                                         "; give the level a larger --budget"
+                                   : " with its texel; give the level a smaller --texel"));
         }
         PatchTileOptions options = tiles_;
         options.total = collider.budget.value_or(options.total);

@@ -215,8 +215,9 @@ class WorldChecker {
         });
         worst.resize(std::min(worst.size(), kWorst));
         for (const std::size_t i : worst) {
-            result_.places.push_back(
-                worldPlace({placed_, field_, i, result_.bodies[i].place, moved_[i]}, request_.pictures));
+            const BodyAccuracy& body = result_.bodies[i];
+            result_.places.push_back(worldPlace(
+                {placed_, field_, i, body.place, moved_[i], body.wrong.total()}, request_.pictures));
         }
     }
 

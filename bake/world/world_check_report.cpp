@@ -25,6 +25,9 @@ std::string WorldPlaceReport::advice() const {
     switch (place().cause) {
         case WorldCause::kMoved:
             return "the world has it elsewhere than the level: bake the level again";
+        case WorldCause::kFloats:
+            return "floats are coarse so far from the origin of its mesh: move the mesh there, and its node "
+                   "back";
         case WorldCause::kTexel:
             return "it is finer than the texels: bake with --budget " +
                    bytesWord(roundBudget(2 * gpuBytesOf(*field))) +

@@ -7,6 +7,7 @@
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/loops.h"
 #include "bake/mesh/triangle_plane.h"
+#include "bake/pipeline/bake.h"
 
 namespace relief {
 namespace {
@@ -53,9 +54,10 @@ WorldPlace worldPlace(const WorldPlaceQuestion& question, bool picture) {
                               : double{question.field.world().bodies[body].scale} *
                                     texelAt(collider.maps[static_cast<std::size_t>(map)], at);
     }
-    place.cause = question.moved                               ? WorldCause::kMoved
-                  : place.distance <= kTexelsOff * place.texel ? WorldCause::kTexel
-                                                               : WorldCause::kMesh;
+    place.cause = question.moved                                   ? WorldCause::kMoved
+                  : floatsLimit(own.query->mesh(), question.wrong) ? WorldCause::kFloats
+                  : place.distance <= kTexelsOff * place.texel     ? WorldCause::kTexel
+                                                                   : WorldCause::kMesh;
     if (picture) {
         const double longest = own.body->scale * double{own.query->mesh().bounds.longestSide()};
         place.slice =

@@ -16,12 +16,13 @@
 namespace relief {
 
 enum class WorldCause : std::uint8_t {
-    kMoved,  ///< the world has the node elsewhere
-    kTexel,  ///< the point is less than kTexelsOff texels from the surface
-    kMesh,   ///< it is farther: faces that cross, open edges, or a part that is lost
+    kMoved,   ///< the world has the node elsewhere
+    kFloats,  ///< floatsLimit(): the mesh lies too far from its origin
+    kTexel,   ///< the point is less than kTexelsOff texels from the surface
+    kMesh,    ///< it is farther: faces that cross, open edges, or a part that is lost
 };
 template <>
-inline constexpr std::array<std::string_view, 3> kWordsOf<WorldCause>{"moved", "texel", "mesh"};
+inline constexpr std::array<std::string_view, 4> kWordsOf<WorldCause>{"moved", "floats", "texel", "mesh"};
 
 inline constexpr double kTexelsOff = 1.5;
 
@@ -39,6 +40,7 @@ struct WorldPlaceQuestion {
     std::size_t body = 0;  ///< of the level
     glm::vec3 place{0.0F};
     bool moved = false;
+    double wrong = 0.0;  ///< percent of the body's points
 };
 
 [[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuestion& question, bool picture);

@@ -3,12 +3,44 @@
 #include "bake/world/world_check.h"
 
 #include "bake/recipe/recipe_jobs.h"
+#include "bake/world/world_check_report.h"
 #include "tests/bake/world/level_bakes.h"
 
 namespace relief::test {
 namespace {
 
 using WorldCheck = LevelBakes;
+
+TEST_F(WorldCheck, AdvisesNoBudgetWhereFloatsAreCoarse) {
+    std::string far = "o far\n";
+    const TriangleMesh torus = makeTorusMesh(0.5, 0.15, 24, 12);
+    for (const glm::vec3& p : torus.positions) {
+        far += "v " + std::to_string(4e5 + double{p.x}) + " " + std::to_string(p.y) + " " +
+               std::to_string(4e5 + double{p.z}) + "\n";
+    }
+    for (const glm::uvec3& t : torus.triangles) {
+        far += "f " + std::to_string(t.x + 1) + " " + std::to_string(t.y + 1) + " " +
+               std::to_string(t.z + 1) + "\n";
+    }
+    folder_.write("level.obj", far);
+    request_.bake.budget = 60'000;
+    const WorldBakeResult baked = bake("w");
+    Result<LoadedWorld> loaded = loadWorld(folder_.path() / "w" / kWorldFileName, {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    const WorldField field(std::move(*loaded));
+    WorldCheckRequest request;
+    request.check.mesh = (folder_.path() / "level.obj").string();
+    request.check.samples = 10'000;
+    const Result<WorldAccuracy> accuracy = checkWorld(request, field);
+    ASSERT_TRUE(accuracy) << accuracy.error().message;
+    EXPECT_GT(accuracy->all.total(), 5.0);
+    EXPECT_EQ(accuracy->places.front().cause, WorldCause::kFloats);
+    const std::string& warning = baked.colliders.front().warnings.back();
+    for (const std::string& text : {worldCheckText(field, "w", &*accuracy), warning}) {
+        EXPECT_EQ(text.find("--budget"), std::string::npos) << text;
+        EXPECT_NE(text.find("origin"), std::string::npos) << text;
+    }
+}
 
 TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
     // 20 posts of 0.5 m on a slab of 20 m, which most points near the mesh are far from.
