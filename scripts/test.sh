@@ -38,4 +38,5 @@ stage tests ctest --preset $tier -j "$(nproc)"
 stage 'web setup' scripts/setup.sh web
 stage 'web build' scripts/build.sh web
 export RELIEF_BIN=$PWD/build/test/bin LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0
-stage 'browser test' node --test --test-name-pattern='^each feature of the page shows$' tests/web/view_test.mjs
+stage 'browser test' node --test tests/web/collider_page_test.mjs
+stage 'particles in a browser' node --test --test-name-pattern='^particles meet the body' tests/web/view_test.mjs

@@ -82,13 +82,11 @@ void addAdvice(const CheckCommand& command, const std::string& file, MeshCheck& 
     run.advice = adviceFor(run, command.request.mesh, file == "-" ? "out.relief" : file);
 }
 
-Result<void> writePage(const CheckCommand& command, std::vector<std::byte> container,
-                       const MeshCheckReport& report, FileGuard& files) {
+Result<void> writePage(const CheckCommand& command, std::size_t bytes, const MeshCheckReport& report) {
     if (command.html.empty()) {
         return {};
     }
-    const std::string page =
-        RELIEF_TRY(makeCheckPage(report.file, std::move(container), report.run, report.max_error, files));
+    const std::string page = RELIEF_TRY(makeCheckPage(report.file, bytes, report.run, report.max_error));
     return writeFile(command.html, std::as_bytes(std::span(page)));
 }
 
@@ -148,7 +146,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     }
     addAdvice(command, file, run);
     const MeshCheckReport report{run, inputName(file), command.max_error};
-    RELIEF_TRY(writePage(command, std::move(container), report, files));
+    RELIEF_TRY(writePage(command, container.size(), report));
     RELIEF_TRY(printOut(command.json ? jsonTextOf(report) : checkText(report)));
     const bool passed = run.passes(command.max_error);
     if (!passed && run.original.accuracy.field.near.total() <= double{*command.max_error}) {

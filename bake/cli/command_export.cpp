@@ -45,12 +45,6 @@ std::span<const std::byte> bytesOf(std::string_view text) {
     return std::as_bytes(std::span(text));
 }
 
-/// A texture of one texel stands for one that no map uses: it needs no file, a GL fills it with anything.
-bool isUsed(const Collider& collider, TexelKind kind) {
-    return std::any_of(collider.maps.begin(), collider.maps.end(),
-                       [&](const DepthMap& map) { return texelKindOf(map.format) == kind; });
-}
-
 Json describe(const Collider& collider, const GpuImage& image, TexelKind kind) {
     const GpuTexture& texture = image.textures[kind];
     const TexelFormat& format = texelFormat(kind);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief view: a page to turn a collider round in, drop particles on it, and see where it is wrong.
+// relief view: a page to turn a collider round in and see where it is wrong, or to play a scene in.
 #include "bake/cli/command_view.h"
 
 #include <spdlog/spdlog.h>
@@ -12,6 +12,7 @@
 #include <span>
 
 #include "bake/cli/command.h"
+#include "bake/cli/view_page.h"
 #include "bake/director/mesh_check_report.h"
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
@@ -23,8 +24,11 @@
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/fields/json_value.h"
+#include "runtime/collider/collider_info.h"
+#include "runtime/collider/gpu_image.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
+#include "runtime/gl/gl_object.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"
@@ -51,9 +55,28 @@ std::string textOf(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-constexpr std::string_view kPlaceBegin = R"(<script type="application/json" id="relief-page-data">)";
-constexpr std::string_view kPlaceEmpty = "null";
-constexpr std::string_view kPlaceEnd = "</script>";
+/// The page of scenes: what RELIEF_VIEW_PAGE names, else that of an installed tool, or of a build beside this one.
+/// Errors: kUnsupported (there is none).
+Result<fs::path> findPlayer() {
+    if (const char* named = std::getenv("RELIEF_VIEW_PAGE"); named != nullptr && *named != '\0') {
+        return fs::path(named);
+    }
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (const char* place : {"../share/relief/view.html", "../../web/bin/view.html"}) {
+        const fs::path page = folder / place;
+        if (fs::is_regular_file(page, error)) {
+            return page;
+        }
+    }
+    return fail(ErrorCode::kUnsupported,
+                "the page of a scene or a world plays particles, which needs the player of browsers; run "
+                "scripts/build.sh web in the sources once, name a player with RELIEF_VIEW_PAGE, or view one "
+                "collider");
+}
+
+constexpr std::string_view kPlace = R"(<script type="application/json" id="relief-page-data">null</script>)";
+constexpr std::string_view kEmpty = "null";
 
 // Vertices and corners go as they lie in memory.
 static_assert(std::endian::native == std::endian::little);
@@ -95,42 +118,50 @@ std::string scriptText(const Json& json) {
 /// Bytes of everything that one page holds, before they become text: more, and browsers give up.
 constexpr std::uint64_t kViewBytesMax = std::uint64_t{128} << 20;
 
+/// A collider as a page draws it: what `relief export --gpu` writes, and facts.
+Result<Json> colliderJson(const Collider& collider) {
+    const GpuImage image = RELIEF_TRY(gpuImage(collider));
+    const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
+    Json textures = Json::array();
+    for (const TexelKind kind : {kFloatTexels, kFixedTexels, kFrontBackTexels}) {
+        const GpuTexture& texture = image.textures[kind];
+        textures.push_back(
+            {{"width", texture.width},
+             {"height", texture.height},
+             {"texels", isUsed(collider, kind) ? Json(base64(texture.texels)) : Json(nullptr)}});
+    }
+    return Json{{"info", colliderInfo(collider)},
+                {"animated", !collider.animation.empty()},
+                {"glsl", std::string(kShaderLicence) + image.defines + core},
+                {"block", base64(image.block)},
+                {"textures", textures}};
+}
+
 /// The contents of a page.
 struct Page {
-    FileGuard& files_of_run;
-    std::string name = {};                  ///< without its folder
-    std::vector<std::byte> container = {};  ///< what is shown; empty: `shows`
-    std::string shows = {};                 ///< which of `files` is shown; empty: `container`
+    std::string name = {};               ///< without its folder
+    std::size_t bytes = 0;               ///< of the collider's file; of a scene: 0
+    const Collider* collider = nullptr;  ///< what is shown, of a page without a scene
     const TriangleMesh* mesh = nullptr;
     Json check = nullptr;                           ///< the report of `relief check`
     std::optional<std::string> scene = {};          ///< text of a scene.toml
+    std::string shows = {};                         ///< which of `files` is in the panel; empty: `container`
+    std::vector<std::byte> container = {};          ///< of the collider in the panel
     std::map<std::string, std::string> files = {};  ///< that the scene names, by the names it has for them
 
-    /// Reads a file that the page depends on.
-    Result<std::vector<std::byte>> read(const fs::path& path) {
-        RELIEF_TRY(files_of_run.reads(path));
-        return readFile(path, kViewBytesMax);
-    }
-
-    Result<std::string> make() {
-        const fs::path file = RELIEF_TRY(findViewPage());
-        const std::string text = textOf(RELIEF_TRY(read(file)));
-        const std::string place = std::string(kPlaceBegin).append(kPlaceEmpty).append(kPlaceEnd);
-        const std::size_t at = text.find(place);
-        if (at == std::string::npos || text.find(place, at + 1) != std::string::npos) {
-            return invalidInput(quotedPath(file) + " is no page for `relief view`: its place for data, " +
-                                place + ", is not there once; make it anew with scripts/build.sh web");
-        }
+    /// \param page  with a place for data.
+    [[nodiscard]] Result<std::string> make(const std::string& page) const {
         RELIEF_TRY(checkSize());
-        const std::size_t data = at + kPlaceBegin.size();
-        return text.substr(0, data) + scriptText(json()) + text.substr(data + kPlaceEmpty.size());
+        const std::size_t data = page.find(kPlace) + kPlace.find(kEmpty);
+        return page.substr(0, data) + scriptText(RELIEF_TRY(json())) + page.substr(data + kEmpty.size());
     }
 
   private:
     [[nodiscard]] Result<void> checkSize() const {
-        std::uint64_t rest = container.size() + (scene ? scene->size() : 0);
-        for (const auto& [name_in_scene, bytes] : files) {
-            rest += bytes.size();
+        std::uint64_t rest =
+            container.size() + (scene ? scene->size() : 0) + (collider != nullptr ? collider->gpuBytes() : 0);
+        for (const auto& [name_in_scene, file] : files) {
+            rest += file.size();
         }
         const std::uint64_t of_mesh =
             mesh == nullptr ? 0 : std::uint64_t{12} * (mesh->positions.size() + mesh->triangles.size());
@@ -148,10 +179,17 @@ struct Page {
                                            "; bake with a smaller --budget, or smaller maps");
     }
 
-    [[nodiscard]] Json json() const {
-        Json all = {{"format", 2},
+    [[nodiscard]] Result<Json> json() const {
+        Json shown = nullptr;
+        if (collider != nullptr) {
+            shown = RELIEF_TRY(inFront(name, colliderJson(*collider)));
+        } else if (shows.empty()) {
+            shown = base64(container);
+        }
+        Json all = {{"format", 3},
                     {"name", name},
-                    {"collider", shows.empty() ? Json(base64(container)) : Json(nullptr)},
+                    {"bytes", bytes},
+                    {"collider", shown},
                     {"shows", shows.empty() ? Json(nullptr) : Json(shows)},
                     {"mesh", nullptr},
                     {"check", check},
@@ -162,12 +200,31 @@ struct Page {
                            {"vertices", base64(std::as_bytes(std::span(mesh->positions)))},
                            {"triangles", base64(std::as_bytes(std::span(mesh->triangles)))}};
         }
-        for (const auto& [name_in_scene, bytes] : files) {
-            all["files"][name_in_scene] = base64(std::as_bytes(std::span(bytes)));
+        for (const auto& [name_in_scene, file] : files) {
+            all["files"][name_in_scene] = base64(std::as_bytes(std::span(file)));
         }
         return all;
     }
 };
+
+/// Reads a file that the page depends on.
+Result<std::vector<std::byte>> readFor(FileGuard& files, const fs::path& path) {
+    RELIEF_TRY(files.reads(path));
+    return readFile(path, kViewBytesMax);
+}
+
+/// The page that plays scenes, without data.
+Result<std::string> playerPage(FileGuard& files) {
+    const fs::path file = RELIEF_TRY(findPlayer());
+    std::string text = textOf(RELIEF_TRY(readFor(files, file)));
+    const std::size_t at = text.find(kPlace);
+    if (at == std::string::npos || text.find(kPlace, at + 1) != std::string::npos) {
+        return invalidInput(quotedPath(file) + " is no page for `relief view`: its place for data, " +
+                            std::string(kPlace) +
+                            ", is not there once; make it anew with scripts/build.sh web");
+    }
+    return text;
+}
 
 /// The report, and what the page needs to show it.
 Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<float> max_error) {
@@ -179,23 +236,25 @@ Result<std::string> checkPage(Page page, const MeshCheck& check, std::optional<f
         const glm::dvec3 normal = planeOf(check.query->mesh(), closest.triangle).normal;
         report["worst_places"][i]["normal"] = jsonOf(glm::vec3(glm::normalize(normal)));
     }
+    page.collider = &check.collider;
     page.mesh = &*check.imported;
     page.check = std::move(report);
-    return page.make();
+    return page.make(viewPage());
 }
 
-Result<std::string> colliderPage(const ViewCommand& command, Page page) {
-    page.container = RELIEF_TRY(page.read(command.file));
-    RELIEF_TRY(refuseMesh(command.file, page.container));
+Result<std::string> colliderPage(const ViewCommand& command, FileGuard& files) {
+    const std::vector<std::byte> container = RELIEF_TRY(readFor(files, command.file));
+    RELIEF_TRY(refuseMesh(command.file, container));
     Collider collider =
-        RELIEF_TRY(inFront(shownInput(command.file), readContainer(page.container, command.limits)));
+        RELIEF_TRY(inFront(shownInput(command.file), readContainer(container, command.limits)));
+    Page page{.name = inputName(command.file), .bytes = container.size(), .collider = &collider};
     if (command.check.mesh.empty()) {
-        return page.make();
+        return page.make(viewPage());
     }
     const MeshCheck check = RELIEF_TRY(relief::check(command.check, std::move(collider)));
     showCheckWarnings(check);
     for (const std::string& file : check.imported->dependencies) {
-        RELIEF_TRY(page.files_of_run.reads(file));
+        RELIEF_TRY(files.reads(file));
     }
     return checkPage(std::move(page), check, {});
 }
@@ -220,22 +279,26 @@ std::string nameInScene(const fs::path& file, const fs::path& scene) {
 }
 
 /// The first collider that has texels, else the first.
-Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page) {
+Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page, FileGuard& files) {
     for (const SceneCollider& collider : scene.colliders) {
         if (!collider.live) {
             page.shows = nameInScene(collider.path, file);
             return {};
         }
     }
-    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front(), page.files_of_run));
+    page.container = RELIEF_TRY(bakedAtRest(scene.colliders.front(), files));
     return {};
 }
 
-Result<std::string> scenePage(const std::string& name, const ContainerLimits& limits, Page page) {
+/// \param check  of a world; null: none.
+Result<std::string> scenePage(const std::string& name, const ContainerLimits& limits, const Json& check,
+                              FileGuard& files) {
+    const std::string player = RELIEF_TRY(playerPage(files));
+    Page page{.name = inputName(name), .check = check};
     const fs::path file = name;
     // The default scene of a world: a string of JSON is one of TOML.
     page.scene = namesWorld(name) ? "world = " + jsonOf(file.filename()).dump() + "\n"
-                                  : textOf(RELIEF_TRY(page.read(file)));
+                                  : textOf(RELIEF_TRY(readFor(files, file)));
     SceneOverrides overrides;
     overrides.limits = limits;
     const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
@@ -247,25 +310,25 @@ Result<std::string> scenePage(const std::string& name, const ContainerLimits& li
                         "leave it out");
     }
     for (const fs::path& file_of_scene : allFilesOf(loaded)) {
-        RELIEF_TRY(page.files_of_run.reads(file_of_scene));
+        RELIEF_TRY(files.reads(file_of_scene));
     }
     for (const fs::path& named : filesOf(loaded.scene)) {
-        page.files[nameInScene(named, file)] = textOf(RELIEF_TRY(page.read(named)));
+        page.files[nameInScene(named, file)] = textOf(RELIEF_TRY(readFor(files, named)));
     }
     for (const WorldCollider& collider : loaded.world.colliders) {
         if (loaded.scene.stream && collider.coarse) {
             const fs::path coarse = containerOf(loaded.scene, *collider.coarse);
-            page.files[nameInScene(coarse, file)] = textOf(RELIEF_TRY(page.read(coarse)));
+            page.files[nameInScene(coarse, file)] = textOf(RELIEF_TRY(readFor(files, coarse)));
         }
     }
     if (!loaded.scene.render.meshes.empty()) {
         RELIEF_TRY(loadDrawnMeshes(loaded));  // what cannot be read is told here, not on the page
         for (const fs::path& drawn : RELIEF_TRY(drawnFiles(loaded))) {
-            page.files[nameInScene(drawn, file)] = textOf(RELIEF_TRY(page.read(drawn)));
+            page.files[nameInScene(drawn, file)] = textOf(RELIEF_TRY(readFor(files, drawn)));
         }
     }
-    RELIEF_TRY(chooseShown(loaded.scene, file, page));
-    return page.make();
+    RELIEF_TRY(chooseShown(loaded.scene, file, page, files));
+    return page.make(player);
 }
 
 /// The report, and what the page needs to show it.
@@ -320,36 +383,18 @@ Result<void> runView(const ViewCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.check.mesh));
     RELIEF_TRY(files.writes(output, "-o"));
-    Page page{files, inputName(command.file)};
     const std::string html =
         RELIEF_TRY(measured && namesWorld(command.file) ? worldPage(command, files)
-                   : command.isScene() ? scenePage(command.file, command.limits, std::move(page))
-                                       : colliderPage(command, std::move(page)));
+                   : command.isScene() ? scenePage(command.file, command.limits, nullptr, files)
+                                       : colliderPage(command, files));
     return writeFile(output, std::as_bytes(std::span(html)));
 }
 
 }  // namespace
 
-Result<fs::path> findViewPage() {
-    if (const char* named = std::getenv("RELIEF_VIEW_PAGE"); named != nullptr && *named != '\0') {
-        return fs::path(named);
-    }
-    std::error_code error;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const char* place : {"../share/relief/view.html", "../../web/bin/view.html"}) {
-        const fs::path page = folder / place;
-        if (fs::is_regular_file(page, error)) {
-            return page;
-        }
-    }
-    return fail(ErrorCode::kUnsupported,
-                "there is no page to put a collider in; run scripts/build.sh web in the sources once, which "
-                "makes it, or name one with RELIEF_VIEW_PAGE");
-}
-
-Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte> container,
-                                  const MeshCheck& check, std::optional<float> max_error, FileGuard& files) {
-    return checkPage({files, name, std::move(container)}, check, max_error);
+Result<std::string> makeCheckPage(const std::string& name, std::size_t bytes, const MeshCheck& check,
+                                  std::optional<float> max_error) {
+    return checkPage({.name = name, .bytes = bytes}, check, max_error);
 }
 
 Result<void> preflightPage(const std::string& file, const std::string& mesh, const std::string& html,
@@ -361,17 +406,15 @@ Result<void> preflightPage(const std::string& file, const std::string& mesh, con
     RELIEF_TRY(files.reads(mesh));
     RELIEF_TRY(files.writes("-", "the report"));
     RELIEF_TRY(files.writes(html, "--html"));
-    return files.reads(RELIEF_TRY(findViewPage()));
+    return namesWorld(file) ? files.reads(RELIEF_TRY(findPlayer())) : Result<void>();
 }
 
 Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,
                                   const WorldCheckJson& check, FileGuard& files) {
-    Page page{files, inputName(file)};
     for (const std::string& named : check.accuracy->dependencies) {
         RELIEF_TRY(files.reads(named));
     }
-    page.check = RELIEF_TRY(worldCheckJson(check));
-    return scenePage(file, limits, std::move(page));
+    return scenePage(file, limits, RELIEF_TRY(worldCheckJson(check)), files);
 }
 
 OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request) {
@@ -396,13 +439,13 @@ void addView(CLI::App& app, Action& action) {
     auto command = std::make_shared<ViewCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "view",
-        "Makes a page to look at a collider, and to play with\n\nOne HTML file that holds everything and "
-        "opens from disk in any browser with WebGL2: the surface as the maps see it,\nevery map, slices, and "
-        "live "
-        "particles. With --mesh also the mesh, the errors on it and the worst places of `relief check`.\n"
+        "Makes a page to look at a collider, or to play a scene\n\nOne HTML file that holds everything and "
+        "opens from disk in any browser with WebGL2: the surface as the maps see it,\nevery map, and slices. "
+        "With --mesh also the mesh, the errors on it and the worst places of `relief check`.\n"
         "Of a scene or a world: its particles, as relief-sim plays them; of a world each body's name, and "
         "with "
-        "--mesh,\nthe level, the bodies coloured by what is wrong near them, and pictures of the ten worst.",
+        "--mesh,\nthe level, the bodies coloured by what is wrong near them, and pictures of the ten worst. "
+        "Such a page\nneeds the player that `scripts/build.sh web` builds once.",
         "relief view bunny.relief\n"
         "relief view bunny.relief --mesh bunny.obj -o page.html\n"
         "relief view scene.toml\n"

@@ -2,7 +2,6 @@
 // Shared by `relief view` and `relief check`: the options about a mesh, and the page.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,24 +14,21 @@
 
 namespace relief {
 
-/// The template: what RELIEF_VIEW_PAGE names, else that of an installed tool, or of a build beside this one.
-/// Errors: kUnsupported (there is none).
-[[nodiscard]] Result<std::filesystem::path> findViewPage();
-
 /// Before the long work: whether a page can be made, and written. \param html  --html; empty: none
 /// Errors: kUsage, kUnsupported; those of FileGuard.
 [[nodiscard]] Result<void> preflightPage(const std::string& file, const std::string& mesh,
                                          const std::string& html, FileGuard& files);
 
 /// The page of `relief view` around a check that has been made: `relief check --html`.
-/// \param name  of the collider. \param container  its bytes. \param files  gets the template.
-/// Errors: kUnsupported: no template; kInvalidInput: a template without its one place for data; kLimit: more than a page holds.
-[[nodiscard]] Result<std::string> makeCheckPage(const std::string& name, std::vector<std::byte> container,
-                                                const MeshCheck& check, std::optional<float> max_error,
-                                                FileGuard& files);
+/// \param name  of the collider. \param bytes  of its file.
+/// Errors: kLimit: more than a page holds; those of gpuImage.
+[[nodiscard]] Result<std::string> makeCheckPage(const std::string& name, std::size_t bytes,
+                                                const MeshCheck& check, std::optional<float> max_error);
 
-/// The page of a world. \param file  of the world. \param check  made with pictures.
-/// Errors: as those of makeCheckPage; those of loadAll.
+/// The page of a world, which needs the player that scripts/build.sh web makes. \param file  of the world. \param check  made with
+/// pictures. \param files  gets the player.
+/// Errors: kUnsupported: no player; kInvalidInput: a player without its one place for data; kLimit: more than a page holds; those of
+/// loadAll.
 [[nodiscard]] Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,
                                                 const WorldCheckJson& check, FileGuard& files);
 

@@ -118,6 +118,11 @@ std::array<GpuTexture, kTexelKinds> mapTextures(std::span<const PlacedMap> maps,
     return textures;
 }
 
+bool isUsed(const Collider& collider, TexelKind kind) {
+    return std::any_of(collider.maps.begin(), collider.maps.end(),
+                       [&](const DepthMap& map) { return texelKindOf(map.format) == kind; });
+}
+
 Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max) {
     if (collider.maps.empty()) {
         return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");

@@ -48,4 +48,7 @@ struct GpuImage {
 /// Fails with kUnsupported (no maps) or kLimit (a texture would have to be larger).
 [[nodiscard]] Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max = 16384);
 
+/// Whether some map has such texels. A texture of one texel stands for one that no map uses: a GL fills it with anything.
+[[nodiscard]] bool isUsed(const Collider& collider, TexelKind kind);
+
 }  // namespace relief

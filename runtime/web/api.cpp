@@ -8,7 +8,6 @@
 #include <cstring>
 #include <deque>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,10 +17,12 @@
 #include "formats/base/file_io.h"
 #include "formats/base/finite.h"
 #include "formats/config/toml_reader.h"
+#include "formats/fields/json_value.h"
 #include "formats/texel.h"
 #include "runtime/c_api/call.h"
 #include "runtime/c_api/objects.h"
 #include "runtime/c_api/relief.h"
+#include "runtime/collider/collider_info.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/depth_sort.h"
@@ -37,8 +38,6 @@
 namespace relief {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string g_text;  // what a call that returns text returned last
 
 const char* returned(std::string text) {
@@ -53,43 +52,6 @@ std::string lineOf(const Json& json) {
 
 Json json(const glm::vec3& v) {
     return {v.x, v.y, v.z};
-}
-Json json(const glm::vec4& v) {
-    return {v.x, v.y, v.z, v.w};
-}
-
-Json describe(const DepthMap& map) {
-    const Affine& t = map.object_to_map;
-    return {{"format", mapFormatName(map.format)},
-            {"encoding", depthEncodingName(map.format)},
-            {"compare", compareName(map.compare)},
-            {"decode", decodeName(map.decode)},
-            {"projection", projectionName(map.projection())},
-            {"width", map.width},
-            {"height", map.height},
-            {"faces", map.faceCount()},
-            {"rows", {json(t.row[0]), json(t.row[1]), json(t.row[2])}},
-            {"object_per_map", json(map.object_per_map)},
-            {"encloses", map.encloses},
-            {"empty_is_outside", map.empty_is_outside},
-            {"bytes", map.texelBytes()}};
-}
-
-Json describe(const Collider& collider) {
-    Json maps = Json::array();
-    for (const DepthMap& map : collider.maps) {
-        maps.push_back(describe(map));
-    }
-    const Provenance& from = collider.provenance;
-    return {{"bounds", {{"min", json(collider.bounds.min)}, {"max", json(collider.bounds.max)}}},
-            {"unit", collider.unit},
-            {"mesh", {{"name", from.mesh_name}, {"hash", from.mesh_hash}, {"triangles", from.triangles}}},
-            {"tool", from.tool_version},
-            {"options", from.optionsText()},
-            {"bytes", collider.texelBytes()},
-            {"gpu_bytes", collider.gpuBytes()},
-            {"finest_texel", finestTexel(collider)},
-            {"maps", maps}};
 }
 
 Json describeStream(const std::optional<StreamCounts>& counts) {
@@ -390,7 +352,7 @@ EMSCRIPTEN_KEEPALIVE relief_world* relief_world_load_coarse(const char* path) {
 /// JSON.
 EMSCRIPTEN_KEEPALIVE const char* relief_collider_info(const relief_collider* collider) {
     return answer<const char*>(__func__, nullptr, [&](const Call& call) -> Result<const char*> {
-        return returned(describe(*RELIEF_TRY(call.object(collider, "collider"))).dump());
+        return returned(colliderInfo(*RELIEF_TRY(call.object(collider, "collider"))).dump());
     });
 }
 

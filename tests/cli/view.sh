@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # relief view: a page that holds everything itself, of colliders, of meshes beside them, of scenes and worlds; and what may be
-# wrong with them. A stub stands for the page: tests/web looks at the real one.
+# wrong with them. A stub stands for the page of scenes, which needs another build; tests/web looks at the real ones.
 . "$(dirname "$0")/lib.sh"
 
-printf '%s\n' '<!doctype html>' '<title>stub</title>' '<script type="application/json" id="relief-page-data">null</script>' '<p>the end</p>' >stub.html
-export RELIEF_VIEW_PAGE=$work/stub.html
-
-# data PAGE: what the page holds, to data.json; and that the rest of the page is the template's.
+# data PAGE: what the page holds, to data.json, and the rest to rest.html; nothing in it is elsewhere.
 data() {
-    python3 - "$1" stub.html data.json <<'P' || die "$1 is not the template with data"
-import json, sys
-page, stub = open(sys.argv[1]).read(), open(sys.argv[2]).read()
-before, after = stub.split('>null<')
-assert page.startswith(before + '>') and page.endswith('<' + after), 'not the template'
-data = page[len(before) + 1:len(page) - len(after) - 1]
+    python3 - "$1" <<'P' || die "$1 is no page with data"
+import json, re, sys
+before, data, after = re.fullmatch('(.*id="relief-page-data">)(.*?)(</script>.*)', open(sys.argv[1]).read(), re.S).groups()
 assert '<' not in data and '\n' not in data, 'data that could end its script'
-json.dump(json.loads(data), open(sys.argv[3], 'w'))
+assert not re.search(r'https?:|src=|@import|url\(', before + after), 'the page refers to something else'
+json.dump(json.loads(data), open('data.json', 'w'))
+open('rest.html', 'w').write(before + 'null' + after)
 P
 }
 holds() { # FILE BASE64_EXPRESSION: the bytes in data.json are those of the file
@@ -24,17 +20,32 @@ holds() { # FILE BASE64_EXPRESSION: the bytes in data.json are those of the file
 
 "$relief" bake "$bunny" -o b.relief --paper --resolution 48 -q
 
-# The page lies beside the collider, the same in every run.
-expect 0 "$relief" view b.relief
+# The page lies beside the collider, the same in every run. It needs no build of the web: RELIEF_VIEW_PAGE is for scenes.
+RELIEF_VIEW_PAGE=$work/none.html expect 0 "$relief" view b.relief
 [ ! -s stdout ] && [ ! -s stderr ] || die "it prints something: $(cat stdout stderr)"
 data b.html
-holds b.relief 'd["collider"]'
-json data.json 'list(d) == ["format", "name", "collider", "shows", "mesh", "check", "scene", "files"]'
-json data.json '[d["format"], d["name"]] == [2, "b.relief"] and {d[k] for k in list(d)[3:]} == {None}'
+json data.json 'list(d) == ["format", "name", "bytes", "collider", "shows", "mesh", "check", "scene", "files"]'
+json data.json '[d["format"], d["name"]] == [3, "b.relief"] and {d[k] for k in list(d)[4:]} == {None} and not d["collider"]["animated"]'
+json data.json "d['bytes'] == $(stat -c %s b.relief)"
+cp rest.html page.html
 "$relief" view - -o - <b.relief >standard_input.html
-data standard_input.html
-holds b.relief 'd["collider"]'
-json data.json 'd["name"] == "standard input"'
+sed 's/"name":"b.relief"/"name":"standard input"/' b.html | cmp - standard_input.html || die "standard input has another page"
+
+# It holds what relief export --gpu writes, of each kind of map.
+"$relief" bake "$bunny" -o kinds.relief -q --map float:dir=+x,size=16 --map fixed8:dir=-z,size=16 --map cube:size=8 --map front-back:dir=+y,size=16 --map patches:bytes=10kB
+for collider in b.relief kinds.relief; do
+    "$relief" export $collider --gpu gpu -q
+    "$relief" view $collider -o page_of.html
+    data page_of.html
+    cmp rest.html page.html || die "the page of $collider differs beside its data"
+    holds gpu/block.bin 'd["collider"]["block"]'
+    json data.json 'd["collider"]["glsl"] == open("gpu/collider.glsl").read()'
+    for i in 0 1 2; do
+        file=$(python3 -c "import json; print(json.load(open('gpu/gpu.json'))['textures'][$i]['file'] or '')")
+        [ -n "$file" ] || json data.json "d['collider']['textures'][$i]['texels'] is None"
+        [ -z "$file" ] || holds "gpu/$file" "d['collider']['textures'][$i]['texels']"
+    done
+done
 
 # With its mesh: the report of `relief check`.
 expect 0 "$relief" view b.relief --mesh "$bunny" --samples 5000 --seed 7 -o mesh.html
@@ -66,12 +77,15 @@ for name in '<script><!--.relief' $'\xff.relief'; do
 done
 
 # A scene, and the files that it names. A body that deforms is shown at rest.
+printf '%s\n' '<!doctype html>' '<title>stub</title>' '<script type="application/json" id="relief-page-data">null</script>' '<p>the end</p>' >stub.html
+export RELIEF_VIEW_PAGE=$work/stub.html
 mkdir -p scene/sub
 cp b.relief scene/sub/
 printf '0,2,0\n' >scene/points.csv
 printf '%s\n' '[collider]' 'file = "./sub/b.relief"' '[[emitter]]' 'points = "points.csv"' 'direction = [0, -1, 0]' 'speed = 1.0' >scene/s.toml
 expect 0 "$relief" view scene/s.toml
 data scene/s.html
+cmp rest.html stub.html || die "not the stub with data"
 holds b.relief 'd["files"]["sub/b.relief"]'
 holds scene/points.csv 'd["files"]["points.csv"]'
 json data.json '[d["collider"], d["shows"], d["name"], len(d["files"])] == [None, "sub/b.relief", "s.toml", 2]'
@@ -98,7 +112,7 @@ refuses 6 'large.relief' large.relief -o errors/o.html
 refuses 2 "missing.relief" missing.relief -o errors/o.html
 refuses 2 "missing.obj" b.relief --mesh missing.obj -o errors/o.html
 refuses 3 'box.obj' b.relief --mesh box.obj -o errors/o.html
-refuses 1 'stub.html' b.relief -o stub.html
+refuses 1 'stub.html' scene/s.toml -o stub.html
 refuses 1 'points.csv' scene/s.toml -o scene/points.csv
 refuses 2 'nowhere' b.relief -o nowhere/o.html
 refuses 1 '-o' -
@@ -109,18 +123,20 @@ refuses 6 'triangles' b.relief --mesh "$bunny" --max-triangles 10 -o errors/o.ht
 printf '[collider]\nfile = "../b.relief"\n' >scene/outside.toml
 refuses 3 'outside.toml:2' scene/outside.toml -o errors/o.html
 
-# The template: the variable first, then the installed one, then the build beside this one.
-RELIEF_VIEW_PAGE=$work/none.html refuses 2 none.html b.relief -o errors/o.html
-RELIEF_VIEW_PAGE=$work/box.obj refuses 3 'scripts/build.sh web' b.relief -o errors/o.html
+# The page of scenes: the variable first, then the installed one, then the build beside this one.
+RELIEF_VIEW_PAGE=$work/none.html refuses 2 none.html scene/s.toml -o errors/o.html
+RELIEF_VIEW_PAGE=$work/box.obj refuses 3 'scripts/build.sh web' scene/s.toml -o errors/o.html
 cat stub.html stub.html >twice.html
-RELIEF_VIEW_PAGE=$work/twice.html refuses 3 'scripts/build.sh web' b.relief -o errors/o.html
+RELIEF_VIEW_PAGE=$work/twice.html refuses 3 'scripts/build.sh web' scene/s.toml -o errors/o.html
 mkdir -p tree/release/bin tree/web/bin tree/release/share/relief
 cp "$relief" "$RELIEF_BIN/relief-import" tree/release/bin/
 unset RELIEF_VIEW_PAGE
-expect_error 5 'scripts/build.sh web' tree/release/bin/relief view b.relief -o errors/o.html
+expect_error 5 'scripts/build.sh web' tree/release/bin/relief view scene/s.toml -o errors/o.html
+expect 0 tree/release/bin/relief view b.relief -o found.html
+cmp found.html b.html || die "an installed tool makes another page"
 for place in web/bin release/share/relief; do
     sed "s#stub#$place#" stub.html >tree/$place/view.html
-    expect 0 tree/release/bin/relief view b.relief -o found.html
+    expect 0 tree/release/bin/relief view scene/s.toml -o found.html
     grep -q "<title>$place" found.html || die "the page in $place is not found"
 done
 

@@ -11,6 +11,7 @@ diff -r -x .relief-cache.json w one || die "threads change the world"
 
 # The page of a check is that of relief view.
 printf '<script type="application/json" id="relief-page-data">null</script>' >template.html
+RELIEF_VIEW_PAGE=$PWD/none.html expect_error 2 none.html "$relief" check w/world.json --mesh level.gltf --html page.html --samples 50
 export RELIEF_VIEW_PAGE=$PWD/template.html
 expect 0 "$relief" check w/world.json --mesh level.gltf --html page.html --samples 5000
 expect 0 "$relief" view w/world.json --mesh level.gltf -o view.html --samples 5000

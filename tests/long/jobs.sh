@@ -233,7 +233,7 @@ job_packages() {
     scripts/setup.sh dpkg-dev lintian
     local room=$work/bare/srv/relief names round
     mkdir -p "$room/doc"
-    scripts/build.sh web # for the page of relief view
+    scripts/build.sh web # for the pages of scenes
     scripts/build.sh packages
     # Twice: the same sources give the same packages.
     for round in 1 2; do

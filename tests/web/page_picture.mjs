@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the README's picture of the page: node tests/web/page_picture.mjs FILE.jpg, after scripts/build.sh release and web.
+// Makes the README's picture of the page: node tests/web/page_picture.mjs FILE.jpg, after scripts/build.sh release.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -17,14 +17,6 @@ try {
     const { page } = await openPage(browser, pathToFileURL(path.join(folder, "page.html")).href,
                                     { viewport: { width: 1440, height: 900 }, colorScheme: "dark" });
     await page.waitForFunction("window.reliefView?.ready && reliefView.body");
-    await page.click("#tab-particles");
-    await page.click("[value=rain] + span");
-    await page.click("#pause");
-    await page.evaluate(() => {
-        for (let i = 0; i < 230; ++i) {
-            reliefView.particles.step();
-        }
-    });
     await page.mouse.move(700, 880);
     await page.waitForTimeout(3000);
     await page.screenshot({ path: process.argv[2] ?? "relief_view.jpg", type: "jpeg", quality: 70, timeout: 120_000 });

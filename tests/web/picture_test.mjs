@@ -11,7 +11,7 @@ import { boxes } from "./lib/boxes.mjs";
 import { root, spoken } from "./lib/browser.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
-import { dataOf, viewer } from "./lib/view.mjs";
+import { dataOf, viewer, withData } from "./lib/view.mjs";
 
 const kSteps = 60;
 const [kWidth, kHeight] = [320, 180];
@@ -186,8 +186,8 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
     run("relief", "view", path.join(folder, "scene.toml"), "-q", "-o", path.join(folder, "made.html"));
     const made = dataOf(path.join(folder, "made.html"));
     assert.equal(Buffer.from(made.files["meshes/block.obj"], "base64").toString(), readFileSync(path.join(folder, "meshes/block.obj"), "utf8"));
-    const open = await viewer(t, folder);
-    const { page, said } = await open(made, { viewport: { width: 480, height: 300 }, colorScheme: "light" });
+    const open = await viewer(t);
+    const { page, said } = await open(path.join(folder, "made.html"), { viewport: { width: 480, height: 300 }, colorScheme: "light" });
     const shares = () => page.evaluate(() => {
         reliefView.particles.paused = true;
         const { data, error } = reliefView.pixelsNow();
@@ -242,7 +242,7 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
 
     // A mesh that is gone is named by the tool, and by a page whose data lacks it.
     delete made.files["meshes/block.obj"];
-    const broken = await open(made, { viewport: { width: 480, height: 300 } });
+    const broken = await open(withData(path.join(folder, "made.html"), made), { viewport: { width: 480, height: 300 } });
     await broken.page.waitForFunction("document.querySelector('#message p').textContent !== ''");
     assert.match(await broken.page.locator("#message p").textContent(), /render\.meshes: .*has no 'block\.ply' or \.obj/);
     assert.equal(await broken.page.evaluate("reliefView.look.show"), "surface");

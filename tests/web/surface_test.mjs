@@ -2,13 +2,13 @@
 // The picture of a collider holds all of it: against rays that ask the CPU's maps step by step. Sheets and struts thinner than
 // any grid would find, in the formats that there are.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
 import { boxes } from "./lib/boxes.mjs";
 import { bunny, run, scratch } from "./lib/native.mjs";
-import { pageData, viewer } from "./lib/view.mjs";
+import { keptDepths, scenePage, viewer } from "./lib/view.mjs";
 
 /** A point turned by so many degrees, about no axis of its own. */
 function turned([x, y, z], turn) {
@@ -36,7 +36,7 @@ const square = "v -1 0 -1\nv 1 0.3 -1\nv 1 0.3 1\nv -1 0 1\nf 4 3 2 1\n";
 
 /** Runs in the page: of rays through pixels, what the picture has, and what the CPU has. */
 async function compare([columns, rows, steps, places]) {
-    const { view, camera, body, look, gl } = reliefView;
+    const { view, camera, body, look } = reliefView;
     look.floor = null;
     document.getElementById("sheets").hidden = true;
     reliefView.panel.frame();
@@ -45,35 +45,8 @@ async function compare([columns, rows, steps, places]) {
     }
     view.dirty = true;
     const { error } = reliefView.pixelsNow();
-    const { width, height, depth } = view.kept;
-    // The depths of the picture.
-    const made = (type, text) => {
-        const shader = gl.createShader(type);
-        gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n${text}`);
-        gl.compileShader(shader);
-        return shader;
-    };
-    const program = gl.createProgram();
-    gl.attachShader(program, made(gl.VERTEX_SHADER, "void main() { gl_Position = vec4(2 * ((gl_VertexID << 1) & 2) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1); }"));
-    gl.attachShader(program, made(gl.FRAGMENT_SHADER, "uniform sampler2D u; out vec4 o; void main() { o = vec4(texelFetch(u, ivec2(gl_FragCoord.xy), 0).r); }"));
-    gl.linkProgram(program);
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
-    const frame = gl.createFramebuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-    gl.viewport(0, 0, width, height);
-    gl.disable(gl.DEPTH_TEST);
-    gl.disable(gl.BLEND);
-    gl.useProgram(program);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, depth);
-    gl.bindVertexArray(null);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    const depths = new Float32Array(4 * width * height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, depths);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    const { width, height } = view.kept;
+    const depths = keptDepths(reliefView);
 
     const { view: V, projection: P, eye } = camera.matrices(width, height);
     const { min, max, longest } = body.box;
@@ -93,7 +66,7 @@ async function compare([columns, rows, steps, places]) {
                 from = Math.max(from, Math.min(a, b));
                 to = Math.min(to, Math.max(a, b));
             }
-            const z = 2 * depths[4 * (py * width + px)] - 1;
+            const z = 2 * depths[py * width + px] - 1;
             const drawn = z < 1 - 1e-6 ? P[14] / (z + P[10]) : Infinity;
             if (!(from < to)) {
                 continue;
@@ -147,10 +120,11 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
         "bunny, few patches": [bunny, "--map", "patches:bytes=20kB"],
         "bunny, patches among maps": [bunny, "--map", "patches:bytes=40kB", "--map", "cube:size=48", "--map", "front-back:dir=+x,size=64"],
     };
-    const open = await viewer(t, folder);
+    const open = await viewer(t);
     for (const [name, [mesh, ...options]] of Object.entries(cases)) {
         run("relief", "bake", mesh === bunny ? bunny : at(mesh), "-q", "-o", at("c.relief"), ...options);
-        const { page, said, close } = await open(pageData("c.relief", readFileSync(at("c.relief"))), { viewport: { width: 300, height: 260 } });
+        const { page, said, close } = await open(scenePage(folder, at("c.relief")), { viewport: { width: 300, height: 260 } });
+        await page.evaluate(`window.keptDepths = ${keptDepths}`);
         const found = await page.evaluate(compare, [50, 44, 500, mesh === "gap.obj" ? mouth : null]);
         t.diagnostic(`${name}: ${JSON.stringify(found)}`);
         assert.equal(found.error, 0, name);

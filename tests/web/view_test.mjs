@@ -2,12 +2,11 @@
 // The page of `relief view`: opened from disk with a bunny in it, each of its features once, and everything that may be
 // given to it by mistake. Nothing may be said on the console, and no GL error may be left.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
 import { bunny, run, scratch } from "./lib/native.mjs";
-import { dataOf, pageData, viewer } from "./lib/view.mjs";
+import { dataOf, openFile, scenePage, viewer, withData } from "./lib/view.mjs";
 
 function bake(folder, budget = "60kB") {
     const file = path.join(folder, "bunny.relief");
@@ -31,11 +30,9 @@ const kChange = `(() => {
 
 test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
-    const bytes = readFileSync(bake(folder));
-    const open = await viewer(t, folder);
-    run("relief", "view", path.join(folder, "bunny.relief"), "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
+    run("relief", "view", bake(folder), "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
     const made = dataOf(path.join(folder, "made.html"));
-    const { page, said } = await open(made, { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+    const { page, said } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
     const message = () => page.locator("#message p").textContent();
     const changed = async (what, least, action) => {
         await page.evaluate(kChange);
@@ -69,22 +66,6 @@ test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
     await page.waitForFunction("!document.getElementById('pin').hidden");
     assert.equal(await page.locator("#why").textContent(), made.check.worst_places[0].why);
 
-    await page.click("#tab-particles");
-    await page.evaluate(() => {
-        reliefView.panel.setShow("surface");
-        Object.assign(reliefView.camera, { yaw: 0.6, pitch: 0.32 }); // the place may be seen from above, as drops are small
-        reliefView.panel.frame();
-    });
-    for (const preset of ["rain", "snow"]) {
-        await page.evaluate(() => (reliefView.particles.paused = true));
-        await page.click(`[value=${preset}] + span`);
-        await changed(preset, 0.001, () => page.evaluate(() => {
-            for (let i = 0; i < 45; ++i) {
-                reliefView.particles.step();
-            }
-        }));
-        assert.ok(await page.evaluate("reliefView.particles.system.info.alive") > 50, `${preset}: some live`);
-    }
     assert.equal(await message(), "");
     assert.deepEqual(said, []);
 });
@@ -94,9 +75,9 @@ test("patches look as planned maps do, and show their cells", { timeout: 300_000
     const patches = path.join(folder, "patches.relief");
     run("relief", "bake", bunny, "-q", "-o", patches, "--map", "patches:bytes=200kB");
     run("relief", "view", patches, "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
-    const open = await viewer(t, folder);
-    const shown = async (data) => {
-        const { page, said } = await open(data, { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+    const open = await viewer(t);
+    const shown = async (file) => {
+        const { page, said } = await open(file, { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
         await page.evaluate(() => {
             reliefView.panel.setShow("surface");
             reliefView.look.floor = null;
@@ -104,8 +85,9 @@ test("patches look as planned maps do, and show their cells", { timeout: 300_000
         });
         return { page, said, pixels: await page.evaluate("[...reliefView.pixelsNow().data]") };
     };
-    const planned = await shown(pageData("bunny.relief", readFileSync(bake(folder, "200kB"))));
-    const { page, said, pixels } = await shown(dataOf(path.join(folder, "made.html")));
+    run("relief", "view", bake(folder, "200kB"));
+    const planned = await shown(path.join(folder, "bunny.html"));
+    const { page, said, pixels } = await shown(path.join(folder, "made.html"));
     let [body, unlike] = [0, 0];
     for (let i = 0; i < pixels.length; i += 4) {
         const difference = [0, 1, 2].reduce((sum, k) => sum + Math.abs(pixels[i + k] - planned.pixels[i + k]), 0);
@@ -148,12 +130,16 @@ test("patches look as planned maps do, and show their cells", { timeout: 300_000
 
 test("particles meet the body and begin anew; nothing leaves a small window", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
-    const bytes = readFileSync(bake(folder));
-    const open = await viewer(t, folder);
-    const { page, said } = await open(pageData("bunny.relief", bytes), { viewport: { width: 420, height: 800 } });
+    const emitter = `
+[[emitter]]
+box_min = [-0.5, 1.1, -0.5]
+box_max = [0.5, 1.3, 0.5]
+velocity = [0, -2, 0]
+rate = 5000
+`;
+    const { page, said } = await openFile(t, scenePage(folder, bake(folder), emitter), { viewport: { width: 420, height: 800 } });
     await page.evaluate(() => (reliefView.particles.paused = true));
     await page.click("#tab-particles");
-    await page.click("[value=rain] + span");
     const contacts = await page.evaluate(() => {
         for (let i = 0; i < 60; ++i) {
             reliefView.particles.step();
@@ -175,35 +161,43 @@ test("particles meet the body and begin anew; nothing leaves a small window", { 
 test("what is given by mistake ends in a sentence, and the page goes on", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const file = bake(folder);
-    const bytes = readFileSync(file);
-    const open = await viewer(t, folder);
-    const sentence = async (data, pattern) => {
-        const { page, said, close } = await open(data);
+    const made = path.join(folder, "bunny.html");
+    run("relief", "view", file);
+    const data = dataOf(made);
+    const open = await viewer(t);
+    const sentence = async (page_file, pattern) => {
+        const { page, said, close } = await open(page_file);
         assert.match(await page.locator("#message p").textContent(), pattern);
         assert.deepEqual(said, []);
         await close();
     };
-    const damaged = Buffer.from(bytes);
-    damaged.fill(0x5a, 100, 400);
-    await sentence(pageData("bunny.relief", damaged), /\.$/);
-    await sentence(pageData("bunny.relief", bytes.subarray(0, 500)), /\.$/);
-    await sentence("{ broken", /this page is damaged/i);
-    await sentence({ ...pageData("a.relief", bytes), format: 1 }, /format 1/);
-    await sentence({ ...pageData("a.relief", bytes), collider: "%%%" }, /cannot be decoded/);
-    await sentence(pageData("a.relief", bytes, { scene: "[collider]\nfile = \"b.relief\"\n" }), /b\.relief/);
-    await sentence(pageData("a.relief", bytes, { mesh: { name: "m", vertices: "AAAAAA==", triangles: "" } }), /cut off/);
+    const cut = structuredClone(data);
+    cut.collider.textures.find(({ texels }) => texels).texels = "AAAA";
+    for (const [other, pattern] of [["{ broken", /this page is damaged/i], [{ ...data, format: 1 }, /format 1/], [cut, /cut off/],
+                                    [{ ...data, collider: { ...data.collider, block: "%%%" } }, /cannot be decoded/],
+                                    [{ ...data, mesh: { name: "m", vertices: "AAAAAA==", triangles: "" } }, /cut off/]]) {
+        await sentence(withData(made, other), pattern);
+    }
+    const scene = scenePage(folder, file);
+    const played = dataOf(scene);
+    const bytes = Buffer.from(played.files["bunny.relief"], "base64");
+    for (const damaged of [Buffer.from(bytes).fill(0x5a, 100, 400), bytes.subarray(0, 500)]) {
+        await sentence(withData(scene, { ...played, files: { "bunny.relief": damaged.toString("base64") } }), /\.$/);
+    }
+    await sentence(withData(scene, { ...played, scene: "[collider]\nfile = \"b.relief\"\n" }), /b\.relief/);
 
-    const { page, said } = await open(null);
+    const { page, said } = await open(withData(made, null));
     assert.ok(await page.isVisible("#empty"), "an empty page says so");
     assert.deepEqual(said, []);
 });
 
 test("a browser without what the page needs is told so; a lost context is made anew", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
-    const bytes = readFileSync(bake(folder));
-    const open = await viewer(t, folder);
-    const data = pageData("bunny.relief", bytes);
-    const { page, said } = await open(data);
+    const file = bake(folder);
+    const made = path.join(folder, "bunny.html");
+    run("relief", "view", file);
+    const open = await viewer(t);
+    const { page, said } = await open(made);
     await page.evaluate(() => {
         window.loss = reliefView.gl.getExtension("WEBGL_lose_context");
         window.loss.loseContext();
@@ -219,8 +213,8 @@ test("a browser without what the page needs is told so; a lost context is made a
     assert.equal(await page.evaluate("reliefView.pixelsNow().error"), 0);
     assert.deepEqual(said.filter((line) => !/CONTEXT_LOST_WEBGL/.test(line)), []);
 
-    const without = async (script, pattern) => {
-        const { page: other, close } = await open(data, {});
+    const without = async (script, pattern, page_file = made) => {
+        const { page: other, close } = await open(page_file);
         await other.addInitScript(script);
         await other.reload();
         await other.waitForFunction("window.reliefView?.ready");
@@ -238,7 +232,7 @@ test("a browser without what the page needs is told so; a lost context is made a
         WebGL2RenderingContext.prototype.getExtension = function (name) {
             return name === "EXT_color_buffer_float" ? null : get.call(this, name);
         };
-    }, /EXT_color_buffer_float/);
+    }, /EXT_color_buffer_float/, scenePage(folder, file));
     await without(() => {
         const get = WebGL2RenderingContext.prototype.getParameter;
         WebGL2RenderingContext.prototype.getParameter = function (name) {

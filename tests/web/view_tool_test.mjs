@@ -7,11 +7,10 @@ import path from "node:path";
 import test from "node:test";
 
 import { boxes } from "./lib/boxes.mjs";
-import { built, root } from "./lib/browser.mjs";
+import { root } from "./lib/browser.mjs";
 import { bunny, run, scratch } from "./lib/native.mjs";
 import { openFile } from "./lib/view.mjs";
 
-process.env.RELIEF_VIEW_PAGE = path.join(built, "bin/view.html");
 const kViewport = { viewport: { width: 700, height: 400 }, reducedMotion: "reduce" };
 
 const opened = (t, file, more = {}) => openFile(t, file, { ...kViewport, ...more });
@@ -154,7 +153,7 @@ test("a click picks a body; a check colours all, shows the worst, and keys fly",
     await page.waitForFunction("reliefView.bodies?.placed.length === 5", undefined, { timeout: 120_000 });
     await page.setViewportSize({ width: 900, height: 500 }); // the panel is at its side
     await page.evaluate(() => {
-        reliefView.particles.stop();
+        reliefView.particles.paused = true;
         reliefView.camera.look([16, 26, 32], [0, 0.5, 0]);
         reliefView.pixelsNow();
     });

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Assembles the page of `relief view` into one HTML file: a page that is opened from disk may import no other file.
+"""Adds to the page of `relief view` what plays scenes: relief-particles and its WebAssembly.
 
-    assemble.py VIEW_FOLDER SCRIPT RELIEF_WASM OUTPUT
+    assemble.py PAGE PLAYER_SCRIPT RELIEF_WASM OUTPUT
 """
 import base64
 import gzip
 import pathlib
 import sys
 
-folder, script, wasm, output = (pathlib.Path(one) for one in sys.argv[1:])
-page = (folder / "index.html").read_text(encoding="utf-8")
-for mark, text in (("/* style.css */", (folder / "style.css").read_text(encoding="utf-8")),
-                   ("/* relief_wasm.wasm */", base64.b64encode(gzip.compress(wasm.read_bytes(), 9, mtime=0)).decode()),
-                   ("/* main.js */", script.read_text(encoding="utf-8"))):
-    if page.count(mark) != 1:
-        sys.exit(f"index.html must hold '{mark}' once")
-    page = page.replace(mark, text)
-output.write_text(page, encoding="utf-8")
+page, player, wasm, output = (pathlib.Path(one) for one in sys.argv[1:])
+text = page.read_text(encoding="utf-8")
+mark = '<script type="module">'
+if text.count(mark) != 1:
+    sys.exit(f"{page} must hold '{mark}' once")
+packed = base64.b64encode(gzip.compress(wasm.read_bytes(), 9, mtime=0)).decode()
+text = text.replace(mark, f'<script type="text/plain" id="relief-wasm">{packed}</script>\n'
+                          f'{mark}\n{player.read_text(encoding="utf-8")}</script>\n{mark}')
+output.write_text(text, encoding="utf-8")

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // A collider in space: its textures, the box that it is drawn in, and the programs that evaluate it.
-import { GpuCollider } from "relief-particles";
 import { add, boxOf, identity, sub } from "./math.js";
 import { cellsOf } from "./cells.js";
 import { Geometry, bindTexture, program } from "./gl.js";
@@ -23,7 +22,7 @@ export class Body {
         Object.assign(this, { gl, collider });
         this.place(identity());
         this.box = boxOf(collider.bounds);
-        this.gpu = new GpuCollider(gl, collider);
+        this.gpu = collider.onGpu?.(gl) ?? new reliefParticles.GpuCollider(gl, collider);
         const slack = [0, 0, 0].fill(kSlack * this.box.longest);
         this.drawn = { min: sub(this.box.min, slack), max: add(this.box.max, slack) };
         const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) =>

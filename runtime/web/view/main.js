@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `relief view`: what it shows, and the loop that draws it.
-import { init, load } from "relief-particles";
 import { Bodies } from "./bodies.js";
 import { Body, BodyPlace, LiveBody } from "./body.js";
 import { Camera, FlightKeys, followInput } from "./camera.js";
 import { Geometry } from "./gl.js";
 import { boxOf, transform } from "./math.js";
+import { PageCollider } from "./page_collider.js";
 import { readPageData, readWasm } from "./page_data.js";
 import { $, Panel } from "./panel.js";
-import { Particles, weather } from "./particles.js";
+import { Particles } from "./particles.js";
 import { Quality } from "./quality.js";
 import { View } from "./view.js";
 import { WorldPanel } from "./world_panel.js";
 
 const canvas = $("canvas");
 const kLost = "The GPU was reset; the page begins anew when the browser gives it back.";
-const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
 /** One sentence in place of a frozen page; null: none. */
@@ -69,12 +68,11 @@ class App {
             this.data = readPageData();
             const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: true,
                                                      powerPreference: "high-performance" });
-            if (!gl?.getExtension("EXT_color_buffer_float")) {
+            if (!gl || (this.data?.scene && !gl.getExtension("EXT_color_buffer_float"))) {
                 throw new Error(`this browser gives no WebGL2${gl ? " with EXT_color_buffer_float" : ""}, which the page draws ` +
                                 "with: turn on hardware acceleration, or try another browser");
             }
             this.gl = gl;
-            await init({ wasmBinary: await readWasm() });
             await this.#begin();
         });
         this.ready = true;
@@ -88,9 +86,12 @@ class App {
         }
         const { gl, look } = this;
         const { collider, mesh, scene } = this.data;
+        if (scene) {
+            await reliefParticles.init({ wasmBinary: await readWasm() });
+        }
         this.view = new View(gl);
         this.particles = new Particles(gl);
-        this.body = this.view.body = new Body(gl, await load(collider));
+        this.body = this.view.body = new Body(gl, await this.#colliderOf(collider));
         this.view.bodies = [this.body];
         look.box = this.body.box;
         if (mesh) {
@@ -102,10 +103,14 @@ class App {
         if (scene) {
             await this.#playScene();
         } else {
-            this.startPreset(calm.matches ? "none" : "snow");
+            this.ground = look.box.min[1];
+            this.setFloor(true);
         }
-        this.panel.refreshParticles();
-        this.changed();
+    }
+
+    #colliderOf(collider) {
+        const { scene, files, file } = this.data;
+        return scene ? reliefParticles.load(files[file]) : new PageCollider(collider);
     }
 
     /** The scene of the page, its bodies each where it stands; the first of the page's own collider is the one in the panel. */
@@ -120,7 +125,7 @@ class App {
             if (deforms) {
                 placed.push(new LiveBody(gl, view.programs.live, () => system.mesh(i)));
             } else {
-                const body = known.get(file) ?? new Body(gl, await load(data.files[file]));
+                const body = known.get(file) ?? new Body(gl, await reliefParticles.load(data.files[file]));
                 known.set(file, body);
                 placed.push(body === this.body && !placed.includes(body) ? body : new BodyPlace(body));
             }
@@ -176,21 +181,9 @@ class App {
     /** From the beginning, where a scene's camera is its own again. */
     restart() {
         this.particles.restart();
-        this.camera.taken = !this.placed;
+        this.camera.taken = false;
         this.followed = null;
         this.changed(false);
-    }
-
-    startPreset(preset) {
-        if (preset === "none") {
-            this.particles.stop();
-        } else {
-            this.particles.start({ collider: this.body.collider, scene: weather(preset, this.body.box) });
-        }
-        this.preset = preset;
-        this.ground = this.look.box.min[1];
-        this.setFloor($("floor").checked);
-        this.panel.refreshParticles();
     }
 
     setFloor(wanted) {
@@ -284,5 +277,5 @@ class App {
 }
 
 const app = new App();
-window.reliefView = Object.assign(app, { weather });
+window.reliefView = app;
 await app.start();

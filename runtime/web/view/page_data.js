@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The data that `relief view` put into the page.
 
-function fromBase64(text, what) {
+export function fromBase64(text, what) {
     try {
         return Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     } catch {
@@ -9,9 +9,9 @@ function fromBase64(text, what) {
     }
 }
 
-const damaged = (how) => new Error(`this page is damaged: ${how}; make the page again with 'relief view'`);
+export const damaged = (how) => new Error(`this page is damaged: ${how}; make the page again with 'relief view'`);
 
-/** { name, collider, file, mesh, check, scene, files } with bytes in place of base64, or null of an empty page. */
+/** The data, with bytes in place of base64, or null of an empty page. Of a scene `file` names the collider in the panel. */
 export function readPageData() {
     let data;
     try {
@@ -22,14 +22,17 @@ export function readPageData() {
     if (data === null) {
         return null;
     }
-    if (data.format !== 2) {
-        throw new Error(`this page's data has the format ${data.format}, and the page understands 2; make it again ` +
+    if (data.format !== 3) {
+        throw new Error(`this page's data has the format ${data.format}, and the page understands 3; make it again ` +
                         "with the 'relief view' of one release");
     }
-    const files = Object.fromEntries(Object.entries(data.files ?? {}).map(([name, text]) => [name, fromBase64(text, name)]));
+    if (!data.scene) {
+        return { ...data, mesh: data.mesh && meshOf(data.mesh) };
+    }
+    const files = Object.fromEntries(Object.entries(data.files).map(([name, text]) => [name, fromBase64(text, name)]));
     const file = data.shows ?? data.name;
     files[file] ??= fromBase64(data.collider, "collider");
-    return { ...data, collider: files[file], file, mesh: data.mesh && meshOf(data.mesh), files };
+    return { ...data, bytes: files[file].length, file, files };
 }
 
 function meshOf(mesh) {
@@ -44,7 +47,7 @@ function meshOf(mesh) {
     return { vertices: new Float32Array(vertices.buffer), triangles: corners };
 }
 
-/** The WebAssembly that the page carries: gzip in base64. */
+/** The WebAssembly of a page that plays a scene: gzip in base64. */
 export async function readWasm() {
     const packed = fromBase64(document.getElementById("relief-wasm").textContent.trim(), "WebAssembly");
     if (typeof DecompressionStream === "undefined") {

@@ -8,7 +8,7 @@ export const $ = (id) => document.getElementById(id);
 
 const narrow = matchMedia("(max-width: 720px)");
 // The causes of wrong places, as `relief check` names them to programs.
-const kKinds = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
+const kCauses = { sheet: "thin sheet", open: "open mesh", unseen: "no map sees it", silhouette: "behind a silhouette",
                  texel: "finer than a texel" };
 
 export function element(tag, attributes = {}, ...children) {
@@ -44,8 +44,6 @@ export class Panel {
             this.#axis = Number(value);
             this.#slice();
         })(String(this.#axis));
-        this.showPreset = choice("preset", { none: "None", rain: "Rain", snow: "Snow" },
-                                 (value) => app.attempt(() => app.startPreset(value)));
         const when = (id, event, does) => ($(id)[event] = does);
         when("frame", "onclick", () => this.frame());
         when("tint", "onchange", () => this.selectMap($("tint").checked ? -2 : -1));
@@ -199,7 +197,7 @@ export class Panel {
         $("places-title").textContent = places.length ? "Worst places, by their share of what is wrong" : "No place is wrong";
         $("places").replaceChildren(...places.map((place) => element("li", {}, element("button", { onclick: () => this.#goTo(place) },
             element("b", {}, `${shortNumber(place.share_percent)} %`),
-            element("span", {}, [`${this.#length(place.size)} across`, kKinds[place.cause],
+            element("span", {}, [`${this.#length(place.size)} across`, kCauses[place.cause],
                                  place.map === null ? "no map" : `map ${place.map}`].join(", "))))));
     }
 
@@ -215,14 +213,6 @@ export class Panel {
     pause() {
         const { particles } = this.app;
         particles.paused = !particles.paused;
-        this.refreshParticles();
-    }
-
-    refreshParticles() {
-        const { particles, data, preset } = this.app;
-        $("preset").hidden = Boolean(data.scene);
-        this.showPreset(preset);
-        $("playing").hidden = !particles.system;
         $("pause").textContent = particles.paused ? "Play" : "Pause";
         this.app.changed(false);
     }
@@ -242,15 +232,16 @@ export class Panel {
     refresh() {
         const { data, body, look } = this.app;
         const { info } = body.collider;
-        const size = data.collider.length;
+        const { bytes: size } = data;
         $("name").textContent = data.name;
         $("facts").textContent = `${info.maps.length} map${info.maps.length === 1 ? "" : "s"}, ` +
             (size >= 1e6 ? `${(size / 1e6).toFixed(2)} MB` : `${Math.round(size / 1e3)} kB`) +
             (info.mesh.triangles ? ` from ${info.mesh.triangles.toLocaleString("en")} triangles` : "") +
-            `, ${this.#length(body.box.longest)} long`;
+            `, ${this.#length(body.box.longest)} long` + (data.collider?.animated ? ", at rest" : "");
         $("show-field").hidden = !data.mesh;
         $("show-picture").hidden = true;
         $("tab-errors").hidden = !data.check;
+        $("tab-particles").hidden = !data.scene;
         this.#fillMaps();
         if (data.check && data.mesh) {
             this.#fillErrors(data.check);

@@ -1,46 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `relief view`, filled as the tool fills it, and opened from disk.
+// Pages of `relief view`, opened from disk.
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 
 import { built, launch, openPage } from "./browser.mjs";
 
-const kEmpty = '<script type="application/json" id="relief-page-data">null</script>';
+const player = path.join(built, "bin/view.html");
+process.env.RELIEF_VIEW_PAGE ??= player;
+const kData = /(?<=id="relief-page-data">).*(?=<\/script>)/;
 
-/** Data of a page that shows a collider's bytes. */
-export const pageData = (name, bytes, more = {}) =>
-    ({ format: 2, name, collider: bytes && Buffer.from(bytes).toString("base64"), shows: null, mesh: null, check: null, scene: null,
-       files: null, ...more });
+export const dataOf = (file) => JSON.parse(kData.exec(readFileSync(file, "utf8"))[0]);
 
-/** Data of a page that `relief view` made. */
-export const dataOf = (file) => JSON.parse(/id="relief-page-data">(.*)<\/script>/.exec(readFileSync(file, "utf8"))[1]);
-
-/** Writes the page with that data; its address. data: an object, or text as it is. */
-export function writePage(folder, name, data) {
-    const template = readFileSync(path.join(built, "bin/view.html"), "utf8");
+/** The page in `file` with other data, in the same folder. data: an object, or text as it is. */
+export function withData(file, data, folder = path.dirname(file)) {
     const text = typeof data === "string" ? data : JSON.stringify(data).replaceAll("<", "\\u003c");
-    const file = path.join(folder, name);
-    writeFileSync(file, template.replace(kEmpty, () => kEmpty.replace("null", text)));
-    return pathToFileURL(file).href;
+    const other = path.join(folder, "with_data.html");
+    writeFileSync(other, readFileSync(file, "utf8").replace(kData, () => text));
+    return other;
 }
 
-/** A browser that ends with the test, and what opens pages in it: where nothing falls by itself, but for other options. */
-export async function viewer(t, folder, more = []) {
+/** The page of a scene of one collider, in which nothing falls before a test steps: relief-particles answers for its maps. */
+export function scenePage(folder, file, more = "") {
+    const name = path.basename(file);
+    return withData(player, { format: 3, name, bytes: 0, collider: null, shows: name, mesh: null, check: null,
+                              scene: `[collider]\nfile = "${name}"\n${more}`, files: { [name]: readFileSync(file, "base64") } }, folder);
+}
+
+/** A browser that ends with the test, and what opens files in it. */
+export async function viewer(t, more = []) {
     const browser = await launch(more);
     t.after(() => browser.close());
-    return async (data, options = {}) => {
-        const opened = await openPage(browser, writePage(folder, "page.html", data), { reducedMotion: "reduce", ...options });
+    return async (file, options = {}) => {
+        const opened = await openPage(browser, pathToFileURL(file).href, options);
         await opened.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
         return opened;
     };
 }
 
 /** The page in a file, in a browser that ends with the test. */
-export async function openFile(t, file, options = {}) {
-    const browser = await launch();
-    t.after(() => browser.close());
-    const opened = await openPage(browser, pathToFileURL(file).href, options);
-    await opened.page.waitForFunction("window.reliefView?.ready", undefined, { timeout: 60_000 });
-    return opened;
+export const openFile = async (t, file, options = {}) => (await viewer(t))(file, options);
+
+/** Runs in the page: the depths of the kept picture, from the bottom left. */
+export function keptDepths({ gl, view }) {
+    const { width, height, depth } = view.kept;
+    gl.getExtension("EXT_color_buffer_float"); // to read them
+    const made = (type, text) => {
+        const shader = gl.createShader(type);
+        gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n${text}`);
+        gl.compileShader(shader);
+        return shader;
+    };
+    const program = gl.createProgram();
+    gl.attachShader(program, made(gl.VERTEX_SHADER, "void main() { gl_Position = vec4(2 * ((gl_VertexID << 1) & 2) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1); }"));
+    gl.attachShader(program, made(gl.FRAGMENT_SHADER, "uniform sampler2D u; out vec4 o; void main() { o = vec4(texelFetch(u, ivec2(gl_FragCoord.xy), 0).r); }"));
+    gl.linkProgram(program);
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
+    const frame = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+    gl.viewport(0, 0, width, height);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.useProgram(program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, depth);
+    gl.bindVertexArray(null);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    const values = new Float32Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, values);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    return values.filter((_, i) => i % 4 === 0);
 }
