@@ -23,6 +23,8 @@ python3 -c "
 import csv
 rows = list(csv.DictReader(open('field.csv')))
 assert [bool(r['f']) and float(r['f']) < 0 for r in rows] == [True, True, False, False], rows" || die "rest pose: $(cat field.csv)"
+"$relief" view cube.relief
+grep -q '"animated":true' cube.html || die "the page does not state that it shows the rest pose"
 expect 0 "$relief" bake $cube --animated --resolution 64 -o one.relief -q -j 1
 cmp cube.relief one.relief || die "threads change an animated bake"
 expect 0 "$relief" bake $cube -o still.relief -q

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of one collider, which needs no build of the web: its picture against closed forms of a ball and a box, and its shaders
+// The page of one collider, which needs no build of the web: its picture against closed forms of a ball and a cube, and its shaders
 // against `relief query`, for each kind of map.
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
-import { boxes } from "./lib/boxes.mjs";
 import { gpuQuery } from "./lib/gpu_query.js";
 import { generator, run, scratch } from "./lib/native.mjs";
 import { keptDepths, openFile, viewer } from "./lib/view.mjs";
+
+const animated = "/usr/share/assimp/models/glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf";
 
 /** A ball of radius 1 as OBJ. */
 function ball(rows) {
@@ -89,20 +90,20 @@ function compare({ half, step }) {
     return found;
 }
 
-test("a ball and a box are drawn where they are, in the light that falls on them", { timeout: 120_000 }, async (t) => {
+test("a ball and a cube are drawn where they are, in the light that falls on them", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
-    const half = [1, 0.5, 0.75];
     writeFileSync(at("ball.obj"), ball(64));
-    writeFileSync(at("box.obj"), boxes([{ low: half.map((v) => -v), high: half }]));
     const open = await viewer(t);
-    for (const [name, form, ...options] of [["ball", { step: 3 }, "--paper", "--resolution", "128"], ["box", { half, step: 3 }, "--budget", "20kB"]]) {
-        run("relief", "bake", at(`${name}.obj`), "-q", "-o", at(`${name}.relief`), ...options);
+    for (const [name, half, mesh, ...options] of [["ball", null, at("ball.obj"), "--budget", "60kB"],
+                                            ["cube, at rest", [1, 1, 1], animated, "--animated", "--resolution", "64"]]) {
+        run("relief", "bake", mesh, "-q", "-o", at(`${name}.relief`), ...options);
         run("relief", "view", at(`${name}.relief`));
         const { page, said } = await open(at(`${name}.html`), { viewport: { width: 240, height: 180 } });
         assert.equal(await page.locator("#message p").textContent(), "");
+        assert.equal(/, at rest$/.test(await page.locator("#facts").textContent()), mesh === animated);
         await page.evaluate(`window.keptDepths = ${keptDepths}`);
-        const found = await page.evaluate(compare, form);
+        const found = await page.evaluate(compare, { half, step: 3 });
         t.diagnostic(`${name}: ${JSON.stringify(found)}`);
         assert.equal(found.error, 0);
         assert.equal(found.wrong, 0, `${found.wrong} rays`);

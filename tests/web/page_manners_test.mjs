@@ -4,20 +4,49 @@
 import assert from "node:assert/strict";
 import path from "node:path";
 import test from "node:test";
+import { pathToFileURL } from "node:url";
 
 import { bakeCube } from "./lib/boxes.mjs";
+import { launch, openPage } from "./lib/browser.mjs";
+import { PageCollider } from "../../runtime/web/view/page_collider.js";
 import { Quality } from "../../runtime/web/view/quality.js";
 import { run, scratch } from "./lib/native.mjs";
-import { openFile, scenePage } from "./lib/view.mjs";
+import { dataOf, openFile, scenePage } from "./lib/view.mjs";
 
 test("a collider's page has no controls for particles, and may load nothing", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     run("relief", "view", path.join(folder, "cube.relief"));
-    const { page, said } = await openFile(t, path.join(folder, "cube.html"));
+    const browser = await launch();
+    t.after(() => browser.close());
+    const { page, said } = await openPage(browser, pathToFileURL(path.join(folder, "cube.html")).href,
+                                          { viewport: { width: 200, height: 150 }, bypassCSP: false });
+    await page.locator("#title").waitFor();
     assert.deepEqual(await page.locator("#tab label:visible").allTextContents(), ["View", "Maps"]);
     assert.equal(await page.evaluate(() => fetch("data:,x").then(() => "loads", () => "refused")), "refused");
     assert.ok(said.every((line) => /Content Security Policy|failed: data:/.test(line)), said.join("\n"));
+});
+
+test("a page reads the texels that relief-particles reads, of each kind of map", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    bakeCube(folder);
+    const file = path.join(folder, "kinds.relief");
+    const kinds = ["float:dir=+x,size=16x12", "fixed8:dir=-z,size=16", "cube:size=8", "front-back:dir=+y,size=16x24,depth=half",
+                   "front-back:dir=1/2/3,size=16,depth=unorm16,decode=projected", "patches:bytes=4kB"];
+    run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", file, ...kinds.flatMap((map) => ["--map", map]));
+    run("relief", "view", file);
+    const collider = new PageCollider(dataOf(path.join(folder, "kinds.html")).collider);
+    const { page } = await openFile(t, scenePage(folder, file), { viewport: { width: 200, height: 150 } });
+    const [info, ...maps] = await page.evaluate(() => {
+        const { collider: other } = reliefView.body;
+        return [other.info, ...other.info.maps.map(({ format }, i) => [...(format === "patches" ? other.tree(i) : other.texels(i))])];
+    });
+    assert.deepEqual(collider.info, info);
+    for (const [i, texels] of maps.entries()) {
+        const own = info.maps[i].format === "patches" ? collider.tree(i) : collider.texels(i);
+        const unlike = texels.filter((v, k) => !Object.is(v, own[k]) && !(Math.abs(v - own[k]) < 1e-6));
+        assert.deepEqual([own.length, unlike], [texels.length, []], kinds[i]);
+    }
 });
 
 test("where frames take 50 ms the page draws less, says so, and draws all of it once it rests", { timeout: 300_000 }, async (t) => {

@@ -39,7 +39,8 @@ async function compare([columns, rows, steps, places]) {
     const { view, camera, body, look } = reliefView;
     look.floor = null;
     document.getElementById("sheets").hidden = true;
-    reliefView.panel.frame();
+    Object.assign(camera, { yaw: 0.6, pitch: 0.32 }); // not the scene's
+    camera.frame(body.box, reliefView.panel.room());
     if (places) {
         camera.look(...places);
     }

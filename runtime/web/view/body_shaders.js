@@ -126,9 +126,15 @@ void main() {
         discard;
     }
     float inwards = within ? -u_tiny : min(0.5 * (hit.ends - hit.t), 20.0 * u_tiny);
-    vec3 within_it = origin + (hit.t + inwards) * d;
-    ReliefField field = reliefSolid(within_it);
-    bool known = field.map >= 0 && abs(field.distance) < u_deep;
+    vec3 within_it;
+    ReliefField field;
+    bool known = false;
+    for (int k = 0; k < 2 && !known; ++k) {  // deeper, if maps end a little before the surface of another one
+        within_it = origin + (hit.t + inwards) * d;
+        field = reliefSolid(within_it);
+        known = field.map >= 0 && abs(field.distance) < u_deep && (k == 0 || field.distance < 0.0);
+        inwards = (within ? -0.2 : 0.2) * u_deep;
+    }
     if (!begins || within) {
         n = known && dot(field.normal, field.normal) > 0.0 ? field.normal : -d;
 #if defined(RELIEF_HAS_PATCHES)

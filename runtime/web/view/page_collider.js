@@ -52,7 +52,7 @@ export class PageCollider {
     texels(map) {
         const { width, height, faces, format, encoding } = this.info.maps[map];
         const first = this.#first(map);
-        const out = new Float32Array(8 * width * height * faces).fill(NaN);
+        const out = new Float32Array(8 * width * height * faces).map((_, i) => (i % 4 === 0 ? NaN : 0));
         const [floats, fixed, words] = this.textures.map(({ texels }) => texels);
         const put = (at, depth, s, t) => {
             if (!Number.isNaN(depth)) {
