@@ -2,7 +2,6 @@
 // relief export: every map as OpenEXR; or what a program of one's own uploads.
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
