@@ -132,12 +132,11 @@ Result<void> runGroundCheck(const std::string& file, const GroundCheckCall& call
 Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) {
     const Stopwatch total;
     static_cast<void>(RELIEF_TRY(settingsOf(call.request)));
-    const HeightsSpec heights = RELIEF_TRY(parseHeightsSpec(call.request.heights));
     RELIEF_TRY(preflightGround(folder, call));
     Progress progress({quotedPath(call.request.mesh), !call.common.quiet, call.request.time_limit});
     progress.begin("baking the ground");
     const GroundResult result = RELIEF_TRY(bakeGroundOf(
-        call.request, {heights, folder, call.outputs.compress, [&](double share) { progress.set(share); }}));
+        call.request, {{}, folder, call.outputs.compress, [&](double share) { progress.set(share); }}));
     progress.finish();
     const std::string written =
         folder.empty() ? call.output : (std::filesystem::path(folder) / kWorldFileName).string();
@@ -147,8 +146,7 @@ Result<void> runGroundCommand(const std::string& folder, const WorldCall& call) 
     }
     const std::string& output = folder.empty() ? call.output : folder;
     if (call.outputs.json) {
-        return printOut(jsonTextOf(
-            GroundJson{result, output, toString(completed(heights, call.request.mesh)), total.ms()}));
+        return printOut(jsonTextOf(GroundJson{result, output, toString(result.heights), total.ms()}));
     }
     if (!call.common.quiet) {
         std::fputs(groundText(result, cleanUtf8(output), total.ms()).c_str(), stderr);

@@ -128,6 +128,7 @@ class GroundBaker {
     GroundBaker(HeightMap& map, const GroundOptions& options) : map_(map), options_(options) {
         result_.columns = map.columns();
         result_.rows = map.rows();
+        result_.heights = map.spec();
     }
 
     Result<GroundResult> run() {
@@ -327,16 +328,30 @@ class GroundBaker {
 
     /// Settings that seem not to be those of the file. \param most  of its squares are steep.
     [[nodiscard]] std::string causeOfSteep(bool most) const {
-        const std::optional<LoneSample> lone = map_.lone();
-        if (lone && lone->gap > kSteepest * heights().spacing) {
-            return std::string("its ") + (lone->lowest ? "lowest" : "highest") + " sample, " +
-                   shortest(lone->sample) + ", lies far " + (lone->lowest ? "below" : "above") +
-                   " all others; if it stands for no data, give --heights hole=" + shortest(lone->sample);
+        std::optional<LoneSample> lone = map_.lone();
+        if (lone && lone->gap <= kSteepest * heights().spacing) {
+            lone.reset();
         }
-        if (const std::string format = map_.likelierFormat(); !format.empty()) {
+        const std::string format = map_.likelierFormat();
+        if (lone && format != "type=int16") {
+            const std::string far =
+                std::string(" far ") + (lone->lowest ? "below" : "above") + " all others; if ";
+            return std::string("its ") + (lone->lowest ? "lowest" : "highest") +
+                   (lone->sample == lone->last
+                        ? " sample, " + shortest(lone->sample) + ", lies" + far +
+                              "it stands for no data, give --heights hole=" + shortest(lone->sample)
+                        : " samples, " + shortest(std::min(lone->sample, lone->last)) + " to " +
+                              shortest(std::max(lone->sample, lone->last)) + ", lie" + far +
+                              "they stand for no data, save them as one value and give it as --heights hole");
+        }
+        if (!format.empty()) {
             const bool metres = map_.hasLow() && format.find("type=") != std::string::npos;
             return "its samples look like those of another format; try --heights " + format +
-                   (metres ? ", without low and high" : "");
+                   (metres ? ", without low and high" : "") +
+                   (lone && lone->sample == lone->last
+                        ? "; or, if its highest sample, " + shortest(lone->sample) +
+                              ", stands for no data, --heights hole=" + shortest(lone->sample)
+                        : "");
         }
         return most ? std::string("most of its squares are steep; check --heights spacing") +
                           (map_.hasLow() ? ", low and high" : "") + (map_.isRaw() ? ", type and order" : "")

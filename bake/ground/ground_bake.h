@@ -43,6 +43,7 @@ struct GroundTile {
 struct GroundResult {
     std::uint32_t columns = 0;  ///< of the height map
     std::uint32_t rows = 0;
+    HeightsSpec heights;                ///< settings, with those that the map's name implies
     std::vector<InputFile> inputs;      ///< the height map, of a request
     std::vector<GroundTile> tiles;      ///< those with ground, row by row
     std::vector<std::byte> container;   ///< without a folder

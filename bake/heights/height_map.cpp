@@ -83,12 +83,12 @@ Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const Heigh
                                   const ImportLimits& limits) {
     HeightMap map;
     map.limits_ = limits;
-    map.spec_ = completed(spec, path);
     map.shown_ = path == "-" ? "standard input" : quotedPath(path);
     map.name_ = path == "-" ? "standard input" : cleanUtf8(path.filename().string(), 255);
     map.bytes_ = RELIEF_TRY(readFile(path, kFileMax));
     map.hash_ = xxh3_128Hex(map.bytes_);
     const bool image = isImage(map.bytes_);
+    map.spec_ = image ? spec : completed(spec, path);
     RELIEF_TRY(inFront(map.shown_, checkKind(path, image, map.spec_)));
     if (image) {
         map.image_ = sharedBytes(map.bytes_);
@@ -110,16 +110,24 @@ Result<HeightMap> HeightMap::open(const std::filesystem::path& path, const Heigh
     return map;
 }
 
-std::optional<LoneSample> SampleRange::lone() const {
-    const double below = double{low_[1]} - double{low_[0]};
-    const double above = double{high_[0]} - double{high_[1]};
-    const double range = double{high_[0]} - double{low_[0]};
-    // Neither is of two values, nor of fewer, where these are infinite.
-    if (2.0 * below > range && below < range) {
-        return LoneSample{low_[0], true, below};
+void SampleRange::insertInside(Least& least, float sample) {
+    auto* const at = std::lower_bound(least.begin(), least.end(), sample);
+    if (*at != sample) {
+        std::move_backward(at, least.end() - 1, least.end());
+        *at = sample;
     }
-    if (2.0 * above > range && above < range) {
-        return LoneSample{high_[0], false, above};
+}
+
+std::optional<LoneSample> SampleRange::lone() const {
+    const double range = -double{high_[0]} - double{low_[0]};
+    for (const Least* side : {&low_, &high_}) {
+        for (std::size_t last = 0; last < kGroupMax; ++last) {
+            const double gap = double{(*side)[last + 1]} - double{(*side)[last]};
+            if (2.0 * gap > range && std::isfinite((*side)[2 * last + 2])) {
+                const float sign = side == &low_ ? 1.0F : -1.0F;
+                return LoneSample{sign * (*side)[0], sign * (*side)[last], side == &low_, gap};
+            }
+        }
     }
     return std::nullopt;
 }

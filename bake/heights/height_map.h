@@ -2,7 +2,6 @@
 // A height map from its file, row by row: PNG and EXR, decoded by a process of their own, or raw samples.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,33 +23,41 @@ namespace relief {
 
 inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 
-/// The lowest or the highest value of all samples, if more than half of their range lies between it and the others.
+/// The lowest or the highest value, or up to three of them, far from all others: the gap is more than half the range.
 struct LoneSample {
-    float sample = 0.0F;  ///< as the file has it
+    float sample = 0.0F;  ///< the extreme, as the file has it
+    float last = 0.0F;    ///< the one next to the gap; `sample` if there is only one
     bool lowest = false;
     double gap = 0.0;  ///< to the next sample, metres
 };
 
-/// The two lowest and the two highest values.
+/// The lowest and the highest values.
 class SampleRange {
   public:
     void add(float sample) {
-        if (sample < low_[1] && sample != low_[0]) {
-            low_[1] = std::max(sample, low_[0]);
-            low_[0] = std::min(sample, low_[0]);
-        }
-        if (sample > high_[1] && sample != high_[0]) {
-            high_[1] = std::min(sample, high_[0]);
-            high_[0] = std::max(sample, high_[0]);
-        }
+        insert(low_, sample);
+        insert(high_, -sample);
     }
-    /// Its gap is in samples. nullopt also of fewer than three values.
+    /// The gap is in samples. Returns nullopt unless there are more than twice as many other values.
     [[nodiscard]] std::optional<LoneSample> lone() const;
 
   private:
-    static constexpr float kNone = std::numeric_limits<float>::infinity();
-    std::array<float, 2> low_{kNone, kNone};
-    std::array<float, 2> high_{-kNone, -kNone};
+    static constexpr std::size_t kGroupMax = 3;
+    using Least = std::array<float, 2 * kGroupMax + 1>;  ///< different values, ascending; then infinity
+
+    static void insert(Least& least, float sample) {
+        if (sample < least.back() && sample != least.front()) {
+            insertInside(least, sample);
+        }
+    }
+    static void insertInside(Least& least, float sample);
+    static constexpr Least none() {
+        Least least{};
+        least.fill(std::numeric_limits<float>::infinity());
+        return least;
+    }
+    Least low_ = none();
+    Least high_ = none();  ///< negated
 };
 
 class HeightMap {
@@ -70,11 +77,11 @@ class HeightMap {
     }                                                                ///< 2 or more
     [[nodiscard]] const std::string& name() const { return name_; }  ///< of the file, without its folder
     [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of its bytes
-    /// The settings, with those that the file's name implies.
+    /// The settings, with those that the name of a raw file implies.
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
-    /// Of the rows read so far, holes left out.
+    /// The lone samples of the rows read so far, without holes.
     [[nodiscard]] std::optional<LoneSample> lone() const;
-    /// Settings of raw samples by which neighbours differ far less: "order=big". Empty: there are none.
+    /// Settings of raw samples that are likelier than those given: "order=big". Empty: there are none.
     [[nodiscard]] std::string likelierFormat() const;
     /// Whether nothing in the file states the format of its samples.
     [[nodiscard]] bool isRaw() const;

@@ -45,7 +45,7 @@ class KeySetter : public FieldVisitor {
     std::string fault_;
 };
 
-/// Of values that are right by themselves; empty: there is none.
+/// The fault of values that are right by themselves; empty if there is none.
 std::string faultOf(const HeightsSpec& spec) {
     if (spec.low && spec.high && !(*spec.low < *spec.high)) {
         return "low is " + numberWord(*spec.low) + " but must be below high, " + numberWord(*spec.high) +

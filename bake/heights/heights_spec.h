@@ -32,7 +32,7 @@ struct HeightsOffset {
 [[nodiscard]] bool readForm(std::string_view word, HeightsOffset& offset);
 [[nodiscard]] std::string formText(const HeightsOffset& offset);
 
-/// Of raw samples. Signed ones and floats are metres.
+/// The type of raw samples. Signed ones and floats are metres.
 enum class SampleType : std::uint8_t { kUint16, kInt16, kFloat32 };
 template <>
 inline constexpr std::array<std::string_view, 3> kWordsOf<SampleType>{"uint16", "int16", "float32"};
@@ -59,7 +59,7 @@ void fields(FieldVisitor& visit, HeightsSpec& spec);
 
 /// Errors: kUsage, naming the key and the cure.
 [[nodiscard]] Result<HeightsSpec> parseHeightsSpec(std::string_view text);
-/// With the settings that the extension implies where none are given: .hgt is of big-endian int16, -32768 where there are none.
+/// Adds the settings that the extension of a raw file implies: .hgt is of big-endian int16, and -32768 is its hole.
 [[nodiscard]] HeightsSpec completed(HeightsSpec spec, const std::filesystem::path& file);
 /// Every setting that is not the default: parseHeightsSpec() reads it back.
 [[nodiscard]] std::string toString(const HeightsSpec& spec);

@@ -4,16 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <bitset>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <vector>
 
 namespace relief {
 namespace {
 
-/// Of raw samples.
+/// The format of raw samples.
 struct RawFormat {
     SampleType type = SampleType::kUint16;
     ByteOrder order = ByteOrder::kLittle;
@@ -54,11 +56,11 @@ class RawRows : public SampleRows {
   private:
     template <std::size_t kBytes, class Value>
     void decode(std::span<float> out, const Value& value) {
-        const std::size_t turned = format_.order == ByteOrder::kBig ? kBytes - 1 : 0;
+        const std::size_t swap = format_.order == ByteOrder::kBig ? kBytes - 1 : 0;
         for (std::size_t i = 0; i < out.size(); ++i) {
             std::uint32_t bits = 0;
             for (std::size_t byte = 0; byte < kBytes; ++byte) {
-                bits |= std::to_integer<std::uint32_t>(left_[kBytes * i + (byte ^ turned)]) << 8U * byte;
+                bits |= std::to_integer<std::uint32_t>(left_[kBytes * i + (byte ^ swap)]) << 8U * byte;
             }
             out[i] = value(bits);
         }
@@ -83,19 +85,19 @@ struct Variation {
     double between = 0.0;  ///< neighbours of a row, on average
     double spread = 0.0;   ///< from the mean, on average
 
-    /// Of smooth ground far below 1, of noise some 1.3.
+    /// Far below 1 for smooth ground, about 1.3 for noise.
     [[nodiscard]] double roughness() const {
         return spread > 0.0 ? between / spread : std::numeric_limits<double>::infinity();
     }
 };
 
-/// Of at most 64 rows of a raw file. nullopt: it is not of this format, as it has no such rows, or too many of its samples are no
-/// heights.
-std::optional<Variation> variationOf(std::span<const std::byte> bytes, std::optional<std::uint32_t> width,
+/// Reads at most 64 rows of a raw file, without the holes of `spec`. Returns nullopt if the file has no rows of this format, or if
+/// most of its samples are no heights.
+std::optional<Variation> variationOf(std::span<const std::byte> bytes, const HeightsSpec& spec,
                                      const RawFormat& format) {
     constexpr std::uint64_t kRows = 64;
     constexpr std::uint64_t kSamples = std::uint64_t{1} << 20;
-    const std::uint64_t columns = columnsOf(bytes.size(), width, format);
+    const std::uint64_t columns = columnsOf(bytes.size(), spec.width, format);
     if (columns == 0) {
         return std::nullopt;
     }
@@ -107,7 +109,10 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, std::opti
         static_cast<void>(
             RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
     }
-    const auto isHeight = [](float sample) { return std::abs(double{sample}) <= kHeightMax; };
+    const std::optional<double> hole = format == formatOf(spec) ? spec.hole : std::nullopt;
+    const auto isHeight = [&](float sample) {
+        return std::abs(double{sample}) <= kHeightMax && double{sample} != hole;
+    };
     double sum = 0.0;
     double count = 0.0;
     Variation variation;
@@ -133,6 +138,62 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, std::opti
     return variation;
 }
 
+/// Whether the low bytes of 16-bit samples have fewer than half as many values as the high bytes. Heights within 256 m are as
+/// smooth in the wrong order as in the right one, and times 256.
+bool hasCoarseLowBytes(std::span<const std::byte> bytes, ByteOrder order) {
+    std::array<std::bitset<256>, 2> values;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        values.at(i % 2).set(std::to_integer<std::size_t>(bytes[i]));
+    }
+    const std::size_t low = order == ByteOrder::kLittle ? 0 : 1;
+    return values.at(1 - low).count() > 2 * values.at(low).count();
+}
+
+/// Whether 16-bit samples lie at both ends of their type's range with nothing between, and neighbours at different ends are as
+/// near as others if the range is a ring: 65535 beside 0 is -1 of int16. Two values only may be two levels.
+bool wrapsAround(std::span<const std::byte> bytes, const HeightsSpec& spec, const RawFormat& format) {
+    const std::uint64_t columns = columnsOf(bytes.size(), spec.width, format);
+    if (columns == 0) {
+        return false;
+    }
+    const double middle = format.type == SampleType::kInt16 ? 0.0 : 32768.0;
+    constexpr double kClear = 16384.0;  // above all heights in metres
+    const std::optional<double> hole = format == formatOf(spec) ? spec.hole : std::nullopt;
+    std::set<float> values;
+    struct Steps {
+        double sum = 0.0;
+        double count = 0.0;
+        [[nodiscard]] double mean() const { return count > 0.0 ? sum / count : 0.0; }
+    };
+    std::array<Steps, 2> steps;  // within an end, between the ends
+    RawRows rows(bytes, columns, format);
+    std::vector<float> row(columns);
+    for (std::uint64_t i = 0; i < rows.rows(); ++i) {
+        static_cast<void>(rows.next(row));
+        const float* before = nullptr;
+        for (const float& sample : row) {
+            if (double{sample} == hole) {
+                before = nullptr;
+                continue;
+            }
+            if (std::abs(double{sample} - middle) < kClear) {
+                return false;
+            }
+            if (values.size() < 3) {
+                values.insert(sample);
+            }
+            if (before != nullptr) {
+                const double step = std::abs(double{sample} - double{*before});
+                Steps& those = steps.at(step > 2.0 * kClear ? 1 : 0);
+                those.sum += std::min(step, 65536.0 - step);
+                ++those.count;
+            }
+            before = &sample;
+        }
+    }
+    return values.size() > 2 && steps[1].count > 0.0 && steps[1].mean() <= 4.0 * steps[0].mean() + 2.0;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes, const HeightsSpec& spec) {
@@ -152,24 +213,28 @@ Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes
 std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
     const RawFormat own = formatOf(spec);
     const auto variation = [&](const RawFormat& format) {
-        return variationOf(bytes, spec.width, format).value_or(Variation());
+        return variationOf(bytes, spec, format).value_or(Variation());
     };
-    // Of both signs the other one only if its jumps are few, and it is more than a step between two levels.
     const auto ofTwoBytes = [&](ByteOrder order) {
-        const RawFormat given{own.bytes() == 2 ? own.type : SampleType::kUint16, order};
-        const RawFormat other{given.type == SampleType::kInt16 ? SampleType::kUint16 : SampleType::kInt16,
-                              order};
-        const Variation of_other = variation(other);
-        const bool fewer = 4.0 * of_other.between < variation(given).between && of_other.spread > 2.0;
-        return fewer ? other : given;
+        RawFormat format{own.bytes() == 2 ? own.type : SampleType::kUint16, order};
+        if (wrapsAround(bytes, spec, format)) {
+            format.type = format.type == SampleType::kInt16 ? SampleType::kUint16 : SampleType::kInt16;
+        }
+        return format;
     };
     const std::array<RawFormat, 4> formats = {ofTwoBytes(ByteOrder::kLittle), ofTwoBytes(ByteOrder::kBig),
                                               RawFormat{SampleType::kFloat32, ByteOrder::kLittle},
                                               RawFormat{SampleType::kFloat32, ByteOrder::kBig}};
     RawFormat best = own.bytes() == 2 ? ofTwoBytes(own.order) : own;
-    if (best == own) {
+    const RawFormat& swapped = formats.at(own.order == ByteOrder::kLittle ? 1 : 0);
+    constexpr double kAlike = 1.25;
+    if (own.bytes() == 2 && hasCoarseLowBytes(bytes, own.order) &&
+        variation(swapped).roughness() <= kAlike * variation(best).roughness()) {
+        best = swapped;
+    }
+    if (best.order != own.order || best == own) {
         constexpr double kNoise = 1.3;
-        double least = 0.5 * std::min(variation(own).roughness(), kNoise);
+        double least = 0.5 * std::min(variation(best).roughness(), kNoise);
         for (const RawFormat& format : formats) {
             if (const double roughness = variation(format).roughness(); roughness < least) {
                 least = roughness;

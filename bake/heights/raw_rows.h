@@ -18,8 +18,8 @@ namespace relief {
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes,
                                                               const HeightsSpec& spec);
 
-/// The settings type and order by which neighbours of a row differ far less than by those of `spec`: "order=big". Of at most 64
-/// rows. Empty: there are none.
+/// Returns the settings type and order that fit the samples better than those of `spec`: "order=big". Empty if there are none.
+/// Compares the differences of neighbours in at most 64 rows, and the values of all bytes.
 [[nodiscard]] std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 }  // namespace relief

@@ -193,6 +193,23 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
               std::string::npos)
         << hole;
     EXPECT_EQ(warned("low=-20,high=44,hole=0"), "");
+    // -1 of int16, or a hole of uint16, beside heights of 0 to 2.
+    const auto sample = [](double value) { return kLow + value * (kHigh - kLow) / 65535.0; };
+    write("h.raw", 17, 17,
+          [&](double x, double z) { return sample(x == 9 && z == 4 ? 65535.0 : std::round(x / 8.0)); });
+    const std::string sign = warned("spacing=10000,low=0,high=65535");
+    EXPECT_NE(sign.find("try --heights type=int16, without low and high; or, if its highest sample, 65535, "
+                        "stands for no data, --heights hole=65535\n"),
+              std::string::npos)
+        << sign;
+    write("h.raw", 17, 17, [&](double x, double z) {
+        return sample(x == 9 && z == 4 ? 65535.0 : x == 10 && z == 4 ? 65000.0 : 3000.0 + x + z);
+    });
+    const std::string several = warned("spacing=1000,low=0,high=65535");
+    EXPECT_NE(several.find("its highest samples, 65000 to 65535, lie far above all others; if they stand for "
+                           "no data, save them as one value and give it as --heights hole\n"),
+              std::string::npos)
+        << several;
 }
 
 /// A square along whose diagonal the ground rises by 66° has no bound, though each of its sides rises by 58°.

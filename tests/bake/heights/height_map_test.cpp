@@ -19,6 +19,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include "bake/import/image_rows.h"
 #include "bake/picture/exr.h"
@@ -283,6 +284,12 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
         EXPECT_EQ(heights[3], 256.0F);
     }
     EXPECT_EQ(heightsOf(hgt, "order=little,hole=1")[0], 1792.0F);
+    // An image is one under any name.
+    const fs::path image = writePng("image.hgt", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
+    EXPECT_EQ(heightsOf(image, "spacing=1,low=7,high=100"), std::vector<float>(4, 7.0F));
+    refuses(image, "low=0,high=1,order=big", "order is for raw samples", ErrorCode::kUsage);
+    EXPECT_EQ(toString(HeightMap::open(image, parseHeightsSpec("low=0,high=9").value())->spec()),
+              "spacing=1,low=0,high=9");
     const HeightsSpec implied = HeightMap::open(hgt, parseHeightsSpec("spacing=30").value())->spec();
     EXPECT_EQ(toString(implied), "spacing=30,hole=-32768,type=int16,order=big");
 }
@@ -338,18 +345,66 @@ TEST_F(HeightMaps, ALikelierFormatOfRawSamplesIsFound) {
     EXPECT_EQ(found({std::as_bytes(std::span(samples)).begin(), std::as_bytes(std::span(samples)).end()},
                     "uint16", "little"),
               "");
-    for (const unsigned step : {65535U, 256U, 257U}) {
+    // 8 bits times 256 may as well be bytes in the other order.
+    for (const auto& [step, format] : std::initializer_list<std::pair<unsigned, const char*>>{
+             {65535U, ""}, {257U, ""}, {64U, ""}, {256U, "order=big"}}) {
         for (std::size_t i = 0; i < samples.size(); ++i) {
             const bool wall = i % 7 == 0;
+            const double levels = step == 64U ? 10.0 : 40.0;
             samples[i] = static_cast<std::uint16_t>(
                 step == 65535U ? (wall ? step : 0U)
-                               : step * static_cast<unsigned>((hills[i] + 3500.0) / 40.0));
+                               : step * static_cast<unsigned>((hills[i] + 3500.0) / levels));
         }
         const auto bytes = std::as_bytes(std::span(samples));
-        EXPECT_EQ(found({bytes.begin(), bytes.end()}, "uint16", "little"), "") << step;
+        EXPECT_EQ(found({bytes.begin(), bytes.end()}, "uint16", "little"), format) << step;
     }
     refuses(write("f.raw", bytesOf("float32", "big")), "type=float32",
             "beyond 1e9; give --heights order=big");
+}
+
+/// Bytes in the wrong order scale heights by 256 if all lie within 256 m, and signs in the wrong type make pillars of 65 km.
+TEST_F(HeightMaps, ALikelierFormatOfLowlandIsFound) {
+    const auto found = [&](double low, double high, const std::string& settings, int lone = 0) {
+        std::vector<std::uint16_t> samples;
+        for (int i = 0; i < 65 * 65; ++i) {
+            const double wave = 0.5 + 0.25 * std::sin(i % 65 / 9.0) + 0.25 * std::cos(i / 65 / 5.0);
+            samples.push_back(static_cast<std::uint16_t>(std::lround(low + (high - low) * wave)));
+        }
+        if (lone != 0) {
+            samples[16 * 65 + 42] = static_cast<std::uint16_t>(lone);  // in a valley
+        }
+        const auto bytes = std::as_bytes(std::span(samples));
+        std::vector<std::byte> big(bytes.begin(), bytes.end());
+        for (std::size_t i = 0; i < big.size(); i += 2) {
+            std::swap(big[i], big[i + 1]);
+        }
+        const bool swap = settings.find("written=big") == 0;
+        return HeightMap::open(write("g.raw", swap ? big : std::vector(bytes.begin(), bytes.end())),
+                               parseHeightsSpec(settings.substr(swap ? 12 : 0)).value())
+            ->likelierFormat();
+    };
+    const std::string uint16 = "low=0,high=65535";
+    for (const auto& [low, high] : {std::pair(0, 5), {0, 100}, {0, 255}, {0, 300}, {1030, 1200}}) {
+        SCOPED_TRACE(high);
+        EXPECT_EQ(found(low, high, uint16), "");
+        EXPECT_EQ(found(low, high, "type=int16"), "");
+        EXPECT_EQ(found(low, high, "written=big," + uint16), "order=big");
+        EXPECT_EQ(found(low, high, "written=big,type=int16"), "order=big");
+        EXPECT_EQ(found(low, high, "written=big,type=int16,order=big"), "");
+    }
+    for (const int most : {2, 3, 4, 8, 100, 10000}) {
+        SCOPED_TRACE(most);
+        EXPECT_EQ(found(-most, most, "type=int16"), "");
+        EXPECT_EQ(found(-most, most, uint16), "type=int16");
+        EXPECT_EQ(found(-most, most, "written=big," + uint16), "type=int16,order=big");
+        EXPECT_EQ(found(-most, most, "written=big,type=int16"), "order=big");
+    }
+    EXPECT_EQ(found(0, 5, uint16, -1), "type=int16");
+    EXPECT_EQ(found(0, 5, uint16 + ",hole=65535", -1), "");
+    EXPECT_EQ(found(300, 500, uint16 + ",hole=65535", -1), "");
+    EXPECT_NE(found(300, 500, uint16, -1), "type=int16");
+    EXPECT_EQ(found(32000, 33500, uint16), "");
+    EXPECT_EQ(found(32000, 33500, "type=int16"), "type=uint16");
 }
 
 TEST_F(HeightMaps, ALoneSampleFarFromAllOthersIsFound) {
@@ -359,12 +414,17 @@ TEST_F(HeightMaps, ALoneSampleFarFromAllOthersIsFound) {
             range.add(sample);
         }
         const std::optional<LoneSample> found = range.lone();
-        return found ? std::string(found->lowest ? "low " : "high ") + std::to_string(std::lround(found->gap))
-                     : "";
+        return found
+                   ? std::string(found->lowest ? "low " : "high ") + std::to_string(std::lround(found->gap)) +
+                         (found->sample == found->last ? "" : " of several")
+                   : "";
     };
     EXPECT_EQ(lone({3.0F, -9999.0F, 5.0F, -9999.0F, 4.0F}), "low 10002");
     EXPECT_EQ(lone({-400.0F, 8848.0F, 100.0F, -9999.0F}), "low 9599");
     EXPECT_EQ(lone({65535.0F, 100.0F, 30000.0F, 65535.0F}), "high 35535");
+    EXPECT_EQ(lone({7.0F, -9999.0F, 8.0F, -9998.5F, 4.0F, 5.0F}), "low 10003 of several");
+    EXPECT_EQ(lone({7.0F, 65534.0F, 8.0F, 65535.0F, 4.0F, 5.0F, 65533.0F, 6.0F}), "high 65525 of several");
+    EXPECT_EQ(lone({100.0F, 101.0F, 5000.0F, 5001.0F}), "");
     EXPECT_EQ(lone({0.0F, 65535.0F}), "");
     EXPECT_EQ(lone({7.0F, 7.0F}), "");
     EXPECT_EQ(lone({}), "");
