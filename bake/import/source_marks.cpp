@@ -83,7 +83,7 @@ bool typeAsNumber(std::string& text, std::string_view name) {
         const auto type = stringBehind(text, at + start.size());
         const auto label = type ? stringBehind(text, endOf(text, *type)) : std::nullopt;
         const auto flags = label ? stringBehind(text, endOf(text, *label)) : std::nullopt;
-        if (!flags || text.substr(type->begin, type->size) != name) {
+        if (!flags || std::string_view(text).substr(type->begin, type->size) != name) {
             continue;
         }
         const std::size_t value = endOf(text, *flags);

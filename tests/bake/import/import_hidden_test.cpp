@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <ctime>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "bake/import/animated_import.h"
 #include "bake/import/level.h"
 #include "bake/import/mesh_import.h"
+#include "bake/import/source_marks.h"
 #include "tests/bake/import/import_meshes.h"
 #include "tests/temporary_folder.h"
 
@@ -315,6 +318,26 @@ TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
     expectWrong("levels.gltf",
                 {{tetrahedronGltf({.nodes = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[7]}}})"}),
                   "nodes[0].extensions.MSFT_lod names nodes[7], which does not exist"}});
+}
+
+/// Each of the matches below holds all that follow it.
+TEST(ImportHidden, LongStringsOfFbxAreNotCopied) {
+    constexpr std::uint32_t kSize = 1U << 20;
+    const auto string = [](std::uint32_t size, const char* text) {
+        std::string all = "S0000" + std::string(text);
+        std::memcpy(&all[1], &size, sizeof(size));
+        return all;
+    };
+    std::string file("Kaydara FBX Binary  \0\x1a\0", 23);
+    while (file.size() + 100 < kSize) {
+        file += string(10, "Visibility");
+        file += string(static_cast<std::uint32_t>(kSize - file.size() - 5), "");
+    }
+    file.resize(kSize);
+    file += string(0, "") + string(0, "");
+    const std::clock_t start = std::clock();
+    EXPECT_FALSE(markedFbx(std::as_bytes(std::span(file))));
+    EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.0);
 }
 
 TEST(ImportHidden, AnimatedVisibilityGetsANote) {
