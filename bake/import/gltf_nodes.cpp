@@ -156,8 +156,44 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     return {};
 }
 
+/// Refuses levels of detail that lead back to their node, through children too: none of them would be shown.
+Result<void> checkLevels(const std::vector<GltfNode>& nodes,
+                         const std::vector<std::vector<std::uint32_t>>& levels) {
+    enum class State : std::uint8_t { kNew, kOpen, kDone };
+    std::vector<State> states(nodes.size(), State::kNew);
+    std::vector<std::pair<std::uint32_t, std::size_t>> path;  // nodes, and the next of what each leads to
+    for (std::uint32_t first = 0; first < nodes.size(); ++first) {
+        for (std::optional<std::uint32_t> next = first; next || !path.empty();) {
+            if (next && states[*next] == State::kNew) {
+                states[*next] = State::kOpen;
+                path.emplace_back(*next, 0);
+            } else if (next && states[*next] == State::kOpen) {
+                return nodes[*next].place.wrong(
+                    "is a lower level of detail of itself (MSFT_lod), so that none is shown; remove its "
+                    "number "
+                    "from the ids");
+            }
+            next.reset();
+            if (path.empty()) {
+                continue;
+            }
+            auto& [node, at] = path.back();
+            const std::vector<std::uint32_t>& children = nodes[node].children;
+            if (at < children.size() + levels[node].size()) {
+                next = at < children.size() ? children[at] : levels[node][at - children.size()];
+                ++at;
+            } else {
+                states[node] = State::kDone;
+                path.pop_back();
+            }
+        }
+    }
+    return {};
+}
+
 /// Marks the nodes that extensions hide. Lower levels of detail are usually in no scene.
 Result<void> hideNodes(std::vector<GltfNode>& nodes) {
+    std::vector<std::vector<std::uint32_t>> lesser(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));
         const auto visibility = RELIEF_TRY(inside(extensions, "KHR_node_visibility"));
@@ -170,12 +206,14 @@ Result<void> hideNodes(std::vector<GltfNode>& nodes) {
             if (level >= nodes.size()) {
                 return levels->wrong("names nodes[" + std::to_string(level) + "], which does not exist");
             }
-            if (level != i && nodes[level].shown == Shown::kYes) {
-                nodes[level].shown = Shown::kLesserLevel;
+            if (level != i) {
+                lesser[i].push_back(static_cast<std::uint32_t>(level));
+                nodes[level].shown =
+                    nodes[level].shown == Shown::kYes ? Shown::kLesserLevel : nodes[level].shown;
             }
         }
     }
-    return {};
+    return checkLevels(nodes, lesser);
 }
 
 /// Empty where there is no such attribute.

@@ -320,6 +320,25 @@ TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
                   "nodes[0].extensions.MSFT_lod names nodes[7], which does not exist"}});
 }
 
+TEST(ImportHidden, LevelsOfDetailThatLeadBackAreRefused) {
+    const auto node = [](const std::string& levels, const std::string& more = "") {
+        return R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[)" + levels + "]}}" + more + "}";
+    };
+    const std::string words = "nodes[0] is a lower level of detail of itself (MSFT_lod)";
+    expectWrong(
+        "ring.gltf",
+        {{tetrahedronGltf({.nodes = node("1") + "," + node("0"), .roots = "0,1"}), words},
+         {tetrahedronGltf({.nodes = node("1") + "," + node("2") + "," + node("0"), .roots = "0,1,2"}), words},
+         {tetrahedronGltf({.nodes = R"({"children":[1]},)" + node("0")}), words}});
+    // An own number, a level of a level, a level of two nodes, and a level below its node.
+    const GltfParts chain{.nodes = node("0,1,2") + "," + node("2") + R"(,{"mesh":0},)" +
+                                   node("4,2", R"(,"children":[4])") + R"(,{"mesh":0})",
+                          .roots = "0,1,2,3"};
+    const TriangleMesh mesh = imported("chain.gltf", tetrahedronGltf(chain));
+    EXPECT_EQ(mesh.triangles.size(), 8U);
+    EXPECT_TRUE(warns(mesh, "left out 3 lower levels of detail"));
+}
+
 /// Each of the matches below holds all that follow it.
 TEST(ImportHidden, LongStringsOfFbxAreNotCopied) {
     constexpr std::uint32_t kSize = 1U << 20;
