@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""links.py FOLDER: every relative link of every .md below FOLDER leads to a file, and its #heading to a heading."""
+"""links.py FOLDER: every relative link of every .md below FOLDER leads to a file, and its #heading to a heading. Every row that
+begins with | belongs to a table with a header."""
 import pathlib
 import re
 import sys
@@ -26,6 +27,10 @@ def main(folder):
         # [words](target), ![words](target) and [words]: target.
         targets = re.findall(r'\]\(\s*<?([^)\s>]+)>?[^)]*\)', prose(text))
         targets += re.findall(r'^ {0,3}\[[^\]]+\]:\s*<?([^\s>]+)', prose(text), flags=re.M)
+        lines = [''] + prose(text).split('\n') + ['']
+        for before, row, behind in zip(lines, lines[1:], lines[2:]):
+            if row.startswith('| ') and not before.startswith('|') and not behind.startswith('| --'):
+                dead.append(f'{page}: the row "{row}" is outside its table')
         for target in targets:
             if re.match(r'[a-z][a-z0-9+.-]*:', target):
                 continue
