@@ -11,6 +11,7 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -263,26 +264,98 @@ bool isZero(const aiNode& node, const char* property) {
     return is(false) || is(std::int32_t{0}) || is(0.0F) || is(0.0);
 }
 
-/// Whether the file hides this node, whatever is above it. \param hidden  names of hidden nodes.
-bool isHidden(const aiNode& node, const std::set<std::string>& hidden) {
-    return isZero(node, "Show") || isZero(node, "Visibility") || hidden.contains(node.mName.C_Str());
+std::span<aiNode* const> childrenOf(const aiNode& node) {
+    return {node.mChildren, node.mNumChildren};
+}
+
+/// Nodes that the file hides, other than by properties of FBX.
+struct HiddenNodes {
+    std::map<const aiNode*, std::string> labels;  ///< names for messages
+    std::vector<std::string> unmet;               ///< hidden objects without a node
+};
+
+/// The nodes with these names.
+HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
+    HiddenNodes hidden;
+    std::set<std::string> unmet = names;
+    std::vector<const aiNode*> pending{&root};
+    while (!pending.empty()) {
+        const aiNode* const node = pending.back();
+        pending.pop_back();
+        if (const std::string name = node->mName.C_Str(); names.contains(name)) {
+            hidden.labels.emplace(node, name);
+            unmet.erase(name);
+        }
+        for (const aiNode* child : childrenOf(*node)) {
+            if (child != nullptr) {
+                pending.push_back(child);
+            }
+        }
+    }
+    hidden.unmet.assign(unmet.begin(), unmet.end());
+    return hidden;
+}
+
+/// Follows the nodes of assimp along those of the document, since names may be missing or occur several times. assimp keeps
+/// their order, and drops instances that it does not find.
+HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document) {
+    HiddenNodes hidden;
+    if (std::none_of(document.begin(), document.end(), [](const ColladaNode& node) { return node.hidden; })) {
+        return hidden;
+    }
+    std::vector<bool> met(document.size());
+    std::vector<std::pair<const aiNode*, std::uint32_t>> pending{{&root, 0}};
+    while (!pending.empty()) {
+        const auto [node, index] = pending.back();
+        pending.pop_back();
+        met[index] = true;
+        if (document[index].hidden) {
+            hidden.labels.emplace(node, document[index].label);
+        }
+        auto next = document[index].children.begin();
+        for (const aiNode* child : childrenOf(*node)) {
+            if (child == nullptr) {
+                continue;
+            }
+            const std::string_view name = child->mName.C_Str();
+            next = std::find_if(next, document[index].children.end(), [&](std::uint32_t other) {
+                const std::string& written = document[other].name;
+                return written.empty() ? name.starts_with("$ColladaAutoName$_") : name == written;
+            });
+            if (next == document[index].children.end()) {
+                break;
+            }
+            pending.emplace_back(child, *next++);
+        }
+    }
+    for (std::size_t i = 0; i < document.size(); ++i) {
+        if (document[i].hidden && !met[i]) {
+            hidden.unmet.push_back(document[i].label);
+        }
+    }
+    return hidden;
+}
+
+/// Whether the file hides this node, whatever is above it.
+bool isHidden(const aiNode& node, const HiddenNodes& hidden) {
+    return isZero(node, "Show") || isZero(node, "Visibility") || hidden.labels.contains(&node);
 }
 
 bool hasMeshes(const aiNode& node) {
-    const std::span children(node.mChildren, node.mNumChildren);
+    const std::span children = childrenOf(node);
     return node.mNumMeshes > 0 || std::any_of(children.begin(), children.end(), [](const aiNode* child) {
                return child != nullptr && hasMeshes(*child);
            });
 }
 
 /// All levels of a LodGroup but the most detailed one, which is the first that is shown.
-std::set<const aiNode*> lesserLevels(const aiNode& group, const std::set<std::string>& hidden) {
+std::set<const aiNode*> lesserLevels(const aiNode& group, const HiddenNodes& hidden) {
     std::set<const aiNode*> levels;
     if (std::string_view(group.mName.C_Str()).find(kLodGroupMark) == std::string_view::npos) {
         return levels;
     }
     bool first = true;
-    for (const aiNode* child : std::span(group.mChildren, group.mNumChildren)) {
+    for (const aiNode* child : childrenOf(group)) {
         if (child != nullptr && hasMeshes(*child) && !isHidden(*child, hidden) &&
             !std::exchange(first, false)) {
             levels.insert(child);
@@ -291,11 +364,9 @@ std::set<const aiNode*> lesserLevels(const aiNode& group, const std::set<std::st
     return levels;
 }
 
-/// \param hidden  names of hidden nodes.
-void addNodes(const aiScene& source, const std::set<std::string>& hidden, ImportScene& scene) {
+void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& scene) {
     std::vector<std::pair<const aiNode*, std::uint32_t>> pending{{source.mRootNode, 0}};
     std::set<const aiNode*> lesser;
-    std::set<std::string> unmet = hidden;
     while (!pending.empty()) {
         const auto [from, parent] = pending.back();
         pending.pop_back();
@@ -307,7 +378,6 @@ void addNodes(const aiScene& source, const std::set<std::string>& hidden, Import
         node.index = index;
         if (isHidden(*from, hidden)) {
             node.is_shown = Shown::kHidden;
-            unmet.erase(from->mName.C_Str());
         }
         if (index > 0) {  // the root is the file
             const Shown above = scene.nodes[parent].is_shown;
@@ -316,7 +386,10 @@ void addNodes(const aiScene& source, const std::set<std::string>& hidden, Import
             } else if (lesser.contains(from)) {
                 node.is_shown = Shown::kLesserLevel;
             }
-            node.shown = node.names[0].empty() ? scene.nodes[parent].shown : node.names[0];
+            const auto label = hidden.labels.find(from);
+            node.shown = label != hidden.labels.end() ? label->second
+                         : node.names[0].empty()      ? scene.nodes[parent].shown
+                                                      : node.names[0];
             scene.nodes[parent].children.push_back(index);
         }
         for (const unsigned mesh : std::span(from->mMeshes, from->mNumMeshes)) {
@@ -333,9 +406,11 @@ void addNodes(const aiScene& source, const std::set<std::string>& hidden, Import
         }
     }
     scene.roots = {0};
-    if (!unmet.empty()) {  // a 3DS file without a keyframer
-        scene.warnings.push_back("baked " + std::to_string(unmet.size()) + " hidden objects (first '" +
-                                 *unmet.begin() + "'), because no node has their names; remove them");
+    if (!hidden.unmet.empty()) {  // a 3DS file without a keyframer
+        scene.warnings.push_back("could not leave out " + std::to_string(hidden.unmet.size()) +
+                                 " hidden objects (first '" +
+                                 cleanUtf8(hidden.unmet.front(), kAskedNameBytesMax) +
+                                 "'), because no node stands for them; remove them");
     }
 }
 
@@ -404,7 +479,10 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
         return invalidInput("a face uses a vertex that does not exist");
     }
     scene.frame = frameOf(format, job, *source);
-    addNodes(*source, format == AssimpFrame::k3ds ? hiddenObjectsOf3ds(job.bytes) : collada.hidden, scene);
+    addNodes(*source,
+             format == AssimpFrame::k3ds ? nodesOf(*source->mRootNode, hiddenObjectsOf3ds(job.bytes))
+                                         : nodesOf(*source->mRootNode, collada.nodes),
+             scene);
     if (collada.missing) {
         scene.warnings.push_back("left out what is missing: " + *collada.missing);
     }

@@ -143,22 +143,17 @@ class ColladaReader {
     Result<ColladaNodes> read() {
         const pugi::xml_node collada = xml_.child("COLLADA");
         addIds(collada);
-        RELIEF_TRY(visitInstances(collada.child("scene")));
-        while (!pending_.empty()) {
-            const pugi::xml_node node = pending_.back();
-            pending_.pop_back();
-            if (!visited_.insert(node).second) {
-                continue;
+        std::vector<std::uint32_t> scenes;
+        RELIEF_TRY(visitInstances(collada.child("scene"), scenes));
+        for (std::size_t i = 0; i < elements_.size(); ++i) {
+            const pugi::xml_node element = elements_[i];
+            std::vector<std::uint32_t> children;
+            for (const pugi::xml_node child : element.children("node")) {
+                children.push_back(indexOf(child));
             }
-            if (isHidden(node)) {
-                nodes_.hidden.insert(node.attribute(node.attribute("id") ? "id" : "sid").value());
-            }
-            RELIEF_TRY(visitInstances(node));
-            for (const pugi::xml_node child : node.children("node")) {
-                pending_.push_back(child);
-            }
+            RELIEF_TRY(visitInstances(element, children));
+            nodes_.nodes[i].children = std::move(children);
         }
-        nodes_.hidden.erase("");
         nodes_.animates_visibility = text_.find("/visibility\"") != std::string_view::npos;
         if (missing_ > 1) {
             nodes_.missing = *nodes_.missing + ", and " + std::to_string(missing_ - 1) + " more like it";
@@ -190,23 +185,44 @@ class ColladaReader {
     }
 
     static bool isHidden(const pugi::xml_node& node) {
-        const char* const value = node.child("extra").child("technique").child("visibility").child_value();
-        return parseDouble(trimmed(value)) == 0.0;
+        for (const pugi::xml_node extra : node.children("extra")) {
+            for (const pugi::xml_node technique : extra.children("technique")) {
+                const std::string_view value = trimmed(technique.child("visibility").child_value());
+                if (parseDouble(value) == 0.0 || lowerCase(std::string(value)) == "false") {
+                    return true;
+                }
+            }
+        }
+        return false;
     }
 
-    /// Visits the instances of a node or of <scene>.
-    Result<void> visitInstances(const pugi::xml_node& node) {
+    /// The index of a node, which is read later if it is new.
+    std::uint32_t indexOf(const pugi::xml_node& node) {
+        const auto next = static_cast<std::uint32_t>(elements_.size());
+        const auto [found, added] = indices_.try_emplace(node, next);
+        if (added) {
+            elements_.push_back(node);
+            const std::string name = node.attribute(node.attribute("id") ? "id" : "sid").value();
+            nodes_.nodes.push_back(
+                {name, name.empty() ? node.attribute("name").value() : name, isHidden(node), {}});
+        }
+        return found->second;
+    }
+
+    /// Visits the instances of a node or of <scene>. \param children  receives the indices of instanced nodes.
+    Result<void> visitInstances(const pugi::xml_node& node, std::vector<std::uint32_t>& children) {
         for (const pugi::xml_node instance : node.children()) {
             const std::string_view element = instance.name();
             if (element == "instance_geometry" || element == "instance_controller" ||
                 element == "instance_node" || element == "instance_visual_scene") {
-                RELIEF_TRY(visit(node, instance, instance.attribute("url").value()));
+                RELIEF_TRY(visit(node, instance, instance.attribute("url").value(), children));
             }
         }
         return {};
     }
 
-    Result<void> visit(const pugi::xml_node& node, const pugi::xml_node& instance, const std::string& url) {
+    Result<void> visit(const pugi::xml_node& node, const pugi::xml_node& instance, const std::string& url,
+                       std::vector<std::uint32_t>& children) {
         if (!url.starts_with('#')) {
             return fail(ErrorCode::kUnsupported, placeOf(node, instance) + " instances '" +
                                                      cleanUtf8(url, kUrlMax) +
@@ -224,9 +240,10 @@ class ColladaReader {
         if (kind == "controller") {
             const char* const source = object.child("skin").attribute("source").as_string(
                 object.child("morph").attribute("source").value());
-            return visited_.insert(object).second ? visit(node, instance, source) : Result<void>();
+            return controllers_.insert(object).second ? visit(node, instance, source, children)
+                                                      : Result<void>();
         }
-        pending_.push_back(object);
+        children.push_back(indexOf(object));
         return {};
     }
 
@@ -258,8 +275,9 @@ class ColladaReader {
     pugi::xml_document xml_;
     ColladaNodes nodes_;
     std::map<std::string, pugi::xml_node> objects_;  // by id
-    std::set<pugi::xml_node> visited_;
-    std::vector<pugi::xml_node> pending_;
+    std::map<pugi::xml_node, std::uint32_t> indices_;
+    std::vector<pugi::xml_node> elements_;  // by index
+    std::set<pugi::xml_node> controllers_;  // visited
     std::uint64_t missing_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <span>
@@ -25,8 +26,14 @@ inline constexpr std::string_view kLodGroupMark = "\x02LodGrp\x02";
 /// Whether curves animate the visibility of nodes of an FBX document.
 [[nodiscard]] bool fbxAnimatesVisibility(std::span<const std::byte> document);
 
+struct ColladaNode {
+    std::string name;                     ///< the id or else the sid, as assimp names nodes; may be empty
+    std::string label;                    ///< the name for messages
+    bool hidden = false;                  ///< `visibility` 0 or false in a <technique> of an <extra>
+    std::vector<std::uint32_t> children;  ///< indices of its own nodes, then of those that it instances
+};
 struct ColladaNodes {
-    std::set<std::string> hidden;  ///< ids or sids of nodes; FCOLLADA's `visibility` in <extra>
+    std::vector<ColladaNode> nodes;  ///< the visual scene first
     bool animates_visibility = false;
     std::optional<std::string> missing;  ///< a warning: instances of what does not exist
 };

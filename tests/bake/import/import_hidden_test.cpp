@@ -193,6 +193,14 @@ constexpr const char* kMoved = "<translate>10 0 0</translate>";
 constexpr const char* kUnseen =
     R"(<extra><technique profile="FCOLLADA"><visibility>0.000000</visibility></technique></extra>)";
 
+/// A node of the tetrahedron at x = 10.
+std::string hiddenNode(const std::string& attributes, const std::string& extra = kUnseen) {
+    return "<node " + attributes + ">" + kMoved + R"(<instance_geometry url="#g"/>)" + extra + "</node>";
+}
+std::string hiddenDae(const std::string& attributes, const std::string& extra = kUnseen) {
+    return dae(kShownNode + hiddenNode(attributes, extra));
+}
+
 /// The tetrahedron at x = 0 and, hidden, at x = 10.
 std::vector<std::pair<std::string, std::string>> hiddenFiles() {
     const std::string hidden = R"({"mesh":0,"name":"other","translation":[10,0,0],"extensions":)"
@@ -216,8 +224,21 @@ std::vector<std::pair<std::string, std::string>> hiddenFiles() {
         {"parent.fbx", nestedFbx(visibility("0"), "")},
         {"visible.gltf", tetrahedronGltf(gltf)},
         {"below.gltf", tetrahedronGltf(below)},
-        {"visibility.dae", dae(std::string(kShownNode) + R"(<node id="other" name="other">)" + kMoved +
-                               R"(<instance_geometry url="#g"/>)" + kUnseen + "</node>")},
+        {"visibility.dae", hiddenDae(R"(id="other" name="other")")},
+        {"sid.dae", hiddenDae(R"(sid="other")")},
+        {"name.dae", hiddenDae(R"(name="other")")},
+        {"technique.dae",
+         hiddenDae(R"(id="other")",
+                   R"(<extra><technique profile="MAX3D"><frozen>0</frozen></technique><technique profile=)"
+                   R"("FCOLLADA"><visibility>0</visibility></technique></extra>)")},
+        {"extra.dae",
+         hiddenDae(R"(id="other")", "<extra><technique profile=\"x\"/></extra>" + std::string(kUnseen))},
+        {"false.dae",
+         hiddenDae(
+             R"(id="other")",
+             "<extra><technique profile=\"FCOLLADA\"><visibility> false </visibility></technique></extra>")},
+        {"library.dae", dae(std::string(kShownNode) + R"(<node><instance_node url="#other"/></node>)",
+                            hiddenNode(R"(id="other")"))},
         {"hidden.ac",
          "AC3Db\nMATERIAL \"\" rgb 1 1 1 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n"
          "OBJECT world\nkids 2\nOBJECT poly\nname \"t\"\n" +
@@ -274,6 +295,29 @@ TEST(ImportHidden, KeepTakesAll) {
     }
 }
 
+/// Names of COLLADA nodes may be missing, or occur several times.
+TEST(ImportHidden, ColladaNodesOfTheSameNameAreHiddenOneByOne) {
+    for (const char* attributes : {R"(sid="k")", R"(name="k")", ""}) {
+        SCOPED_TRACE(attributes);
+        const std::string shown =
+            "<node " + std::string(attributes) + R"(><instance_geometry url="#g"/></node>)";
+        const TriangleMesh mesh =
+            imported("two.dae", dae(shown + hiddenNode(attributes) + shown + hiddenNode(attributes)));
+        EXPECT_EQ(mesh.triangles.size(), 8U);
+        EXPECT_LT(mesh.bounds.max.x, 5.0F);
+        EXPECT_TRUE(warns(mesh, "left out 2 hidden objects (first '"))
+            << ::testing::PrintToString(mesh.warnings);
+        EXPECT_EQ(mesh.warnings.size(), 1U);
+    }
+    // assimp drops an instance of a node inside a library node.
+    const TriangleMesh mesh = imported(
+        "dropped.dae", dae(R"(<node><instance_node url="#inner"/><instance_node url="#l"/></node>)" +
+                               std::string(kShownNode),
+                           R"(<node id="l"><node id="inner"/>)" + hiddenNode(R"(sid="k")") + "</node>"));
+    EXPECT_EQ(mesh.triangles.size(), 4U);
+    EXPECT_TRUE(warns(mesh, "left out 1 hidden object ('k'")) << ::testing::PrintToString(mesh.warnings);
+}
+
 TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
     const std::string all = R"({"mesh":0,"extensions":{"KHR_node_visibility":{"visible":false}}})";
     expectWrong("none.gltf", {{tetrahedronGltf({.nodes = all}), "all of its objects are hidden"}});
@@ -283,7 +327,7 @@ TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
     for (const std::size_t size_at : {2U, 8U, 14U}) {
         file[size_at] = static_cast<char>(file[size_at] + 6);
     }
-    EXPECT_TRUE(warns(imported("some.3ds", file), "baked 1 hidden objects (first 't')"));
+    EXPECT_TRUE(warns(imported("some.3ds", file), "could not leave out 1 hidden objects (first 't')"));
     const std::string keyframer(
         "\x00\xB0\x22\0\0\0\x02\xB0\x1C\0\0\0\x30\xB0\x08\0\0\0\0\0"
         "\x10\xB0\x0E\0\0\0t\0\0\0\0\0\xFF\xFF",
