@@ -483,6 +483,12 @@ class Director {
                 " nodes become one collider; if it is a level, bake it with --world DIR: "
                 "each mesh once, with more detail for the same bytes");
         }
+        if (const std::uint64_t shells = result_.shape.unjoined_shells; shells > 0) {
+            result_.notices.push_back(
+                mesh.name + ": " + countText(shells, "open shell") +
+                " within another one, with mouths too far apart to join: the space between and within is "
+                "full; to free it, close the gap between the rims in the mesh");
+        }
         if (const std::uint64_t sheets = result_.shape.closable_sheets; sheets > 0) {
             result_.notices.push_back(
                 mesh.name + ": " + countText(sheets, "sheet") +

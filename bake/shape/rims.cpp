@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/shape/rims.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
-#include <limits>
+#include <optional>
 #include <utility>
 
 #include "bake/mesh/mesh_query.h"
@@ -19,69 +23,123 @@
 namespace relief {
 namespace {
 
-/// Rims face each other if all of either is this near to the other, in units of its longest side.
-constexpr double kRimGap = 0.2;
-/// A wall has at most this share of the volume within its outer shell.
+/// Rims face each other if all of either is this near to the other, in units of the inner one's longest side.
+constexpr double kRimGap = 0.5;
+/// Mouths nearly face each other if their bounds differ by at most this, in the same units.
+constexpr double kNearRimGap = 1.5;
+/// The inner rims that face none have at most this fraction of the area of the others.
+constexpr double kUnmatchedArea = 0.5;
+/// A wall has at most this fraction of the volume within its outer shell.
 constexpr double kWallVolume = 0.95;
 /// Limit of the pairs of corners that are compared.
 constexpr std::size_t kRimPairs = 100'000'000;
 
-/// Newell's normal.
-glm::dvec3 normalOf(const Rim& rim) {
-    const std::vector<glm::dvec3>& at = rim.places;
-    glm::dvec3 normal(0.0);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-        normal += cross(at[i] - at[0], at[(i + 1) % at.size()] - at[0]);
+/// A border of an open shell, in the direction of a cap's triangles.
+struct Rim {
+    std::vector<std::uint32_t> vertices;
+    std::vector<glm::dvec3> places;  ///< of the vertices
+    Bounds bounds;
+    glm::dvec3 normal{0.0};  ///< Newell's
+};
+
+struct RimmedShell {
+    std::size_t index = 0;
+    const OpenShell* shell = nullptr;
+    int axis = 0;           ///< the longest one
+    std::vector<Rim> rims;  ///< by the lower bound along the axis
+    double volume = 0.0;    ///< within, with closed rims
+
+    [[nodiscard]] const TriangleMesh& mesh() const { return shell->mesh; }
+};
+
+/// Within a mesh whose rims are closed by fans.
+double volumeWithin(const TriangleMesh& mesh, const std::vector<const Rim*>& rims, std::uint32_t first = 0) {
+    std::vector<glm::uvec3> triangles = mesh.triangles;
+    for (const Rim* rim : rims) {
+        for (std::size_t i = 1; i + 1 < rim->vertices.size(); ++i) {
+            triangles.push_back(first + glm::uvec3(rim->vertices[0], rim->vertices[i], rim->vertices[i + 1]));
+        }
     }
-    return normal;
+    return std::abs(enclosedVolume(mesh.positions, triangles, mesh.bounds.center()).value_or(0.0));
 }
 
-/// The largest distance of a rim's corners from another rim.
-double distanceTo(const Rim& from, const Rim& to) {
-    double largest = 0.0;
-    for (const glm::dvec3& p : from.places) {
-        double least = std::numeric_limits<double>::max();
-        for (std::size_t i = 0; i < to.places.size(); ++i) {
-            const glm::dvec3& a = to.places[i];
-            const glm::dvec3& b = to.places[(i + 1) % to.places.size()];
-            least = std::min(least, distance(p, closestOnTriangle(p, a, b, a)));
-        }
-        largest = std::max(largest, least);
+std::vector<const Rim*> pointersTo(const std::vector<Rim>& rims) {
+    std::vector<const Rim*> pointers;
+    for (const Rim& rim : rims) {
+        pointers.push_back(&rim);
     }
-    return largest;
+    return pointers;
+}
+
+RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
+    RimmedShell rimmed{index, &shell, 0, {}, 0.0};
+    const glm::dvec3 size = shell.mesh.bounds.size();
+    rimmed.axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+    const PreparedMesh open(shell.mesh);
+    for (const BorderLoop& loop : borderLoops(open.oddEdges())) {
+        Rim& rim = rimmed.rims.emplace_back();
+        for (const BorderStep& step : loop) {
+            rim.vertices.push_back(step.from);
+            rim.places.emplace_back(open->positions[step.from]);
+            rim.bounds.add(rim.places.back());
+        }
+        for (std::size_t i = 1; i + 1 < rim.places.size(); ++i) {
+            rim.normal += cross(rim.places[i] - rim.places[0], rim.places[i + 1] - rim.places[0]);
+        }
+    }
+    std::ranges::stable_sort(rimmed.rims, {}, [&](const Rim& rim) { return rim.bounds.min[rimmed.axis]; });
+    rimmed.volume = volumeWithin(shell.mesh, pointersTo(rimmed.rims));
+    return rimmed;
+}
+
+/// All corners of a rim are within a gap from another one.
+bool isNear(const Rim& from, const Rim& to, double gap) {
+    const std::size_t count = to.places.size();
+    std::size_t side = 0;  // where the last corner was near
+    return std::ranges::all_of(from.places, [&](const glm::dvec3& p) {
+        for (std::size_t i = 0; i < count; ++i, side = (side + 1) % count) {
+            const glm::dvec3& a = to.places[side];
+            const glm::dvec3& b = to.places[(side + 1) % count];
+            if (distance(p, closestOnTriangle(p, a, b, a)) <= gap) {
+                return true;
+            }
+        }
+        return false;
+    });
+}
+
+double apart(const Bounds& a, const Bounds& b) {
+    const glm::dvec3 most =
+        glm::max(glm::abs(glm::dvec3(a.min - b.min)), glm::abs(glm::dvec3(a.max - b.max)));
+    return std::max({most.x, most.y, most.z});
 }
 
 bool meets(const Bounds& a, const Bounds& b) {
     return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
 }
 
-Bounds boundsOf(const Rim& rim) {
-    Bounds box;
-    for (const glm::dvec3& p : rim.places) {
-        box.add(p);
-    }
-    return box;
-}
-
-bool faceEachOther(const Rim& a, const Rim& b) {
-    const Bounds of_a = boundsOf(a);
-    const Bounds of_b = boundsOf(b);
-    const double gap = kRimGap * double{of_b.longestSide()};
-    const glm::dvec3 apart =
-        glm::max(glm::abs(glm::dvec3(of_a.min - of_b.min)), glm::abs(glm::dvec3(of_a.max - of_b.max)));
-    return std::max({apart.x, apart.y, apart.z}) <= gap && a.places.size() * b.places.size() <= kRimPairs &&
-           distanceTo(b, a) <= gap && distanceTo(a, b) <= gap;
-}
-
-/// Within a mesh whose rims are closed by fans.
-double volumeWithin(const TriangleMesh& mesh, const std::vector<Rim>& rims) {
-    std::vector<glm::uvec3> triangles = mesh.triangles;
-    for (const Rim& rim : rims) {
-        for (std::size_t i = 1; i + 1 < rim.vertices.size(); ++i) {
-            triangles.emplace_back(rim.vertices[0], rim.vertices[i], rim.vertices[i + 1]);
+/// The nearest of the outer shell's rims that faces an inner one; its count of rims if none does.
+std::size_t facingRim(const RimmedShell& outer, const std::vector<bool>& taken, const Rim& rim) {
+    const double gap = kRimGap * double{rim.bounds.longestSide()};
+    const double from = double{rim.bounds.min[outer.axis]} - gap;
+    const auto low = [&](const Rim& other) { return double{other.bounds.min[outer.axis]}; };
+    std::vector<std::pair<double, std::size_t>> near;
+    for (auto other = std::ranges::lower_bound(outer.rims, from, {}, low);
+         other != outer.rims.end() && low(*other) <= from + 2.0 * gap; ++other) {
+        const auto index = static_cast<std::size_t>(other - outer.rims.begin());
+        if (const double by = apart(other->bounds, rim.bounds); by <= gap && !taken[index]) {
+            near.emplace_back(by, index);
         }
     }
-    return std::abs(enclosedVolume(mesh.positions, triangles, mesh.bounds.center()).value_or(0.0));
+    std::ranges::sort(near);
+    for (const auto& [by, index] : near) {
+        const Rim& other = outer.rims[index];
+        if (other.places.size() * rim.places.size() <= kRimPairs && isNear(rim, other, gap) &&
+            isNear(other, rim, gap)) {
+            return index;
+        }
+    }
+    return outer.rims.size();
 }
 
 /// Appends the ring between two rims that run the same way.
@@ -110,63 +168,107 @@ void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vecto
     ++mesh.closed_holes;
 }
 
-}  // namespace
-
-OpenShell openShellOf(TriangleMesh mesh) {
-    const PreparedMesh open(std::move(mesh));
-    OpenShell shell{*open, {}};
-    for (const BorderLoop& loop : borderLoops(open.oddEdges())) {
-        Rim& rim = shell.rims.emplace_back();
-        for (const BorderStep& step : loop) {
-            rim.vertices.push_back(step.from);
-            rim.places.emplace_back(open->positions[step.from]);
-        }
-    }
-    return shell;
-}
-
-std::optional<TriangleMesh> wallBetween(const OpenShell& outer, const OpenShell& inner) {
-    if (!meets(outer.mesh.bounds, inner.mesh.bounds)) {
+/// nullopt: too few rims of the inner shell face rims of the outer one, or it is not within the outer one.
+std::optional<TriangleMesh> wallBetween(const RimmedShell& outer, const RimmedShell& inner) {
+    if (!meets(outer.mesh().bounds, inner.mesh().bounds)) {
         return std::nullopt;
     }
-    bool turn = false;
     std::vector<bool> taken(outer.rims.size(), false);
     std::vector<std::array<const Rim*, 2>> pairs;  // outer and inner ones
+    std::vector<const Rim*> unmatched;             // inner ones
+    double largest = 0.0;
+    double area = 0.0;
+    bool turn = false;
     for (const Rim& rim : inner.rims) {
-        for (std::size_t i = 0; i < outer.rims.size(); ++i) {
-            if (!taken[i] && faceEachOther(outer.rims[i], rim)) {
-                taken[i] = true;
-                turn = dot(normalOf(outer.rims[i]), normalOf(rim)) > 0.0;
-                pairs.push_back({&outer.rims[i], &rim});
-                break;
-            }
+        const std::size_t index = facingRim(outer, taken, rim);
+        const double size = length(rim.normal);
+        if (index == outer.rims.size()) {
+            unmatched.push_back(&rim);
+            area -= size / kUnmatchedArea;
+            continue;
+        }
+        taken[index] = true;
+        area += size;
+        pairs.push_back({&outer.rims[index], &rim});
+        if (size >= largest) {
+            largest = size;
+            turn = dot(outer.rims[index].normal, rim.normal) > 0.0;
         }
     }
-    if (pairs.empty() || pairs.size() < inner.rims.size()) {
+    if (pairs.empty() || area < 0.0) {
         return std::nullopt;
     }
-    TriangleMesh wall = outer.mesh;
+    TriangleMesh wall = outer.mesh();
+    const TriangleMesh& within = inner.mesh();
     const auto first = static_cast<std::uint32_t>(wall.positions.size());
-    wall.positions.insert(wall.positions.end(), inner.mesh.positions.begin(), inner.mesh.positions.end());
-    for (const glm::uvec3& t : inner.mesh.triangles) {
+    wall.positions.insert(wall.positions.end(), within.positions.begin(), within.positions.end());
+    for (const glm::uvec3& t : within.triangles) {
         wall.triangles.push_back(first + (turn ? glm::uvec3(t.x, t.z, t.y) : t));
     }
-    wall.labels.insert(wall.labels.end(), inner.mesh.labels.begin(), inner.mesh.labels.end());
+    wall.labels.insert(wall.labels.end(), within.labels.begin(), within.labels.end());
     for (const auto& [a, b] : pairs) {
         std::vector<std::uint32_t> rim = b->vertices;
         for (std::uint32_t& vertex : rim) {
             vertex += first;
         }
-        if (dot(normalOf(*a), normalOf(*b)) <= 0.0) {
+        if (dot(a->normal, b->normal) <= 0.0) {
             std::ranges::reverse(rim);
         }
         addRing(wall, a->vertices, std::move(rim));
     }
     wall.labels.resize(wall.triangles.size(), kNoLabel);
-    if (volumeWithin(wall, {}) >= kWallVolume * volumeWithin(outer.mesh, outer.rims)) {
+    if (volumeWithin(wall, unmatched, first) >= kWallVolume * outer.volume) {
         return std::nullopt;  // one beside the other
     }
     return wall;
+}
+
+/// A shell within another one, whose largest rims nearly face each other.
+bool nearlyFace(const RimmedShell& outer, const RimmedShell& inner) {
+    const auto largest = [](const RimmedShell& shell) {
+        return std::ranges::max_element(shell.rims, {}, [](const Rim& rim) { return length(rim.normal); });
+    };
+    if (outer.rims.empty() || inner.rims.empty() || inner.volume < (1.0 - kWallVolume) * outer.volume) {
+        return false;
+    }
+    const Bounds mouth = largest(inner)->bounds;
+    const glm::vec3 middle(inner.mesh().bounds.center());
+    return meets({middle, middle}, outer.mesh().bounds) &&
+           apart(mouth, largest(outer)->bounds) <= kNearRimGap * double{mouth.longestSide()};
+}
+
+}  // namespace
+
+ShellWalls joinRims(const std::vector<OpenShell>& shells) {
+    std::vector<RimmedShell> rimmed(shells.size());
+    tbb::parallel_for(std::size_t{0}, shells.size(),
+                      [&](std::size_t i) { rimmed[i] = rimmedShell(shells[i], i); });
+    std::ranges::stable_sort(rimmed, std::greater(), [](const RimmedShell& shell) {
+        const glm::dvec3 size = shell.mesh().bounds.size();
+        return size.x * size.y * size.z;
+    });
+    ShellWalls joined;
+    std::vector<bool> done(rimmed.size(), false);
+    for (std::size_t i = 0; i < rimmed.size(); ++i) {
+        for (std::size_t k = i + 1; k < rimmed.size() && !done[i]; ++k) {
+            if (done[k] || !(rimmed[i].shell->is_solid || rimmed[k].shell->is_solid)) {
+                continue;
+            }
+            if (std::optional<TriangleMesh> wall = wallBetween(rimmed[i], rimmed[k])) {
+                joined.walls.push_back({rimmed[i].index, rimmed[k].index, std::move(*wall)});
+                done[i] = done[k] = true;
+            }
+        }
+    }
+    for (std::size_t k = 0; k < rimmed.size(); ++k) {
+        bool near = false;
+        for (std::size_t i = 0; i < k && !done[k] && !near; ++i) {
+            const bool is_full = (rimmed[i].shell->is_solid && !done[i]) || rimmed[k].shell->is_solid;
+            near = is_full && nearlyFace(rimmed[i], rimmed[k]);
+        }
+        joined.unjoined += near ? 1 : 0;
+    }
+    return joined;
 }
 
 }  // namespace relief

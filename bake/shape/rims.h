@@ -2,31 +2,32 @@
 // The two open shells of a double-walled vessel, joined at their rims.
 #pragma once
 
-#include <cstdint>
-#include <glm/vec3.hpp>
-#include <optional>
+#include <cstddef>
 #include <vector>
 
 #include "bake/mesh/mesh.h"
 
 namespace relief {
 
-/// A border of an open shell, in the direction of a cap's triangles.
-struct Rim {
-    std::vector<std::uint32_t> vertices;
-    std::vector<glm::dvec3> places;  ///< of the vertices
-};
-
 struct OpenShell {
-    TriangleMesh mesh;
-    std::vector<Rim> rims;
+    TriangleMesh mesh;      ///< after finishMesh
+    bool is_solid = false;  ///< closed holes make it a solid; one shell of a wall at least is one
 };
 
-/// \param mesh  after finishMesh.
-[[nodiscard]] OpenShell openShellOf(TriangleMesh mesh);
+/// Two shells, with a ring between each pair of rims that face each other.
+struct ShellWall {
+    std::size_t outer = 0;  ///< index of the shell
+    std::size_t inner = 0;
+    TriangleMesh mesh;  ///< before finishMesh; small holes may be left
+};
 
-/// The wall between two shells: both, with a ring between each pair of rims that face each other; before finishMesh. nullopt: a
-/// rim of the inner shell faces none of the outer one, or the shells do not lie one within the other.
-[[nodiscard]] std::optional<TriangleMesh> wallBetween(const OpenShell& outer, const OpenShell& inner);
+struct ShellWalls {
+    std::vector<ShellWall> walls;
+    std::size_t unjoined = 0;  ///< shells within another one that is full, with nearly facing mouths
+};
+
+/// Joins each outer shell to an inner one. The holes of the inner one that face no hole of the outer one have to be
+/// small. Each shell is part of one wall at most.
+[[nodiscard]] ShellWalls joinRims(const std::vector<OpenShell>& shells);
 
 }  // namespace relief

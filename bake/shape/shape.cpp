@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <optional>
 #include <span>
@@ -194,7 +194,7 @@ class Shaper {
     }
 
   private:
-    enum class Kind : std::uint8_t { kHoled, kPerhapsHoled, kSheet, kTerrain };
+    enum class Kind : std::uint8_t { kHoled, kPerhapsHoled, kJoined, kSheet, kTerrain };
     struct Role {
         Kind kind = Kind::kSheet;
         int axis = 1;  ///< of a terrain's heights
@@ -438,18 +438,18 @@ class Shaper {
 
     /// Each part with holes by itself, then the rest together: panels whose seams do not meet.
     Result<void> closeParts() {
+        const std::vector<bool> joined = RELIEF_TRY(addWalls());
         std::vector<Open*> holed;
-        for (Open& part : open_) {
-            if (part.role.kind == Kind::kHoled || part.role.kind == Kind::kPerhapsHoled) {
-                holed.push_back(&part);
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            Kind& kind = open_[i].role.kind;
+            if (joined[i]) {
+                kind = Kind::kJoined;
+            } else if (kind == Kind::kHoled || kind == Kind::kPerhapsHoled) {
+                holed.push_back(&open_[i]);
             }
         }
-        const std::vector<bool> joined = RELIEF_TRY(joinRims(holed));
         std::vector<Result<Closed>> closed(holed.size(), Closed{});
         tbb::parallel_for(std::size_t{0}, holed.size(), [&](std::size_t i) {
-            if (joined[i]) {
-                return;
-            }
             const Result<TriangleMesh> mesh = finishMesh(meshOf(holed[i]->sheet, mesh_.name));
             if (mesh) {  // else too small for a mesh
                 closed[i] = close(*mesh, holed[i]->role.kind == Kind::kHoled);
@@ -457,9 +457,6 @@ class Shaper {
         });
         std::array<std::vector<Open*>, kWordsOf<ShapeAs>.size()> left;  // by kind
         for (std::size_t i = 0; i < holed.size(); ++i) {
-            if (joined[i]) {
-                continue;
-            }
             const Closed part = RELIEF_TRY(std::move(closed[i]));
             if (part.mesh && part.is_body) {
                 add(part);
@@ -479,46 +476,53 @@ class Shaper {
         return {};
     }
 
-    /// Joins outer and inner shells whose rims face each other: they are a wall, and the space within is free.
-    /// \return per part: it is joined to another one.
-    Result<std::vector<bool>> joinRims(const std::vector<Open*>& parts) {
-        std::vector<bool> joined(parts.size(), false);
-        std::vector<std::size_t> candidates;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (parts[i]->role.kind == Kind::kHoled && parts[i]->as == ShapeAs::kAuto) {
-                candidates.push_back(i);
+    static bool isHoled(const Open& part) {
+        return part.role.kind == Kind::kHoled && part.as == ShapeAs::kAuto;
+    }
+
+    /// Adds the walls of joined shells, whose inside is free. \return per part: it is joined to another one.
+    Result<std::vector<bool>> addWalls() {
+        const auto contains = [](const Bounds& bounds, const glm::vec3& p) {
+            return glm::all(glm::lessThanEqual(bounds.min, p)) && glm::all(glm::lessThanEqual(p, bounds.max));
+        };
+        std::vector<Bounds> bounds;
+        for (const Open& part : open_) {
+            bounds.push_back(boundsOf(part.sheet.positions));
+        }
+        const auto mayBeWall = [&](std::size_t a, std::size_t b) {
+            const auto [least, most] = std::minmax(bounds[a].longestSide(), bounds[b].longestSide());
+            return least >= static_cast<float>(kBodyExtent) * most &&
+                   (contains(bounds[a], bounds[b].center()) || contains(bounds[b], bounds[a].center()));
+        };
+        std::vector<std::size_t> holed;
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            if (isHoled(open_[i])) {
+                holed.push_back(i);
             }
         }
-        if (candidates.size() < 2) {
-            return joined;
-        }
-        std::vector<std::pair<std::size_t, OpenShell>> shells;  // and their parts
-        for (const std::size_t i : candidates) {
-            Result<TriangleMesh> mesh = finishMesh(meshOf(parts[i]->sheet, mesh_.name));
+        std::vector<std::size_t> parts;
+        std::vector<OpenShell> shells;
+        for (std::size_t i = 0; i < open_.size(); ++i) {
+            if (open_[i].as != ShapeAs::kAuto || open_[i].role.kind == Kind::kTerrain ||
+                std::ranges::none_of(holed, [&](std::size_t other) { return mayBeWall(i, other); })) {
+                continue;
+            }
+            Result<TriangleMesh> mesh = finishMesh(meshOf(open_[i].sheet, mesh_.name));
             if (mesh) {  // else too small for a mesh
-                shells.emplace_back(i, openShellOf(std::move(*mesh)));
+                parts.push_back(i);
+                shells.push_back({std::move(*mesh), isHoled(open_[i])});
             }
         }
-        std::ranges::stable_sort(shells, std::greater(), [](const auto& shell) {
-            const glm::dvec3 size = shell.second.mesh.bounds.size();
-            return size.x * size.y * size.z;
-        });
-        for (std::size_t i = 0; i < shells.size(); ++i) {
-            const auto& [outer_part, outer] = shells[i];
-            for (std::size_t k = i + 1; k < shells.size() && !joined[outer_part]; ++k) {
-                const auto& [inner_part, inner] = shells[k];
-                std::optional<TriangleMesh> wall =
-                    joined[inner_part] ? std::nullopt : wallBetween(outer, inner);
-                if (!wall) {
-                    continue;
-                }
-                const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(*wall)));
-                const Closed solid = RELIEF_TRY(close(finished, true));
-                if (solid.mesh) {
-                    add(solid);
-                    ++report_.solids_with_holes;
-                    joined[outer_part] = joined[inner_part] = true;
-                }
+        std::vector<bool> joined(open_.size(), false);
+        ShellWalls walls = joinRims(shells);
+        report_.unjoined_shells = walls.unjoined;
+        for (ShellWall& wall : walls.walls) {
+            const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(wall.mesh)));
+            const Closed solid = RELIEF_TRY(close(finished, true));
+            if (solid.mesh) {
+                add(solid);
+                ++report_.solids_with_holes;
+                joined[parts[wall.outer]] = joined[parts[wall.inner]] = true;
             }
         }
         return joined;
@@ -724,6 +728,8 @@ void fields(FieldVisitor& visit, const ShapeReport& report) {
     visit("solids_with_holes", report.solids_with_holes,
           {"Open parts whose inside is mostly hidden; their holes are closed"});
     visit("sheets", report.sheets, {"Parts that are visible from both sides; they become shells"});
+    visit("unjoined_shells", report.unjoined_shells,
+          {"Open shells within another one that is full, with mouths that nearly face each other"});
     visit("closable_sheets", report.closable_sheets,
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});

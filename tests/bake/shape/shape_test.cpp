@@ -33,19 +33,18 @@ TriangleMesh makeOpenBox() {
 }
 
 /// A profile of radii and heights turned round the y axis, open where it does not begin or end on it.
-TriangleMesh makeTurned(const std::vector<glm::dvec2>& profile) {
-    constexpr std::uint32_t kSides = 64;
+TriangleMesh makeTurned(const std::vector<glm::dvec2>& profile, std::uint32_t sides = 64) {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
     for (std::uint32_t k = 0; k < profile.size(); ++k) {
-        for (std::uint32_t i = 0; i < kSides; ++i) {
-            const double a = 2.0 * std::numbers::pi * i / kSides;
+        for (std::uint32_t i = 0; i < sides; ++i) {
+            const double a = 2.0 * std::numbers::pi * i / sides;
             positions.emplace_back(profile[k].x * std::cos(a), profile[k].y, profile[k].x * std::sin(a));
-            const std::uint32_t here = kSides * k + i;
-            const std::uint32_t next = kSides * k + (i + 1) % kSides;
+            const std::uint32_t here = sides * k + i;
+            const std::uint32_t next = sides * k + (i + 1) % sides;
             if (k + 1 < profile.size()) {
                 triangles.insert(triangles.end(),
-                                 {{here, here + kSides, next}, {next, here + kSides, next + kSides}});
+                                 {{here, here + sides, next}, {next, here + sides, next + sides}});
             }
         }
     }
@@ -190,7 +189,7 @@ TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
     EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
 }
 
-/// A mug, a bowl, a lampshade and a pipe of two open shells, whose rims are not joined; radii and heights.
+/// A mug, a bowl, a lampshade, a pipe and a shallow bowl of two open shells, whose rims are not joined; radii and heights.
 TEST(Shape, ShellsWithFacingRimsAreAWall) {
     struct Wall {
         TriangleMesh outer;
@@ -213,7 +212,11 @@ TEST(Shape, ShellsWithFacingRimsAreAWall) {
                                      {makeTurned({{0.5, 0.0}, {0.5, 4.0}}),
                                       makeTurned({{0.45, 0.0}, {0.45, 4.01}}),
                                       {{0, 2, 0}, {0.4, 0.01, 0}, {0, 3.99, 0.4}},
-                                      {{0.475, 2, 0}, {0, 3.9, 0.475}}}};
+                                      {{0.475, 2, 0}, {0, 3.9, 0.475}}},
+                                     {makeTurned({{0.0, 0.0}, {1.0, 0.5}}),
+                                      makeTurned({{0.0, 0.05}, {0.95, 0.52}}),
+                                      {{0, 0.2, 0}, {0.5, 0.35, 0}, {0, 0.48, 0.8}},
+                                      {{0.0, 0.025, 0.01}, {0.5, 0.28, 0}, {0, 0.49, 0.95}}}};
     for (std::size_t i = 0; i < walls.size(); ++i) {
         for (const TriangleMesh& inner : {walls[i].inner, reversed(walls[i].inner)}) {
             SCOPED_TRACE(i);
@@ -229,12 +232,73 @@ TEST(Shape, ShellsWithFacingRimsAreAWall) {
             EXPECT_FALSE(inside({2.0, 0.5, 0.0}));
         }
     }
-    // A bowl too shallow to close stays two sheets, and a box with a mouth beside another one is no wall.
-    expectKinds(
-        shaped(joined({makeTurned({{0.0, 0.0}, {1.0, 0.5}}), makeTurned({{0.0, 0.05}, {0.95, 0.52}})}))
-            .report,
-        0, 0, 2, 0);
+    // A box with a mouth beside another one is no wall.
     expectKinds(shaped(joined({makeOpenBox(), scaled(makeOpenBox(), 1.0, {2.1, 0, 0})})).report, 0, 0, 2, 0);
+}
+
+/// Vessels with a narrow mouth, a flared, thick, square or eccentric rim, or a missing triangle; radii and heights.
+TEST(Shape, ShellsWithUnlikeRimsAreAWall) {
+    struct Wall {
+        TriangleMesh outer;
+        TriangleMesh inner;
+        glm::dvec3 free;
+        glm::dvec3 full;
+    };
+    const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 16); };
+    const auto lessOne = [](const TriangleMesh& mesh) {
+        const std::size_t middle = mesh.triangles.size() / 2;
+        std::vector<glm::uvec3> triangles = mesh.triangles;
+        triangles.erase(triangles.begin() + static_cast<std::ptrdiff_t>(middle));
+        return finished(mesh.positions, triangles);
+    };
+    const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
+    const TriangleMesh liner = turn({{0.0, 0.02}, {0.48, 0.02}, {0.48, 1.2}});
+    const TriangleMesh vase = turn({{0.0, 0.0}, {0.5, 0.0}, {0.6, 0.5}, {0.15, 1.2}});
+    const TriangleMesh in_vase = turn({{0.0, 0.03}, {0.47, 0.03}, {0.57, 0.5}, {0.12, 1.2}});
+    const std::vector<Wall> walls = {
+        {vase, in_vase, {0, 0.5, 0}, {0.58, 0.5, 0}},
+        {vase, turn({{0.0, 0.06}, {0.44, 0.06}, {0.54, 0.5}, {0.08, 1.2}}), {0, 0.5, 0}, {0.1, 0.03, 0}},
+        {turn({{0.0, 0.0}, {0.4, 0.0}, {0.4, 1.0}, {0.12, 1.3}, {0.12, 1.7}}),
+         turn({{0.0, 0.02}, {0.38, 0.02}, {0.38, 1.0}, {0.1, 1.3}, {0.1, 1.7}}),
+         {0, 0.5, 0},
+         {0.39, 0.5, 0}},
+        {turn({{0.0, 0.0}, {0.5, 0.0}, {0.4, 1.0}, {0.55, 1.2}}),
+         turn({{0.0, 0.03}, {0.47, 0.03}, {0.37, 1.0}}),
+         {0, 0.5, 0},
+         {0.1, 0.015, 0}},
+        {mug, turn({{0.0, 0.2}, {0.35, 0.2}, {0.35, 1.2}}), {0, 0.6, 0}, {0.42, 0.6, 0}},
+        {mug, makeTurned({{0.0, 0.05}, {0.45, 0.05}, {0.45, 1.2}}, 4), {0, 0.6, 0}, {0.1, 0.02, 0}},
+        {mug,
+         scaled(turn({{0.0, 0.03}, {0.4, 0.03}, {0.4, 1.2}}), 1.0, {0.08, 0, 0}),
+         {0, 0.6, 0},
+         {-0.4, 0.6, 0}},
+        {mug, lessOne(liner), {0, 0.6, 0}, {0.1, 0.01, 0}},
+        {lessOne(mug), liner, {0, 0.6, 0}, {0.1, 0.01, 0}}};
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        SCOPED_TRACE(i);
+        const ShapedMesh shape = shaped(joined({walls[i].outer, walls[i].inner}));
+        expectKinds(shape.report, 0, 1, 0, 0);
+        const MeshQuery query = queryOf(shape.mesh);
+        EXPECT_FALSE(query.inside(glm::vec3(walls[i].free)));
+        EXPECT_TRUE(query.inside(glm::vec3(walls[i].full)));
+    }
+    // A small vessel of a large scene.
+    const ShapedMesh scene = shaped(joined({vase, in_vase, scaled(makePlane(-1.0F, 2), 9.0)}));
+    expectKinds(scene.report, 0, 1, 1, 0);
+    EXPECT_FALSE(queryOf(scene.mesh).inside({0.0F, 0.5F, 0.0F}));
+}
+
+/// An inner shell that ends far below the rim of the outer one leaves the vessel full, which is reported.
+TEST(Shape, AVesselWhoseShellsAreNotJoinedIsReported) {
+    const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 16); };
+    const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
+    const auto unjoined = [](const std::vector<TriangleMesh>& meshes) {
+        return shaped(joined(meshes)).report.unjoined_shells;
+    };
+    EXPECT_EQ(unjoined({mug, turn({{0.0, 0.02}, {0.3, 0.02}, {0.3, 0.6}})}), 1U);
+    const TriangleMesh liner = turn({{0.0, 0.02}, {0.48, 0.02}, {0.48, 1.2}});
+    EXPECT_EQ(unjoined({mug, liner}), 0U);
+    EXPECT_EQ(unjoined({mug, scaled(mug, 1.0, {3, 0, 0})}), 0U);
 }
 
 TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
