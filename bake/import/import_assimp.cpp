@@ -194,7 +194,8 @@ std::string nameOf(const aiString& text) {
     // Placeholders of assimp for missing names, and its suffix for nodes of FBX that it splits.
     const bool made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
                          name.find("_$AssimpFbx$_") != std::string_view::npos;
-    return made_up ? std::string() : std::string(name.substr(0, name.find(kLodGroupMark)));
+    return made_up ? std::string()
+                   : std::string(name.substr(0, name.find(kLodGroupMark)));
 }
 
 /// Some readers of assimp keep invalid indices. \return nullopt: a face uses a vertex that does not exist.
@@ -336,9 +337,14 @@ HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document
     return hidden;
 }
 
-/// Whether the file hides this node, whatever is above it.
+/// Whether the file hides this node and what is below it, whatever is above it.
+bool hidesBelow(const aiNode& node, const HiddenNodes& hidden) {
+    return isZero(node, "Visibility") || hidden.labels.contains(&node);
+}
+
+/// The same of this node. FBX's Show is that of the node only.
 bool isHidden(const aiNode& node, const HiddenNodes& hidden) {
-    return isZero(node, "Show") || isZero(node, "Visibility") || hidden.labels.contains(&node);
+    return isZero(node, "Show") || hidesBelow(node, hidden);
 }
 
 bool hasMeshes(const aiNode& node) {
@@ -365,10 +371,15 @@ std::set<const aiNode*> lesserLevels(const aiNode& group, const HiddenNodes& hid
 }
 
 void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& scene) {
-    std::vector<std::pair<const aiNode*, std::uint32_t>> pending{{source.mRootNode, 0}};
+    struct Pending {
+        const aiNode* node;
+        std::uint32_t parent;
+        Shown above;
+    };
+    std::vector<Pending> pending{{source.mRootNode, 0, Shown::kYes}};
     std::set<const aiNode*> lesser;
     while (!pending.empty()) {
-        const auto [from, parent] = pending.back();
+        const auto [from, parent, above] = pending.back();
         pending.pop_back();
         const auto index = static_cast<std::uint32_t>(scene.nodes.size());
         const aiMatrix4x4& m = from->mTransformation;
@@ -376,16 +387,13 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
             Transform{glm::dmat3(m.a1, m.b1, m.c1, m.a2, m.b2, m.c2, m.a3, m.b3, m.c3), {m.a4, m.b4, m.c4}}};
         node.names = {nameOf(from->mName)};
         node.index = index;
-        if (isHidden(*from, hidden)) {
-            node.is_shown = Shown::kHidden;
-        }
+        const bool free = above == Shown::kHidden && isZero(*from, "Visibility Inheritance");
+        const Shown below = above != Shown::kYes && !free ? above
+                            : lesser.contains(from)       ? Shown::kLesserLevel
+                            : hidesBelow(*from, hidden)   ? Shown::kHidden
+                                                          : Shown::kYes;
+        node.is_shown = below == Shown::kYes && isHidden(*from, hidden) ? Shown::kHidden : below;
         if (index > 0) {  // the root is the file
-            const Shown above = scene.nodes[parent].is_shown;
-            if (above != Shown::kYes && !isZero(*from, "Visibility Inheritance")) {
-                node.is_shown = above;
-            } else if (lesser.contains(from)) {
-                node.is_shown = Shown::kLesserLevel;
-            }
             const auto label = hidden.labels.find(from);
             node.shown = label != hidden.labels.end() ? label->second
                          : node.names[0].empty()      ? scene.nodes[parent].shown
@@ -401,7 +409,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
         lesser.merge(lesserLevels(*from, hidden));
         for (unsigned i = from->mNumChildren; i > 0; --i) {
             if (from->mChildren[i - 1] != nullptr) {
-                pending.emplace_back(from->mChildren[i - 1], index);
+                pending.push_back({from->mChildren[i - 1], index, below});
             }
         }
     }

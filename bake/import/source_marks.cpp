@@ -202,7 +202,8 @@ class ColladaReader {
         const auto [found, added] = indices_.try_emplace(node, next);
         if (added) {
             elements_.push_back(node);
-            const std::string name = node.attribute(node.attribute("id") ? "id" : "sid").value();
+            const std::string id = node.attribute("id").value();
+            const std::string name = id.empty() ? node.attribute("sid").value() : id;
             nodes_.nodes.push_back(
                 {name, name.empty() ? node.attribute("name").value() : name, isHidden(node), {}});
         }

@@ -258,6 +258,33 @@ TEST(ImportHidden, WhatAFileDoesNotShowIsLeftOutAndCounted) {
     }
 }
 
+// In FBX, Visibility is that of all below, but Show is that of the node only.
+TEST(ImportHidden, ShowIsThatOfTheNodeOnly) {
+    const TriangleMesh mesh = imported("show.fbx", nestedFbx(propertyShow(0), ""));
+    EXPECT_EQ(mesh.triangles.size(), 8U);
+    EXPECT_TRUE(mesh.warnings.empty()) << ::testing::PrintToString(mesh.warnings);
+    EXPECT_EQ(imported("show.fbx", binary(nestedFbx(propertyShow(0), ""))).triangles.size(), 8U);
+}
+
+// A sid is not unique, and neither is needed.
+TEST(ImportHidden, ColladaNodesAreHiddenWithoutAnId) {
+    const std::string other = R"(<technique profile="OTHER"><kind>1</kind></technique>)";
+    const std::string unseen = replaced(kUnseen, "<extra>", "<extra>" + other);
+    for (const std::string& extra :
+         {std::string(kUnseen), unseen, "<extra>" + other + "</extra>" + kUnseen}) {
+        for (const char* const name : {R"(name="n")", R"(sid="a")", R"(id="" sid="a")"}) {
+            const TriangleMesh mesh =
+                imported("hidden.dae", dae(R"(<node sid="a"><instance_geometry url="#g"/></node><node )" +
+                                           std::string(name) + ">" + kMoved +
+                                           R"(<instance_geometry url="#g"/>)" + extra + "</node>"));
+            EXPECT_EQ(mesh.triangles.size(), 4U) << name << extra;
+            EXPECT_LT(mesh.bounds.max.x, 5.0F) << name << extra;
+            EXPECT_TRUE(warns(mesh, "left out 1 hidden object ('"))
+                << ::testing::PrintToString(mesh.warnings);
+        }
+    }
+}
+
 TEST(ImportHidden, LevelsLeaveItOutToo) {
     const TemporaryFolder folder;
     for (const auto& [name, text] : hiddenFiles()) {
