@@ -62,15 +62,18 @@ def label(contest):
 
 
 def number(contest, method, group, name, digits):
-    return f"{contest[method]['accuracy'][group][name]:.{digits}f}" if method in contest else "-"
+    measured = contest[method]["accuracy"].get(group) if method in contest else None
+    return f"{measured[name]:.{digits}f}" if measured else "-"
 
 
 def sides(found):
     """The rows of the wrong points; '>' at the end of a heading: to the right."""
     methods = measured_of(found)
     rivals = [method for method in methods if method in RIVALS and "ours" in methods]
+    came = any("as_it_came" in contest.get("ours", {"accuracy": {}})["accuracy"] for contest in found)
     rows = [["mesh", "budget>", *(f"{METHODS[method]} %>" for method in methods),
-             *(f"ours / {METHODS[rival]}>" for rival in rivals), "in %>", "out %>", "bytes>", "maps>", "ms>"]]
+             *(f"ours / {METHODS[rival]}>" for rival in rivals), "in %>", "out %>", *(["as it came %>"] if came else []), "bytes>",
+             "maps>", "ms>"]]
     for contest in found:
         ours = contest.get("ours")
         ratios = [contest.get(f"ours/{rival}") for rival in rivals]
@@ -78,6 +81,7 @@ def sides(found):
                      *("-" if ratio is None else f"{ratio:.3f}" for ratio in ratios),
                      number(contest, "ours", "near", "false_inside_percent", 3),
                      number(contest, "ours", "near", "false_outside_percent", 3),
+                     *([number(contest, "ours", "as_it_came", "wrong_percent", 3)] if came else []),
                      str(ours["bytes"]) if ours else "-", str(ours["maps"]) if ours else "-",
                      f"{1000.0 * ours['build_seconds']:.0f}" if ours and ours["build_seconds"] is not None else "-"])
     return rows
@@ -143,12 +147,15 @@ def summary_text(found):
     return "".join(line + "\n" for line in lines) + f"verdict: {verdict}\n"
 
 
-def legend(mesh):
+def legend(meshes):
+    mesh, came = meshes[0], any("as_it_came" in one for one in meshes)
     return [f"%: points near the surface on the wrong side of it; in, out: ours, false inside and false outside. "
             f"{mesh['samples']} points, seed {mesh['seed']}, {mesh['sigma_percent']:.1f} % of the longest side off the "
             "surface (standard deviation).",
             "ms: one bake of ours with acceleration structure, plan, rays and fit. open: computed, some edge has an odd "
             "number of triangles.",
+            *(["as it came: ours at points within a thickness of sheets; inside is what lies within half the thickness of the "
+               "surface of the file. The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
             "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side; and of "
             "the normal's angle at the surface. Bricks have no distances but near the surface: larger ones count as their band. "
             "Where maps say outside and no more, they have no distance and no error."]
@@ -162,7 +169,7 @@ def markdown(rows):
 def main():
     report = json.load(sys.stdin)
     found = contests(report, *sys.argv[1:])
-    print(markdown(sides(found)), "<br>\n".join(legend(report["meshes"][0])) + "\n", markdown(errors(found)),
+    print(markdown(sides(found)), "<br>\n".join(legend(report["meshes"])) + "\n", markdown(errors(found)),
           f"```text\n{summary_text(found)}```", sep="\n")
 
 

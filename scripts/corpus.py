@@ -100,8 +100,10 @@ def measure(name, path, bin, folder, options):
                                  '--samples', str(options.samples)]))
     mesh = report['meshes'][0]
     wrong = {entry['method']: entry['accuracy']['near']['wrong_percent'] for entry in report['results']}
+    came = next(entry['accuracy'].get('as_it_came') for entry in report['results'] if entry['method'] == 'ours')
     row = {'model': name, 'triangles': mesh['triangles'], 'kind': kind_of(mesh['shape']), 'ours': f"{wrong['ours']:.4g}",
-           'maps': len(baked['maps']), 'bake_s': f'{seconds:.2f}', 'step': '', 'cpu_s': f'{cpu:.2f}',
+           'came': f"{came['wrong_percent']:.4g}" if came else '', 'maps': len(baked['maps']), 'bake_s': f'{seconds:.2f}', 'step': '',
+           'cpu_s': f'{cpu:.2f}',
            'rivals_s': f'{time.perf_counter() - start:.1f}',
            'warned': any('wrong near the surface' in warning for warning in baked['warnings'])}
     for rival in options.rivals:
@@ -118,7 +120,7 @@ def percent(part, whole):
 
 
 def columns_of(rivals):
-    return ['model', 'triangles', 'kind', *rivals, 'ours', *(f'ours/{rival}' for rival in rivals), 'maps', 'bake_s', 'step', 'cpu_s',
+    return ['model', 'triangles', 'kind', *rivals, 'ours', 'came', *(f'ours/{rival}' for rival in rivals), 'maps', 'bake_s', 'step', 'cpu_s',
             'rivals_s']
 
 
@@ -153,7 +155,7 @@ def summary(rows, rivals):
 
 def page(rows, lines, rivals, command):
     """bake/measure/accuracy_corpus.md"""
-    headings = {'bake_s': 'bake s', 'cpu_s': 'CPU s', 'rivals_s': 'rivals s', 'ours': 'ours %',
+    headings = {'bake_s': 'bake s', 'cpu_s': 'CPU s', 'rivals_s': 'rivals s', 'ours': 'ours %', 'came': 'as it came %',
                 **{rival: f'{RIVALS[rival]} %' for rival in rivals},
                 **{f'ours/{rival}': f'ours / {RIVALS[rival]}' for rival in rivals}}
     columns = columns_of(rivals)

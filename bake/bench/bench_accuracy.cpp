@@ -12,6 +12,7 @@
 
 #include "bake/bench/brick_volume.h"
 #include "bake/bench/distance_volume.h"
+#include "bake/bench/sheet_truth.h"
 #include "bake/director/director.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
@@ -191,43 +192,51 @@ AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples,
     return entry;
 }
 
-AccuracyEntry measureMaps(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
-                          const Collider& collider) {
+/// The truth about one mesh.
+struct Truth {
+    const MeshQuery& query;  ///< of the solid that is baked
+    const TruthSamples& samples;
+    const std::vector<TruthPoint>& sheets;  ///< SheetTruth::sample
+};
+
+AccuracyEntry measureMaps(const Truth& truth, const std::string& method, const Collider& collider) {
     AccuracyEntry entry;
     entry.method = method;
-    const ColliderAccuracy accuracy = measureCollider(samples, query, collider);
+    const ColliderAccuracy accuracy = measureCollider(truth.samples, truth.query, collider);
     for (const DepthMap& map : collider.maps) {
         entry.what += (entry.what.empty() ? "" : " ") + std::to_string(map.width) + "x" +
                       std::to_string(map.height) + (map.faceCount() == 6 ? "x6" : "");
     }
     entry.maps = collider.maps.size();
     entry.bytes = accuracy.gpu_bytes;
-    entry.accuracy = jsonOf(ColliderAccuracyReport{accuracy, samples.longest_side});
+    entry.accuracy = jsonOf(ColliderAccuracyReport{accuracy, truth.samples.longest_side});
+    if (!truth.sheets.empty()) {
+        entry.accuracy["as_it_came"] = jsonOf(measureNear(truth.sheets, fieldOf(collider)));
+    }
     return entry;
 }
 
-Result<AccuracyEntry> bakeAndMeasure(const MeshQuery& query, const TruthSamples& samples,
-                                     const std::string& method, std::uint64_t budget) {
+Result<AccuracyEntry> bakeAndMeasure(const Truth& truth, const std::string& method, std::uint64_t budget) {
     const Stopwatch watch;
+    const PreparedMesh& mesh = truth.query.prepared();
+    const Layout layout = method == "views" ? Layout::kViews : Layout::kPatches;
     const Baked baked =
-        RELIEF_TRY(method == "paper" ? bakePaper(query.prepared(), budget)
-                                     : bakeOurs(query.prepared(), budget,
-                                                method == "views" ? Layout::kViews : Layout::kPatches));
+        RELIEF_TRY(method == "paper" ? bakePaper(mesh, budget) : bakeOurs(mesh, budget, layout));
     const double seconds = watch.seconds();
-    AccuracyEntry entry = measureMaps(query, samples, method, baked.collider);
+    AccuracyEntry entry = measureMaps(truth, method, baked.collider);
     entry.build_seconds = seconds;
     return entry;
 }
 
 /// What `relief bake` has written, by whatever options.
-Result<AccuracyEntry> loadAndMeasure(const MeshQuery& query, const TruthSamples& samples,
-                                     const std::string& path) {
+Result<AccuracyEntry> loadAndMeasure(const Truth& truth, const std::string& path) {
     const Collider collider = RELIEF_TRY(loadCollider(path));
-    if (collider.provenance.mesh_hash != query.mesh().content_hash) {
-        return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + query.mesh().name +
+    const TriangleMesh& mesh = truth.query.mesh();
+    if (collider.provenance.mesh_hash != mesh.content_hash) {
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + mesh.name +
                                                   "; give --collider what relief bake makes of it");
     }
-    return measureMaps(query, samples, "ours", collider);
+    return measureMaps(truth, "ours", collider);
 }
 
 // --- the program ---
@@ -289,19 +298,27 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
     mesh_report["budget"] = budget;
     mesh_report["triangles"] = imported->triangles.size();
     mesh_report["shape"] = jsonOf(madeShapes(shaped.report));
+    const SheetTruth sheet_truth = RELIEF_TRY(SheetTruth::build(imported, shaped));
+    const std::vector<TruthPoint> sheets = sheet_truth.sample(query, options);
+    const Truth truth{query, samples, sheets};
+    if (!sheets.empty()) {
+        mesh_report["as_it_came"] = jsonOf(measureNear(sheets, [&query](const glm::vec3& p) {
+            return FieldValue{query.inside(p) ? -1.0F : 1.0F, glm::vec3(0.0F)};
+        }));
+    }
     measured.meshes.push_back(std::move(mesh_report));
     BrickAtlas atlas;
     BrickAtlas* const wanted = arguments.atlas.empty() ? nullptr : &atlas;
     for (const std::string& method : arguments.methods) {
         AccuracyEntry entry;
         if (method == "ours" && !arguments.collider.empty()) {
-            entry = RELIEF_TRY(loadAndMeasure(query, samples, arguments.collider));
+            entry = RELIEF_TRY(loadAndMeasure(truth, arguments.collider));
         } else if (method == "volume") {
             entry = measureVolume(query, samples, budget, wanted);
         } else if (method != "paper" && method != "views" && method != "ours") {
             entry = measureBricks(query, samples, method, budget, wanted);
         } else {
-            entry = RELIEF_TRY(bakeAndMeasure(query, samples, method, budget));
+            entry = RELIEF_TRY(bakeAndMeasure(truth, method, budget));
         }
         entry.mesh = imported->name;
         entry.closed = shaped.report.solids_with_holes + shaped.report.sheets + shaped.report.terrains == 0;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The truth about shells against closed forms, and what it finds in a hollow one that its own solid calls right.
+#include "bake/bench/sheet_truth.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/measure/accuracy.h"
+#include "tests/bake/points.h"
+#include "tests/bake/shaped.h"
+
+namespace relief::test {
+namespace {
+
+ShapeOptions shellOf(double thickness) {
+    ShapeOptions options;
+    options.as = ShapeAs::kShell;
+    options.thickness = thickness;
+    return options;
+}
+
+/// The share of the points that a solid has on the wrong side.
+WrongShare wrongIn(const MeshQuery& solid, const std::vector<TruthPoint>& points) {
+    return measureNear(points, [&](const glm::vec3& p) {
+        return FieldValue{solid.inside(p) ? -1.0F : 1.0F, {}};
+    });
+}
+
+TEST(SheetTruth, ARodInsideItsShellIsFull) {
+    const TriangleMesh rod = makeBoxMesh({0, 0, 0}, {0.5, 0.02, 0.02});
+    const ShapedMesh shaped = shapedBy(rod, shellOf(0.1));
+    const Result<SheetTruth> truth = SheetTruth::build(PreparedMesh(rod), shaped);
+    ASSERT_TRUE(truth && !truth->empty());
+    EXPECT_EQ(truth->inside({0, 0, 0}), true);
+    EXPECT_EQ(truth->inside({0, 0.069F, 0}), true);
+    EXPECT_EQ(truth->inside({0, 0.071F, 0}), false);
+    EXPECT_EQ(truth->inside({0, 0.05F, 0.05F}), std::nullopt);  // at an edge: its mitre
+    const MeshQuery solid = queryOf(shaped.mesh);
+    AccuracyOptions options;
+    options.samples = 5000;
+    const std::vector<TruthPoint> points = truth->sample(solid, options);
+    EXPECT_GT(points.size(), 4000U);
+    EXPECT_EQ(wrongIn(solid, points).total(), 0.0);
+    // As it was when its inner offset turned over: hollow by 0.03. A point of that solid's own has nothing against it.
+    const TriangleMesh hollow = joined(
+        {makeBoxMesh({0, 0, 0}, {0.55, 0.07, 0.07}), reversed(makeBoxMesh({0, 0, 0}, {0.47, 0.03, 0.03}))});
+    EXPECT_GT(wrongIn(queryOf(hollow), points).false_outside, 20.0);
+}
+
+TEST(SheetTruth, ASheetAndABlockAreEachAsTheyCame) {
+    // The block is a solid; the shell is that of the sheet only.
+    const TriangleMesh mesh = joined({makePlane(0.0F, 4), makeBoxMesh({5, 0, 0}, {1, 1, 1})});
+    ShapeOptions options = shellOf(0.1);
+    options.as = ShapeAs::kAuto;
+    const ShapedMesh shaped = shapedBy(mesh, options);
+    expectKinds(shaped.report, 1, 0, 1, 0);
+    const Result<SheetTruth> truth = SheetTruth::build(PreparedMesh(mesh), shaped);
+    ASSERT_TRUE(truth && !truth->empty());
+    EXPECT_EQ(truth->inside({5, 0, 0}), false);
+    AccuracyOptions few;
+    few.samples = 2000;
+    const std::vector<TruthPoint> points = truth->sample(queryOf(shaped.mesh), few);
+    EXPECT_GT(points.size(), 1900U);
+    for (const TruthPoint& point : points) {
+        ASSERT_EQ(point.inside(), std::abs(point.position.y) < 0.05F) << point.position.y;
+    }
+    // Of a mesh without sheets there is nothing to measure.
+    const TriangleMesh block = makeBoxMesh({0, 0, 0}, {1, 1, 1});
+    const Result<SheetTruth> none = SheetTruth::build(PreparedMesh(block), shapedBy(block, options));
+    ASSERT_TRUE(none);
+    EXPECT_TRUE(none->empty() && none->sample(queryOf(block), few).empty());
+}
+
+}  // namespace
+}  // namespace relief::test
