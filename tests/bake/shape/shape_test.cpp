@@ -189,7 +189,7 @@ TEST(Shape, ABodyOpenBelowIsASolidAndAVesselIsNot) {
     EXPECT_EQ(shaped(joined({makeOpenBox(), scaled(makePlane(-1.0F, 2), 9.0)})).report.closable_sheets, 0U);
 }
 
-/// A mug, a bowl, a lampshade, a pipe and a shallow bowl of two open shells, whose rims are not joined; radii and heights.
+/// Mugs, bowls, lampshades and pipes of two open shells, whose rims are not joined; radii and heights.
 TEST(Shape, ShellsWithFacingRimsAreAWall) {
     struct Wall {
         TriangleMesh outer;
@@ -213,6 +213,15 @@ TEST(Shape, ShellsWithFacingRimsAreAWall) {
                                       makeTurned({{0.45, 0.0}, {0.45, 4.01}}),
                                       {{0, 2, 0}, {0.4, 0.01, 0}, {0, 3.99, 0.4}},
                                       {{0.475, 2, 0}, {0, 3.9, 0.475}}},
+                                     // Through the gap between their rims many rays lead out.
+                                     {makeTurned({{0.37, 0.0}, {0.33, 1.0}}),
+                                      makeTurned({{0.31, 0.0}, {0.27, 1.0}}),
+                                      {{0, 0.5, 0}, {0.25, 0.98, 0}, {0, 0.02, 0.28}},
+                                      {{0.32, 0.5, 0}, {0, 0.9, 0.305}}},
+                                     {makeTurned({{0.5, 0.0}, {0.5, 0.3}}),
+                                      makeTurned({{0.44, 0.0}, {0.44, 0.3}}),
+                                      {{0, 0.15, 0}, {0.4, 0.02, 0}, {0, 0.28, 0.4}},
+                                      {{0.47, 0.15, 0}, {0, 0.28, 0.47}}},
                                      {makeTurned({{0.0, 0.0}, {1.0, 0.5}}),
                                       makeTurned({{0.0, 0.05}, {0.95, 0.52}}),
                                       {{0, 0.2, 0}, {0.5, 0.35, 0}, {0, 0.48, 0.8}},
