@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <span>
 #include <utility>
 
 #include "bake/repair/hole_caps.h"
@@ -17,6 +19,8 @@ namespace {
 
 /// The longest mitre, in units of half the thickness: that of kFoldCosine.
 constexpr double kMitreMax = 2.0;
+/// The least offset of a side by its mitre, in units of half the thickness.
+constexpr double kMitreLeast = 0.7;
 /// Keeps the mitre defined where all normals are alike, in units of their number.
 constexpr double kMitreDamping = 1e-4;
 
@@ -115,30 +119,147 @@ double angleAt(const std::vector<glm::vec3>& positions, const glm::uvec3& t, int
     return size > 0.0 ? 1.0 - std::clamp(dot(a, b) / size, -1.0, 1.0) + 1e-3 : 1e-3;
 }
 
-/// Per corner of a sheet's triangles, the lowest of those around its vertex that are connected by joined edges.
-std::vector<std::uint32_t> joinedCorners(const Sheet& sheet) {
-    DisjointSets corners(3 * sheet.triangles.size());
-    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
-        for (std::uint32_t side = 0; side < 3; ++side) {
-            const std::uint32_t next = sheet.neighbours[i][side];
-            if (next == Sheet::kNoTriangle) {
-                continue;
-            }
-            for (const std::uint32_t mine : {side, (side + 1) % 3}) {
-                for (std::uint32_t theirs = 0; theirs < 3; ++theirs) {
-                    if (sheet.triangles[next][theirs] == sheet.triangles[i][mine]) {
-                        corners.join(3 * i + mine, 3 * next + theirs);
-                    }
-                }
+/// Corner k of triangle i is 3·i + k. Per corner, the one of the same vertex across the side that begins there, or
+/// kNoTriangle.
+std::vector<std::uint32_t> nextCorners(const Sheet& sheet) {
+    std::vector<std::uint32_t> next(3 * sheet.triangles.size(), Sheet::kNoTriangle);
+    for (std::uint32_t i = 0; i < next.size(); ++i) {
+        const int side = static_cast<int>(i % 3);
+        const std::uint32_t other = sheet.neighbours[i / 3][side];
+        for (std::uint32_t k = 0; k < 3 && other != Sheet::kNoTriangle; ++k) {
+            if (sheet.triangles[other][static_cast<int>(k)] == sheet.triangles[i / 3][side]) {
+                next[i] = 3 * other + k;
             }
         }
     }
-    std::vector<std::uint32_t> roots(3 * sheet.triangles.size());
-    for (std::uint32_t i = 0; i < roots.size(); ++i) {
-        roots[i] = corners.find(i);
-    }
-    return roots;
+    return next;
 }
+
+/// The corners around each vertex that have one mitre in common.
+class CornerFans {
+  public:
+    /// Splits the fans of joined corners whose common mitre would leave a side thin, and cuts the sheet there.
+    explicit CornerFans(Sheet& sheet)
+        : sheet_(sheet), roots_(3 * sheet.triangles.size(), Sheet::kNoTriangle) {
+        for (const glm::uvec3& t : sheet.triangles) {
+            normals_.push_back(unitNormal(sheet.positions, t));
+        }
+        mitres_.resize(roots_.size());
+        fan_of_.resize(roots_.size());
+        const std::vector<std::uint32_t> next = nextCorners(sheet);
+        std::vector<bool> has_previous(next.size(), false);
+        for (const std::uint32_t corner : next) {
+            if (corner != Sheet::kNoTriangle) {
+                has_previous[corner] = true;
+            }
+        }
+        std::vector<std::uint32_t> fan;
+        for (const bool closed : {false, true}) {
+            for (std::uint32_t first = 0; first < next.size(); ++first) {
+                if (roots_[first] != Sheet::kNoTriangle || (!closed && has_previous[first])) {
+                    continue;
+                }
+                fan.assign(1, first);
+                for (std::uint32_t i = next[first]; i != Sheet::kNoTriangle && i != first; i = next[i]) {
+                    fan.push_back(i);
+                }
+                for (const std::uint32_t corner : fan) {
+                    fan_of_[corner] = first;
+                }
+                addFan(fan, closed);
+            }
+        }
+    }
+
+    /// Per corner, the lowest one of its mitre.
+    [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
+    [[nodiscard]] const glm::dvec3& mitreOf(std::uint32_t corner) const { return mitres_[roots_[corner]]; }
+    /// Of one vertex: a fan was split between them.
+    [[nodiscard]] bool areCut(std::uint32_t a, std::uint32_t b) const {
+        return fan_of_[a] == fan_of_[b] && roots_[a] != roots_[b];
+    }
+    /// Between two corners across a side, which begins at the first one. The sides are open now.
+    [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& cuts() const { return cuts_; }
+    /// The fans in cuts without a border, as roots.
+    [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& lids() const { return lids_; }
+
+  private:
+    [[nodiscard]] const glm::dvec3& normalOf(std::uint32_t corner) const { return normals_[corner / 3]; }
+
+    void addTo(Mitre& mitre, std::uint32_t corner) const {
+        mitre.add(normalOf(corner),
+                  angleAt(sheet_.positions, sheet_.triangles[corner / 3], static_cast<int>(corner % 3)));
+    }
+
+    void addFan(std::vector<std::uint32_t>& fan, bool closed) {
+        Mitre whole;
+        for (const std::uint32_t corner : fan) {
+            addTo(whole, corner);
+        }
+        const glm::dvec3 all = whole.solve();
+        if (std::ranges::all_of(fan, [&](std::uint32_t k) { return dot(normalOf(k), all) >= kMitreLeast; })) {
+            setMitre(fan, all);
+            return;
+        }
+        if (closed) {  // begins behind the sharpest edge
+            std::size_t sharpest = 0;
+            double least = 1.0;
+            for (std::size_t k = 0; k < fan.size(); ++k) {
+                const double cosine = dot(normalOf(fan[k]), normalOf(fan[(k + 1) % fan.size()]));
+                if (cosine < least) {
+                    least = cosine;
+                    sharpest = k;
+                }
+            }
+            std::rotate(fan.begin(), fan.begin() + static_cast<std::ptrdiff_t>((sharpest + 1) % fan.size()),
+                        fan.end());
+            cut(fan.back(), fan.front());
+        }
+        std::vector<std::uint32_t> roots;
+        for (std::size_t first = 0, end = 0; first < fan.size(); first = end) {
+            Mitre mitre;
+            glm::dvec3 common(0.0);
+            for (end = first; end < fan.size(); ++end) {
+                addTo(mitre, fan[end]);
+                const glm::dvec3 with = mitre.solve();
+                if (end > first &&
+                    std::min(dot(normalOf(fan[first]), with), dot(normalOf(fan[end]), with)) < kMitreLeast) {
+                    cut(fan[end - 1], fan[end]);
+                    break;
+                }
+                common = with;
+            }
+            setMitre(std::span(fan).subspan(first, end - first), common);
+            roots.push_back(roots_[fan[first]]);
+        }
+        if (closed) {
+            lids_.push_back(std::move(roots));
+        }
+    }
+
+    void setMitre(std::span<const std::uint32_t> corners, const glm::dvec3& mitre) {
+        const std::uint32_t root = std::ranges::min(corners);
+        mitres_[root] = mitre;
+        for (const std::uint32_t corner : corners) {
+            roots_[corner] = root;
+        }
+    }
+
+    /// Between a corner and the next one.
+    void cut(std::uint32_t corner, std::uint32_t next) {
+        sheet_.neighbours[corner / 3][static_cast<int>(corner % 3)] = Sheet::kNoTriangle;
+        sheet_.neighbours[next / 3][static_cast<int>((next + 2) % 3)] = Sheet::kNoTriangle;
+        cuts_.push_back({corner, next});
+    }
+
+    Sheet& sheet_;
+    std::vector<glm::dvec3> normals_;  // of the triangles
+    std::vector<std::uint32_t> roots_;
+    std::vector<glm::dvec3> mitres_;     // by root
+    std::vector<std::uint32_t> fan_of_;  // the first corner of the fan before it was split
+    std::vector<std::array<std::uint32_t, 2>> cuts_;
+    std::vector<std::vector<std::uint32_t>> lids_;
+};
 
 /// An offset that would meet the one from the other side ends this share of the way to that side: they overlap a little.
 constexpr double kThinReach = 0.55;
@@ -154,33 +275,22 @@ glm::dvec3 middleOf(const Sheet& sheet, const glm::uvec3& t) {
 
 /// The way to what a point of a sheet faces along an offset and against it, in units of the offset: up to 2, where the
 /// offsets of both meet.
-/// \param isOwn  of a triangle: it is not faced.
+/// \param isOwn  of a triangle's index: it is not faced.
 template <class IsOwn>
-std::array<double, 2> roomAt(const Sheet& sheet, const MeshQuery& query, const glm::dvec3& start,
-                             const glm::dvec3& offset, const IsOwn& isOwn) {
+std::array<double, 2> roomAt(const MeshQuery& query, const glm::dvec3& start, const glm::dvec3& offset,
+                             const IsOwn& isOwn) {
     std::array<double, 2> room = {2.0, 2.0};
     std::vector<LineHit> hits;
     if (offset != glm::dvec3(0.0)) {
         query.hitsAlong(start, offset, hits);
     }
     for (const LineHit& hit : hits) {
-        if (hit.at != 0.0 && !isOwn(sheet.triangles[hit.triangle])) {
+        if (hit.at != 0.0 && !isOwn(hit.triangle)) {
             double& side = room[hit.at > 0.0 ? 0 : 1];
             side = std::min(side, std::abs(hit.at));
         }
     }
     return room;
-}
-
-std::array<double, 2> roomAtCorner(const Sheet& sheet, const MeshQuery& query, const glm::uvec3& t,
-                                   int corner, const glm::dvec3& offset) {
-    const std::uint32_t vertex = t[corner];
-    const glm::dvec3 at = sheet.positions[vertex];
-    const glm::dvec3 inwards = middleOf(sheet, t) - at;
-    const double start = kThinStart * std::min(1.0, length(offset) / length(inwards));
-    return roomAt(sheet, query, at + start * inwards, offset, [&](const glm::uvec3& other) {
-        return other.x == vertex || other.y == vertex || other.z == vertex;
-    });
 }
 
 /// Drops triangles without area.
@@ -190,6 +300,7 @@ class PartBuilder {
         part_.positions.emplace_back(p);
         return static_cast<std::uint32_t>(part_.positions.size() - 1);
     }
+    void move(std::uint32_t vertex, const glm::dvec3& to) { part_.positions[vertex] = to; }
     /// \param source  the sheet's triangle.
     void addTriangle(std::uint32_t source, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         const glm::uvec3 t(a, b, c);
@@ -277,6 +388,232 @@ std::vector<bool> fullRegions(const Sheet& sheet, const std::vector<std::uint8_t
     return full;
 }
 
+class Thickener {
+  public:
+    /// Cuts the sheet at sharp corners.
+    Thickener(Sheet& sheet, const MeshQuery& query, double thickness)
+        : sheet_(sheet), query_(query), thickness_(thickness), fans_(sheet), roots_(fans_.roots()) {}
+
+    SolidPart run() {
+        room_ = roomByRoot(false);
+        placeEnds(turnsOver());
+        markThin();
+        if (!fans_.cuts().empty()) {
+            shortenThinEnds();
+        }
+        std::vector<Fan> fans;
+        for (const std::size_t face : {0U, 1U}) {
+            addFace(face, fans);
+        }
+        builder_.endSurface();
+        addFans(fans);
+        addBevels();
+        addWalls();
+        return builder_.take();
+    }
+
+  private:
+    [[nodiscard]] glm::dvec3 placeOf(std::uint32_t corner) const {
+        return sheet_.positions[sheet_.triangles[corner / 3][static_cast<int>(corner % 3)]];
+    }
+    [[nodiscard]] glm::dvec3 offsetOf(std::uint32_t corner) const {
+        return 0.5 * thickness_ * fans_.mitreOf(corner);
+    }
+    [[nodiscard]] std::array<std::uint32_t, 2> endsOf(std::uint32_t triangle, std::uint32_t corner) const {
+        return ends_[roots_[3 * triangle + corner]];
+    }
+
+    /// A triangle of the same vertex is not faced.
+    /// \param but_cut  unless it is cut from the corner.
+    [[nodiscard]] std::array<double, 2> roomAtCorner(std::uint32_t corner, bool but_cut) const {
+        const glm::uvec3& t = sheet_.triangles[corner / 3];
+        const std::uint32_t vertex = t[static_cast<int>(corner % 3)];
+        const glm::dvec3 inwards = middleOf(sheet_, t) - placeOf(corner);
+        const double start = kThinStart * std::min(1.0, length(offsetOf(corner)) / length(inwards));
+        return roomAt(query_, placeOf(corner) + start * inwards, offsetOf(corner), [&](std::uint32_t other) {
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                if (sheet_.triangles[other][static_cast<int>(k)] == vertex) {
+                    return !but_cut || !fans_.areCut(corner, 3 * other + k);
+                }
+            }
+            return false;
+        });
+    }
+
+    [[nodiscard]] std::vector<std::array<double, 2>> roomByRoot(bool but_cut) const {
+        std::vector<std::array<double, 2>> room(roots_.size());
+        tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(roots_.size()),
+                          [&](std::uint32_t i) { room[i] = roomAtCorner(i, but_cut); });
+        for (std::uint32_t i = 0; i < roots_.size(); ++i) {
+            for (const std::size_t face : {0U, 1U}) {
+                room[roots_[i]][face] = std::min(room[roots_[i]][face], room[i][face]);
+            }
+        }
+        return room;
+    }
+
+    /// By root: an edge there turns over in the offset above or below.
+    [[nodiscard]] std::vector<std::array<bool, 2>> turnsOver() const {
+        std::vector<std::array<bool, 2>> turns(roots_.size());
+        for (std::uint32_t i = 0; i < roots_.size(); ++i) {
+            const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
+            const glm::dvec3 side = placeOf(next) - placeOf(i);
+            const double change = dot(side, offsetOf(next) - offsetOf(i));
+            for (const std::uint32_t k : {i, next}) {
+                turns[roots_[k]][0] = turns[roots_[k]][0] || dot(side, side) + change < 0.0;
+                turns[roots_[k]][1] = turns[roots_[k]][1] || dot(side, side) - change < 0.0;
+            }
+        }
+        return turns;
+    }
+
+    /// \param turns  there the offset ends where there is no more room.
+    void placeEnds(const std::vector<std::array<bool, 2>>& turns) {
+        ends_.resize(roots_.size());
+        for (std::uint32_t i = 0; i < roots_.size(); ++i) {
+            if (roots_[i] == i) {
+                const auto reach = [&](std::size_t face) {
+                    return turns[i][face] ? std::min(1.0, kThinReach * room_[i][face]) : 1.0;
+                };
+                ends_[i] = {builder_.addPosition(placeOf(i) + reach(0) * offsetOf(i)),
+                            builder_.addPosition(placeOf(i) - reach(1) * offsetOf(i))};
+            }
+        }
+    }
+
+    /// All of its corners are thin, or its middle is and its offset turns over.
+    [[nodiscard]] bool isThin(std::uint32_t i, std::size_t face) const {
+        bool corners = true;
+        bool turned = false;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t next = (k + 1) % 3;
+            const glm::dvec3 from = builder_.at(endsOf(i, k)[face]);
+            const glm::dvec3 to = builder_.at(endsOf(i, next)[face]);
+            corners = corners && room_[roots_[3 * i + k]][face] < 2.0;
+            turned = turned || dot(placeOf(3 * i + next) - placeOf(3 * i + k), to - from) < 0.0;
+        }
+        const glm::uvec3& t = sheet_.triangles[i];
+        const auto is_own = [&](std::uint32_t other) { return other == i; };
+        return corners ||
+               (turned && roomAt(query_, middleOf(sheet_, t),
+                                 0.5 * thickness_ * unitNormal(sheet_.positions, t), is_own)[face] < 2.0);
+    }
+
+    void markThin() {
+        for (const std::size_t face : {0U, 1U}) {
+            thin_[face].resize(sheet_.triangles.size());
+            tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(sheet_.triangles.size()),
+                              [&](std::uint32_t i) { thin_[face][i] = isThin(i, face) ? 1 : 0; });
+        }
+    }
+
+    /// Those of corners where the sheet is cut and only thin triangles meet, as at the tip of a needle.
+    void shortenThinEnds() {
+        const std::vector<std::array<double, 2>> room = roomByRoot(true);
+        std::vector<std::array<bool, 2>> thick(roots_.size());
+        for (std::uint32_t i = 0; i < roots_.size(); ++i) {
+            for (const std::size_t face : {0U, 1U}) {
+                thick[roots_[i]][face] = thick[roots_[i]][face] || thin_[face][i / 3] == 0;
+            }
+        }
+        for (const auto& cut : fans_.cuts()) {
+            for (const std::uint32_t corner : cut) {
+                const std::uint32_t root = roots_[corner];
+                for (const std::size_t face : {0U, 1U}) {
+                    if (!thick[root][face]) {
+                        const double reach = std::min(1.0, kThinReach * room[root][face]);
+                        builder_.move(ends_[root][face],
+                                      placeOf(root) + (face == 0 ? reach : -reach) * offsetOf(root));
+                    }
+                }
+            }
+        }
+    }
+
+    /// \param face  0: above, 1: below. \param fans  those of its full regions are appended.
+    void addFace(std::size_t face, std::vector<Fan>& fans) {
+        const auto endOf = [&](std::uint32_t i, std::uint32_t corner) { return endsOf(i, corner)[face]; };
+        const std::vector<bool> full =
+            fullRegions(sheet_, thin_[face], endOf, face == 1, builder_, query_, thickness_, fans);
+        for (std::uint32_t i = 0; i < sheet_.triangles.size(); ++i) {
+            if (!full[i]) {
+                builder_.addTriangle(i, endOf(i, 0), endOf(i, face == 0 ? 1 : 2),
+                                     endOf(i, face == 0 ? 2 : 1));
+            }
+        }
+    }
+
+    void addFans(const std::vector<Fan>& fans) {
+        for (const Fan& fan : fans) {
+            const std::uint32_t apex = builder_.addPosition(fan.apex);
+            for (const BorderStep& step : fan.loop) {
+                builder_.addTriangle(fan.source, step.against ? step.to : step.from,
+                                     step.against ? step.from : step.to, apex);
+            }
+        }
+    }
+
+    /// Between the two ends of each corner where the sheet is cut.
+    void addBevels() {
+        bevelled_.resize(sheet_.triangles.size());
+        std::vector<bool> has_lid(roots_.size(), false);
+        for (const std::vector<std::uint32_t>& lid : fans_.lids()) {
+            for (const std::uint32_t root : lid) {
+                has_lid[root] = true;
+            }
+            for (std::size_t k = 1; k + 1 < lid.size(); ++k) {
+                addBoth(lid[0] / 3, ends_[lid[0]], ends_[lid[k + 1]], ends_[lid[k]]);
+            }
+        }
+        for (const auto& [corner, next] : fans_.cuts()) {
+            const std::uint32_t source = corner / 3;
+            const std::uint32_t other = next / 3;
+            const std::uint32_t side = corner % 3;
+            const std::uint32_t across = (next + 2) % 3;
+            const std::array<std::uint32_t, 2>& here = ends_[roots_[corner]];
+            const std::array<std::uint32_t, 2>& there = ends_[roots_[next]];
+            if (!bevelled_[source][side]) {
+                bevelled_[source][side] = bevelled_[other][across] = true;
+                const std::array<std::uint32_t, 2> far = endsOf(source, (side + 1) % 3);
+                addBoth(source, far, here, there);
+                addBoth(source, far, there, endsOf(other, across));
+            }
+            if (!has_lid[roots_[corner]]) {
+                builder_.addWall(source, here, there);
+            }
+        }
+    }
+
+    /// A triangle above, and the one below.
+    void addBoth(std::uint32_t source, const std::array<std::uint32_t, 2>& a,
+                 const std::array<std::uint32_t, 2>& b, const std::array<std::uint32_t, 2>& c) {
+        builder_.addTriangle(source, a[0], b[0], c[0]);
+        builder_.addTriangle(source, a[1], c[1], b[1]);
+    }
+
+    void addWalls() {
+        for (std::uint32_t i = 0; i < sheet_.triangles.size(); ++i) {
+            for (std::uint32_t side = 0; side < 3; ++side) {
+                if (sheet_.neighbours[i][static_cast<int>(side)] == Sheet::kNoTriangle &&
+                    !bevelled_[i][side]) {
+                    builder_.addWall(i, endsOf(i, side), endsOf(i, (side + 1) % 3));
+                }
+            }
+        }
+    }
+
+    const Sheet& sheet_;
+    const MeshQuery& query_;
+    double thickness_;
+    CornerFans fans_;
+    const std::vector<std::uint32_t>& roots_;
+    std::vector<std::array<double, 2>> room_;         // above and below, by root
+    std::vector<std::array<std::uint32_t, 2>> ends_;  // above and below, by root
+    std::array<std::vector<std::uint8_t>, 2> thin_;   // above and below, by triangle
+    std::vector<std::array<bool, 3>> bevelled_;       // by side
+    PartBuilder builder_;
+};
+
 }  // namespace
 
 Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
@@ -315,105 +652,8 @@ Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
     return sheet;
 }
 
-SolidPart thickened(const Sheet& sheet, const MeshQuery& query, double thickness) {
-    const std::vector<std::uint32_t> roots = joinedCorners(sheet);
-    std::vector<Mitre> mitres(roots.size());
-    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
-        const glm::dvec3 normal = unitNormal(sheet.positions, sheet.triangles[i]);
-        for (int corner = 0; corner < 3; ++corner) {
-            mitres[roots[3 * i + static_cast<std::uint32_t>(corner)]].add(
-                normal, angleAt(sheet.positions, sheet.triangles[i], corner));
-        }
-    }
-    std::vector<glm::dvec3> offsets(roots.size());
-    for (std::uint32_t i = 0; i < roots.size(); ++i) {
-        offsets[i] = roots[i] == i ? 0.5 * thickness * mitres[i].solve() : offsets[roots[i]];
-    }
-    std::vector<std::array<double, 2>> room(roots.size());  // above and below, by root
-    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(roots.size()), [&](std::uint32_t i) {
-        room[i] = roomAtCorner(sheet, query, sheet.triangles[i / 3], static_cast<int>(i % 3), offsets[i]);
-    });
-    for (std::uint32_t i = 0; i < roots.size(); ++i) {
-        for (const std::size_t face : {0U, 1U}) {
-            room[roots[i]][face] = std::min(room[roots[i]][face], room[i][face]);
-        }
-    }
-    // By root: an edge there turns over in the offset, which then ends where there is no more room.
-    std::vector<std::array<bool, 2>> turns(roots.size());
-    for (std::uint32_t i = 0; i < roots.size(); ++i) {
-        const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
-        const auto at = [&](std::uint32_t k) {
-            return glm::dvec3(sheet.positions[sheet.triangles[k / 3][static_cast<int>(k % 3)]]);
-        };
-        const glm::dvec3 side = at(next) - at(i);
-        const double change = dot(side, offsets[next] - offsets[i]);
-        for (const std::uint32_t k : {i, next}) {
-            turns[roots[k]][0] = turns[roots[k]][0] || dot(side, side) + change < 0.0;
-            turns[roots[k]][1] = turns[roots[k]][1] || dot(side, side) - change < 0.0;
-        }
-    }
-    PartBuilder builder;
-    std::vector<std::array<std::uint32_t, 2>> ends(roots.size());  // above and below, by root
-    for (std::uint32_t i = 0; i < roots.size(); ++i) {
-        if (roots[i] == i) {
-            const glm::dvec3 at = sheet.positions[sheet.triangles[i / 3][static_cast<int>(i % 3)]];
-            const auto reach = [&](std::size_t face) {
-                return turns[i][face] ? std::min(1.0, kThinReach * room[i][face]) : 1.0;
-            };
-            ends[i] = {builder.addPosition(at + reach(0) * offsets[i]),
-                       builder.addPosition(at - reach(1) * offsets[i])};
-        }
-    }
-    const auto endsOf = [&](std::uint32_t triangle, std::uint32_t corner) {
-        return ends[roots[3 * triangle + corner]];
-    };
-    std::vector<Fan> fans;
-    for (const std::size_t face : {0U, 1U}) {
-        const auto endOf = [&](std::uint32_t i, std::uint32_t corner) { return endsOf(i, corner)[face]; };
-        // All of its corners are thin, or its middle is and its offset turns over.
-        const auto isThin = [&](std::uint32_t i) {
-            const glm::uvec3& t = sheet.triangles[i];
-            bool corners = true;
-            bool turned = false;
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                const std::uint32_t next = (k + 1) % 3;
-                const glm::dvec3 from = sheet.positions[t[static_cast<int>(k)]];
-                const glm::dvec3 to = sheet.positions[t[static_cast<int>(next)]];
-                corners = corners && room[roots[3 * i + k]][face] < 2.0;
-                turned = turned || dot(to - from, builder.at(endOf(i, next)) - builder.at(endOf(i, k))) < 0.0;
-            }
-            return corners ||
-                   (turned &&
-                    roomAt(sheet, query, middleOf(sheet, t), 0.5 * thickness * unitNormal(sheet.positions, t),
-                           [&](const glm::uvec3& other) { return other == t; })[face] < 2.0);
-        };
-        std::vector<std::uint8_t> thin(sheet.triangles.size());
-        tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(thin.size()),
-                          [&](std::uint32_t i) { thin[i] = isThin(i) ? 1 : 0; });
-        const std::vector<bool> full =
-            fullRegions(sheet, thin, endOf, face == 1, builder, query, thickness, fans);
-        for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
-            if (!full[i]) {
-                builder.addTriangle(i, endOf(i, 0), endOf(i, face == 0 ? 1 : 2), endOf(i, face == 0 ? 2 : 1));
-            }
-        }
-    }
-    builder.endSurface();
-    for (const Fan& fan : fans) {
-        const std::uint32_t apex = builder.addPosition(fan.apex);
-        for (const BorderStep& step : fan.loop) {
-            builder.addTriangle(fan.source, step.against ? step.to : step.from,
-                                step.against ? step.from : step.to, apex);
-        }
-    }
-    for (std::uint32_t i = 0; i < sheet.triangles.size(); ++i) {
-        for (std::uint32_t side = 0; side < 3; ++side) {
-            if (sheet.neighbours[i][static_cast<int>(side)] == Sheet::kNoTriangle) {
-                builder.addWall(i, endsOf(i, side), endsOf(i, (side + 1) % 3));
-            }
-        }
-    }
-    return builder.take();
+SolidPart thickened(Sheet sheet, const MeshQuery& query, double thickness) {
+    return Thickener(sheet, query, thickness).run();
 }
 
 Shadow shadowOf(const Sheet& sheet) {

@@ -48,12 +48,12 @@ struct SolidPart {
     std::size_t surface_triangles = 0;   ///< the first ones, which stand for the sheet; the others close it
 };
 
-/// The shell within half the thickness along the sheet's normals, with mitres at edges and flat ends at the border. Each
-/// patch of joined triangles becomes one closed surface. A region that is thinner than the shell, such as a rod, is full:
-/// its offset would turn over and is left out.
+/// The shell within half the thickness along the sheet's normals, with mitres at edges, flat ends at the border, and bevels at
+/// corners whose common mitre would leave a side thin. Each patch of joined triangles becomes one closed surface. A region that
+/// is thinner than the shell, such as a rod, is full: its offset would turn over and is left out.
 /// \param query      of the sheet's triangles.
 /// \param thickness  object units, above 0.
-[[nodiscard]] SolidPart thickened(const Sheet& sheet, const MeshQuery& query, double thickness);
+[[nodiscard]] SolidPart thickened(Sheet sheet, const MeshQuery& query, double thickness);
 
 /// Twice the projected areas of a sheet along the axes, equal up to the sign for a height field.
 struct Shadow {
