@@ -194,8 +194,7 @@ std::string nameOf(const aiString& text) {
     // Placeholders of assimp for missing names, and its suffix for nodes of FBX that it splits.
     const bool made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
                          name.find("_$AssimpFbx$_") != std::string_view::npos;
-    return made_up ? std::string()
-                   : std::string(name.substr(0, name.find(kLodGroupMark)));
+    return made_up ? std::string() : std::string(name.substr(0, name.find(kLodGroupMark)));
 }
 
 /// Some readers of assimp keep invalid indices. \return nullopt: a face uses a vertex that does not exist.

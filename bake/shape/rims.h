@@ -11,7 +11,7 @@ namespace relief {
 
 struct OpenShell {
     TriangleMesh mesh;      ///< after finishMesh
-    bool is_solid = false;  ///< closed holes make it a solid; one shell of a wall at least is one
+    bool is_solid = false;  ///< it may be a solid with holes; one shell of a wall at least is one
 };
 
 /// Two shells, with a ring between each pair of rims that face each other.

@@ -476,8 +476,9 @@ class Shaper {
         return {};
     }
 
-    static bool isHoled(const Open& part) {
-        return part.role.kind == Kind::kHoled && part.as == ShapeAs::kAuto;
+    static bool mayBeHoled(const Open& part) {
+        return (part.role.kind == Kind::kHoled || part.role.kind == Kind::kPerhapsHoled) &&
+               part.as == ShapeAs::kAuto;
     }
 
     /// Adds the walls of joined shells, whose inside is free. \return per part: it is joined to another one.
@@ -496,7 +497,7 @@ class Shaper {
         };
         std::vector<std::size_t> holed;
         for (std::size_t i = 0; i < open_.size(); ++i) {
-            if (isHoled(open_[i])) {
+            if (mayBeHoled(open_[i])) {
                 holed.push_back(i);
             }
         }
@@ -510,7 +511,7 @@ class Shaper {
             Result<TriangleMesh> mesh = finishMesh(meshOf(open_[i].sheet, mesh_.name));
             if (mesh) {  // else too small for a mesh
                 parts.push_back(i);
-                shells.push_back({std::move(*mesh), isHoled(open_[i])});
+                shells.push_back({std::move(*mesh), mayBeHoled(open_[i])});
             }
         }
         std::vector<bool> joined(open_.size(), false);
