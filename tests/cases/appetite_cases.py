@@ -6,6 +6,7 @@ and time, with a result or with a line that names the file and no option that no
 import math
 
 from cases import Cases
+from solids import BOX_FACES, box_corners, write_obj
 
 SECONDS = 60  # of a machine that others use too
 MEMORY = 1500 << 20
@@ -15,9 +16,8 @@ MEMORY = 1500 << 20
 def box(mesh, at, half):
     positions, faces = mesh
     first = len(positions)
-    positions += [tuple(c + (half if k >> i & 1 else -half) for i, c in enumerate(at)) for k in range(8)]
-    faces += [tuple(first + c for c in face)
-              for face in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))]
+    positions += [tuple(c + h for c, h in zip(at, corner)) for corner in box_corners([half] * 3)]
+    faces += [tuple(first + c for c in face) for face in BOX_FACES]
 
 
 def boxes_far_apart(cases):
@@ -78,9 +78,7 @@ def cells(cases):
 def bake(cases, folder):
     make = cases.random.choice((boxes_far_apart, boxes_far_apart, scattered_triangles, scattered_triangles, fan, cells))
     positions, faces = make(cases)
-    with open(folder / "a.obj", "w", encoding="ascii") as out:
-        out.writelines("v %.9g %.9g %.9g\n" % p for p in positions)
-        out.writelines("f " + " ".join(str(c + 1) for c in face) + "\n" for face in faces)
+    write_obj(folder / "a.obj", positions, faces)
     done = cases.run("relief", "bake", "a.obj", "-o", "a.relief", "--no-check", "-q", cwd=folder, seconds=SECONDS,
                      memory=MEMORY + (4 << 30))  # the importer's own limit counts as address space
     if done is None:

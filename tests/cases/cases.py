@@ -2,7 +2,8 @@
 """Random cases, as scripts/nightly.sh cases runs them: the frame that the generators beside this file share.
 
 A generator is a program, NAME_cases.py BIN [--seed N] [--cases N]. It draws its cases from Cases.random alone, so that
-a seed repeats them, runs the tools in BIN, and calls fail() for each answer that is wrong.
+a seed repeats them, runs the tools in BIN, and calls fail() for each answer that is wrong. Each case has a seed of its own:
+--only N repeats one, and leaves its files.
 """
 
 import argparse
@@ -28,15 +29,23 @@ class Cases:
         today = int(datetime.date.today().strftime("%Y%m%d"))
         parser.add_argument("--seed", type=int, default=today, help="default: the day's date")
         parser.add_argument("--cases", type=int, default=default_cases)
+        parser.add_argument("--only", type=int, metavar="N", help="run case N only, and leave its files in a folder that is printed")
         options = parser.parse_args()
-        self.name, self.bin, self.seed, self.count = name, options.bin, options.seed, options.cases
-        self.random = random.Random(f"{name} {self.seed}")
+        self.name, self.bin, self.seed, self.count, self.only = name, options.bin, options.seed, options.cases, options.only
+        self.random = None
         self.failures = {}
         self.case = 0
 
     def each(self):
         """Yields (number, empty folder) once a case."""
-        for self.case in range(self.count):
+        for self.case in range(self.count) if self.only is None else [self.only]:
+            self.random = random.Random(f"{self.name} {self.seed} {self.case}")
+            if self.only is not None:
+                self.count = 1
+                folder = tempfile.mkdtemp(prefix="relief-case-")
+                print(f"{self.name}: files of case {self.only}: {folder}", file=sys.stderr)
+                yield self.case, pathlib.Path(folder)
+                return
             with tempfile.TemporaryDirectory(prefix="relief-case-") as folder:
                 yield self.case, pathlib.Path(folder)
 
@@ -70,7 +79,8 @@ class Cases:
     def fail(self, why):
         """Records that the current case failed; its first reason is kept."""
         if self.failures.setdefault(self.case, why) is why:
-            print(f"{self.name}: seed {self.seed}, case {self.case}: {why}", file=sys.stderr)
+            print(f"{self.name}: {why}; repeat by: python3 {sys.argv[0]} {self.bin} --seed {self.seed} --only {self.case}",
+                  file=sys.stderr)
 
     def finish(self):
         """Prints the count, and exits with 1 if a case failed."""

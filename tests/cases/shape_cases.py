@@ -1,82 +1,92 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Turned boxes of random sizes, plates and rods among them, alone or as shells, against their closed form: the side of each
-point that is not next to the surface, and in solid ones the plane that decides up to 0.45 of the thickness."""
+point that is not next to the surface, the plane that decides up to 0.45 of the thickness in solid ones, and the normals beside
+their faces. Bakes of such flat shapes end early, whatever the budget."""
 
+import json
 import math
+import resource
 
 from cases import Cases
+from solids import BOX_FACES, Frame, bake, box_corners, box_distance, query, turned_axes, write_obj
 
 POINTS = 3000
 NEAR = 2e-3  # of the longest side: nearer points may be on either side
-ANGLE = 3.0  # degrees
+INSIDE_ANGLE = 3.0  # degrees
+AT_FACE, BESIDE_FACE = 1e-3, 5e-3  # of the longest side
+LARGE = 16_000_000  # a budget
+LARGE_BYTES, LARGE_SECONDS = 3_000_000, 15  # that a flat shape takes of it, and of the processor
 
 
-def axes_of(random):
-    """Rows: the axes of a random turn."""
-    while True:
-        q = [random.gauss(0, 1) for _ in range(4)]
-        norm = math.sqrt(sum(c * c for c in q))
-        if norm > 0.1:
-            break
-    w, x, y, z = (c / norm for c in q)
-    return ((1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
-            (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
-            (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)))
-
-
-class Box:
+class Box(Frame):
     def __init__(self, random):
         side = 10 ** random.uniform(-1, 2)
         self.half = [0.5 * side * random.choice((1.0, random.uniform(0.1, 1.0))) for _ in range(3)]
-        self.axes = axes_of(random)
-        self.center = [random.uniform(-1, 1) * side for _ in range(3)]
+        axes = turned_axes(random)
+        super().__init__([random.uniform(-1, 1) * side for _ in range(3)], axes)
         self.longest = 2 * max(self.half)
 
-    def to_world(self, local):
-        return [c + sum(l * axis[i] for l, axis in zip(local, self.axes)) for i, c in enumerate(self.center)]
-
-    def distance(self, local):
-        d = [abs(p) - h for p, h in zip(local, self.half)]
-        return math.sqrt(sum(max(c, 0) ** 2 for c in d)) + min(max(d), 0)
-
     def write(self, path):
-        with open(path, "w", encoding="ascii") as out:
-            for k in range(8):
-                out.write("v %.9g %.9g %.9g\n" % tuple(self.to_world([h if k >> i & 1 else -h for i, h in enumerate(self.half)])))
-            for face in ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)):
-                out.write("f %d %d %d %d\n" % tuple(c + 1 for c in face))
+        write_obj(path, [self.to_world(p) for p in box_corners(self.half)], BOX_FACES)
+
+    def off_normal(self, row, axis, sign, most):
+        """Whether the normal of a sample is off by more than `most` degrees."""
+        return sign * sum(n * a for n, a in zip(row[4:7], self.axes[axis])) < math.cos(math.radians(most))
 
 
-def query(cases, folder, points):
-    with open(folder / "in.csv", "w", encoding="ascii") as out:
-        out.writelines("%.9g,%.9g,%.9g\n" % tuple(p) for p in points)
-    done = cases.run("relief", "query", "a.relief", "--points", "in.csv", "-o", "-", "--distance", "plane", cwd=folder)
-    return [[float(word or "nan") for word in line.split(",")] for line in done.stdout.splitlines()[1:]] if done else []
+def check_faces(cases, folder, box, what):
+    """Normals at points beside a face, but not near its edges: right at the face; farther off a cell may hardly have it."""
+    points, faces = [], []
+    for _ in range(POINTS // 2):
+        axis, sign = cases.random.randrange(3), cases.random.choice((-1, 1))
+        local = [cases.random.uniform(-1, 1) * max(h - 0.08 * box.longest, 0) for h in box.half]
+        if any(h < 0.1 * box.longest for i, h in enumerate(box.half) if i != axis):
+            continue
+        far = cases.random.choice((AT_FACE, BESIDE_FACE))
+        local[axis] = sign * (box.half[axis] + cases.random.uniform(0 if far == BESIDE_FACE else -far, far) * box.longest)
+        points.append(box.to_world(local))
+        faces.append((axis, sign, far))
+    rows = query(cases, folder, "a.relief", points, "--distance", "plane") if points else None
+    for far, angle, most in ((AT_FACE, 1.0, 0.005), (AT_FACE, INSIDE_ANGLE, 0), (BESIDE_FACE, INSIDE_ANGLE, 0.01)):
+        own = [(row, axis, sign) for row, (axis, sign, other) in zip(rows or [], faces) if other == far]
+        off = sum(box.off_normal(row, axis, sign, angle) for row, axis, sign in own)
+        cases.expect(off <= most * len(own), f"{off} of {len(own)} normals within {far} of faces are off by {angle} degrees: {what}")
 
 
-def check(cases, folder):
+def check_large(cases, folder):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = bake(cases, folder, "a.obj", "-o", "large.relief", "--budget", str(LARGE), "--no-check", "--json")
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
+    if done:
+        taken = sum(one["bytes"] for one in json.loads(done.stdout)["maps"])
+        cases.expect(taken <= LARGE_BYTES and seconds <= LARGE_SECONDS, f"a box takes {taken} bytes and {seconds:.1f} s of {LARGE}")
+
+
+def check(cases, folder, number):
     random = cases.random
     box = Box(random)
     box.write(folder / "a.obj")
+    if number % 10 == 9:
+        return check_large(cases, folder)
     thickness = box.longest * 10 ** random.uniform(-1.7, -0.7) if random.random() < 0.4 else None
     shell = ["--as", "shell", "--thickness", "%.6g" % thickness] if thickness else []
     budget = random.choice((64, 128, 256, 512))
-    done = cases.run("relief", "bake", "a.obj", "-o", "a.relief", "--budget", f"{budget}kB", *shell, "-q", cwd=folder)
-    if not cases.expect(done and done.returncode == 0, f"not baked: {done and done.stderr}"):
-        return
+    if not bake(cases, folder, "a.obj", "-o", "a.relief", "--budget", f"{budget}kB", *shell, "-q"):
+        return None
     locals_ = [[random.uniform(-1.1, 1.1) * h for h in box.half] for _ in range(POINTS)]
-    results = query(cases, folder, [box.to_world(p) for p in locals_])
-    if not cases.expect(len(results) == POINTS, f"{len(results)} samples"):
-        return
+    results = query(cases, folder, "a.relief", [box.to_world(p) for p in locals_], "--distance", "plane")
+    if not results:
+        return None
     near = NEAR * box.longest
     sides = normals = depths = judged = 0
-    for local, (*_, f, nx, ny, nz, _) in zip(locals_, results):
-        distance = box.distance(local)
+    for local, row in zip(locals_, results):
+        distance = box_distance(local, box.half)
         if thickness:
             distance = abs(distance) - 0.5 * thickness
         if abs(distance) > near:
-            sides += (f < 0) != (distance < 0)
+            sides += (row[3] < 0) != (distance < 0)
         if thickness or distance > -near:
             continue
         # Clear of edges, where two faces are as near, and of the middle of the thinnest side.
@@ -85,20 +95,19 @@ def check(cases, folder):
         if depth > 0.9 * box.half[axis] or second < 1.2 * depth + 0.05 * box.longest:
             continue
         judged += 1
-        sign = 1 if local[axis] > 0 else -1
-        cosine = sign * sum(n * a for n, a in zip((nx, ny, nz), box.axes[axis]))
-        normals += cosine < math.cos(math.radians(ANGLE))
-        depths += abs(f + depth) > near + 0.1 * depth
+        normals += box.off_normal(row, axis, 1 if local[axis] > 0 else -1, INSIDE_ANGLE)
+        depths += abs(row[3] + depth) > near + 0.1 * depth
     what = f"half {box.half}, {budget} kB, shell {thickness}"
     cases.expect(sides <= POINTS // 200, f"{sides} of {POINTS} points are on the wrong side: {what}")
-    cases.expect(normals <= judged // 100, f"{normals} of {judged} normals are off by more than {ANGLE} degrees: {what}")
+    cases.expect(normals <= judged // 100, f"{normals} of {judged} normals are off by more than {INSIDE_ANGLE} degrees: {what}")
     cases.expect(depths <= judged // 100, f"{depths} of {judged} depths are off: {what}")
+    return None if thickness else check_faces(cases, folder, box, what)
 
 
 def main():
     cases = Cases("shapes", 30)
-    for _, folder in cases.each():
-        check(cases, folder)
+    for number, folder in cases.each():
+        check(cases, folder, number)
     cases.finish()
 
 

@@ -156,7 +156,7 @@ job_coverage() {
     say "$(sed -n 's/^\(lines\|branches\): \([0-9.]*%\).*/\2 of \1/p' "$work/coverage.log" | paste -sd, | sed 's/,/, /')"
 }
 
-job nightly 4 cases
+job nightly 9 cases
 job_cases() {
     local generator status=0
     release
