@@ -93,7 +93,7 @@ Result<void> writePage(const CheckCommand& command, std::size_t bytes, const Mes
 std::string checkText(const MeshCheckReport& report) {
     const MeshCheck& run = report.run;
     const auto& [samples, accuracy] = run.judged();
-    std::string text = report.file + ": " + report.verdict() + "\n";
+    std::string text = report.file + ": " + report.verdict().text + "\n";
     if (const std::string inside = insideVerdictText(accuracy.field.inside); !inside.empty()) {
         text += report.file + ": " + inside + "\n";
     }

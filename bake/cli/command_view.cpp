@@ -336,8 +336,6 @@ Result<Json> worldCheckJson(const WorldCheckJson& check) {
     Json report = jsonOf(check);
     Json& accuracy = report["accuracy"];
     accuracy.erase("seconds");  // no two runs have the same
-    const double wrong = check.accuracy->all.total();
-    report["verdict"] = {{"grade", gradeOf(wrong)}, {"text", verdictText(wrong)}};
     for (std::size_t i = 0; i < check.accuracy->places.size(); ++i) {
         const std::vector<std::byte> picture =
             RELIEF_TRY(drawMistakes(*check.accuracy->places[i].slice, check.field->world().unit));

@@ -42,6 +42,7 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
           {"Share of 4000 points near the surface that are on the wrong side; null without a plan or with "
            "--no-check",
            "%", kPercentRange});
+    visit("verdict", result.verdict(), {"Summary; null unless the bake measured itself"});
     visit("parts",
           result.part_accuracy
               ? std::optional(PartsReport{*result.part_accuracy, result.parts, baked.collider})

@@ -23,13 +23,6 @@
 namespace relief {
 namespace {
 
-/// Points that a planned bake measures itself at: one in a hundred is then known to a sixth of that.
-constexpr std::uint32_t kSelfCheckPoints = 4000;
-/// Of each part: a lost one has a quarter of its points on the wrong side.
-const PartOptions kSelfCheckParts{
-    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
-/// Percent of them on the wrong side, above which the bake warns.
-constexpr double kSelfCheckWarns = 5.0;
 /// From so many nodes on, a source may be a level.
 constexpr std::size_t kLevelNodes = 100;
 /// Above this share that one more map would have served, the warning suggests more maps.
@@ -415,7 +408,7 @@ class Director {
         }
         result_.times.check_ms = watch.ms();
         std::vector<std::string>& warnings = result_.baked.report.warnings;
-        if (const double wrong = result_.wrong->total(); wrong > kSelfCheckWarns) {
+        if (const double wrong = result_.wrong->total(); wrong > kGoodPercent) {
             warnings.push_back(mesh->name + ": " + shortNumber(wrong) + " % wrong near the surface; " +
                                (floatsLimit(*mesh, wrong) ? "move it to the origin" : cure()));
         }
@@ -505,11 +498,17 @@ class Director {
 
 }  // namespace
 
+std::optional<Verdict> BakeResult::verdict() const {
+    return wrong ? std::optional(
+                       verdictOf(wrong->total(), part_accuracy.value_or(PartsAccuracy{}), mesh.mesh->unit))
+                 : std::nullopt;
+}
+
 BakeSummary BakeResult::summary(bool verbose) const {
     return {*mesh.mesh,  baked,
             plan,        times,
             mesh.report, shape,
-            wrong,       unused_vertices,
+            verdict(),   unused_vertices,
             verbose,     animated ? &*animated : nullptr};
 }
 

@@ -48,6 +48,8 @@ struct BakeResult {
     BakeTimes times;
     std::optional<AnimatedMesh> animated;  ///< of the collider, with --animated
 
+    /// Nothing if it is not measured.
+    [[nodiscard]] std::optional<Verdict> verdict() const;
     /// For bakeText. Valid as long as the result.
     [[nodiscard]] BakeSummary summary(bool verbose) const;
     /// --threads, or those of the machine.

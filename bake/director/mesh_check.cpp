@@ -191,10 +191,10 @@ void measurementFields(FieldVisitor& visit, CheckRequest& request) {
           {.help = "Points of each kind", .range = {1.0}, .must = "a whole number of at least 1"});
     visit("seed", request.seed, {.help = "Of the points", .value = "S"});
     visit("detail", request.detail,
-          {.help = "Judge each part of the mesh that is at least so long by itself",
+          {.help = "Length from which on a lost part of the mesh lowers the grade",
            .unit = "object units",
            .range = {0.0, double{1e15F}},
-           .fallback = "a thousandth of the longest part, in metres at most 0.1",
+           .fallback = "a hundredth of the mesh's diagonal, in metres at most 0.1",
            .value = "LENGTH",
            .must =
                "a length of at least 0, in the collider's units; of metres also with mm, cm or m behind it"});

@@ -3,14 +3,18 @@
 
 namespace relief {
 
-std::string MeshCheckReport::verdict() const {
+Verdict MeshCheckReport::verdict() const {
     const double wrong = run.original.accuracy.field.near.total();
     const bool within = max_error && wrong <= double{*max_error};
-    if (!max_error || (within && !run.passes(max_error))) {
-        return verdictText(run.wrongPercent(), run.part_accuracy);
+    Verdict verdict = verdictOf(run.wrongPercent(), run.part_accuracy, run.collider.unit);
+    if (max_error && (!within || run.passes(max_error))) {
+        const std::string ignored = ignoredText(run.part_accuracy.ignored, run.collider.unit);
+        verdict.text = percentText(wrong) + " wrong near the surface" +
+                       (run.repaired ? " of the mesh as it came" : "") + ": " +
+                       (within ? "within" : "above") + " --max-error " + percentText(double{*max_error}) +
+                       (ignored.empty() ? "" : "; " + ignored);
     }
-    return percentText(wrong) + " wrong near the surface" + (run.repaired ? " of the mesh as it came" : "") +
-           ": " + (within ? "within" : "above") + " --max-error " + percentText(double{*max_error});
+    return verdict;
 }
 
 void fields(FieldVisitor& visit, const MeshCheckReport& report) {
@@ -37,12 +41,9 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
              "%", kPercentRange});
         visit_verdict("lost_parts", run.part_accuracy.countOf(PartVerdict::kLost),
                       {"Parts of the mesh with more than 25 % of their points on the wrong side"});
-        visit_verdict(
-            "grade", gradeOf(run.wrongPercent(), run.part_accuracy),
-            {.help = "good: at most 1 % wrong; fair: at most 5 %; at best fair if a part is coarse, poor if "
-                     "one is lost",
-             .words = kWords<"good", "fair", "poor">});
-        visit_verdict("text", report.verdict(), {"The grade in words; with --max-error whether it is kept"});
+        visit_verdict("ignored_parts", run.part_accuracy.ignored,
+                      {"Parts that the grade ignores because they are small"});
+        fields(visit_verdict, report.verdict());
         visit_verdict(
             "inside_grade", insideGradeOf(run.judged().accuracy.field.inside),
             {.help = "Votes at points inside: good if the nearest face does not decide at most 3 %; "

@@ -17,8 +17,8 @@ struct MeshCheckReport {
     std::string file;                     ///< name of the collider
     std::optional<float> max_error = {};  ///< percent
 
-    /// The grade; with `max_error` whether that is kept by the mesh as it came.
-    [[nodiscard]] std::string verdict() const;
+    /// The grade; in the text, with `max_error`, whether that is kept by the mesh as it came.
+    [[nodiscard]] Verdict verdict() const;
 };
 
 void fields(FieldVisitor& visit, const MeshCheckReport& report);

@@ -7,7 +7,9 @@
 #include <array>
 #include <functional>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <map>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -18,12 +20,14 @@
 namespace relief {
 namespace {
 
-constexpr double kDetailShare = 1e-3;
-constexpr double kDetailMetres = 0.1;
 /// A part with a smaller share of exposed points lies inside others.
 constexpr double kExposed = 0.05;
 /// Resolution of float coordinates, relative, with room for a step to either side of a surface.
 constexpr double kFloatStep = 1e-6;
+/// Times that the distance of the points from a part that seems to be absent is halved.
+constexpr int kCloser = 5;
+/// Points that confirm a lost part, in units of those that found it.
+constexpr std::uint32_t kConfirm = 4;
 
 /// The triangles of each part with cumulative areas.
 class PartTriangles {
@@ -62,34 +66,76 @@ class PartTriangles {
 class PartMeter {
   public:
     PartMeter(const MeshQuery& query, const SurfaceParts& parts, const Field& field,
-              const PartOptions& options, std::uint32_t points)
+              const PartOptions& options, double detail)
         : query_(query),
           parts_(parts),
           field_(field),
           options_(options),
-          points_(points),
+          detail_(detail),
           triangles_(query.mesh(), parts) {}
 
-    [[nodiscard]] PartAccuracy measure(std::uint32_t part) const {
-        PartAccuracy found;
-        found.part = part;
-        const Bounds& bounds = parts_.parts[part].bounds;
+    [[nodiscard]] PartAccuracy measure(std::uint32_t part, std::uint32_t points) const {
+        const PartAccuracy found = judge(part, points);
+        const std::uint32_t more = std::min(kConfirm * points, options_.points);
+        const bool lost = found.state == PartVerdict::kLost || found.state == PartVerdict::kMinor;
+        return lost && more > points ? judge(part, more) : found;
+    }
+
+  private:
+    struct Judged {
+        PartAccuracy accuracy;
+        std::uint32_t inside = 0;  // points, in truth
+        std::uint32_t missed = 0;  // of those, points called outside
+
+        [[nodiscard]] bool lost() const { return accuracy.state == PartVerdict::kLost; }
+        /// Most of it is.
+        [[nodiscard]] bool absent() const { return 2 * missed >= inside; }
+    };
+
+    /// At the part's own scale, and closer where it is thinner than that and seems to be absent.
+    [[nodiscard]] PartAccuracy judge(std::uint32_t part, std::uint32_t points) const {
         const double size = parts_.parts[part].size();
+        const double least = leastSigma(part);
+        Judged found = judgeAt(part, points, std::max(options_.sigma_share * size, least));
+        for (int k = 0; k < kCloser && !found.lost() && found.accuracy.state != PartVerdict::kHidden &&
+                        found.absent() && found.accuracy.sigma > least;
+             ++k) {
+            found = judgeAt(part, points, std::max(0.5 * found.accuracy.sigma, least));
+        }
+        const double excess = kNoticeableExcess * detail_;
+        const auto noticed = [&] {
+            return size >= detail_ &&
+                   (found.absent() || found.accuracy.sigma >= excess || judgeAt(part, points, excess).lost());
+        };
+        if (found.lost() && !noticed()) {
+            found.accuracy.state = PartVerdict::kMinor;
+        }
+        return found.accuracy;
+    }
+
+    /// Points closer to a part are as good as on it.
+    [[nodiscard]] double leastSigma(std::uint32_t part) const {
+        const Bounds& bounds = parts_.parts[part].bounds;
         const glm::vec3 far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-        const double least = kFloatStep * double{std::max({far.x, far.y, far.z})};
-        found.sigma = std::max(options_.sigma_share * size, least);
-        const double step = std::max(kSurfaceStep * size, least);
+        return kFloatStep * double{std::max({far.x, far.y, far.z})};
+    }
+
+    [[nodiscard]] Judged judgeAt(std::uint32_t part, std::uint32_t points, double sigma) const {
+        Judged judged;
+        PartAccuracy& found = judged.accuracy;
+        found.part = part;
+        found.sigma = sigma;
+        const double step = std::max(kSurfaceStep * parts_.parts[part].size(), leastSigma(part));
         if (triangles_.empty(part)) {
             found.state = PartVerdict::kHidden;
-            return found;
+            return judged;
         }
         // Too thick a shell is judged by the face that it should have: by its own, a lost sheet would be right.
         const double too_deep = 0.5 * (parts_.parts[part].thickness - parts_.parts[part].right_thickness);
         MersenneRandom random(options_.seed, part);
         std::uint32_t false_inside = 0;
-        std::uint32_t false_outside = 0;
-        for (std::uint32_t k = 0; k < points_; ++k) {
-            const double share = (k + random.uniform()) / points_;
+        for (std::uint32_t k = 0; k < points; ++k) {
+            const double share = (k + random.uniform()) / points;
             const auto [on, normal] =
                 drawOnTriangle(query_.mesh(), triangles_.triangleAt(part, share), random);
             // Braces, as compilers choose the order of a call's arguments.
@@ -102,25 +148,25 @@ class PartMeter {
             const std::optional<FieldValue> value = field_(p);
             const bool inside = value && value->distance < 0.0F;
             const bool beyond = too_deep > 0.0 && dot(offset, normal) > 0.0;
-            if (const bool truth = !beyond && query_.inside(p); truth != inside) {
-                ++(inside ? false_inside : false_outside);
-            }
+            const bool truth = !beyond && query_.inside(p);
+            judged.inside += truth ? 1 : 0;
+            judged.missed += truth && !inside ? 1 : 0;
+            false_inside += inside && !truth ? 1 : 0;
         }
-        found.wrong = {percent(false_inside, found.points), percent(false_outside, found.points)};
+        found.wrong = {percent(false_inside, found.points), percent(judged.missed, found.points)};
         const double wrong = found.wrong.total();
-        found.state = found.points < kExposed * points_ ? PartVerdict::kHidden
-                      : wrong > kPartLost               ? PartVerdict::kLost
-                      : wrong > kPartCoarse             ? PartVerdict::kCoarse
-                                                        : PartVerdict::kHeld;
-        return found;
+        found.state = found.points < kExposed * points ? PartVerdict::kHidden
+                      : wrong > kPartLost              ? PartVerdict::kLost
+                      : wrong > kPartCoarse            ? PartVerdict::kCoarse
+                                                       : PartVerdict::kHeld;
+        return judged;
     }
 
-  private:
     const MeshQuery& query_;
     const SurfaceParts& parts_;
     const Field& field_;
     const PartOptions& options_;
-    std::uint32_t points_;
+    double detail_;
     PartTriangles triangles_;
 };
 
@@ -169,43 +215,77 @@ class Groups {
     std::map<std::pair<std::uint64_t, std::string>, Sum> sums_;
 };
 
-/// Lost, coarse, held, then the others.
+/// Lost, coarse, minor, held, then the others.
 int rankOf(PartVerdict state) {
-    constexpr std::array<int, kPartVerdicts> kRanks = {2, 1, 0, 3, 4, 5};
+    constexpr std::array<int, kPartVerdicts> kRanks = {3, 1, 0, 4, 2, 5};
     return kRanks[static_cast<std::size_t>(state)];
+}
+
+/// Percent of the exposed surface that minor and coarse parts make wrong.
+double minorWrong(const PartsAccuracy& all, const SurfaceParts& parts) {
+    double wrong = 0.0;
+    double area = 0.0;
+    for (const PartAccuracy& one : all.parts) {
+        const SurfacePart& part = parts.parts[one.part];
+        const bool minor = one.state == PartVerdict::kMinor || one.state == PartVerdict::kCoarse;
+        area += one.state == PartVerdict::kHidden ? 0.0 : part.area;
+        wrong += minor ? part.area * one.wrong.total() : 0.0;
+    }
+    return wrong / area;
 }
 
 }  // namespace
 
-double defaultDetail(const SurfaceParts& parts, const std::string& unit) {
-    double largest = 0.0;
-    for (const SurfacePart& part : parts.parts) {
-        largest = std::max(largest, part.size());
+double defaultDetail(const SurfaceParts& parts, const std::string& unit, double scale) {
+    if (parts.parts.empty()) {
+        return 0.0;
     }
-    return unit == "m" ? std::min(kDetailShare * largest, kDetailMetres) : kDetailShare * largest;
+    const Strays strays = straysOf(parts.parts);
+    Bounds box = strays.rest;
+    if (strays.parts.empty()) {
+        for (const SurfacePart& part : parts.parts) {
+            addBounds(box, part.bounds);
+        }
+    }
+    const double detail = kNoticeableShare * glm::length(glm::dvec3(box.size()));
+    return unit == "m" ? std::min(detail, kNoticeableMetres / scale) : detail;
+}
+
+void IgnoredParts::add(const IgnoredParts& other, double scale) {
+    parts += other.parts;
+    lost += other.lost;
+    size = std::max(size, scale * other.size);
+    unmeasured += other.unmeasured;
 }
 
 PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, const Field& field,
                            const PartOptions& options) {
     PartsAccuracy all;
-    all.detail = options.detail.value_or(defaultDetail(parts, query.mesh().unit));
+    all.detail = options.detail.value_or(defaultDetail(parts, query.mesh().unit, options.scale));
     all.parts.resize(parts.parts.size());
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < parts.parts.size(); ++i) {
-        const bool small = parts.parts[i].size() < all.detail;
-        all.parts[i].part = i;
-        all.parts[i].state = small ? PartVerdict::kSmall : PartVerdict::kRest;
-        if (!small) {
-            order.push_back(i);
+    std::vector<std::uint32_t> order(parts.parts.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto size = [&](std::uint32_t i) { return parts.parts[i].size(); };
+    std::ranges::stable_sort(order, std::greater<>(), size);
+    for (const std::uint32_t i : order) {
+        all.parts[i] = {.part = i, .state = PartVerdict::kRest, .points = 0, .wrong = {}, .sigma = 0.0};
+    }
+    order.resize(std::min(order.size(), options.parts_max));
+    const auto large = static_cast<std::size_t>(
+        std::ranges::partition_point(order, [&](std::uint32_t i) { return size(i) >= all.detail; }) -
+        order.begin());
+    const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+        options.points_all / std::max<std::size_t>(large, 1), options.points_min, options.points));
+    const PartMeter meter(query, parts, field, options, all.detail);
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t k) {
+        all.parts[order[k]] = meter.measure(order[k], k < large ? each : std::min(options.points_min, each));
+    });
+    all.minor_counts = minorWrong(all, parts) > kGoodPercent;
+    if (all.minor_counts && !options.detail) {
+        for (PartAccuracy& one : all.parts) {
+            one.state = one.state == PartVerdict::kMinor ? PartVerdict::kLost : one.state;
         }
     }
-    std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t i) { return parts.parts[i].size(); });
-    order.resize(std::min(order.size(), options.parts_max));
-    const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-        options.points_all / std::max<std::size_t>(order.size(), 1), options.points_min, options.points));
-    const PartMeter meter(query, parts, field, options, each);
-    tbb::parallel_for(std::size_t{0}, order.size(),
-                      [&](std::size_t k) { all.parts[order[k]] = meter.measure(order[k]); });
     Groups nodes(false);
     Groups materials(true);
     for (const PartAccuracy& accuracy : all.parts) {
@@ -213,7 +293,13 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
         nodes.add(part.node_index, part, accuracy);
         materials.add(0, part, accuracy);
         ++all.count[static_cast<std::size_t>(accuracy.state)];
+        if (accuracy.state == PartVerdict::kMinor) {
+            all.ignored.size = std::max(all.ignored.size, part.size());
+        }
     }
+    all.ignored.parts = all.parts.size();
+    all.ignored.lost = all.countOf(PartVerdict::kMinor);
+    all.ignored.unmeasured = all.countOf(PartVerdict::kRest);
     nodes.addTo(all.groups);
     materials.addTo(all.groups);
     // By size too: a large part that is half wrong is worse than a small one that is all wrong.

@@ -7,14 +7,11 @@
 #include <vector>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/grades.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_parts.h"
 
 namespace relief {
-
-/// Limits in percent of points on the wrong side; of an absent part about half are.
-inline constexpr double kPartCoarse = 10.0;
-inline constexpr double kPartLost = 25.0;
 
 struct PartOptions {
     std::uint32_t points = 1000;         ///< of each part, at most
@@ -24,23 +21,28 @@ struct PartOptions {
     std::uint64_t seed = 1;
     double sigma_share = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
     std::optional<double>
-        detail;  ///< size of the smallest part that counts, object units; else defaultDetail
+        detail;          ///< size of the smallest part that counts, object units; else defaultDetail
+    double scale = 1.0;  ///< of the object in its world, for defaultDetail
 };
 
-/// A thousandth of the longest side of the largest part; in metres at most 0.1.
-[[nodiscard]] double defaultDetail(const SurfaceParts& parts, const std::string& unit);
+/// Of a bake that measures itself: a lost part has a quarter of its points on the wrong side.
+inline const PartOptions kSelfCheckParts{
+    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
+
+/// kNoticeableShare of the diagonal of the parts without strays; in metres at most kNoticeableMetres in the world.
+[[nodiscard]] double defaultDetail(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 
 enum class PartVerdict : std::uint8_t {
     kHeld,    ///< up to kPartCoarse
     kCoarse,  ///< up to kPartLost
     kLost,
     kHidden,  ///< inside other parts, where nothing collides
-    kSmall,   ///< below `detail`; not measured
+    kMinor,   ///< lost, but nobody notices: does not lower the grade
     kRest,    ///< beyond parts_max; not measured
 };
 template <>
 inline constexpr std::array<std::string_view, 6> kWordsOf<PartVerdict>{"held",   "coarse", "lost",
-                                                                       "hidden", "small",  "rest"};
+                                                                       "hidden", "minor",  "rest"};
 inline constexpr std::size_t kPartVerdicts = kWordsOf<PartVerdict>.size();
 
 struct PartAccuracy {
@@ -61,20 +63,37 @@ struct GroupAccuracy {
     WrongShare wrong;  ///< percent
 };
 
+/// The parts that a verdict ignores, of one mesh or several.
+struct IgnoredParts {
+    std::uint64_t parts = 0;       ///< all
+    std::uint64_t lost = 0;        ///< PartVerdict::kMinor
+    double size = 0.0;             ///< of the largest of these
+    std::uint64_t unmeasured = 0;  ///< PartVerdict::kRest
+
+    /// \param scale  of the other mesh's sizes.
+    void add(const IgnoredParts& other, double scale);
+};
+
 struct PartsAccuracy {
     double detail = 0.0;  ///< object units
     std::vector<PartAccuracy>
         parts;  ///< lost, then coarse, and so on; within a state by wrong points times size
     std::vector<GroupAccuracy> groups;  ///< several named nodes, then several materials; the most wrong first
     std::uint64_t count[kPartVerdicts] = {};  ///< of parts in each state
+    bool minor_counts =
+        false;  ///< minor and coarse parts together make more than kGoodPercent of the surface wrong
+    IgnoredParts ignored;
 
     [[nodiscard]] std::uint64_t countOf(PartVerdict state) const {
         return count[static_cast<std::size_t>(state)];
     }
 };
 
-/// Measures at points near each part's surface in the baked solid: area-weighted, with an isotropic Gaussian offset. Truth is
-/// the side of the whole mesh, but a shell ends at its right_thickness. The same for any number of threads.
+/// Measures at points near each part's surface in the baked solid: area-weighted, with an isotropic Gaussian offset, which is
+/// less for a part that is thinner and seems to be absent. Truth is the side of the whole mesh, but a shell ends at its
+/// right_thickness. A lost part is measured again by more points. It is minor if it is shorter than the detail, or if it is
+/// there and kNoticeableExcess of the detail off the surface is right; but minor parts are lost if they count together and the
+/// detail is the default. The same for any number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,
                                          const Field& field, const PartOptions& options);

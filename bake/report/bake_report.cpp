@@ -183,9 +183,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
             ", " + msText(searched ? "search" : "plan", searched ? times.search_ms : times.plan_ms) + ", " +
             (searched ? "its last bake: " : "") + stagesText(baked.report) + (searched ? "; " : ", ") +
             msText("writing", times.write_ms) + "\n";
-    if (summary.wrong) {
-        text += "wrong near the surface: " + shortNumber(summary.wrong->total()) + " %\n";
-    }
+    text += summary.verdict ? summary.verdict->text + "\n" : "";
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";
 }

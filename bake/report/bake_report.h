@@ -42,8 +42,8 @@ struct BakeSummary {
     const BakeTimes& times;
     const RepairReport& care;
     const ShapeReport& shape;
-    const std::optional<WrongShare>& wrong;  ///< near the surface, if measured
-    std::uint64_t unused_vertices = 0;       ///< of the mesh file (TriangleMesh)
+    std::optional<Verdict> verdict;     ///< if measured
+    std::uint64_t unused_vertices = 0;  ///< of the mesh file (TriangleMesh)
     bool verbose = false;
     const AnimatedMesh* animated = nullptr;  ///< if it moves
 };

@@ -9,24 +9,18 @@
 #include <vector>
 
 #include "bake/measure/accuracy.h"
+#include "bake/measure/grades.h"
 #include "bake/measure/worst_places.h"
 #include "formats/collider.h"
 
 namespace relief {
 
-/// Verdicts, by the percentage of points near the surface that are on the wrong side.
-inline constexpr double kGoodPercent = 1.0;
-inline constexpr double kFairPercent = 5.0;
-
-/// "good", "fair" or "poor"
+/// "good", "fair" or "poor", by kGoodPercent and kFairPercent
 [[nodiscard]] std::string gradeOf(double wrong_percent);
 /// "0.4 % wrong near the surface: good"
 [[nodiscard]] std::string verdictText(double wrong_percent);
 
 /// Grade of the votes inside, by InsideAccuracy::far_face_percent; "unknown" with fewer than kInsidePointsLeast points.
-inline constexpr double kGoodInsidePercent = 3.0;
-inline constexpr double kFairInsidePercent = 10.0;
-inline constexpr std::uint64_t kInsidePointsLeast = 300;
 [[nodiscard]] std::string insideGradeOf(const InsideAccuracy& accuracy);
 /// "at 12 % of the points inside the nearest face does not decide: poor"; "" if it is good or unknown.
 [[nodiscard]] std::string insideVerdictText(const InsideAccuracy& accuracy);

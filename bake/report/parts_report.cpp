@@ -67,11 +67,9 @@ std::string partsAre(std::uint64_t count) {
 
 /// "27 of 82 parts are lost"
 std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
-    const std::uint64_t measured = accuracy.countOf(PartVerdict::kHeld) +
-                                   accuracy.countOf(PartVerdict::kCoarse) +
-                                   accuracy.countOf(PartVerdict::kLost);
-    const bool all = accuracy.countOf(PartVerdict::kSmall) + accuracy.countOf(PartVerdict::kRest) == 0;
-    return std::to_string(count) + " of " + (all ? "" : "the largest ") + countText(measured, "part") +
+    const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest);
+    const std::uint64_t measured = accuracy.parts.size() - rest - accuracy.countOf(PartVerdict::kHidden);
+    return std::to_string(count) + " of " + (rest == 0 ? "" : "the largest ") + countText(measured, "part") +
            (count == 1 ? " is " : " are ") + what;
 }
 
@@ -93,24 +91,40 @@ std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std:
 
 }  // namespace
 
-std::string gradeOf(double wrong_percent, const PartsAccuracy& accuracy) {
-    const std::string whole = gradeOf(wrong_percent);
-    if (whole == "poor" || accuracy.countOf(PartVerdict::kLost) > 0) {
-        return "poor";
+std::string ignoredText(const IgnoredParts& ignored, const std::string& unit) {
+    std::string text;
+    if (ignored.lost > 0) {
+        text = std::to_string(ignored.lost) + " of " + countText(ignored.parts, "part") + ", at most " +
+               lengthText(ignored.size, unit) + " long, " + (ignored.lost == 1 ? "is" : "are") +
+               " not represented";
     }
-    return accuracy.countOf(PartVerdict::kCoarse) > 0 ? "fair" : whole;
+    if (ignored.unmeasured > 0) {
+        text += (text.empty() ? "" : "; ") + std::string("the smallest ") + partsAre(ignored.unmeasured) +
+                "not measured";
+    }
+    return text;
 }
 
-std::string verdictText(double wrong_percent, const PartsAccuracy& accuracy) {
-    const std::string grade = gradeOf(wrong_percent, accuracy);
-    if (grade == gradeOf(wrong_percent)) {
-        return verdictText(wrong_percent);
-    }
+Verdict verdictOf(double wrong_percent, const std::string& grade, const std::string& but,
+                  const IgnoredParts& ignored, const std::string& unit) {
+    const std::string whole = gradeOf(wrong_percent);
+    const std::string tail = ignoredText(ignored, unit);
+    const bool worse = whole != "poor" && whole != grade && grade != "good";
+    return {worse ? grade : whole,
+            (worse ? percentText(wrong_percent) + " wrong near the surface, but " + but + ": " + grade
+                   : verdictText(wrong_percent)) +
+                (tail.empty() ? "" : "; " + tail)};
+}
+
+Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit) {
     const std::uint64_t lost = accuracy.countOf(PartVerdict::kLost);
-    return percentText(wrong_percent) + " wrong near the surface, but " +
-           (lost > 0 ? ofMeasured(lost, accuracy, "lost")
-                     : ofMeasured(accuracy.countOf(PartVerdict::kCoarse), accuracy, "coarse")) +
-           ": " + grade;
+    const std::uint64_t coarse = accuracy.countOf(PartVerdict::kCoarse);
+    return verdictOf(wrong_percent,
+                     lost > 0                              ? "poor"
+                     : coarse > 0 && accuracy.minor_counts ? "fair"
+                                                           : "good",
+                     lost > 0 ? ofMeasured(lost, accuracy, "lost") : ofMeasured(coarse, accuracy, "coarse"),
+                     accuracy.ignored, unit);
 }
 
 std::string partName(const SurfacePart& part, std::size_t index) {
@@ -187,14 +201,10 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
             text;
     }
     text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
-    const std::uint64_t small = accuracy.countOf(PartVerdict::kSmall);
-    if (small > 0) {
-        text += partsAre(small) + "smaller than " + lengthText(accuracy.detail, collider.unit) +
-                " and not judged; --detail LENGTH judges them\n";
-    }
-    if (const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest); rest > 0) {
-        text += partsAre(rest) + "not judged: the largest " +
-                std::to_string(accuracy.parts.size() - rest - small) + " are\n";
+    if (accuracy.ignored.lost > 0) {
+        text += "Parts shorter than " + lengthText(accuracy.detail, collider.unit) +
+                ", or off by less than " + lengthText(kNoticeableExcess * accuracy.detail, collider.unit) +
+                ", do not lower the grade; --detail LENGTH changes that\n";
     }
     return text;
 }
@@ -275,9 +285,28 @@ std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::stri
     return warnings;
 }
 
+void fields(FieldVisitor& visit, const Verdict& verdict) {
+    visit("grade", verdict.grade,
+          {.help =
+               "good: at most 1 % wrong; fair: at most 5 %; at best fair if coarse parts make more than 1 % "
+               "of the surface wrong; poor if a part is lost",
+           .words = kWords<"good", "fair", "poor">});
+    visit("text", verdict.text, {"The grade in words, and how many parts it ignores"});
+}
+
+void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
+    visit("parts", ignored.parts, {"Parts of the mesh"});
+    visit("lost", ignored.lost,
+          {"Parts that are not represented, and too small to lower the grade: more than 25 % of the points "
+           "near each are wrong"});
+    visit("size", ignored.size, {"Longest side of the largest of them", "object units", kFromZero});
+    visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
+}
+
 void fields(FieldVisitor& visit, const PartReport& report) {
     const auto& [accuracy, part, collider] = report;
-    const bool wants = accuracy.state == PartVerdict::kLost || accuracy.state == PartVerdict::kCoarse;
+    const bool wants = accuracy.state == PartVerdict::kLost || accuracy.state == PartVerdict::kCoarse ||
+                       accuracy.state == PartVerdict::kMinor;
     visit("part", accuracy.part + 1,
           {"Number, from 1, in the order of the parts' first triangles", {}, kFromOne});
     visit("node", part.node, {"Node of the file; empty without a name"});
@@ -285,8 +314,8 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     visit("kind", part.kind, {"Shape that it is treated as; a surface is baked as it is"});
     visit("state", accuracy.state,
           {"held: at most 10 % of its points are wrong; coarse: at most 25 %; lost: more; hidden: inside "
-           "other parts; "
-           "small: below the detail; rest: not measured because there are too many parts"});
+           "other parts; minor: more, but too small to be noticed; rest: not measured because there are too "
+           "many parts"});
     visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
     visit("position", part.bounds.center(), {"Middle of its box", "object units"});
     visit("triangles", part.triangles, {"Its triangles"});
@@ -300,7 +329,7 @@ void fields(FieldVisitor& visit, const PartReport& report) {
           {"Side of the finest texels at its middle, or of the finest patches' in its box", "object units",
            kFromZero});
     visit("cure", wants ? std::optional(partCure(part, collider)) : std::nullopt,
-          {"A way to keep it; null unless coarse or lost"});
+          {"A way to keep it; null unless coarse, lost or minor"});
 }
 
 void fields(FieldVisitor& visit, const GroupAccuracy& group) {
@@ -316,15 +345,15 @@ void fields(FieldVisitor& visit, const GroupAccuracy& group) {
 }
 
 void fields(FieldVisitor& visit, const PartsReport& report) {
-    constexpr std::array<std::string_view, kPartVerdicts> kCounts = {"Parts with at most 10 % wrong points",
-                                                                     "Parts with at most 25 % wrong points",
-                                                                     "Parts with more wrong points",
-                                                                     "Parts inside other parts",
-                                                                     "Parts below the detail",
-                                                                     "Parts not measured"};
+    constexpr std::array<std::string_view, kPartVerdicts> kCounts = {
+        "Parts with at most 10 % wrong points",
+        "Parts with at most 25 % wrong points",
+        "Parts with more wrong points",
+        "Parts inside other parts",
+        "Parts with more that are too small to be noticed",
+        "Parts not measured"};
     const PartsAccuracy& accuracy = report.accuracy;
-    visit("detail", accuracy.detail,
-          {"Parts with a smaller longest side are not judged", "object units", kFromZero});
+    visit("detail", accuracy.detail, {"Shorter parts do not lower the grade", "object units", kFromZero});
     visit("count", accuracy.parts.size(), {"Parts of the mesh"});
     for (std::size_t i = 0; i < kPartVerdicts; ++i) {
         visit(kWordsOf<PartVerdict>[i], accuracy.count[i], {kCounts[i]});

@@ -13,10 +13,22 @@
 
 namespace relief {
 
-/// The worse of gradeOf(wrong_percent) and that of the parts: poor if one is lost, fair if one is coarse.
-[[nodiscard]] std::string gradeOf(double wrong_percent, const PartsAccuracy& accuracy);
-/// "0.4 % wrong near the surface: good", "0.3 % wrong near the surface, but 27 of 82 parts are lost: poor"
-[[nodiscard]] std::string verdictText(double wrong_percent, const PartsAccuracy& accuracy);
+struct Verdict {
+    std::string grade;  ///< "good", "fair" or "poor"
+    std::string text;   ///< one line
+};
+
+void fields(FieldVisitor& visit, const Verdict& verdict);
+void fields(FieldVisitor& visit, const IgnoredParts& ignored);
+
+/// "4 of 812 parts, at most 0.003 m long, are not represented; 200 smaller ones are not measured"; "" if none is ignored.
+[[nodiscard]] std::string ignoredText(const IgnoredParts& ignored, const std::string& unit);
+/// \param but  the reason for a grade below gradeOf(wrong_percent)
+/// \return "0.3 % wrong near the surface, but 27 of 82 parts are lost: poor"; then ignoredText().
+[[nodiscard]] Verdict verdictOf(double wrong_percent, const std::string& grade, const std::string& but,
+                                const IgnoredParts& ignored, const std::string& unit);
+/// The grade is the worse of gradeOf(wrong_percent) and that of the parts: poor if one is lost, fair if coarse ones count.
+[[nodiscard]] Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit);
 
 /// "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  of SurfaceParts::parts; counted from 1 in the text.
 [[nodiscard]] std::string partName(const SurfacePart& part, std::size_t index);
@@ -28,7 +40,7 @@ namespace relief {
 [[nodiscard]] std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts,
                                    const Collider& collider);
 
-/// The worst parts, the worst named nodes and materials, and the number of parts that do not count; "" if all are held.
+/// The worst parts, the worst named nodes and materials, and the parts that do not count; "" if all are held.
 [[nodiscard]] std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts,
                                     const Collider& collider);
 /// One line of a warning without the mesh's name; nullopt if no part is lost.

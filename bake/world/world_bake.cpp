@@ -39,9 +39,6 @@ static_assert(kLevelMeshesMax == kWorldCollidersMax && kLevelBodiesMax == kWorld
 /// Options of a bake that decide how it goes, and none of its bytes.
 constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "time_limit",  "no_check",
                                                             "import_memory", "import_time", "max_triangles"};
-/// As a bake of one mesh measures itself.
-constexpr std::uint32_t kCheckPoints = 4000;
-constexpr double kWarnFrom = 5.0;  ///< percent of them on the wrong side
 constexpr std::size_t kKeyDigits = 16;
 /// Of the solids that wait for their bakes since they were planned, about; others are made again.
 constexpr std::uint64_t kTrianglesKept = 4'000'000;
@@ -445,14 +442,26 @@ class WorldBaker {
         const SolidMesh solid = RELIEF_TRY(solidFor(requests_[i], i));
         solids_[i].reset();
         BakeResult result = RELIEF_TRY(bake(requests_[i], solid));
+        PartsAccuracy accuracy;
         if (!request_.bake.no_check) {
             const MeshQuery query = RELIEF_TRY(MeshQuery::build(result.mesh.mesh));
             AccuracyOptions options;
-            options.samples = kCheckPoints;
-            collider.wrong = measureNear(sampleNear(query, options), fieldOf(result.baked.collider));
+            options.samples = kSelfCheckPoints;
+            const Field baked = fieldOf(result.baked.collider);
+            collider.wrong = measureNear(sampleNear(query, options), baked);
+            if (solid.parts.parts.size() > 1) {
+                PartOptions by_parts = kSelfCheckParts;
+                by_parts.scale = collider.largest_scale;
+                accuracy = measureParts(query, solid.parts, baked, by_parts);
+            }
+            collider.verdict = verdictOf(collider.wrong->total(), accuracy, level_.unit);
+            collider.ignored.add(accuracy.ignored, collider.largest_scale);
         }
         collider.warnings = result.baked.report.warnings;
-        if (collider.wrong && collider.wrong->total() > kWarnFrom) {
+        if (const auto lost = lostPartsWarning(accuracy, solid.parts, result.baked.collider)) {
+            collider.warnings.push_back(collider.mesh + ": " + *lost);
+        }
+        if (collider.wrong && collider.wrong->total() > kGoodPercent) {
             const bool floats = floatsLimit(*result.mesh.mesh, collider.wrong->total());
             collider.warnings.push_back(
                 collider.mesh + ": " + shortNumber(collider.wrong->total()) + " % wrong near the surface" +
@@ -482,6 +491,7 @@ class WorldBaker {
             take(tile.collider, bytes, part);
             if (!parts.empty()) {
                 part.warnings.clear();
+                part.ignored = {};
             }
             parts.push_back(std::move(part));
         }

@@ -16,6 +16,7 @@
 #include "bake/director/bake_request.h"
 #include "bake/measure/accuracy.h"
 #include "bake/recipe/depfile.h"
+#include "bake/report/parts_report.h"
 #include "bake/world/world_tiles.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
@@ -57,6 +58,8 @@ struct WorldColliderResult {
     std::optional<WorldFile> coarse;
     std::uint64_t coarse_bytes = 0;     ///< of that container
     std::optional<WrongShare> wrong;    ///< near its mesh's surface; of one that was baked
+    std::optional<Verdict> verdict;     ///< if measured; of tiles all have that of the mesh
+    IgnoredParts ignored;               ///< sizes in the world; of tiles those of the mesh are at the first
     std::vector<std::string> warnings;  ///< one line each; of tiles those of the mesh are at the first
     double ms = 0.0;                    ///< of its mesh's bake; of tiles at the first
     Error error{};                      ///< of one that failed

@@ -225,6 +225,10 @@ class WorldChecker {
     void findLostParts() {
         const std::vector<std::size_t> first = firstBodies();
         std::vector<bool> done(queries_.size(), false);
+        std::vector<double> scales(queries_.size(), 0.0);
+        for (const LevelBody& body : level_.bodies) {
+            scales[body.mesh] = std::max(scales[body.mesh], body.scale);
+        }
         PartOptions options;
         options.seed = request_.check.seed;
         options.points_all = std::min(options.points_all, request_.check.samples / queries_.size());
@@ -234,6 +238,7 @@ class WorldChecker {
                 continue;
             }
             done[mesh] = true;
+            options.scale = scales[mesh];
             std::vector<Field> tiles;
             for (std::size_t k = 0; k < tiles_[i]; ++k) {
                 tiles.push_back(fieldOf(field_.colliderOf(first[i] + k)));
@@ -247,10 +252,13 @@ class WorldChecker {
                 return least;
             };
             const PartsAccuracy accuracy = measureParts(queries_[mesh], parts_[mesh], field, options);
+            result_.ignored.add(accuracy.ignored, options.scale);
             if (std::optional<std::string> text =
                     lostPartsWarning(accuracy, parts_[mesh], field_.colliderOf(first[i]))) {
                 result_.lost.push_back(
                     {queries_[mesh].mesh().name, accuracy.countOf(PartVerdict::kLost), std::move(*text)});
+            } else if (accuracy.countOf(PartVerdict::kCoarse) > 0 && accuracy.minor_counts) {
+                ++result_.coarse;
             }
         }
     }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bake/director/mesh_check.h"
-#include "bake/measure/accuracy.h"
+#include "bake/measure/part_accuracy.h"
 #include "bake/world/world_places.h"
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
@@ -48,6 +48,8 @@ struct WorldAccuracy {
     std::vector<std::size_t> worst;    ///< bodies with points on the wrong side, at most ten, the worst first
     std::vector<WorldPlace> places;    ///< of those, in the same order
     std::vector<LostParts> lost;       ///< meshes that lose parts, in the order of the level
+    std::size_t coarse = 0;            ///< other meshes with coarse parts
+    IgnoredParts ignored;              ///< of all meshes; sizes in the world
     std::vector<std::string> warnings;
     std::vector<std::string> dependencies;  ///< files that the level's file refers to
     double seconds = 0.0;

@@ -18,6 +18,14 @@ std::uint64_t gpuBytesOf(const WorldField& field) {
     return bytes;
 }
 
+Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit) {
+    const bool lost = !accuracy.lost.empty();
+    const std::string grade = lost ? "poor" : accuracy.coarse > 0 ? "fair" : "good";
+    const std::string but = countText(lost ? accuracy.lost.size() : accuracy.coarse, "mesh", "meshes") +
+                            (lost ? " lost parts" : " with coarse parts");
+    return verdictOf(accuracy.all.total(), grade, but, accuracy.ignored, unit);
+}
+
 std::string WorldPlaceReport::advice() const {
     if (body().wrong.total() <= kGoodPercent) {
         return "";
@@ -80,7 +88,7 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
             " of the points near the surface are on the wrong side (" +
             percentText(accuracy->all.false_inside) + " inside by mistake, " +
             percentText(accuracy->all.false_outside) + " outside), of " + countText(points, "point") +
-            " for each body\n";
+            " for each body\n" + verdictOf(*accuracy, field.world().unit).text + "\n";
     for (const LostParts& mesh : accuracy->lost) {
         text += (&mesh == &accuracy->lost.front() ? "\nLost parts, each by its own size:\n  " : "  ") +
                 mesh.mesh + ": " + mesh.text + "\n";
@@ -153,6 +161,9 @@ void fields(FieldVisitor& visit, const WorldCheckJson& report) {
     visit("colliders", world.colliders.size(), {"Colliders"});
     visit("gpu_bytes", report.field != nullptr ? gpuBytesOf(*report.field) : std::uint64_t{0},
           {"Bytes that the colliders take on the GPU", "bytes"});
+    visit("verdict",
+          report.accuracy != nullptr ? std::optional(verdictOf(accuracy, world.unit)) : std::nullopt,
+          {"Summary; null without --mesh"});
     visit("accuracy",
           groupIf(report.accuracy != nullptr,
                   [&](FieldVisitor& inner) {
@@ -164,6 +175,8 @@ void fields(FieldVisitor& visit, const WorldCheckJson& report) {
                       inner("places", placesOf(report),
                             {"Of those the place where each is typically wrong, and what to do"});
                       inner("lost_parts", accuracy.lost, {"Meshes that lose parts"});
+                      inner("ignored_parts", accuracy.ignored,
+                            {"Parts that the grade ignores because they are small; sizes in the world"});
                       inner("bodies", accuracy.bodies, {"Bodies, in the order of the level"});
                       inner("warnings", accuracy.warnings, {"Warnings, one line each"});
                       inner("seconds", accuracy.seconds, {"Time of the measurement", "s", kFromZero});

@@ -6,11 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
 #include "bake/world/world_check.h"
 #include "formats/fields/field.h"
 
 namespace relief {
+
+/// The worse of gradeOf(accuracy.all) and those of its meshes' parts.
+[[nodiscard]] Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit);
 
 /// The contents of the world, and how wrong it is. \param accuracy  null without a level.
 [[nodiscard]] std::string worldCheckText(const WorldField& field, const std::string& name,

@@ -29,6 +29,13 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
             std::to_string(kept) + " up to date; " + bytesText(result.gpuBytes()) +
             (result.budget ? " of " + bytesText(*result.budget) : "") + "; " + shortNumber(ms / 1000.0) +
             " s\n";
+    IgnoredParts ignored;
+    for (const WorldColliderResult& c : result.colliders) {
+        ignored.add(c.ignored, 1.0);
+    }
+    if (const std::string parts = ignoredText(ignored, result.world.unit); !parts.empty()) {
+        text += parts + "\n";
+    }
     if (!result.removed.empty()) {
         text += "removed " + countText(result.removed.size(), "container") +
                 " that only the world from before named\n";
@@ -58,6 +65,9 @@ void fields(FieldVisitor& visit, const WorldColliderReport& report) {
            "and "
            "measured",
            "%", kPercentRange});
+    visit("verdict", c.verdict, {"Summary; null unless it was baked and measured"});
+    visit("ignored_parts", c.ignored,
+          {"Parts of its mesh that the grade ignores because they are small; sizes in the world"});
     visit(
         "ms", c.ms,
         {"Time of its mesh's bake; 0 if it was up to date, and of all tiles but the first", "ms", kFromZero});

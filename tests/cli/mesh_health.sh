@@ -74,7 +74,8 @@ json stdout 'd["verdict"]["grade"] == "poor" and d["verdict"]["lost_parts"] == 9
 json stdout 'len(d["parts"]["groups"]) == 10 and all(p["size"] == 9 and p["state"] == "lost" for p in d["parts"]["worst"][:9])'
 grep -q -- '--detail' stderr || die "no cure: $(cat stderr)"
 expect 0 "$relief" check slab.relief --mesh slab.obj --unit m --samples 20000 --max-error 2 --detail 10 --json
-json stdout 'd["verdict"]["grade"] == "good" and d["parts"]["small"] == 9 and d["passed"]'
+json stdout 'd["verdict"]["grade"] == "good" and d["parts"]["minor"] == 9 and d["passed"]'
+json stdout 'd["verdict"]["ignored_parts"]["lost"] == 9 and "; 9 of 10 parts, at most 9 m long, are not represented" in d["verdict"]["text"]'
 
 # A part astray is named, and so is what no map sees because of it.
 expect 0 "$relief" bake stray.obj -o stray.relief --budget 64kB

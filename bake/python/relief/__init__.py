@@ -286,6 +286,8 @@ class Accuracy:
     """Of points near the surface: no map votes."""
     lost_parts: int
     """Parts of the mesh of whose points, by the part's own size, more than a quarter are on the wrong side."""
+    ignored_parts: int
+    """The same of parts that are too small to lower the grade."""
     grade: str
     """ "good", "fair" or "poor", as `relief check` grades: the worse of the whole's and the worst part's."""
     places: tuple[WorstPlace, ...] = ()

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <glm/geometric.hpp>
 
@@ -322,6 +323,29 @@ TEST(Director, BakesAMeshInMemory) {
     EXPECT_EQ(solid->collider.maps, planned->baked.collider.maps);
     request.import.unit = "mm";
     EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
+}
+
+TEST(Director, WarnsWhereTheGradeIsNotGood) {
+    // A lattice of four by four rods.
+    std::vector<TriangleMesh> rods;
+    for (int i = 0; i < 4; ++i) {
+        rods.push_back(makeBoxMesh({0.0, i - 1.5, 0.0}, {2.0, 0.05, 0.05}));
+        rods.push_back(makeBoxMesh({i - 1.5, 0.0, 0.0}, {0.05, 2.0, 0.05}));
+    }
+    BakeRequest request;
+    for (const auto& [budget, grade] : {std::pair{32'000U, "fair"}, {64'000U, "good"}}) {
+        request.budget = budget;
+        const Result<BakeResult> baked = bake(request, {}, joined(rods));
+        ASSERT_TRUE(baked) << baked.error().message;
+        EXPECT_EQ(gradeOf(baked->wrong->total()), grade) << baked->wrong->total();
+        const std::string warned = "% wrong near the surface; try --budget";
+        EXPECT_EQ(std::ranges::any_of(
+                      baked->baked.report.warnings,
+                      [&](const std::string& warning) { return warning.find(warned) != std::string::npos; }),
+                  budget == 32'000U);
+        EXPECT_NE(bakeText(baked->summary(false), "x.relief", 1).find("% wrong near the surface"),
+                  std::string::npos);
+    }
 }
 
 TEST(Director, AdvisesNothingButTheOriginWhereFloatsAreCoarse) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "bake/report/parts_report.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/shaped.h"
 #include "tests/bake/threads.h"
@@ -44,7 +45,9 @@ const glm::dvec3 kPillarHalf(1.0, 4.5, 1.0);
 TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
     const TriangleMesh slab = makeBoxMesh(kSlabCenter, kSlabHalf);
     const TriangleMesh pillar = makeBoxMesh(kPillarCenter, kPillarHalf);
-    const ShapedMesh shape = shaped(joined({slab, pillar}));
+    TriangleMesh mesh = joined({slab, pillar});
+    mesh.unit = "m";
+    const ShapedMesh shape = shaped(mesh);
     ASSERT_EQ(shape.parts.parts.size(), 2U);
 
     const PartsAccuracy right = measured(shape, fieldOfBoxes({slab.bounds, pillar.bounds}));
@@ -64,9 +67,12 @@ TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
     options.detail = 9.5;
     const PartsAccuracy coarse = measured(shape, fieldOfBoxes({slab.bounds}), options);
     EXPECT_EQ(coarse.countOf(PartVerdict::kLost), 0U) << "below the detail";
-    EXPECT_EQ(coarse.countOf(PartVerdict::kSmall), 1U);
-    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, ""), 5.0);
+    EXPECT_EQ(coarse.countOf(PartVerdict::kMinor), 1U);
+    EXPECT_EQ(coarse.ignored.lost, 1U);
+    EXPECT_EQ(coarse.ignored.size, 9.0);
+    EXPECT_NEAR(defaultDetail(shape.parts, ""), 0.01 * std::sqrt(2.0) * 5000.0, 0.01);
     EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m"), 0.1);
+    EXPECT_DOUBLE_EQ(defaultDetail(shape.parts, "m", 100.0), 0.001);
 
     // Filled up, as a texel of 20 m would do it.
     Bounds swollen = pillar.bounds;
@@ -75,6 +81,130 @@ TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
     const PartsAccuracy filled = measured(shape, fieldOfBoxes({slab.bounds, swollen}));
     EXPECT_EQ(filled.countOf(PartVerdict::kLost), 1U);
     EXPECT_GT(filled.parts.front().wrong.false_inside, 40.0);
+}
+
+PartOptions fewPoints() {
+    PartOptions options;
+    options.points = 100;
+    return options;
+}
+
+/// A slab of 200 with 60 boxes on it, of which the field knows none.
+PartsAccuracy measuredWithoutBoxes(double side, const std::string& unit) {
+    const TriangleMesh slab = makeBoxMesh({0, -1, 0}, {100, 1, 100});
+    std::vector<TriangleMesh> all = {slab};
+    for (int i = 0; i < 60; ++i) {
+        all.push_back(makeBoxMesh({12.0 * (i % 10) - 55.0, 0.4 * side, 12.0 * (i / 10) - 30.0},
+                                  glm::dvec3(0.5 * side)));
+    }
+    TriangleMesh mesh = joined(all);
+    mesh.unit = unit;
+    return measured(shaped(mesh), fieldOfBoxes({slab.bounds}), fewPoints());
+}
+
+TEST(PartAccuracy, SmallLostPartsDoNotCountAndAreCounted) {
+    for (const auto& [side, unit] : {std::pair{0.05, "m"}, {0.05, ""}, {0.19, ""}, {2.0, ""}}) {
+        const PartsAccuracy found = measuredWithoutBoxes(side, unit);
+        EXPECT_EQ(found.countOf(PartVerdict::kLost), 0U) << side;
+        EXPECT_EQ(found.ignored.parts, 61U);
+        EXPECT_EQ(found.ignored.lost, 60U) << side;
+        EXPECT_NEAR(found.ignored.size, side, 1e-5);
+        const Verdict verdict = verdictOf(0.015, found, unit);
+        EXPECT_EQ(verdict.grade, "good");
+        EXPECT_NE(verdict.text.find("; 60 of 61 parts, at most "), std::string::npos) << verdict.text;
+        EXPECT_NE(verdict.text.find(" not represented"), std::string::npos) << verdict.text;
+    }
+    // At 10 cm a person notices them, and so does one who looks at all of the slab at 4.
+    for (const auto& [side, unit] : {std::pair{0.101, "m"}, {4.0, ""}}) {
+        const PartsAccuracy found = measuredWithoutBoxes(side, unit);
+        EXPECT_EQ(found.countOf(PartVerdict::kLost), 60U) << side;
+        EXPECT_EQ(verdictOf(0.015, found, unit).grade, "poor");
+    }
+}
+
+TEST(PartAccuracy, SmallLostPartsCountTogether) {
+    // 200 cubes, each 0.6 % of the diagonal of all: the loss of one is not noticed.
+    std::vector<TriangleMesh> cubes;
+    for (int i = 0; i < 200; ++i) {
+        cubes.push_back(makeBoxMesh({i % 10, i / 10 % 10, i / 100}, glm::dvec3(0.04)));
+    }
+    const ShapedMesh shape = shaped(joined(cubes));
+    EXPECT_GT(defaultDetail(shape.parts, ""), 0.08);
+    EXPECT_EQ(measured(shape, fieldOfBoxes({}), fewPoints()).countOf(PartVerdict::kLost), 200U);
+    // A hundredth of the surface is absent; half of the points beside it are wrong.
+    std::vector<Bounds> most;
+    for (std::size_t i = 2; i < cubes.size(); ++i) {
+        most.push_back(cubes[i].bounds);
+    }
+    const PartsAccuracy few = measured(shape, fieldOfBoxes(most), fewPoints());
+    EXPECT_EQ(few.countOf(PartVerdict::kLost), 0U);
+    EXPECT_EQ(few.ignored.lost, 2U);
+    // A given detail holds.
+    PartOptions options = fewPoints();
+    options.detail = 0.1;
+    EXPECT_EQ(measured(shape, fieldOfBoxes({}), options).ignored.lost, 200U);
+    options.detail = 0.05;
+    EXPECT_EQ(measured(shape, fieldOfBoxes(most), options).countOf(PartVerdict::kLost), 2U);
+}
+
+TEST(PartAccuracy, ARodOfALatticeCountsByItsLength) {
+    std::vector<TriangleMesh> rods;
+    std::vector<Bounds> bounds;
+    for (int i = 0; i < 10; ++i) {
+        rods.push_back(makeBoxMesh({0.0, i, 0.0}, {5.0, 0.02, 0.02}));
+        rods.push_back(makeBoxMesh({i - 4.5, 4.5, 0.1}, {0.02, 5.0, 0.02}));
+    }
+    for (const TriangleMesh& rod : rods) {
+        bounds.push_back(rod.bounds);
+    }
+    bounds.pop_back();
+    const PartsAccuracy found = measured(shaped(joined(rods)), fieldOfBoxes(bounds));
+    EXPECT_EQ(found.countOf(PartVerdict::kLost), 1U);
+    EXPECT_EQ(verdictOf(0.5, found, "").grade, "poor");
+}
+
+TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
+    // A plate of 0.4 beside a cube of 10 is too thick: by 0.01 nobody notices, by 0.1 one does.
+    const TriangleMesh cube = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
+    const TriangleMesh plate = makeBoxMesh({0, 8, 0}, {0.2, 0.01, 0.2});
+    const ShapedMesh shape = shaped(joined({cube, plate}));
+    for (const auto& [excess, lost] : {std::pair{0.01F, 0U}, {0.1F, 1U}}) {
+        Bounds thick = plate.bounds;
+        thick.min -= glm::vec3(excess);
+        thick.max += glm::vec3(excess);
+        const PartsAccuracy found = measured(shape, fieldOfBoxes({cube.bounds, thick}));
+        EXPECT_EQ(found.countOf(PartVerdict::kLost), lost) << excess;
+        EXPECT_EQ(found.ignored.lost, 1U - lost) << excess;
+    }
+    // A plate that is absent counts, however thin.
+    EXPECT_EQ(measured(shape, fieldOfBoxes({cube.bounds})).countOf(PartVerdict::kLost), 1U);
+}
+
+TEST(PartAccuracy, CoarsePartsCountByTheirArea) {
+    // Two cubes that are too large by half the distance of their points.
+    for (const double side : {10.0, 0.5}) {
+        const TriangleMesh other = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
+        const TriangleMesh cube = makeBoxMesh({0, 12, 0}, glm::dvec3(0.5 * side));
+        Bounds large = cube.bounds;
+        large.min -= glm::vec3(static_cast<float>(0.0025 * side));
+        large.max += glm::vec3(static_cast<float>(0.0025 * side));
+        const PartsAccuracy found =
+            measured(shaped(joined({other, cube})), fieldOfBoxes({other.bounds, large}));
+        EXPECT_EQ(found.countOf(PartVerdict::kCoarse), 1U);
+        EXPECT_EQ(verdictOf(0.5, found, "").grade, side > 1.0 ? "fair" : "good");
+    }
+}
+
+TEST(PartAccuracy, TheSmallestOfTooManyPartsAreCounted) {
+    PartOptions options;
+    options.parts_max = 50;
+    std::vector<TriangleMesh> boxes;
+    for (int i = 0; i < 60; ++i) {
+        boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(1.0)));
+    }
+    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes({}), options);
+    EXPECT_EQ(found.ignored.unmeasured, 10U);
+    EXPECT_NE(verdictOf(0.0, found, "").text.find("10 parts are not measured"), std::string::npos);
 }
 
 TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
@@ -98,25 +228,27 @@ TEST(PartAccuracy, AShellIsWrongBeyondTheThicknessThatWasAskedFor) {
     shell.max.y = 8.0F + static_cast<float>(0.5 * kThick);
     const Field baked = fieldOfBoxes({body.bounds, shell});
 
-    const PartsAccuracy asked = measured(shaped(mesh, {ShapeAs::kAuto, kThick, {}}), baked);
+    PartOptions fine;
+    fine.detail = 0.01;
+    const PartsAccuracy asked = measured(shaped(mesh, {ShapeAs::kAuto, kThick, {}}), baked, fine);
     EXPECT_EQ(asked.countOf(PartVerdict::kHeld), 2U);
 
     const ShapedMesh by_default = shaped(mesh, {ShapeAs::kAuto, kThick, {}, true});
     EXPECT_DOUBLE_EQ(by_default.parts.parts[1].thickness, kThick);
     EXPECT_NEAR(by_default.parts.parts[1].right_thickness, 0.01, 1e-6);
-    const PartsAccuracy thick = measured(by_default, baked);
+    const PartsAccuracy thick = measured(by_default, baked, fine);
     EXPECT_EQ(thick.countOf(PartVerdict::kLost), 1U);
     EXPECT_EQ(thick.parts.front().part, 1U);
     EXPECT_GT(thick.parts.front().wrong.false_inside, 40.0);
 
     // The leaf may be too thick in the solid, but a field without it is no better.
-    const PartsAccuracy absent = measured(by_default, fieldOfBoxes({body.bounds}));
+    const PartsAccuracy absent = measured(by_default, fieldOfBoxes({body.bounds}), fine);
     EXPECT_EQ(absent.countOf(PartVerdict::kLost), 1U);
     EXPECT_EQ(absent.parts.front().part, 1U);
     EXPECT_GT(absent.parts.front().wrong.false_outside, 40.0);
     shell.min.y = 8.0F - 0.005F;
     shell.max.y = 8.0F + 0.005F;
-    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell})).countOf(PartVerdict::kHeld), 2U);
+    EXPECT_EQ(measured(by_default, fieldOfBoxes({body.bounds, shell}), fine).countOf(PartVerdict::kHeld), 2U);
 }
 
 TEST(PartAccuracy, TheDefaultThicknessGoesByThePart) {

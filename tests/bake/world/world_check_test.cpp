@@ -4,6 +4,7 @@
 
 #include "bake/recipe/recipe_jobs.h"
 #include "bake/world/world_check_report.h"
+#include "bake/world/world_report.h"
 #include "tests/bake/world/level_bakes.h"
 
 namespace relief::test {
@@ -67,10 +68,41 @@ TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
     EXPECT_EQ(coarse.lost[0].mesh, "house");
     EXPECT_GT(coarse.lost[0].lost, 10U) << coarse.lost[0].text;
     EXPECT_FALSE(coarse.passes(1.0F));
+    const Verdict verdict = verdictOf(coarse, "");
+    EXPECT_EQ(verdict.grade, "poor");
+    EXPECT_NE(verdict.text.find("but 1 mesh lost parts"), std::string::npos) << verdict.text;
     EXPECT_TRUE(coarse.passes({}));
     const WorldAccuracy fine = check(0.04, 300'000);
     EXPECT_TRUE(fine.lost.empty()) << fine.lost[0].text;
     EXPECT_TRUE(fine.passes(1.0F));
+}
+
+TEST_F(WorldCheck, CountsSmallLostPartsOfAllMeshes) {
+    std::vector<TriangleMesh> yard = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};
+    for (int i = 0; i < 20; ++i) {
+        yard.push_back(makeBoxMesh({0.9 * i - 9.0, 0.252, 0.2 * i - 2.0}, glm::dvec3(0.005)));
+    }
+    write({{"yard", joined(yard)}});
+    request_.bake.budget = 24'000;
+    const WorldBakeResult baked = bake("w");
+    ASSERT_TRUE(baked.colliders[0].verdict);
+    EXPECT_EQ(baked.colliders[0].verdict->grade, "good");
+    EXPECT_GT(baked.colliders[0].ignored.lost, 15U);  // of 16 points each
+    EXPECT_NE(worldBakeText(baked, "w", 1.0, false).find(" of 21 parts, at most 0.01 long, are not"),
+              std::string::npos);
+    Result<LoadedWorld> loaded = loadWorld(folder_.path() / "w" / kWorldFileName, {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    WorldCheckRequest request;
+    request.check.mesh = (folder_.path() / "level.obj").string();
+    request.check.samples = 2000;
+    const WorldField field(std::move(*loaded));
+    const Result<WorldAccuracy> accuracy = checkWorld(request, field);
+    ASSERT_TRUE(accuracy) << accuracy.error().message;
+    EXPECT_TRUE(accuracy->lost.empty());
+    EXPECT_GT(accuracy->ignored.lost, 15U);
+    EXPECT_EQ(verdictOf(*accuracy, "").grade, "good");
+    EXPECT_NE(worldCheckText(field, "w", &*accuracy).find(" of 21 parts, at most 0.01 long, are not"),
+              std::string::npos);
 }
 
 }  // namespace
