@@ -22,7 +22,7 @@ inline constexpr double kPartLost = 25.0;
 
 /// The longest side from which on a lost part counts: so much of the asset's diagonal, twice the distance of the points that
 /// the asset is judged by; in metres at most so long, for a person notices a brick on a landscape. Smaller and coarse parts
-/// count if together they make more than kGoodPercent of the surface wrong.
+/// count if together they miss more than kGoodPercent of the points near the surface.
 inline constexpr double kNoticeableShare = 0.01;
 inline constexpr double kNoticeableMetres = 0.1;
 /// A lost part that is there, but has another surface, counts if it is lost by points so far off, too, in units of that length:

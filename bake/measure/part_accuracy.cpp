@@ -221,17 +221,18 @@ int rankOf(PartVerdict state) {
     return kRanks[static_cast<std::size_t>(state)];
 }
 
-/// Percent of the exposed surface that minor and coarse parts make wrong.
-double minorWrong(const PartsAccuracy& all, const SurfaceParts& parts) {
-    double wrong = 0.0;
+/// Percent of the points near the exposed surface that minor and coarse parts miss. What exceeds them shows in the points of the
+/// whole, which seldom lie inside a thin part.
+double minorMissed(const PartsAccuracy& all, const SurfaceParts& parts) {
+    double missed = 0.0;
     double area = 0.0;
     for (const PartAccuracy& one : all.parts) {
         const SurfacePart& part = parts.parts[one.part];
         const bool minor = one.state == PartVerdict::kMinor || one.state == PartVerdict::kCoarse;
         area += one.state == PartVerdict::kHidden ? 0.0 : part.area;
-        wrong += minor ? part.area * one.wrong.total() : 0.0;
+        missed += minor ? part.area * one.wrong.false_outside : 0.0;
     }
-    return wrong / area;
+    return missed / area;
 }
 
 }  // namespace
@@ -280,10 +281,11 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
     tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t k) {
         all.parts[order[k]] = meter.measure(order[k], k < large ? each : std::min(options.points_min, each));
     });
-    all.minor_counts = minorWrong(all, parts) > kGoodPercent;
+    all.minor_counts = minorMissed(all, parts) > kGoodPercent;
     if (all.minor_counts && !options.detail) {
         for (PartAccuracy& one : all.parts) {
-            one.state = one.state == PartVerdict::kMinor ? PartVerdict::kLost : one.state;
+            const bool missing = one.wrong.false_outside > one.wrong.false_inside;
+            one.state = one.state == PartVerdict::kMinor && missing ? PartVerdict::kLost : one.state;
         }
     }
     Groups nodes(false);

@@ -287,9 +287,8 @@ std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::stri
 
 void fields(FieldVisitor& visit, const Verdict& verdict) {
     visit("grade", verdict.grade,
-          {.help =
-               "good: at most 1 % wrong; fair: at most 5 %; at best fair if coarse parts make more than 1 % "
-               "of the surface wrong; poor if a part is lost",
+          {.help = "good: at most 1 % wrong; fair: at most 5 %; at best fair if coarse parts miss more than "
+                   "1 % of the points; poor if a part is lost",
            .words = kWords<"good", "fair", "poor">});
     visit("text", verdict.text, {"The grade in words, and how many parts it ignores"});
 }

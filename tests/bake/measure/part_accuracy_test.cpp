@@ -181,15 +181,15 @@ TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
 }
 
 TEST(PartAccuracy, CoarsePartsCountByTheirArea) {
-    // Two cubes that are too large by half the distance of their points.
+    // Cubes that are too small by half the distance of their points.
     for (const double side : {10.0, 0.5}) {
         const TriangleMesh other = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
         const TriangleMesh cube = makeBoxMesh({0, 12, 0}, glm::dvec3(0.5 * side));
-        Bounds large = cube.bounds;
-        large.min -= glm::vec3(static_cast<float>(0.0025 * side));
-        large.max += glm::vec3(static_cast<float>(0.0025 * side));
+        Bounds less = cube.bounds;
+        less.min += glm::vec3(static_cast<float>(0.0025 * side));
+        less.max -= glm::vec3(static_cast<float>(0.0025 * side));
         const PartsAccuracy found =
-            measured(shaped(joined({other, cube})), fieldOfBoxes({other.bounds, large}));
+            measured(shaped(joined({other, cube})), fieldOfBoxes({other.bounds, less}));
         EXPECT_EQ(found.countOf(PartVerdict::kCoarse), 1U);
         EXPECT_EQ(verdictOf(0.5, found, "").grade, side > 1.0 ? "fair" : "good");
     }
