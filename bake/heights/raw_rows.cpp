@@ -28,6 +28,12 @@ RawFormat formatOf(const HeightsSpec& spec) {
     return {spec.type.value_or(SampleType::kUint16), spec.order.value_or(ByteOrder::kLittle)};
 }
 
+/// NaN unless `spec` states both the hole and this format.
+double holeOf(const HeightsSpec& spec, const RawFormat& format) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return format == formatOf(spec) ? spec.hole.value_or(kNone) : kNone;
+}
+
 /// Numbers without a header.
 class RawRows : public SampleRows {
   public:
@@ -109,7 +115,7 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
         static_cast<void>(
             RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
     }
-    const std::optional<double> hole = format == formatOf(spec) ? spec.hole : std::nullopt;
+    const double hole = holeOf(spec, format);
     const auto isHeight = [&](float sample) {
         return std::abs(double{sample}) <= kHeightMax && double{sample} != hole;
     };
@@ -158,7 +164,7 @@ bool wrapsAround(std::span<const std::byte> bytes, const HeightsSpec& spec, cons
     }
     const double middle = format.type == SampleType::kInt16 ? 0.0 : 32768.0;
     constexpr double kClear = 16384.0;  // above all heights in metres
-    const std::optional<double> hole = format == formatOf(spec) ? spec.hole : std::nullopt;
+    const double hole = holeOf(spec, format);
     std::set<float> values;
     struct Steps {
         double sum = 0.0;

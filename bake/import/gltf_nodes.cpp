@@ -163,28 +163,30 @@ Result<void> checkLevels(const std::vector<GltfNode>& nodes,
     std::vector<State> states(nodes.size(), State::kNew);
     std::vector<std::pair<std::uint32_t, std::size_t>> path;  // nodes, and the next of what each leads to
     for (std::uint32_t first = 0; first < nodes.size(); ++first) {
-        for (std::optional<std::uint32_t> next = first; next || !path.empty();) {
-            if (next && states[*next] == State::kNew) {
-                states[*next] = State::kOpen;
-                path.emplace_back(*next, 0);
-            } else if (next && states[*next] == State::kOpen) {
-                return nodes[*next].place.wrong(
+        if (states[first] == State::kNew) {
+            states[first] = State::kOpen;
+            path.emplace_back(first, 0);
+        }
+        while (!path.empty()) {
+            const std::uint32_t node = path.back().first;
+            const std::size_t at = path.back().second++;
+            const std::vector<std::uint32_t>& children = nodes[node].children;
+            if (at == children.size() + levels[node].size()) {
+                states[node] = State::kDone;
+                path.pop_back();
+                continue;
+            }
+            const std::uint32_t next =
+                at < children.size() ? children[at] : levels[node][at - children.size()];
+            if (states[next] == State::kOpen) {
+                return nodes[next].place.wrong(
                     "is a lower level of detail of itself (MSFT_lod), so that none is shown; remove its "
                     "number "
                     "from the ids");
             }
-            next.reset();
-            if (path.empty()) {
-                continue;
-            }
-            auto& [node, at] = path.back();
-            const std::vector<std::uint32_t>& children = nodes[node].children;
-            if (at < children.size() + levels[node].size()) {
-                next = at < children.size() ? children[at] : levels[node][at - children.size()];
-                ++at;
-            } else {
-                states[node] = State::kDone;
-                path.pop_back();
+            if (states[next] == State::kNew) {
+                states[next] = State::kOpen;
+                path.emplace_back(next, 0);
             }
         }
     }
