@@ -146,7 +146,7 @@ def test_arrays_are_baked_as_their_file_is(mesh):
 
 
 CHECKS = [dict(samples=3000), dict(samples=3000, detail=0.5),
-          dict(samples=3000, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100)]
+          dict(samples=3000, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, hidden="keep")]
 
 
 @pytest.mark.parametrize("bake,arguments", [({}, arguments) for arguments in CHECKS] + [
