@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/base/temporary_file.h"
 
+#include <fcntl.h>
 #include <sys/file.h>
 #include <sys/random.h>
 #include <sys/stat.h>
@@ -120,7 +121,11 @@ int TemporaryFile::fill(std::span<const std::byte> bytes, std::optional<mode_t> 
     if (mode && ::fchmod(file_.get(), *mode) != 0) {
         return errno;
     }
-    return syncToDisk(file_.get());
+    if (const int code = syncToDisk(file_.get())) {
+        return code;
+    }
+    lock_ = Descriptor(::fcntl(file_.get(), F_DUPFD_CLOEXEC, 0));
+    return file_.close();
 }
 
 int TemporaryFile::renameTo(const fs::path& target) {
@@ -128,7 +133,7 @@ int TemporaryFile::renameTo(const fs::path& target) {
         return errno;
     }
     slot_->live = false;
-    static_cast<void>(file_.close());  // and with it the lock; it is on disk
+    lock_.reset();
     return 0;
 }
 

@@ -40,6 +40,7 @@ class TemporaryFile {
     [[nodiscard]] int createOnce(const std::filesystem::path& folder, mode_t mode);
 
     Descriptor file_;
+    Descriptor lock_;       // of the closed file, for the time until it is renamed
     Slot* slot_ = nullptr;  // of the list of names
 };
 
