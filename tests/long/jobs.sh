@@ -135,10 +135,10 @@ sanitized() {
     tested "$build" "$@"
 }
 
-job nightly 35 sanitize
+job nightly 33 sanitize
 job_sanitize() { sanitized -LE cli; }
 
-job nightly 3 replay
+job nightly 5 replay
 job_replay() {
     local source targets=() status=0
     for source in tests/fuzz/fuzz_*.cpp; do targets+=("relief_replay_$(basename "${source#*/fuzz_}" .cpp)"); done
@@ -150,7 +150,7 @@ job_replay() {
     return $status
 }
 
-job nightly 30 coverage
+job nightly 25 coverage
 job_coverage() {
     scripts/coverage.sh | tee "$work/coverage.log"
     say "$(sed -n 's/^\(lines\|branches\): \([0-9.]*%\).*/\2 of \1/p' "$work/coverage.log" | paste -sd, | sed 's/,/, /')"
@@ -192,7 +192,7 @@ print(f"import: {test['tried']} files, {test['read']} of them read, the others r
 P
 }
 
-job nightly 3 level
+job nightly 5 level
 job_level() {
     scripts/setup.sh sweethome3d-furniture
     release relief
