@@ -10,6 +10,7 @@
 
 #include "bake/import/animated_import.h"
 #include "bake/import/mesh_import.h"
+#include "bake/measure/self_check.h"
 #include "bake/pipeline/budget_search.h"
 #include "bake/plan/plan_file.h"
 #include "bake/report/parts_report.h"
@@ -398,14 +399,9 @@ class Director {
         const Stopwatch watch;
         tell(watcher_.begin, "measuring the collider");
         const PreparedMesh& mesh = result_.mesh.mesh;
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        AccuracyOptions options;
-        options.samples = kSelfCheckPoints;
-        const Field field = fieldOf(result_.baked.collider);
-        result_.wrong = measureNear(sampleNear(query, options), field);
-        if (result_.parts.parts.size() > 1) {
-            result_.part_accuracy = measureParts(query, result_.parts, field, kSelfCheckParts);
-        }
+        SelfCheck check = RELIEF_TRY(selfCheck(mesh, result_.parts, result_.baked.collider));
+        result_.wrong = check.wrong;
+        result_.part_accuracy = std::move(check.parts);
         result_.times.check_ms = watch.ms();
         std::vector<std::string>& warnings = result_.baked.report.warnings;
         if (const double wrong = result_.wrong->total(); wrong > kGoodPercent) {

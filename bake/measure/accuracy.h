@@ -31,9 +31,6 @@ using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 [[nodiscard]] Field nearestFieldOf(const Collider& collider);
 
 /// Shares of points on the wrong side, in percent of all points of their kind.
-/// Points that a bake measures itself at: one in a hundred is then known to a sixth of that.
-inline constexpr std::uint32_t kSelfCheckPoints = 4000;
-
 struct WrongShare {
     double false_inside = 0.0;   ///< outside in truth
     double false_outside = 0.0;  ///< inside in truth

@@ -25,10 +25,6 @@ struct PartOptions {
     double scale = 1.0;  ///< of the object in its world, for defaultDetail
 };
 
-/// Of a bake that measures itself: a lost part has a quarter of its points on the wrong side.
-inline const PartOptions kSelfCheckParts{
-    .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
-
 /// kNoticeableShare of the diagonal of the parts without strays; in metres at most kNoticeableMetres in the world.
 [[nodiscard]] double defaultDetail(const SurfaceParts& parts, const std::string& unit, double scale = 1.0);
 

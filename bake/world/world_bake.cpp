@@ -15,7 +15,7 @@
 
 #include "bake/director/director.h"
 #include "bake/import/level_folder.h"
-#include "bake/measure/truth.h"
+#include "bake/measure/self_check.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape_options.h"
@@ -444,16 +444,10 @@ class WorldBaker {
         BakeResult result = RELIEF_TRY(bake(requests_[i], solid));
         PartsAccuracy accuracy;
         if (!request_.bake.no_check) {
-            const MeshQuery query = RELIEF_TRY(MeshQuery::build(result.mesh.mesh));
-            AccuracyOptions options;
-            options.samples = kSelfCheckPoints;
-            const Field baked = fieldOf(result.baked.collider);
-            collider.wrong = measureNear(sampleNear(query, options), baked);
-            if (solid.parts.parts.size() > 1) {
-                PartOptions by_parts = kSelfCheckParts;
-                by_parts.scale = collider.largest_scale;
-                accuracy = measureParts(query, solid.parts, baked, by_parts);
-            }
+            SelfCheck check = RELIEF_TRY(
+                selfCheck(result.mesh.mesh, solid.parts, result.baked.collider, collider.largest_scale));
+            collider.wrong = check.wrong;
+            accuracy = std::move(check.parts).value_or(PartsAccuracy());
             collider.verdict = verdictOf(collider.wrong->total(), accuracy, level_.unit);
             collider.ignored.add(accuracy.ignored, collider.largest_scale);
         }
