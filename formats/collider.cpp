@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "formats/base/text.h"
 #include "formats/patch_tree.h"
@@ -60,6 +61,10 @@ void Bounds::add(const glm::vec3& p) {
 float Bounds::longestSide() const {
     const glm::vec3 s = size();
     return std::max({s.x, s.y, s.z});
+}
+
+bool Bounds::meets(const Bounds& other) const {
+    return glm::all(glm::lessThanEqual(min, other.max)) && glm::all(glm::lessThanEqual(other.min, max));
 }
 
 std::string RecordedOption::text() const {

@@ -25,6 +25,9 @@ struct Bounds {
     [[nodiscard]] glm::vec3 size() const { return max - min; }
     [[nodiscard]] glm::vec3 center() const { return 0.5F * min + 0.5F * max; }
     [[nodiscard]] float longestSide() const;
+    /// They have a point in common; sides belong to both.
+    [[nodiscard]] bool meets(const Bounds& other) const;
+    [[nodiscard]] bool contains(const glm::vec3& p) const { return meets({p, p}); }
     friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 

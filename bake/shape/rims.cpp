@@ -11,7 +11,6 @@
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vector_relational.hpp>
 #include <optional>
 #include <utility>
 
@@ -114,10 +113,6 @@ double apart(const Bounds& a, const Bounds& b) {
     return std::max({most.x, most.y, most.z});
 }
 
-bool meets(const Bounds& a, const Bounds& b) {
-    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
-}
-
 /// The nearest of the outer shell's rims that faces an inner one; its count of rims if none does.
 std::size_t facingRim(const RimmedShell& outer, const std::vector<bool>& taken, const Rim& rim) {
     const double gap = kRimGap * double{rim.bounds.longestSide()};
@@ -170,7 +165,7 @@ void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vecto
 
 /// nullopt: too few rims of the inner shell face rims of the outer one, or it is not within the outer one.
 std::optional<TriangleMesh> wallBetween(const RimmedShell& outer, const RimmedShell& inner) {
-    if (!meets(outer.mesh().bounds, inner.mesh().bounds)) {
+    if (!outer.mesh().bounds.meets(inner.mesh().bounds)) {
         return std::nullopt;
     }
     std::vector<bool> taken(outer.rims.size(), false);
@@ -232,8 +227,7 @@ bool nearlyFace(const RimmedShell& outer, const RimmedShell& inner) {
         return false;
     }
     const Bounds mouth = largest(inner)->bounds;
-    const glm::vec3 middle(inner.mesh().bounds.center());
-    return meets({middle, middle}, outer.mesh().bounds) &&
+    return outer.mesh().bounds.contains(inner.mesh().bounds.center()) &&
            apart(mouth, largest(outer)->bounds) <= kNearRimGap * double{mouth.longestSide()};
 }
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/vector_relational.hpp>
 #include <limits>
 #include <optional>
 #include <span>
@@ -483,9 +482,6 @@ class Shaper {
 
     /// Adds the walls of joined shells, whose inside is free. \return per part: it is joined to another one.
     Result<std::vector<bool>> addWalls() {
-        const auto contains = [](const Bounds& bounds, const glm::vec3& p) {
-            return glm::all(glm::lessThanEqual(bounds.min, p)) && glm::all(glm::lessThanEqual(p, bounds.max));
-        };
         std::vector<Bounds> bounds;
         for (const Open& part : open_) {
             bounds.push_back(boundsOf(part.sheet.positions));
@@ -493,7 +489,7 @@ class Shaper {
         const auto mayBeWall = [&](std::size_t a, std::size_t b) {
             const auto [least, most] = std::minmax(bounds[a].longestSide(), bounds[b].longestSide());
             return least >= static_cast<float>(kBodyExtent) * most &&
-                   (contains(bounds[a], bounds[b].center()) || contains(bounds[b], bounds[a].center()));
+                   (bounds[a].contains(bounds[b].center()) || bounds[b].contains(bounds[a].center()));
         };
         std::vector<std::size_t> holed;
         for (std::size_t i = 0; i < open_.size(); ++i) {

@@ -174,7 +174,7 @@ class CornerFans {
     /// Per corner, the lowest one of its mitre.
     [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
     [[nodiscard]] const glm::dvec3& mitreOf(std::uint32_t corner) const { return mitres_[roots_[corner]]; }
-    /// Of one vertex: a fan was split between them.
+    /// Whether a fan was split between two corners of one vertex.
     [[nodiscard]] bool areCut(std::uint32_t a, std::uint32_t b) const {
         return fan_of_[a] == fan_of_[b] && roots_[a] != roots_[b];
     }

@@ -200,9 +200,12 @@ Result<World> loadWorldFile(const fs::path& path) {
     World world = RELIEF_TRY(
         inFront(quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
     for (std::size_t i = 0; i < world.colliders.size(); ++i) {
-        for (const WorldDetail detail : {WorldDetail::kFine, WorldDetail::kCoarse}) {
-            static_cast<void>(
-                RELIEF_TRY(inFront(quotedPath(path), pathOf(world, i, detail, path.parent_path()))));
+        const auto check = [&](WorldDetail detail) {
+            return inFront(quotedPath(path), pathOf(world, i, detail, path.parent_path()));
+        };
+        static_cast<void>(RELIEF_TRY(check(WorldDetail::kFine)));
+        if (world.colliders[i].coarse) {
+            static_cast<void>(RELIEF_TRY(check(WorldDetail::kCoarse)));
         }
     }
     return world;

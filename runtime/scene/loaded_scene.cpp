@@ -172,8 +172,7 @@ Result<void> checkOverlap(const LoadedScene& loaded) {
     const auto contains = [&](std::size_t body, const glm::vec3& p) {
         const std::optional<Bounds>& box = boxes[body];
         const glm::vec3 q = toObject(loaded.scene.colliders[body].pose, p);
-        return !box ||
-               (glm::all(glm::lessThanEqual(box->min, q)) && glm::all(glm::lessThanEqual(q, box->max)));
+        return !box || box->contains(q);
     };
     constexpr std::size_t kTried = 64;
     for (std::size_t i = 0; i < kTried; ++i) {

@@ -17,14 +17,6 @@ Bounds grown(const Bounds& box, float room) {
     return {box.min - room, box.max + room};
 }
 
-bool meet(const Bounds& a, const Bounds& b) {
-    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
-}
-
-bool holds(const Bounds& box, const glm::vec3& p) {
-    return meet(box, {p, p});
-}
-
 /// The body that named a node of several tiles; else itself.
 std::size_t wholeOf(const Scene& scene, std::size_t collider) {
     return scene.colliders[collider].tile_of.value_or(collider);
@@ -53,7 +45,7 @@ std::vector<bool> TouchFilter::operator()(std::span<const Birth> births,
     }
     std::vector<Body> near;
     std::copy_if(bodies_.begin(), bodies_.end(), std::back_inserter(near),
-                 [&](const Body& body) { return meet(body.box, all); });
+                 [&](const Body& body) { return body.box.meets(all); });
     std::vector<bool> touching;
     for (std::size_t i = 0; i < births.size(); ++i) {
         const double moment = time - static_cast<double>(births[i].age);
@@ -64,14 +56,14 @@ std::vector<bool> TouchFilter::operator()(std::span<const Birth> births,
 
 std::optional<TouchFilter::Touched> TouchFilter::touchedOf(const Body& body, const glm::vec3& p,
                                                            double moment, float within) const {
-    if (!holds(body.box, p)) {
+    if (!body.box.contains(p)) {
         return std::nullopt;
     }
     const SceneCollider& placed = loaded_->scene.colliders[body.index];
     const Collider& shape = *loaded_->colliders[body.index];
     const Pose pose = poseAt(placed, moment);
     const glm::vec3 q = toObject(pose, p);
-    if (!holds(grown(shape.bounds, within / pose.scale), q)) {
+    if (!grown(shape.bounds, within / pose.scale).contains(q)) {
         return std::nullopt;
     }
     const SurfaceSample at = nearestSurface(shape, q);
