@@ -25,7 +25,7 @@ inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 
 /// The lowest or the highest value, or up to three of them, far from all others: the gap is more than half the range.
 struct LoneSample {
-    float sample = 0.0F;  ///< the extreme, as the file has it
+    float sample = 0.0F;  ///< the extreme, as stored in the file
     float last = 0.0F;    ///< the one next to the gap; `sample` if there is only one
     bool lowest = false;
     double gap = 0.0;  ///< to the next sample, metres
@@ -109,7 +109,7 @@ class HeightMap {
     double low_ = 0.0;   // height of sample 0
     double unit_ = 1.0;  // height of a sample's step
     bool has_hole_ = false;
-    float hole_ = 0.0F;  // as the file has it
+    float hole_ = 0.0F;  // as stored in the file
     SampleRange range_;
 };
 

@@ -4,7 +4,7 @@
 //     spacing=1,low=0,high=500           a grey image of whole numbers: 0 stands for low, the largest for high
 //     spacing=0.5,hole=-9999             an EXR image of metres
 //     low=-10,high=90,width=2048,hole=0  raw samples of 16 bits, little-endian
-//     spacing=30,type=int16,order=big    raw samples of metres, big-endian, as .hgt has them
+//     spacing=30,type=int16,order=big    raw samples in metres, big-endian, as in .hgt files
 //
 // Columns of samples run along +x, rows along +z, and heights along +y, as glTF has it. The surface is bilinear between four
 // samples, and the ground is solid below it. Squares of which a corner is a hole have no ground.

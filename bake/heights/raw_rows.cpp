@@ -218,9 +218,6 @@ Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes
 
 std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
     const RawFormat own = formatOf(spec);
-    const auto variation = [&](const RawFormat& format) {
-        return variationOf(bytes, spec, format).value_or(Variation());
-    };
     const auto ofTwoBytes = [&](ByteOrder order) {
         RawFormat format{own.bytes() == 2 ? own.type : SampleType::kUint16, order};
         if (wrapsAround(bytes, spec, format)) {
@@ -231,29 +228,36 @@ std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpe
     const std::array<RawFormat, 4> formats = {ofTwoBytes(ByteOrder::kLittle), ofTwoBytes(ByteOrder::kBig),
                                               RawFormat{SampleType::kFloat32, ByteOrder::kLittle},
                                               RawFormat{SampleType::kFloat32, ByteOrder::kBig}};
-    RawFormat best = own.bytes() == 2 ? ofTwoBytes(own.order) : own;
-    const RawFormat& swapped = formats.at(own.order == ByteOrder::kLittle ? 1 : 0);
+    std::array<double, 4> roughness{};
+    for (std::size_t i = 0; i < formats.size(); ++i) {
+        roughness.at(i) = variationOf(bytes, spec, formats.at(i)).value_or(Variation()).roughness();
+    }
+    const std::size_t in_order = own.order == ByteOrder::kLittle ? 0 : 1;
+    std::size_t best = own.bytes() == 2 ? in_order : 2 + in_order;
+    const std::size_t swapped = 1 - in_order;
     constexpr double kAlike = 1.25;
     if (own.bytes() == 2 && hasCoarseLowBytes(bytes, own.order) &&
-        variation(swapped).roughness() <= kAlike * variation(best).roughness()) {
+        roughness.at(swapped) <= kAlike * roughness.at(best)) {
         best = swapped;
     }
-    if (best.order != own.order || best == own) {
+    const RawFormat first = formats.at(best);
+    if (first.order != own.order || first == own) {
         constexpr double kNoise = 1.3;
-        double least = 0.5 * std::min(variation(best).roughness(), kNoise);
-        for (const RawFormat& format : formats) {
-            if (const double roughness = variation(format).roughness(); roughness < least) {
-                least = roughness;
-                best = format;
+        double least = 0.5 * std::min(roughness.at(best), kNoise);
+        for (std::size_t i = 0; i < formats.size(); ++i) {
+            if (roughness.at(i) < least) {
+                least = roughness.at(i);
+                best = i;
             }
         }
     }
-    const std::string type = "type=" + std::string(wordOf(best.type));
-    const std::string order = "order=" + std::string(wordOf(best.order));
-    return best == own               ? std::string()
-           : best.order == own.order ? type
-           : best.type == own.type   ? order
-                                     : type + "," + order;
+    const RawFormat& found = formats.at(best);
+    const std::string type = "type=" + std::string(wordOf(found.type));
+    const std::string order = "order=" + std::string(wordOf(found.order));
+    return found == own               ? std::string()
+           : found.order == own.order ? type
+           : found.type == own.type   ? order
+                                      : type + "," + order;
 }
 
 }  // namespace relief

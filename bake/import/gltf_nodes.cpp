@@ -181,8 +181,7 @@ Result<void> checkLevels(const std::vector<GltfNode>& nodes,
             if (states[next] == State::kOpen) {
                 return nodes[next].place.wrong(
                     "is a lower level of detail of itself (MSFT_lod), so that none is shown; remove its "
-                    "number "
-                    "from the ids");
+                    "number from the ids");
             }
             if (states[next] == State::kNew) {
                 states[next] = State::kOpen;

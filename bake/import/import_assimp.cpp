@@ -391,7 +391,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
                             : lesser.contains(from)       ? Shown::kLesserLevel
                             : hidesBelow(*from, hidden)   ? Shown::kHidden
                                                           : Shown::kYes;
-        node.is_shown = below == Shown::kYes && isHidden(*from, hidden) ? Shown::kHidden : below;
+        node.is_shown = below == Shown::kYes && isZero(*from, "Show") ? Shown::kHidden : below;
         if (index > 0) {  // the root is the file
             const auto label = hidden.labels.find(from);
             node.shown = label != hidden.labels.end() ? label->second

@@ -118,8 +118,8 @@ int work(std::span<char*> arguments) {
     const std::uint64_t seconds = parseUnsigned(arguments[3]).value_or(0);
     const std::uint64_t triangles = parseUnsigned(arguments[4]).value_or(0);
     const bool image = arguments[5] == kImportImage;
-    const std::optional<ImportKind> kind = image ? ImportKind::kMesh : fromWord<ImportKind>(arguments[5]);
-    if (!kind) {
+    const std::optional<ImportKind> kind = fromWord<ImportKind>(arguments[5]);
+    if (!image && !kind) {
         return kImportExitArguments;
     }
     ImportOptions options;

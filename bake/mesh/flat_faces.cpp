@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kFlat = 1e-4;
 
-/// Twice the area along the normal.
-glm::dvec3 normalOf(const TriangleMesh& mesh, std::uint32_t triangle) {
-    const auto [a, b, c] = cornersOf(mesh, triangle);
-    return cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-}
-
 double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto [a, b, c] = cornersOf(mesh, triangle);
     return static_cast<double>(std::max({distance(a, b), distance(b, c), distance(c, a)}));
@@ -36,19 +30,19 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
         if (seen[first]) {
             continue;
         }
-        const glm::dvec3 normal = normalOf(mesh, first);
+        const glm::dvec3 normal = planeOf(mesh, first).normal;
         FlatFace whole;
         face.assign(1, first);
         seen[first] = true;
         for (std::size_t i = 0; i < face.size(); ++i) {
-            whole.area += 0.5 * length(normalOf(mesh, face[i]));
+            whole.area += 0.5 * length(planeOf(mesh, face[i]).normal);
             whole.length = std::max(whole.length, longestEdge(mesh, face[i]));
             for (int side = 0; side < 3; ++side) {
                 const std::uint32_t next = neighbours.across[face[i]][side];
                 if (next == TriangleNeighbours::kNone || seen[next]) {
                     continue;
                 }
-                const glm::dvec3 other = normalOf(mesh, next);
+                const glm::dvec3 other = planeOf(mesh, next).normal;
                 const double both = length(normal) * length(other);
                 if (dot(normal, other) > 0.0 && length(cross(normal, other)) < kFlat * both) {
                     seen[next] = true;

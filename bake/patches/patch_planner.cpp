@@ -154,8 +154,8 @@ class Planner {
         roots_.origin =
             glm::dvec3(held_.min) - kOriginShift * (glm::dvec3(roots_.count) * roots_.size - size);
         nodes_.clear();
-        root_bytes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
         nodes_.resize(std::size_t{roots_.count.x} * roots_.count.y * roots_.count.z);
+        root_bytes_.resize(nodes_.size());
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const glm::dvec3 at(i % roots_.count.x, i / roots_.count.x % roots_.count.y,
                                 i / roots_.count.x / roots_.count.y);
