@@ -40,7 +40,7 @@ bool isWithin(const fs::path& folder, const fs::path& outer) {
            (destination(folder, error) / "").native().starts_with((destination(outer, error) / "").native());
 }
 
-/// Who fills a folder writes nothing elsewhere.
+/// A run that fills a folder writes nothing outside it.
 Result<void> checkLink(const fs::path& path, const fs::path& folder, std::string_view option) {
     std::error_code error;
     return fs::is_symlink(fs::symlink_status(path, error)) && !isWithin(path, folder)

@@ -137,7 +137,7 @@ Result<void> writeInPlace(const fs::path& path, std::span<const std::byte> bytes
     return {};
 }
 
-/// Of processes that were killed, once in each folder.
+/// Removes the temporary files of killed processes, once for each folder.
 void removeLeftoversOnce(const fs::path& folder) {
     static std::mutex mutex;
     static std::set<fs::path> done;

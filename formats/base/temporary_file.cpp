@@ -48,7 +48,7 @@ std::optional<std::uint64_t> takeNumber(std::string_view& text, char behind) {
     return number;
 }
 
-/// Of a name that create() makes.
+/// The process in a name that create() makes; nullopt for any other name.
 std::optional<pid_t> processOf(std::string_view name) {
     constexpr std::string_view kStart = ".relief-";
     constexpr std::string_view kEnd = ".tmp";

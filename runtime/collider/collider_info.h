@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page needs to know of a collider besides its texels: ColliderInfo of runtime/web/relief.d.ts.
+// The facts about a collider that a page needs beside the texels: ColliderInfo in runtime/web/relief.d.ts.
 #pragma once
 
 #include "formats/collider.h"

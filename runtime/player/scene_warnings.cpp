@@ -100,7 +100,7 @@ struct Thin {
     float step = 0.0F;
 };
 
-/// Of several, the thinnest decides the cure; `sweeps`: collision.sweep can be one.
+/// The thinnest of several decides the cure. \param sweeps  collision.sweep can be one.
 std::string thinWarning(std::span<const Thin> all, bool sweeps) {
     const Thin& worst = *std::min_element(all.begin(), all.end(),
                                           [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
@@ -151,7 +151,7 @@ std::optional<float> typicalThickness(const Collider& collider) {
     return *middle;
 }
 
-/// Of the colliders, those that are thinner than a step; each file once.
+/// The colliders that are thinner than a step is long, each file once.
 std::vector<Thin> thinColliders(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     std::vector<Birth> births;

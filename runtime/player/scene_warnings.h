@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is valid in a scene, and probably not meant.
+// Settings of a scene that are valid but probably mistakes.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace relief {
 /// them; how many there are, the thinnest, and the cure for all.
 [[nodiscard]] std::vector<std::string> fitSweep(LoadedScene& loaded);
 
-/// Of a run: most births found no free place.
+/// A warning about a run in which most births found no free place.
 [[nodiscard]] std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity);
 
 }  // namespace relief
