@@ -36,6 +36,18 @@ constexpr double kNoDirection = 1e-6;
 constexpr double kBeyond = 1e-3;
 /// Weight of the depth error, in cells times the volume of the cell, relative to misclassified volume.
 constexpr double kWorth = 1e-3;
+/// A flat face is at least this long, in cells of the leaves that get its plane, ...
+constexpr double kFaceLength = 4.0;
+/// ... nearer to their middles than this, in cells, ...
+constexpr double kFaceNear = 2.0;
+/// ... and the plane that they would have without it is turned from it by more than this, radians. More than kFaceTurnMost, the
+/// most by which a coarse plane of 7 + 7 bits is off, counts as that.
+constexpr double kFaceTurn = 0.016;
+constexpr double kFaceTurnMost = 0.03;
+/// Nearest distances of the corners of such a leaf equal those from the face's plane within this, in cells.
+constexpr double kFaceFlat = 1e-3;
+/// Weight of that turn, in radians times the volume of the cell, relative to misclassified volume.
+constexpr double kFaceWorth = 0.01;
 /// Bytes of one plane in a record of its own, and of the records of a second one or of two.
 constexpr double kOneBytes = kPatchTexelBytes;
 constexpr double kPairBytes = 2.0 * kPatchTexelBytes;
@@ -312,6 +324,46 @@ class LeafChooser {
     std::vector<Sample> samples_;
 };
 
+/// Returns the plane of a leaf without a surface whose nearest surface is one flat face, if the plane of the split cell above it is
+/// turned from that.
+std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatFace> faces, PatchNode& leaf,
+                                   const Baseline& above, double roots_per_cell) {
+    const MeshCell& cell = leaf.cell;
+    const glm::dvec3 middle = cell.middle();
+    const ClosestPoint closest = query.closest(glm::vec3(middle));
+    const glm::dvec3 way = (closest.point - middle) / cell.size;
+    const double distance = length(way);
+    if (!(distance > kNoDirection) || distance > kFaceNear ||
+        faces[closest.triangle].length < kFaceLength * cell.size) {
+        return std::nullopt;
+    }
+    // A leaf without a surface may still be met by a little of one.
+    if (!cell.triangles.empty() && query.inside(glm::vec3(middle)) != leaf.inside()) {
+        return std::nullopt;
+    }
+    const double side = leaf.inside() ? 1.0 : -1.0;
+    const CellPlane plane{side * unit(way), -side * distance};
+    const double turn =
+        length(plane.normal - glm::dvec3(above.cell.vote(above.tree, glm::dvec3(0.5)).normal));
+    if (turn < kFaceTurn ||
+        (leaf.inside() && query.inside(glm::vec3(closest.point + kBeyond * cell.size * plane.normal)))) {
+        return std::nullopt;
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+        const glm::dvec3 corner = cornerOfCube(i);
+        const double other =
+            query.closest(glm::vec3(cell.low + cell.size * corner), closest.triangle).distance / cell.size;
+        if (std::abs(other - std::abs(plane.at(corner))) > kFaceFlat) {
+            return std::nullopt;
+        }
+    }
+    DepthGain gain{.node = &leaf, .to = DepthPlanes::kOne, .bytes = kOneBytes, .face = true};
+    gain.records[0] = PatchRecord::flat(leaf.inside(), glm::vec3(plane.normal),
+                                        static_cast<float>(roots_per_cell * plane.offset));
+    gain.volume = kFaceWorth * std::min(turn, kFaceTurnMost) * cell.size * cell.size * cell.size;
+    return gain;
+}
+
 /// The tree of a leaf with a single surface. Its 3² heights stand for 5² ones, which are not fitted yet.
 SmallTree treeOf(const PatchNode& leaf) {
     const PatchHeights& heights =
@@ -354,11 +406,15 @@ std::uint64_t stateOf(PatchNode& family) {
 
 /// \param byte  as in DepthPlaneChoice::find().
 /// \param root_size  object units.
-std::vector<DepthGain> gainsOf(const MeshQuery& query, PatchNode& family, double root_size, double byte) {
+std::vector<DepthGain> gainsOf(const MeshQuery& query, std::span<const FlatFace> faces, PatchNode& family,
+                               double root_size, double byte) {
     std::vector<DepthGain> gains;
     const auto mayPay = [&](const PatchNode& leaf, double bytes) {
         return kWorth * kErrorMost * leaf.cell.size * leaf.cell.size * leaf.cell.size > byte * bytes;
     };
+    const bool flat = family.split && std::ranges::any_of(family.cell.triangles, [&](std::uint32_t triangle) {
+                          return faces[triangle].length >= 0.5 * kFaceLength * family.cell.size;
+                      });
     std::optional<Baseline> above;
     const std::span<PatchNode> members = membersOf(family);
     for (unsigned i = 0; i < members.size(); ++i) {
@@ -372,10 +428,19 @@ std::vector<DepthGain> gainsOf(const MeshQuery& query, PatchNode& family, double
                 const std::optional<Baseline> own = Baseline{{}, treeOf(leaf)};
                 LeafChooser(query, leaf, own, roots_per_cell).addTo(gains);
             }
-        } else if (leaf.inside() && mayPay(leaf, kOneBytes)) {
-            if (family.split) {
-                above = Baseline{Cell(i), above ? above->tree : treeOfSplit(query, family)};
+            continue;
+        }
+        const bool deep = leaf.inside() && mayPay(leaf, kOneBytes);
+        if (family.split && (flat || deep)) {
+            above = Baseline{Cell(i), above ? above->tree : treeOfSplit(query, family)};
+        }
+        if (flat) {
+            if (const std::optional<DepthGain> face = facePlane(query, faces, leaf, *above, roots_per_cell)) {
+                gains.push_back(*face);
+                continue;
             }
+        }
+        if (deep) {
             LeafChooser(query, leaf, above, roots_per_cell).addTo(gains);
         }
     }
@@ -411,7 +476,7 @@ void DepthPlaneChoice::find(std::span<PatchNode> roots, double byte, const std::
         Known& known = known_.find(families[i])->second;
         const std::uint64_t state = stateOf(*families[i]);
         if (known.state != state) {
-            known = {state, gainsOf(query_, *families[i], roots[0].cell.size, byte)};
+            known = {state, gainsOf(query_, faces_, *families[i], roots[0].cell.size, byte)};
         }
         progress();
     });

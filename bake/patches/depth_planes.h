@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth planes: leaves inside a mesh whose plane, or that of the split cell above, does not belong to the nearest face get planes
-// of their own.
+// of their own, as do leaves beside a flat face if the plane of the split cell above is turned from it.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/mesh/flat_faces.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/patches/patch_node.h"
 #include "formats/patch_tree.h"
@@ -27,6 +28,7 @@ struct DepthGain {
     std::array<PatchRecord, 2> records{};  ///< PatchNode::depth
     double bytes = 0.0;                    ///< more than `from` takes
     double volume = 0.0;                   ///< misclassified volume that weighs as much, object units cubed
+    bool face = false;                     ///< only for the normal beside a flat face
 
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
@@ -34,8 +36,8 @@ struct DepthGain {
 /// Chooses depth planes for the leaves of a planned tree. The same for any number of threads.
 class DepthPlaneChoice {
   public:
-    /// \param query  borrowed.
-    explicit DepthPlaneChoice(const MeshQuery& query) : query_(query) {}
+    /// \param query, faces  borrowed; faces are those of its mesh, one per triangle.
+    DepthPlaneChoice(const MeshQuery& query, std::span<const FlatFace> faces) : query_(query), faces_(faces) {}
 
     /// Finds the planes of a tree. Later calls reuse those of leaves that are as before.
     /// \param roots  borrowed as long as this object is used; their leaves have no depth planes yet.
@@ -46,7 +48,8 @@ class DepthPlaneChoice {
     /// Bytes of all planes found that gain more than `byte` per byte.
     /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
-    /// Sets PatchNode::planes and PatchNode::depth of those with the largest gain per byte, in at most `bytes` bytes.
+    /// Sets PatchNode::planes and PatchNode::depth of those with the largest gain per byte, in at most `bytes` bytes. Those that are
+    /// only for a normal come last.
     void take(double bytes) const;
 
   private:
@@ -56,8 +59,9 @@ class DepthPlaneChoice {
     };
 
     const MeshQuery& query_;
+    std::span<const FlatFace> faces_;
     std::map<const PatchNode*, Known> known_;  // by the cell that is split, or the root
-    std::vector<DepthGain> gains_;             // sorted by gain per byte
+    std::vector<DepthGain> gains_;             // in the order in which they are taken
 };
 
 }  // namespace relief

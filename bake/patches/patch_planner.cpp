@@ -23,7 +23,7 @@ namespace relief {
 namespace {
 
 /// A tree gives up at most this fraction of its bytes for depth planes (depth_planes.h).
-constexpr double kDepthShareMost = 0.35;
+constexpr double kDepthShareMost = 0.45;
 /// The same as kSpare of a tree that depth planes follow, which fill what it leaves.
 constexpr double kSpareForDepth = 3e-3;
 /// The worth of a byte that is left when the tree is chosen.
@@ -81,7 +81,7 @@ class Planner {
           held_(query.mesh().bounds),
           bytes_(static_cast<double>(options.bytes)),
           fitter_(query, options.costs, options.lines),
-          depth_planes_(query) {
+          depth_planes_(query, faces_) {
         if (options.roots_hold) {
             held_.add(options.roots_hold->min);
             held_.add(options.roots_hold->max);

@@ -13,10 +13,10 @@ from solids import BOX_FACES, Frame, bake, box_corners, box_distance, query, tur
 
 POINTS = 3000
 NEAR = 2e-3  # of the longest side: nearer points may be on either side
-INSIDE_ANGLE = 3.0  # degrees
+INSIDE_ANGLE, FACE_ANGLE = 3.0, 1.0  # degrees
 AT_FACE, BESIDE_FACE = 1e-3, 5e-3  # of the longest side
 LARGE = 16_000_000  # a budget
-LARGE_BYTES, LARGE_SECONDS = 3_000_000, 15  # that a flat shape takes of it, and of the processor
+LARGE_BYTES, LARGE_SECONDS = 3_500_000, 15  # that a flat shape takes of it, and of the processor
 
 
 class Box(Frame):
@@ -36,7 +36,7 @@ class Box(Frame):
 
 
 def check_faces(cases, folder, box, what):
-    """Normals at points beside a face, but not near its edges: right at the face; farther off a cell may hardly have it."""
+    """Normals at points beside a face, but not near its edges."""
     points, faces = [], []
     for _ in range(POINTS // 2):
         axis, sign = cases.random.randrange(3), cases.random.choice((-1, 1))
@@ -48,10 +48,10 @@ def check_faces(cases, folder, box, what):
         points.append(box.to_world(local))
         faces.append((axis, sign, far))
     rows = query(cases, folder, "a.relief", points, "--distance", "plane") if points else None
-    for far, angle, most in ((AT_FACE, 1.0, 0.005), (AT_FACE, INSIDE_ANGLE, 0), (BESIDE_FACE, INSIDE_ANGLE, 0.01)):
+    for far in AT_FACE, BESIDE_FACE:
         own = [(row, axis, sign) for row, (axis, sign, other) in zip(rows or [], faces) if other == far]
-        off = sum(box.off_normal(row, axis, sign, angle) for row, axis, sign in own)
-        cases.expect(off <= most * len(own), f"{off} of {len(own)} normals within {far} of faces are off by {angle} degrees: {what}")
+        off = sum(box.off_normal(row, axis, sign, FACE_ANGLE) for row, axis, sign in own)
+        cases.expect(off <= 0.002 * len(own), f"{off} of {len(own)} normals within {far} of faces are off by {FACE_ANGLE} degrees: {what}")
 
 
 def check_large(cases, folder):
@@ -99,8 +99,9 @@ def check(cases, folder, number):
         depths += abs(row[3] + depth) > near + 0.1 * depth
     what = f"half {box.half}, {budget} kB, shell {thickness}"
     cases.expect(sides <= POINTS // 200, f"{sides} of {POINTS} points are on the wrong side: {what}")
-    cases.expect(normals <= judged // 100, f"{normals} of {judged} normals are off by more than {INSIDE_ANGLE} degrees: {what}")
-    cases.expect(depths <= judged // 100, f"{depths} of {judged} depths are off: {what}")
+    most = judged * (3 if budget == 64 else 1) // 100
+    cases.expect(normals <= most, f"{normals} of {judged} normals are off by more than {INSIDE_ANGLE} degrees: {what}")
+    cases.expect(depths <= most, f"{depths} of {judged} depths are off: {what}")
     return None if thickness else check_faces(cases, folder, box, what)
 
 

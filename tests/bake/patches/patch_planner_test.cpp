@@ -330,8 +330,8 @@ TEST(PatchTexel, AThinHandleOfALargePlateIsThere) {
     // The plate's faces cost nothing: most is along its edges, 48 m and 4800 texels.
     EXPECT_LT(map.texels.size(), 300'000U);
     const MeshQuery plain = queryOf(makeBoxMesh(boxes[0].center, boxes[0].half));
-    // A third of this are depth planes.
-    EXPECT_LT(map.texels.size(), byTexel(plain, kTexel).texels.size() + 45'000);
+    // Half of this are planes of their own: depth planes, and those beside the flat faces of the bars.
+    EXPECT_LT(map.texels.size(), byTexel(plain, kTexel).texels.size() + 55'000);
 }
 
 TEST(PatchTexel, WithinABudgetIsAsFineAsThatAllows) {
