@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "bake/mesh/mesh_edges.h"
 
@@ -12,6 +14,16 @@ namespace relief {
 namespace {
 
 constexpr double kFlat = 1e-4;
+/// Of the mesh's longest side: meshes of unit size are often written with six decimals.
+constexpr double kRounding = 1e-6;
+
+/// Radians; slivers may be turned by any angle.
+constexpr double kTurnMost = 0.01;
+
+/// How far rounding may turn the normal of a triangle, radians.
+double turnByRounding(double rounding, double longest_edge, const glm::dvec3& doubled_area) {
+    return 2.0 * rounding * longest_edge / length(doubled_area);
+}
 
 double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto [a, b, c] = cornersOf(mesh, triangle);
@@ -22,6 +34,13 @@ double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
 
 std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
     const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+    const glm::vec3 farthest = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
+    const double rounding = std::max(kRounding * double{mesh.bounds.longestSide()},
+                                     double{std::numeric_limits<float>::epsilon()} *
+                                         double{std::max({farthest.x, farthest.y, farthest.z})});
+    const auto turnOf = [&](std::uint32_t triangle) {
+        return turnByRounding(rounding, longestEdge(mesh, triangle), planeOf(mesh, triangle).normal);
+    };
     const TriangleNeighbours neighbours = neighboursOf(edgesOf(mesh).uses);
     std::vector<FlatFace> faces(count);
     std::vector<bool> seen(count);
@@ -31,6 +50,7 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
             continue;
         }
         const glm::dvec3 normal = planeOf(mesh, first).normal;
+        const double turn = turnOf(first);
         FlatFace whole;
         face.assign(1, first);
         seen[first] = true;
@@ -44,7 +64,9 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
                 }
                 const glm::dvec3 other = planeOf(mesh, next).normal;
                 const double both = length(normal) * length(other);
-                if (dot(normal, other) > 0.0 && length(cross(normal, other)) < kFlat * both) {
+                if (dot(normal, other) > 0.0 &&
+                    length(cross(normal, other)) <
+                        std::max(kFlat, std::min(turn + turnOf(next), kTurnMost)) * both) {
                     seen[next] = true;
                     face.push_back(next);
                 }

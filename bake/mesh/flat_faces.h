@@ -8,7 +8,8 @@
 
 namespace relief {
 
-/// Connected triangles whose normals are within 1e-4 of the first one's.
+/// Connected triangles whose normals are within 1e-4 of the first one's, or as far from it as rounding may turn them: vertices to a
+/// millionth of the mesh's longest side, or to floats.
 struct FlatFace {
     double area = 0.0;
     double length =

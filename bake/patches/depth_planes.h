@@ -37,7 +37,8 @@ struct DepthGain {
 class DepthPlaneChoice {
   public:
     /// \param query, faces  borrowed; faces are those of its mesh, one per triangle.
-    DepthPlaneChoice(const MeshQuery& query, std::span<const FlatFace> faces) : query_(query), faces_(faces) {}
+    DepthPlaneChoice(const MeshQuery& query, std::span<const FlatFace> faces)
+        : query_(query), faces_(faces) {}
 
     /// Finds the planes of a tree. Later calls reuse those of leaves that are as before.
     /// \param roots  borrowed as long as this object is used; their leaves have no depth planes yet.

@@ -120,11 +120,13 @@ INSTANTIATE_TEST_SUITE_P(Degrees, PlateTest, testing::Values(0, 20, 35, 50, 60))
 TEST(DepthPlanes, FlatFacesHaveTheirNormalOnBothSides) {
     const glm::dquat turn = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1.0, 2.0, 3.0)));
     const glm::dvec3 half(5.0, 1.5, 5.0);
-    const DepthMap map = bakePatches(queryOf(makeBoxMesh(glm::dvec3(0.0), half, glm::mat3_cast(turn))),
-                                     {.bytes = 512'000})
-                             ->map;
+    const DepthMap map =
+        bakePatches(queryOf(makeBoxMesh(glm::dvec3(0.0), half, glm::mat3_cast(turn))), {.bytes = 512'000})
+            ->map;
     std::mt19937 random(9);
-    const auto uniform = [&](double most) { return most * (std::ldexp(static_cast<double>(random()), -31) - 1.0); };
+    const auto uniform = [&](double most) {
+        return most * (std::ldexp(static_cast<double>(random()), -31) - 1.0);
+    };
     double turned = 0.0;
     for (int i = 0; i < 5000; ++i) {
         const int axis = i % 3;

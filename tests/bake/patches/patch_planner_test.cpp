@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bake/measure/truth.h"
+#include "bake/mesh/flat_faces.h"
 #include "bake/patches/cell_columns.h"
 #include "bake/repair/winding.h"
 #include "formats/validate.h"
@@ -217,6 +218,20 @@ TEST(PatchPlanner, DividedFacesTakeNoMoreBytesThanWhole) {
     EXPECT_LE(map.texels.size(), whole.texels.size() + whole.texels.size() / 4);
     EXPECT_LT(map.texels.size(), 1'500'000);
     EXPECT_EQ(wrongPercent(query, map, 20'000), 0.0);
+}
+
+// As exporters write meshes, with six decimals: normals of its 49,152 triangles are up to 2e-4 apart.
+TEST(FlatFaces, ARoundedFaceIsOne) {
+    TriangleMesh box = makeBoxMesh({0, 0, 0}, glm::dvec3(0.5), rotation({1, 2, 3}, 40.0));
+    for (int i = 0; i < 6; ++i) {
+        box = divided(box);
+    }
+    for (glm::vec3& position : box.positions) {
+        position = glm::vec3(glm::round(glm::dvec3(position) * 1e6) * 1e-6);
+    }
+    for (const FlatFace& face : flatFacesOf(finished(box.positions, box.triangles))) {
+        ASSERT_NEAR(face.area, 1.0, 1e-3);
+    }
 }
 
 TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
