@@ -10,7 +10,6 @@
 #include "formats/base/stopwatch.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/player/outputs.h"
-#include "runtime/player/scene_warnings.h"
 #include "runtime/player/simulation.h"
 #include "runtime/player/watchdog.h"
 
@@ -132,6 +131,17 @@ Result<std::unique_ptr<GlContext>> makeContext(const PlayerOptions& options) {
     return context;
 }
 
+/// A warning about a run in which most births found no free place.
+std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
+    const std::uint64_t asked = counts.born + counts.refused;
+    if (counts.refused <= counts.born) {
+        return std::nullopt;
+    }
+    return std::to_string(counts.refused) + " of " + std::to_string(asked) +
+           " births found no free place; raise particles.capacity (now " + std::to_string(capacity) +
+           "), or lower emitter.rate, emitter.burst or emitter.lifetime";
+}
+
 }  // namespace
 
 Result<PlayerReport> play(const PlayerOptions& options) {
@@ -139,7 +149,6 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     FileGuard guard = options.guard;
     RELIEF_TRY(checkOutputs(options, guard));
     auto loaded = RELIEF_TRY(loadAll(options.input, options.overrides));
-    std::vector<std::string> warnings = fitSweep(loaded);
     RELIEF_TRY(checkFrames(options, loaded, guard));
     const auto context = RELIEF_TRY(makeContext(options));
     auto simulation =
@@ -161,7 +170,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.collider_bytes = simulation.textures().bytes();
     RELIEF_TRY(Run(options, simulation, outputs, report).play());
     RELIEF_TRY(outputs.writeEnd(simulation.particles(), report));
-    report.warnings = std::move(warnings);
+    report.warnings = loaded.warnings;
     std::ranges::move(simulation.takeWarnings(), std::back_inserter(report.warnings));
     if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
         report.warnings.push_back(std::move(*refused));

@@ -7,7 +7,6 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "runtime/picture/frame.h"
-#include "runtime/player/scene_warnings.h"
 #include "runtime/scene/scene_meshes.h"
 #include "runtime/scene/scene_pictures.h"
 #include "runtime/scene/scene_world.h"
@@ -89,7 +88,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     }
     report.steps = loaded.scene.time.steps;
     report.capacity = loaded.scene.particles.capacity;
-    report.warnings = fitSweep(loaded);
+    report.warnings = std::move(loaded.warnings);
     return report;
 }
 

@@ -27,7 +27,7 @@ struct CheckReport {
     std::size_t collider_maps = 0;
     std::uint32_t steps = 0;
     std::uint32_t capacity = 0;
-    std::vector<std::string> warnings;  ///< of fitSweep()
+    std::vector<std::string> warnings;  ///< those of loadAll()
 };
 
 /// Loads everything and checks what else a run would refuse whatever the GPU.

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes with animated colliders, played: what rains on them stays outside.
+// Scenes, played: what rains on animated or thin colliders stays outside.
 #include "runtime/player/simulation.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/glm.hpp>
 
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/temporary_folder.h"
@@ -133,6 +135,35 @@ most = 30
         splashes += plain[i].type == 1 ? 1 : 0;
     }
     EXPECT_GT(splashes, 200U);
+}
+
+// Every host creates its simulation so: relief-sim, the page's player and Python.
+TEST_P(SimulationGlTest, SweepsWhereAStepIsLongerThanAColliderIsThick) {
+    const test::TemporaryFolder folder;
+    const analytic::Shape floor = analytic::box({-2.0, -0.05, -2.0}, {2.0, 0.0, 2.0});
+    ASSERT_TRUE(saveCollider(folder.path() / "floor.relief", analytic::frontBackCollider(floor, 64)));
+    const auto below = [&](const std::string& collision) {
+        const auto loaded = loadAll(folder.write("scene.toml", R"(
+collider = { file = "floor.relief" }
+particles = { capacity = 1000 }
+time = { dt = 0.02 }
+ground = { enabled = false }
+emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], velocity = [0, -20, 0], rate = 0, burst = 1000, lifetime = 9 }
+)" + collision),
+                                    {});
+        EXPECT_TRUE(loaded) << loaded.error().message;
+        auto made = Simulation::create(*loaded);
+        EXPECT_TRUE(made) << made.error().message;
+        for (int step = 0; step < 10; ++step) {
+            EXPECT_TRUE(made->step());
+        }
+        const std::vector<ParticleState> particles = made->particles().readState().value();
+        EXPECT_EQ(particles.size(), 1000U);
+        return std::count_if(particles.begin(), particles.end(),
+                             [](const ParticleState& one) { return one.position.y < -0.05F; });
+    };
+    EXPECT_GT(below("collision = { sweep = 0 }"), 500);
+    EXPECT_EQ(below(""), 0);
 }
 
 }  // namespace

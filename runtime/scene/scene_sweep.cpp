@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/player/scene_warnings.h"
+#include "runtime/scene/scene_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "formats/base/file_io.h"
 #include "formats/nearest_surface.h"
 #include "runtime/particles/step_pass.h"
+#include "runtime/scene/scene_emitter.h"
 
 namespace relief {
 namespace {
@@ -58,16 +59,16 @@ std::vector<Birth> birthsOf(Emitter emitter, const EmitterMotion& motion, const 
 }
 
 /// The speed that a birth has fallen to by the middle of all bodies, if nothing but gravity and drag acts on it.
-float speedAtBodies(const Birth& birth, const ParticleType& type, const LoadedScene& loaded) {
-    const glm::vec3 gravity = type.gravity * *loaded.scene.forces.gravity;
+float speedAtBodies(const Birth& birth, const ParticleType& type, const Scene& scene, const Bounds& bounds) {
+    const glm::vec3 gravity = type.gravity * *scene.forces.gravity;
     const float pull = glm::length(gravity);
     const float start = glm::length(birth.velocity);
     if (!(pull > 0.0F)) {
         return start;
     }
-    const float fall = glm::dot(gravity / pull, loaded.bounds.center() - birth.position);
+    const float fall = glm::dot(gravity / pull, bounds.center() - birth.position);
     const float free = std::sqrt(start * start + 2.0F * pull * std::max(fall, 0.0F));
-    const float drag = loaded.scene.air.viscosity ? 0.0F : loaded.scene.forces.drag;
+    const float drag = scene.air.viscosity ? 0.0F : scene.forces.drag;
     return drag > 0.0F ? std::min(free, std::max(start, pull / drag)) : free;
 }
 
@@ -77,14 +78,14 @@ struct Fastest {
 };
 
 /// Of what meets the bodies of a group, a bit of ParticleType::collides.
-Fastest fastestAt(std::size_t group, const LoadedScene& loaded, std::span<const Birth> births) {
+Fastest fastestAt(std::size_t group, const Scene& scene, const Bounds& bounds,
+                  std::span<const Birth> births) {
     Fastest fastest;
     for (const Birth& birth : births) {
-        const ParticleType type = birth.type < loaded.scene.types.size()
-                                      ? ParticleType(loaded.scene.types[birth.type])
-                                      : ParticleType{};
+        const ParticleType type =
+            birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
         const bool meets = (type.collides >> group & 1U) != 0;
-        const float speed = meets ? speedAtBodies(birth, type, loaded) : 0.0F;
+        const float speed = meets ? speedAtBodies(birth, type, scene, bounds) : 0.0F;
         if (speed > fastest.speed) {
             fastest = {speed, type.radius};
         }
@@ -152,27 +153,27 @@ std::optional<float> typicalThickness(const Collider& collider) {
 }
 
 /// The colliders that are thinner than a step is long, each file once.
-std::vector<Thin> thinColliders(const LoadedScene& loaded) {
-    const Scene& scene = loaded.scene;
+std::vector<Thin> thinColliders(const Scene& scene,
+                                std::span<const std::shared_ptr<const Collider>> colliders,
+                                std::span<const Emitter> emitters, const Bounds& bounds) {
     std::vector<Birth> births;
     const auto motions = emitterMotions(scene.emitters, scene.colliders);
-    for (std::size_t i = 0; i < loaded.emitters.size(); ++i) {
-        const std::vector<Birth> more = birthsOf(loaded.emitters[i], motions[i], scene);
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        const std::vector<Birth> more = birthsOf(emitters[i], motions[i], scene);
         births.insert(births.end(), more.begin(), more.end());
     }
     std::vector<Thin> thin;
     std::vector<Fastest> of_groups;
-    for (std::size_t i = 0; i < std::min<std::size_t>(loaded.colliders.size(), ColliderTextures::kGroups);
-         ++i) {
-        of_groups.push_back(fastestAt(i, loaded, births));
+    for (std::size_t i = 0; i < std::min<std::size_t>(colliders.size(), ColliderTextures::kGroups); ++i) {
+        of_groups.push_back(fastestAt(i, scene, bounds, births));
     }
     std::map<const Collider*, std::optional<float>> thicknesses;
     std::set<std::string> found;  // names of files: a world has a file many times
-    for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
         const Fastest fastest = of_groups[std::min(body.tile_of.value_or(i), of_groups.size() - 1)];
         const float step = fastest.speed * scene.time.dt;
-        const Collider& collider = *loaded.colliders[i];
+        const Collider& collider = *colliders[i];
         const auto known = thicknesses.find(&collider);
         const auto thickness = known != thicknesses.end() ? known->second
                                : body.deforms()           ? std::nullopt
@@ -188,9 +189,10 @@ std::vector<Thin> thinColliders(const LoadedScene& loaded) {
 
 }  // namespace
 
-std::vector<std::string> fitSweep(LoadedScene& loaded) {
-    std::vector<Thin> thin = thinColliders(loaded);
-    std::optional<float>& sweep = loaded.scene.collision.sweep;
+std::vector<std::string> fitSweep(Scene& scene, std::span<const std::shared_ptr<const Collider>> colliders,
+                                  std::span<const Emitter> emitters, const Bounds& bounds) {
+    std::vector<Thin> thin = thinColliders(scene, colliders, emitters, bounds);
+    std::optional<float>& sweep = scene.collision.sweep;
     const bool chosen = !sweep && !thin.empty();
     if (chosen) {
         sweep = sweepFor(thin);
@@ -202,16 +204,6 @@ std::vector<std::string> fitSweep(LoadedScene& loaded) {
         });
     }
     return thin.empty() ? std::vector<std::string>() : std::vector{thinWarning(thin, !chosen)};
-}
-
-std::optional<std::string> refusedWarning(const ParticleCounts& counts, std::uint32_t capacity) {
-    const std::uint64_t asked = counts.born + counts.refused;
-    if (counts.refused <= counts.born) {
-        return std::nullopt;
-    }
-    return std::to_string(counts.refused) + " of " + std::to_string(asked) +
-           " births found no free place; raise particles.capacity (now " + std::to_string(capacity) +
-           "), or lower emitter.rate, emitter.burst or emitter.lifetime";
 }
 
 }  // namespace relief
