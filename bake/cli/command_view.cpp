@@ -75,7 +75,25 @@ Result<fs::path> findPlayer() {
                 "collider");
 }
 
-constexpr std::string_view kPlace = R"(<script type="application/json" id="relief-page-data">null</script>)";
+/// Where pages have their data, and the format of the data: a player that another release built may have another one.
+struct DataPlace {
+    std::string text;
+    std::uint64_t format;
+};
+
+const DataPlace& dataPlace() {
+    static const DataPlace place = [] {
+        const std::string page = viewPage();
+        const auto between = [&](std::string_view first, std::string_view last) {
+            const std::size_t at = page.find(first);
+            return page.substr(at, page.find(last, at + first.size()) - at);
+        };
+        constexpr std::string_view kFormat = "data-format=\"";
+        return DataPlace{between("<script type=\"application/json\"", "\n"),
+                         parseUnsigned(between(kFormat, "\"").substr(kFormat.size())).value()};
+    }();
+    return place;
+}
 constexpr std::string_view kEmpty = "null";
 
 // Vertices and corners go as they lie in memory.
@@ -152,7 +170,8 @@ struct Page {
     /// \param page  with a place for data.
     [[nodiscard]] Result<std::string> make(const std::string& page) const {
         RELIEF_TRY(checkSize());
-        const std::size_t data = page.find(kPlace) + kPlace.find(kEmpty);
+        const std::string& place = dataPlace().text;
+        const std::size_t data = page.find(place) + place.find(kEmpty);
         return page.substr(0, data) + scriptText(RELIEF_TRY(json())) + page.substr(data + kEmpty.size());
     }
 
@@ -186,7 +205,7 @@ struct Page {
         } else if (shows.empty()) {
             shown = base64(container);
         }
-        Json all = {{"format", 3},
+        Json all = {{"format", dataPlace().format},
                     {"name", name},
                     {"bytes", bytes},
                     {"collider", shown},
@@ -217,11 +236,11 @@ Result<std::vector<std::byte>> readFor(FileGuard& files, const fs::path& path) {
 Result<std::string> playerPage(FileGuard& files) {
     const fs::path file = RELIEF_TRY(findPlayer());
     std::string text = textOf(RELIEF_TRY(readFor(files, file)));
-    const std::size_t at = text.find(kPlace);
-    if (at == std::string::npos || text.find(kPlace, at + 1) != std::string::npos) {
-        return invalidInput(quotedPath(file) + " is no page for `relief view`: its place for data, " +
-                            std::string(kPlace) +
-                            ", is not there once; make it anew with scripts/build.sh web");
+    const std::string& place = dataPlace().text;
+    const std::size_t at = text.find(place);
+    if (at == std::string::npos || text.find(place, at + 1) != std::string::npos) {
+        return invalidInput(quotedPath(file) + " is no player of this release: it does not have its place for data, " +
+                            place + ", once; run scripts/build.sh web again");
     }
     return text;
 }
@@ -404,7 +423,10 @@ Result<void> preflightPage(const std::string& file, const std::string& mesh, con
     RELIEF_TRY(files.reads(mesh));
     RELIEF_TRY(files.writes("-", "the report"));
     RELIEF_TRY(files.writes(html, "--html"));
-    return namesWorld(file) ? files.reads(RELIEF_TRY(findPlayer())) : Result<void>();
+    if (namesWorld(file)) {
+        static_cast<void>(RELIEF_TRY(playerPage(files)));
+    }
+    return {};
 }
 
 Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,

@@ -23,7 +23,7 @@ cmp 1.json 2.json && cmp 1.html 2.html || die "two runs measure differently"
 "$relief" view b.relief -o view.html
 python3 - <<'P' || die "the page has another report"
 import json, re
-d, view = (json.loads(re.search('id="relief-page-data">(.*)</script>', open(page).read())[1]) for page in ('1.html', 'view.html'))
+d, view = (json.loads(re.search('id="relief-page-data"[^>]*>(.*)</script>', open(page).read())[1]) for page in ('1.html', 'view.html'))
 assert d['collider'] == view['collider'] and d['bytes'] == view['bytes'] and d['mesh']['name'] == 'bunny.obj'
 assert d['check']['verdict']['grade'] == 'poor' and len(d['check']['worst_places']) == 3 and d['check']['advice'][0]['helps']
 P

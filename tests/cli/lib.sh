@@ -42,6 +42,11 @@ expect_error() {
     [ ! -s "$work/stdout" ] || die "output on stdout beside an error: $*"
 }
 
+# page_place: where pages of `relief view` have their data; a player with no more than that.
+page_place() {
+    grep '^<script type="application/json"' "$RELIEF_SOURCE/runtime/web/view/index.html"
+}
+
 # gone PID: waits until neither the process nor one of its group runs; fails if one still does after a while.
 gone() {
     python3 "$RELIEF_SOURCE/tests/cli/processes.py" "$1"

@@ -3,7 +3,7 @@
 # combinations are drawn by tests/cases/overwrite_cases.py; this script has those that need a shell or several runs.
 . "$(dirname "$0")/lib.sh"
 
-echo '<script type="application/json" id="relief-page-data">null</script>' >stub.html
+page_place >stub.html
 export RELIEF_VIEW_PAGE=$work/stub.html
 
 PYTHONPATH=$RELIEF_SOURCE/tests/cases python3 "$RELIEF_SOURCE/tests/cases/overwrite_cases.py" "$RELIEF_BIN" --seed "${RELIEF_TEST_SEED:-1}" --cases 40

@@ -52,7 +52,7 @@ P
 done
 
 # Every scene makes a page.
-printf '<script type="application/json" id="relief-page-data">null</script>\n' >stub.html
+page_place >stub.html
 for scene in "$samples"/*.toml; do
     RELIEF_VIEW_PAGE=stub.html expect 0 "$relief" view "$(basename "$scene")" -o page.html
 done

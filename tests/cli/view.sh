@@ -7,7 +7,7 @@
 data() {
     python3 - "$1" <<'P' || die "$1 is no page with data"
 import json, re, sys
-before, data, after = re.fullmatch('(.*id="relief-page-data">)(.*?)(</script>.*)', open(sys.argv[1]).read(), re.S).groups()
+before, data, after = re.fullmatch('(.*id="relief-page-data"[^>]*>)(.*?)(</script>.*)', open(sys.argv[1]).read(), re.S).groups()
 assert '<' not in data and '\n' not in data, 'data that could end its script'
 assert not re.search(r'https?:|src=|@import|url\(', before + after), 'the page refers to something else'
 json.dump(json.loads(data), open('data.json', 'w'))
@@ -77,7 +77,7 @@ for name in '<script><!--.relief' $'\xff.relief'; do
 done
 
 # A scene, and the files that it names. A body that deforms is shown at rest.
-printf '%s\n' '<!doctype html>' '<title>stub</title>' '<script type="application/json" id="relief-page-data">null</script>' '<p>the end</p>' >stub.html
+printf '%s\n' '<!doctype html>' '<title>stub</title>' "$(page_place)" '<p>the end</p>' >stub.html
 export RELIEF_VIEW_PAGE=$work/stub.html
 mkdir -p scene/sub
 cp b.relief scene/sub/
@@ -128,6 +128,11 @@ RELIEF_VIEW_PAGE=$work/none.html refuses 2 none.html scene/s.toml -o errors/o.ht
 RELIEF_VIEW_PAGE=$work/box.obj refuses 3 'scripts/build.sh web' scene/s.toml -o errors/o.html
 cat stub.html stub.html >twice.html
 RELIEF_VIEW_PAGE=$work/twice.html refuses 3 'scripts/build.sh web' scene/s.toml -o errors/o.html
+# A player whose data has another format, or of a release before pages stated it.
+for mark in 's/data-format="/&1/' 's/ data-format="[^"]*"//'; do
+    sed "$mark" stub.html >other.html
+    RELIEF_VIEW_PAGE=$work/other.html refuses 3 'other.html.*scripts/build.sh web' scene/s.toml -o errors/o.html
+done
 mkdir -p tree/release/bin tree/web/bin tree/release/share/relief
 cp "$relief" "$RELIEF_BIN/relief-import" tree/release/bin/
 unset RELIEF_VIEW_PAGE

@@ -10,13 +10,16 @@ expect 0 "$relief" bake level.gltf --world one --budget 200kB -j 1 -q
 diff -r -x .relief-cache.json w one || die "threads change the world"
 
 # The page of a check is that of relief view.
-printf '<script type="application/json" id="relief-page-data">null</script>' >template.html
+page_place >template.html
 RELIEF_VIEW_PAGE=$PWD/none.html expect_error 2 none.html "$relief" check w/world.json --mesh level.gltf --html page.html --samples 50
 export RELIEF_VIEW_PAGE=$PWD/template.html
+sed 's/data-format="/&1/' template.html >other.html
+RELIEF_VIEW_PAGE=$PWD/other.html expect_error 3 'other.html.*scripts/build.sh web' "$relief" check w/world.json --mesh level.gltf --html page.html
+[ ! -e page.html ] || die "a page by a player of another format"
 expect 0 "$relief" check w/world.json --mesh level.gltf --html page.html --samples 5000
 expect 0 "$relief" view w/world.json --mesh level.gltf -o view.html --samples 5000
 cmp page.html view.html || die "check and view make different pages"
-sed 's/.*page-data">//; s/<.script>.*//' page.html >page.json
+sed 's/.*page-data"[^>]*>//; s/<.script>.*//' page.html >page.json
 json page.json "d['check']['verdict']['grade'] == 'good' and all(p['picture'].startswith('iVBORw0KGgo') for p in d['check']['accuracy']['places'])"
 
 # Names choose what parts are, and only the meshes that have them are baked for it, if no share of a budget moves with it.

@@ -13,17 +13,19 @@ export const damaged = (how) => new Error(`this page is damaged: ${how}; make th
 
 /** The data, with bytes in place of base64, or null of an empty page. Of a scene `file` names the collider in the panel. */
 export function readPageData() {
+    const place = document.getElementById("relief-page-data");
+    const format = Number(place?.dataset.format);
     let data;
     try {
-        data = JSON.parse(document.getElementById("relief-page-data").textContent);
+        data = JSON.parse(place.textContent);
     } catch {
         throw damaged("its data cannot be read");
     }
     if (data === null) {
         return null;
     }
-    if (data.format !== 3) {
-        throw new Error(`this page's data has the format ${data.format}, and the page understands 3; make it again ` +
+    if (data.format !== format) {
+        throw new Error(`this page's data has the format ${data.format}, and the page understands ${format}; make it again ` +
                         "with the 'relief view' of one release");
     }
     if (!data.scene) {

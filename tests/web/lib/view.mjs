@@ -8,7 +8,7 @@ import { built, launch, openPage } from "./browser.mjs";
 
 const player = path.join(built, "bin/view.html");
 process.env.RELIEF_VIEW_PAGE ??= player;
-const kData = /(?<=id="relief-page-data">).*(?=<\/script>)/;
+const kData = /(?<=id="relief-page-data"[^>]*>).*(?=<\/script>)/;
 
 export const dataOf = (file) => JSON.parse(kData.exec(readFileSync(file, "utf8"))[0]);
 
