@@ -133,7 +133,13 @@ class GroundBaker {
 
     Result<GroundResult> run() {
         RELIEF_TRY(checkPlace());
-        RELIEF_TRY(options_.folder.empty() ? bakeWhole() : bakeTiles());
+        const Result<void> done = options_.folder.empty() ? bakeWhole() : bakeTiles();
+        if (!done && done.error().code == ErrorCode::kLimit) {
+            if (const LikelierFormat format = map_.likelierFormat(); format.found()) {
+                return fail(ErrorCode::kLimit, done.error().message + "; " + cureBy(format));
+            }
+        }
+        RELIEF_TRY(done);
         warn();
         return std::move(result_);
     }
@@ -326,14 +332,19 @@ class GroundBaker {
         }
     }
 
+    [[nodiscard]] std::string cureBy(const LikelierFormat& format) const {
+        return "its samples look like those of another format; try --heights " + toString(format) +
+               (map_.hasLow() && format.type ? ", without low and high" : "");
+    }
+
     /// Settings that seem not to be those of the file. \param most  of its squares are steep.
     [[nodiscard]] std::string causeOfSteep(bool most) const {
         std::optional<LoneSample> lone = map_.lone();
         if (lone && lone->gap <= kSteepest * heights().spacing) {
             lone.reset();
         }
-        const std::string format = map_.likelierFormat();
-        if (lone && format != "type=int16") {
+        const LikelierFormat format = map_.likelierFormat();
+        if (lone && format != LikelierFormat{.type = SampleType::kInt16}) {
             const std::string far =
                 std::string(" far ") + (lone->lowest ? "below" : "above") + " all others; if ";
             return std::string("its ") + (lone->lowest ? "lowest" : "highest") +
@@ -344,10 +355,8 @@ class GroundBaker {
                               shortest(std::max(lone->sample, lone->last)) + ", lie" + far +
                               "they stand for no data, save them as one value and give it as --heights hole");
         }
-        if (!format.empty()) {
-            const bool metres = map_.hasLow() && format.find("type=") != std::string::npos;
-            return "its samples look like those of another format; try --heights " + format +
-                   (metres ? ", without low and high" : "") +
+        if (format.found()) {
+            return cureBy(format) +
                    (lone && lone->sample == lone->last
                         ? "; or, if its highest sample, " + shortest(lone->sample) +
                               ", stands for no data, --heights hole=" + shortest(lone->sample)

@@ -140,8 +140,8 @@ std::optional<LoneSample> HeightMap::lone() const {
     return lone;
 }
 
-std::string HeightMap::likelierFormat() const {
-    return isRaw() ? likelierRawFormat(bytes_, spec_) : std::string();
+LikelierFormat HeightMap::likelierFormat() const {
+    return isRaw() ? likelierRawFormat(bytes_, spec_) : LikelierFormat();
 }
 
 bool HeightMap::isRaw() const {
@@ -173,9 +173,9 @@ Result<void> HeightMap::next(std::span<float> out) {
         range_.add(sample);
         sample = static_cast<float>(low_ + unit_ * double{sample});
         if (!(std::abs(double{sample}) <= kHeightMax)) {
-            const std::string format = likelierFormat();
+            const LikelierFormat format = likelierFormat();
             return invalidInput(shown_ + ": it has a height of " + shortest(sample) + ", beyond 1e9; " +
-                                (!format.empty() ? "give --heights " + format
+                                (format.found() ? "give --heights " + toString(format)
                                  : std::isfinite(sample)
                                      ? "if it stands for a hole, give --heights hole=" + shortest(sample)
                                      : "if it stands for a hole, save it as NaN"));

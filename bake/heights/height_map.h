@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bake/heights/heights_spec.h"
+#include "bake/heights/raw_rows.h"
 #include "bake/import/import_job.h"
 #include "bake/import/sample_rows.h"
 #include "formats/base/descriptor.h"
@@ -81,8 +82,8 @@ class HeightMap {
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
     /// The lone samples of the rows read so far, without holes.
     [[nodiscard]] std::optional<LoneSample> lone() const;
-    /// Settings of raw samples that are likelier than those given: "order=big". Empty: there are none.
-    [[nodiscard]] std::string likelierFormat() const;
+    /// None of an image.
+    [[nodiscard]] LikelierFormat likelierFormat() const;
     /// Whether nothing in the file states the format of its samples.
     [[nodiscard]] bool isRaw() const;
     /// Whether samples stand for heights from low to high.

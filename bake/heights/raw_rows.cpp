@@ -216,7 +216,13 @@ Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes
     return std::make_unique<RawRows>(bytes, columns, format);
 }
 
-std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
+std::string toString(const LikelierFormat& format) {
+    const std::string type = format.type ? "type=" + std::string(wordOf(*format.type)) : std::string();
+    const std::string order = format.order ? "order=" + std::string(wordOf(*format.order)) : std::string();
+    return type + (type.empty() || order.empty() ? "" : ",") + order;
+}
+
+LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec) {
     const RawFormat own = formatOf(spec);
     const auto ofTwoBytes = [&](ByteOrder order) {
         RawFormat format{own.bytes() == 2 ? own.type : SampleType::kUint16, order};
@@ -252,12 +258,14 @@ std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpe
         }
     }
     const RawFormat& found = formats.at(best);
-    const std::string type = "type=" + std::string(wordOf(found.type));
-    const std::string order = "order=" + std::string(wordOf(found.order));
-    return found == own               ? std::string()
-           : found.order == own.order ? type
-           : found.type == own.type   ? order
-                                      : type + "," + order;
+    LikelierFormat likelier;
+    if (found.type != own.type) {
+        likelier.type = found.type;
+    }
+    if (found.order != own.order) {
+        likelier.order = found.order;
+    }
+    return likelier;
 }
 
 }  // namespace relief

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -18,8 +19,18 @@ namespace relief {
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes,
                                                               const HeightsSpec& spec);
 
-/// Returns the settings type and order that fit the samples better than those of `spec`: "order=big". Empty if there are none.
+/// Settings that fit raw samples better than those given.
+struct LikelierFormat {
+    std::optional<SampleType> type = {};  ///< nullopt: as given, as is the next
+    std::optional<ByteOrder> order = {};
+
+    [[nodiscard]] bool found() const { return type || order; }
+    friend bool operator==(const LikelierFormat&, const LikelierFormat&) = default;
+};
+/// "type=int16,order=big"; empty if there are none.
+[[nodiscard]] std::string toString(const LikelierFormat& format);
+
 /// Compares the differences of neighbours in at most 64 rows, and the values of all bytes.
-[[nodiscard]] std::string likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
+[[nodiscard]] LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 }  // namespace relief

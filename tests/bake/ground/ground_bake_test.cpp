@@ -182,6 +182,15 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
     EXPECT_NE(warned("low=-20,high=44,order=big")
                   .find("h.raw: its samples look like those of another format; try --heights order=little\n"),
               std::string::npos);
+    // Also if they cannot be baked so.
+    const Result<GroundResult> far =
+        tryBake("h.raw", parseHeightsSpec("spacing=0.01,low=0,high=65535,order=big").value(), {});
+    ASSERT_FALSE(far);
+    EXPECT_EQ(far.error().code, ErrorCode::kLimit);
+    EXPECT_NE(far.error().message.find(
+                  "; its samples look like those of another format; try --heights order=little"),
+              std::string::npos)
+        << far.error().message;
     EXPECT_NE(warned("low=-2000,high=4400")
                   .find("h.raw: most of its squares are steep; check --heights spacing, low "),
               std::string::npos);

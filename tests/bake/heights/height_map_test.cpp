@@ -320,7 +320,8 @@ TEST_F(HeightMaps, ALikelierFormatOfRawSamplesIsFound) {
                            const std::string& order) {
         const std::string settings =
             "width=65,type=" + type + ",order=" + order + (type == "uint16" ? ",low=0,high=65535" : "");
-        return HeightMap::open(write("g.raw", bytes), parseHeightsSpec(settings).value())->likelierFormat();
+        return toString(
+            HeightMap::open(write("g.raw", bytes), parseHeightsSpec(settings).value())->likelierFormat());
     };
     const std::array<std::string, 2> orders = {"little", "big"};
     for (const std::string& order : orders) {
@@ -379,9 +380,9 @@ TEST_F(HeightMaps, ALikelierFormatOfLowlandIsFound) {
             std::swap(big[i], big[i + 1]);
         }
         const bool swap = settings.find("written=big") == 0;
-        return HeightMap::open(write("g.raw", swap ? big : std::vector(bytes.begin(), bytes.end())),
-                               parseHeightsSpec(settings.substr(swap ? 12 : 0)).value())
-            ->likelierFormat();
+        return toString(HeightMap::open(write("g.raw", swap ? big : std::vector(bytes.begin(), bytes.end())),
+                                        parseHeightsSpec(settings.substr(swap ? 12 : 0)).value())
+                            ->likelierFormat());
     };
     const std::string uint16 = "low=0,high=65535";
     for (const auto& [low, high] : {std::pair(0, 5), {0, 100}, {0, 255}, {0, 300}, {1030, 1200}}) {
