@@ -358,7 +358,7 @@ class GroundBaker {
         if (format.found()) {
             return cureBy(format) +
                    (lone && lone->sample == lone->last
-                        ? "; or, if its highest sample, " + shortest(lone->sample) +
+                        ? std::string("; or, if its ") + (lone->lowest ? "lowest" : "highest") + " sample, " + shortest(lone->sample) +
                               ", stands for no data, --heights hole=" + shortest(lone->sample)
                         : "");
         }

@@ -211,6 +211,12 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
                         "stands for no data, --heights hole=65535\n"),
               std::string::npos)
         << sign;
+    // -2 and -1 beside 0.
+    write("h.raw", 17, 17,
+          [&](double x, double z) { return sample(x == 9 && z == 4 ? 0.0 : x > 8.0 ? 65534.0 : 65535.0); });
+    const std::string below = warned("spacing=100,low=0,high=65535");
+    EXPECT_NE(below.find("; or, if its lowest sample, 0, stands for no data, --heights hole=0\n"), std::string::npos)
+        << below;
     write("h.raw", 17, 17, [&](double x, double z) {
         return sample(x == 9 && z == 4 ? 65535.0 : x == 10 && z == 4 ? 65000.0 : 3000.0 + x + z);
     });
