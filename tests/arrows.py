@@ -3,8 +3,8 @@
 """Every #include goes along an arrow of the build files: arrows.py SOURCE FOLDERS_TXT
 
 FOLDERS_TXT is what CMake writes of relief_folder(): "FOLDER: USED USED…", a line each. Also fails on circles among
-files (a .cpp and its .h count as one), on third parties outside of the folders that may know them, and on what the
-standard library of the WebAssembly build lacks (LLVM 14), in the files that it compiles.
+files (a .cpp and its .h count as one), on third parties outside of the folders that may know them, on what the
+standard library of the WebAssembly build lacks (LLVM 14), in the files that it compiles, and on source files without a licence.
 """
 import pathlib
 import re
@@ -34,6 +34,7 @@ THIRD_PARTIES = {
                  'runtime/player', 'runtime/web', 'runtime/bench'],
     'epoxy': ['runtime/gl', 'runtime/collider', 'runtime/picture'],
 }
+TREES = ('formats', 'shaders', 'runtime', 'bake', 'samples', 'scripts', 'tests')
 TOP = {'bake', 'runtime'}  # main.cpp alone, which may use everything below
 
 
@@ -106,6 +107,22 @@ def table_faults(source, uses):
     return faults + [f'CONTRIBUTING.md: there is no {folder}' for folder in rows if not (source / folder).is_dir()]
 
 
+SOURCES = set('.c .cmake .comp .cpp .css .fbs .frag .glsl .h .hpp .html .js .mjs .py .sh .ts .vert'.split())
+LICENCE = re.compile(r'(?://|#|/\*|<!--) SPDX-License-Identifier: Apache-2\.0(?: \*/| -->)?')
+
+
+def licence_faults(source):
+    """Every source file has its licence alone on one of the first two lines."""
+    faults, files = [], 0
+    for path in sorted(p for top in TREES for p in (source / top).rglob('*')):
+        if (path.suffix in SOURCES or path.name == 'CMakeLists.txt') and path.is_file() and 'node_modules' not in path.parts:
+            files += 1
+            if not any(LICENCE.fullmatch(line) for line in path.read_text().split('\n', 2)[:2]):
+                faults.append(f'{path.relative_to(source)}:1: the first or second line shall be the comment '
+                              'SPDX-License-Identifier: Apache-2.0')
+    return faults if files >= 500 else faults + [f'only {files} source files were found']
+
+
 def main(source, folders_file):
     source = pathlib.Path(source)
     uses = {}
@@ -141,7 +158,7 @@ def main(source, folders_file):
             if stem != other:
                 graph.setdefault(stem, set()).add(other)
     faults += ['a circle: ' + ', '.join(group) for group in circles(graph)]
-    faults += web_faults(source) + table_faults(source, uses)
+    faults += web_faults(source) + table_faults(source, uses) + licence_faults(source)
     print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no arrow runs back')
     return 1 if faults or files < 100 else 0
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A million snowflakes on a collider, in a window of GLFW: glfw COLLIDER.relief
 #include <GLFW/glfw3.h>
 

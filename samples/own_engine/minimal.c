@@ -1,5 +1,5 @@
-/* SPDX-License-Identifier: Apache-2.0. The least that an engine needs for a collider: no JSON, no Relief library. Sizes follow from the block and the files.
- *
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The least that an engine needs for a collider: no JSON, no Relief library. Sizes follow from the block and the files.
  *     relief export bunny.relief --gpu bunny/
  *     minimal bunny 0 0.1 0        distance to the deciding plane, normal */
 #include <EGL/egl.h>
