@@ -334,7 +334,8 @@ class GroundBaker {
 
     [[nodiscard]] std::string cureBy(const LikelierFormat& format) const {
         return "its samples look like those of another format; try --heights " + toString(format) +
-               (map_.hasLow() && format.type ? ", without low and high" : "");
+               (map_.hasLow() && format.type ? ", without low and high" : "") +
+               (format.eight_bits ? ", unless they are 8 bits times 256" : "");
     }
 
     /// Settings that seem not to be those of the file. \param most  of its squares are steep.
@@ -358,7 +359,8 @@ class GroundBaker {
         if (format.found()) {
             return cureBy(format) +
                    (lone && lone->sample == lone->last
-                        ? std::string("; or, if its ") + (lone->lowest ? "lowest" : "highest") + " sample, " + shortest(lone->sample) +
+                        ? std::string("; or, if its ") + (lone->lowest ? "lowest" : "highest") + " sample, " +
+                              shortest(lone->sample) +
                               ", stands for no data, --heights hole=" + shortest(lone->sample)
                         : "");
         }

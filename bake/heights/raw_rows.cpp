@@ -144,15 +144,18 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
     return variation;
 }
 
-/// Whether the low bytes of 16-bit samples have fewer than half as many values as the high bytes. Heights within 256 m are as
-/// smooth in the wrong order as in the right one, and times 256.
-bool hasCoarseLowBytes(std::span<const std::byte> bytes, ByteOrder order) {
+/// How many values the low and the high bytes of 16-bit samples have.
+struct ByteValues {
+    std::size_t low = 0;
+    std::size_t high = 0;
+};
+ByteValues byteValues(std::span<const std::byte> bytes, ByteOrder order) {
     std::array<std::bitset<256>, 2> values;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         values.at(i % 2).set(std::to_integer<std::size_t>(bytes[i]));
     }
     const std::size_t low = order == ByteOrder::kLittle ? 0 : 1;
-    return values.at(1 - low).count() > 2 * values.at(low).count();
+    return {values.at(low).count(), values.at(1 - low).count()};
 }
 
 /// Whether 16-bit samples lie at both ends of their type's range with nothing between, and neighbours at different ends are as
@@ -242,8 +245,9 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     std::size_t best = own.bytes() == 2 ? in_order : 2 + in_order;
     const std::size_t swapped = 1 - in_order;
     constexpr double kAlike = 1.25;
-    if (own.bytes() == 2 && hasCoarseLowBytes(bytes, own.order) &&
-        roughness.at(swapped) <= kAlike * roughness.at(best)) {
+    const ByteValues values = own.bytes() == 2 ? byteValues(bytes, own.order) : ByteValues{};
+    // Heights within 256 m are as smooth in the wrong order as in the right one, and times 256.
+    if (values.high > 2 * values.low && roughness.at(swapped) <= kAlike * roughness.at(best)) {
         best = swapped;
     }
     const RawFormat first = formats.at(best);
@@ -264,6 +268,7 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     }
     if (found.order != own.order) {
         likelier.order = found.order;
+        likelier.eight_bits = values.low == 1;
     }
     return likelier;
 }

@@ -414,10 +414,11 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
     }
     scene.roots = {0};
     if (!hidden.unmet.empty()) {  // a 3DS file without a keyframer
-        scene.warnings.push_back("could not leave out " + std::to_string(hidden.unmet.size()) +
-                                 " hidden objects (first '" +
-                                 cleanUtf8(hidden.unmet.front(), kAskedNameBytesMax) +
-                                 "'), because no node stands for them; remove them");
+        const std::size_t count = hidden.unmet.size();
+        const std::string them = count == 1 ? "it" : "them";
+        scene.warnings.push_back("could not leave out " + std::to_string(count) + " hidden object" +
+                                 (count == 1 ? "" : "s") + firstName(hidden.unmet.front(), count) +
+                                 ", because no node stands for " + them + "; remove " + them);
     }
 }
 

@@ -667,12 +667,19 @@ Result<TriangleMesh> flattenLevel(ImportScene scene, const ImportJob& job) {
     return Flattener(std::move(scene), job).runLevel();
 }
 
+std::string firstName(const std::string& name, std::uint64_t count) {
+    return name.empty()
+               ? std::string()
+               : std::string(count == 1 ? " ('" : " (first '") + cleanUtf8(name, kAskedNameBytesMax) + "')";
+}
+
 bool LeftOutObjects::leaveOut(Shown shown, const std::string& name, HiddenAs hidden) {
     if (shown == Shown::kYes || hidden == HiddenAs::kKeep) {
         return false;
     }
     const std::size_t kind = shown == Shown::kHidden ? 0 : 1;
-    if (counts_.at(kind)++ == 0) {
+    ++counts_.at(kind);
+    if (first_names_.at(kind).empty()) {
         first_names_.at(kind) = name;
     }
     return true;
@@ -684,9 +691,8 @@ void LeftOutObjects::warn(std::vector<std::string>& warnings) const {
     for (std::size_t kind = 0; kind < 2; ++kind) {
         if (const std::uint64_t count = counts_.at(kind); count > 0) {
             warnings.push_back("left out " + std::to_string(count) + " " +
-                               kWords.at(kind).at(count == 1 ? 0 : 1) + " (" + (count == 1 ? "" : "first ") +
-                               "'" + cleanUtf8(first_names_.at(kind), kAskedNameBytesMax) +
-                               "'); --hidden keep bakes all");
+                               kWords.at(kind).at(count == 1 ? 0 : 1) +
+                               firstName(first_names_.at(kind), count) + "; --hidden keep bakes all");
         }
     }
 }

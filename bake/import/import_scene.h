@@ -123,6 +123,9 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 inline constexpr const char* kAnimatedVisibility =
     "its animations show and hide objects; it is baked as its nodes are without them";
 
+/// " ('NAME')" of one object, " (first 'NAME')" of several, nothing if the name is empty.
+[[nodiscard]] std::string firstName(const std::string& name, std::uint64_t count);
+
 /// Objects that an import leaves out because the file does not show them.
 class LeftOutObjects {
   public:

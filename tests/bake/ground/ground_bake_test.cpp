@@ -211,11 +211,18 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
                         "stands for no data, --heights hole=65535\n"),
               std::string::npos)
         << sign;
+    // Right as they are, or heights up to 200 m in the other order.
+    write("h.raw", 17, 17, [&](double x, double z) { return sample(256.0 * std::round(6.0 * (x + z))); });
+    EXPECT_NE(warned("spacing=100,low=0,high=100")
+                  .find("try --heights order=big, unless they are 8 bits times 256\n"),
+              std::string::npos);
     // -2 and -1 beside 0.
-    write("h.raw", 17, 17,
-          [&](double x, double z) { return sample(x == 9 && z == 4 ? 0.0 : x > 8.0 ? 65534.0 : 65535.0); });
+    write("h.raw", 17, 17, [&](double x, double z) {
+        return sample(x == 9 && z == 4 ? 0.0 : x > 8.0 ? 65534.0 : 65535.0);
+    });
     const std::string below = warned("spacing=100,low=0,high=65535");
-    EXPECT_NE(below.find("; or, if its lowest sample, 0, stands for no data, --heights hole=0\n"), std::string::npos)
+    EXPECT_NE(below.find("; or, if its lowest sample, 0, stands for no data, --heights hole=0\n"),
+              std::string::npos)
         << below;
     write("h.raw", 17, 17, [&](double x, double z) {
         return sample(x == 9 && z == 4 ? 65535.0 : x == 10 && z == 4 ? 65000.0 : 3000.0 + x + z);
