@@ -94,7 +94,7 @@ class AnimatedReader {
 
     Result<TriangleMesh> run() {
         RELIEF_TRY(checkGltf(document_, out_.warnings));
-        from_ = RELIEF_TRY(readGltfNodes(document_));
+        from_ = RELIEF_TRY(readGltfNodes(document_, job_.options.hidden));
         if (job_.kind == ImportKind::kClips) {
             RELIEF_TRY(readClips());
             RELIEF_TRY(validateClips(mesh_));

@@ -181,7 +181,7 @@ Result<void> checkLevels(const std::vector<GltfNode>& nodes,
             if (states[next] == State::kOpen) {
                 return nodes[next].place.wrong(
                     "is a lower level of detail of itself (MSFT_lod), so that none is shown; remove its "
-                    "number from the ids");
+                    "number from the ids, or give --hidden keep");
             }
             if (states[next] == State::kNew) {
                 states[next] = State::kOpen;
@@ -192,29 +192,47 @@ Result<void> checkLevels(const std::vector<GltfNode>& nodes,
     return {};
 }
 
-/// Marks the nodes that extensions hide. Lower levels of detail are usually in no scene.
-Result<void> hideNodes(std::vector<GltfNode>& nodes) {
+/// Hides what is below nodes that are not shown. \param all  nodes, each before its children.
+void hideBelow(const std::vector<std::uint32_t>& all, std::vector<GltfNode>& nodes) {
+    for (const std::uint32_t index : all) {
+        const Shown above = nodes[index].parent ? nodes[*nodes[index].parent].shown : Shown::kYes;
+        nodes[index].shown = above == Shown::kYes ? nodes[index].shown : above;
+    }
+}
+
+/// Marks the nodes that extensions hide, with all below. Lower levels of detail are usually in no scene.
+Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, std::vector<GltfNode>& nodes) {
+    for (GltfNode& node : nodes) {
+        const auto extensions = RELIEF_TRY(node.place.object("extensions"));
+        const auto visibility = RELIEF_TRY(inside(extensions, "KHR_node_visibility"));
+        if (visibility && !RELIEF_TRY(visibility->get<bool>("visible", true))) {
+            node.shown = Shown::kHidden;
+        }
+    }
+    hideBelow(all, nodes);
     std::vector<std::vector<std::uint32_t>> lesser(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));
-        const auto visibility = RELIEF_TRY(inside(extensions, "KHR_node_visibility"));
-        if (visibility && !RELIEF_TRY(visibility->get<bool>("visible", true))) {
-            nodes[i].shown = Shown::kHidden;
-        }
         const auto levels = RELIEF_TRY(inside(extensions, "MSFT_lod"));
         using Indices = std::vector<std::uint64_t>;
+        bool met = nodes[i].shown != Shown::kHidden;  // the first level that is shown
         for (const std::uint64_t level : levels ? RELIEF_TRY(levels->get<Indices>("ids", {})) : Indices()) {
             if (level >= nodes.size()) {
                 return levels->wrong("names nodes[" + std::to_string(level) + "], which does not exist");
             }
             if (level != i) {
                 lesser[i].push_back(static_cast<std::uint32_t>(level));
-                nodes[level].shown =
-                    nodes[level].shown == Shown::kYes ? Shown::kLesserLevel : nodes[level].shown;
+                Shown& shown = nodes[level].shown;
+                if (shown != Shown::kHidden) {
+                    shown = met ? Shown::kLesserLevel : shown;
+                    met = true;
+                }
             }
         }
     }
-    return checkLevels(nodes, lesser);
+    RELIEF_TRY(hidden == HiddenAs::kKeep ? Result<void>() : checkLevels(nodes, lesser));
+    hideBelow(all, nodes);
+    return {};
 }
 
 /// Empty where there is no such attribute.
@@ -251,7 +269,7 @@ Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warn
     return checkExtensions(document);
 }
 
-Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document) {
+Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden) {
     std::vector<GltfNode> nodes;
     for (const GltfValue& place : RELIEF_TRY(document.objects("nodes"))) {
         GltfNode& node = nodes.emplace_back(GltfNode{place});
@@ -272,11 +290,7 @@ Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document) {
     if (all.size() != nodes.size()) {
         return invalidInput("its nodes are their own parents; nodes must form trees");
     }
-    RELIEF_TRY(hideNodes(nodes));
-    for (const std::uint32_t index : all) {
-        const Shown above = nodes[index].parent ? nodes[*nodes[index].parent].shown : Shown::kYes;
-        nodes[index].shown = above == Shown::kYes ? nodes[index].shown : above;
-    }
+    RELIEF_TRY(hideNodes(all, hidden, nodes));
     return nodes;
 }
 

@@ -50,8 +50,9 @@ struct GltfNode {
 /// Version and extensions. \param warnings  receives those of optional extensions. Errors: kInvalidInput, kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);
 
-/// All nodes, by their index. Errors: kInvalidInput, also where they form no trees.
-[[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document);
+/// All nodes, by their index. Errors: kInvalidInput, also where they form no trees, or where levels of detail lead back to
+/// their node and are not kept.
+[[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden);
 
 /// The roots of the scene that the file shows, the first by default. Errors: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document,

@@ -42,14 +42,15 @@ ScenePart posed(ScenePart part, const GltfInfluences& influences, const std::vec
 class GltfReader {
   public:
     GltfReader(const ImportJob& job, const GltfChunks& chunks, const GltfValue& document, ImportFiles& files)
-        : document_(document),
+        : hidden_(job.options.hidden),
+          document_(document),
           buffers_(chunks, files),
           meshes_(job.triangle_max, buffers_, scene_.warnings) {}
 
     Result<ImportScene> run() {
         scene_.frame = {1.0, UpAxis::kPlusY};
         RELIEF_TRY(checkGltf(document_, scene_.warnings));
-        nodes_ = RELIEF_TRY(readGltfNodes(document_));
+        nodes_ = RELIEF_TRY(readGltfNodes(document_, hidden_));
         scene_.nodes.resize(nodes_.size());
         for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
             SceneNode& node = scene_.nodes[index];
@@ -172,6 +173,7 @@ class GltfReader {
         return skin;
     }
 
+    HiddenAs hidden_;
     const GltfValue& document_;
     GltfBuffers buffers_;
     ImportScene scene_;

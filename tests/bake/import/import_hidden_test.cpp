@@ -389,6 +389,19 @@ TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
     expectWrong("levels.gltf",
                 {{tetrahedronGltf({.nodes = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[7]}}})"}),
                   "nodes[0].extensions.MSFT_lod names nodes[7], which does not exist"}});
+    // The first level is hidden, here with a node without a name above it.
+    const std::string near = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[1,2]})";
+    const std::string hidden = R"("KHR_node_visibility":{"visible":false})";
+    const std::string lower = R"({"mesh":0,"translation":[10,0,0]},{"mesh":0,"translation":[20,0,0]})";
+    for (const auto& [nodes, roots] :
+         {std::pair(near + "," + hidden + "}}," + lower, "0,1,2"),
+          std::pair(near + "}}," + lower + R"(,{"children":[0],"extensions":{)" + hidden + "}}", "3,1,2")}) {
+        const TriangleMesh mesh = imported("hidden.gltf", tetrahedronGltf({.nodes = nodes, .roots = roots}));
+        EXPECT_EQ(mesh.bounds.min.x, 10.0F);
+        EXPECT_EQ(mesh.bounds.max.x, 11.0F);
+        EXPECT_TRUE(warns(mesh, "left out 1 hidden object; ")) << ::testing::PrintToString(mesh.warnings);
+        EXPECT_TRUE(warns(mesh, "left out 1 lower level of detail; "));
+    }
 }
 
 TEST(ImportHidden, LevelsOfDetailThatLeadBackAreRefused) {
@@ -396,6 +409,12 @@ TEST(ImportHidden, LevelsOfDetailThatLeadBackAreRefused) {
         return R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[)" + levels + "]}}" + more + "}";
     };
     const std::string words = "nodes[0] is a lower level of detail of itself (MSFT_lod)";
+    ImportOptions keep;
+    keep.hidden = HiddenAs::kKeep;
+    const auto kept = importText(
+        "kept.gltf", tetrahedronGltf({.nodes = node("1") + "," + node("0"), .roots = "0,1"}), keep);
+    ASSERT_TRUE(kept) << kept.error().message;
+    EXPECT_EQ(kept->triangles.size(), 8U);
     expectWrong(
         "ring.gltf",
         {{tetrahedronGltf({.nodes = node("1") + "," + node("0"), .roots = "0,1"}), words},
