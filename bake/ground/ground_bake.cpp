@@ -134,10 +134,11 @@ class GroundBaker {
     Result<GroundResult> run() {
         RELIEF_TRY(checkPlace());
         const Result<void> done = options_.folder.empty() ? bakeWhole() : bakeTiles();
-        if (!done && done.error().code == ErrorCode::kLimit) {
-            if (const LikelierFormat format = map_.likelierFormat(); format.found()) {
-                return fail(ErrorCode::kLimit, done.error().message + "; " + cureBy(format));
-            }
+        if (!done && done.error().code == ErrorCode::kLimit && map_.isRaw()) {
+            const LikelierFormat format = map_.likelierFormat();
+            return fail(ErrorCode::kLimit,
+                        done.error().message + "; " +
+                            (format.found() ? cureBy(format) : "check --heights type and order too"));
         }
         RELIEF_TRY(done);
         warn();

@@ -116,8 +116,10 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
             RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
     }
     const double hole = holeOf(spec, format);
+    constexpr float kLeast = 1e-20F;  // small whole numbers read as floats are smaller
     const auto isHeight = [&](float sample) {
-        return std::abs(double{sample}) <= kHeightMax && double{sample} != hole;
+        return std::abs(double{sample}) <= kHeightMax && double{sample} != hole &&
+               (sample == 0.0F || std::abs(sample) >= kLeast);
     };
     double sum = 0.0;
     double count = 0.0;

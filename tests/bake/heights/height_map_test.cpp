@@ -361,6 +361,17 @@ TEST_F(HeightMaps, ALikelierFormatOfRawSamplesIsFound) {
     }
     refuses(write("f.raw", bytesOf("float32", "big")), "type=float32",
             "beyond 1e9; give --heights order=big");
+    // Two whole numbers from 0 to 200 are a float below 1e-35.
+    samples.clear();
+    for (int i = 0; i < 66 * 64; ++i) {
+        samples.push_back(static_cast<std::uint16_t>(
+            std::lround(100.0 + 50.0 * std::sin(i % 66 / 9.0) + 50.0 * std::cos(i / 66 / 5.0))));
+    }
+    const auto small = std::as_bytes(std::span(samples));
+    EXPECT_EQ(toString(HeightMap::open(write("g.raw", {small.begin(), small.end()}),
+                                       parseHeightsSpec("width=66,type=float32").value())
+                           ->likelierFormat()),
+              "type=uint16");
 }
 
 /// Bytes in the wrong order scale heights by 256 if all lie within 256 m, and signs in the wrong type make pillars of 65 km.
