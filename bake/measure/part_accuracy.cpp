@@ -221,6 +221,10 @@ int rankOf(PartVerdict state) {
     return kRanks[static_cast<std::size_t>(state)];
 }
 
+bool isMissing(const PartAccuracy& part) {
+    return part.wrong.false_outside > part.wrong.false_inside;
+}
+
 /// Percent of the points near the exposed surface that minor and coarse parts miss. What exceeds them shows in the points of the
 /// whole, which seldom lie inside a thin part.
 double minorMissed(const PartsAccuracy& all, const SurfaceParts& parts) {
@@ -256,6 +260,7 @@ void IgnoredParts::add(const IgnoredParts& other, double scale) {
     parts += other.parts;
     lost += other.lost;
     size = std::max(size, scale * other.size);
+    thick += other.thick;
     unmeasured += other.unmeasured;
 }
 
@@ -284,8 +289,7 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
     all.minor_counts = minorMissed(all, parts) > kGoodPercent;
     if (all.minor_counts && !options.detail) {
         for (PartAccuracy& one : all.parts) {
-            const bool missing = one.wrong.false_outside > one.wrong.false_inside;
-            one.state = one.state == PartVerdict::kMinor && missing ? PartVerdict::kLost : one.state;
+            one.state = one.state == PartVerdict::kMinor && isMissing(one) ? PartVerdict::kLost : one.state;
         }
     }
     Groups nodes(false);
@@ -295,12 +299,13 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
         nodes.add(part.node_index, part, accuracy);
         materials.add(0, part, accuracy);
         ++all.count[static_cast<std::size_t>(accuracy.state)];
-        if (accuracy.state == PartVerdict::kMinor) {
+        if (accuracy.state == PartVerdict::kMinor && isMissing(accuracy)) {
+            ++all.ignored.lost;
             all.ignored.size = std::max(all.ignored.size, part.size());
         }
     }
     all.ignored.parts = all.parts.size();
-    all.ignored.lost = all.countOf(PartVerdict::kMinor);
+    all.ignored.thick = all.countOf(PartVerdict::kMinor) - all.ignored.lost;
     all.ignored.unmeasured = all.countOf(PartVerdict::kRest);
     nodes.addTo(all.groups);
     materials.addTo(all.groups);

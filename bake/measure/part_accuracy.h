@@ -62,8 +62,9 @@ struct GroupAccuracy {
 /// The parts that a verdict ignores, of one mesh or several.
 struct IgnoredParts {
     std::uint64_t parts = 0;       ///< all
-    std::uint64_t lost = 0;        ///< PartVerdict::kMinor
+    std::uint64_t lost = 0;        ///< PartVerdict::kMinor, and mostly called outside
     double size = 0.0;             ///< of the largest of these
+    std::uint64_t thick = 0;       ///< the other ones of PartVerdict::kMinor, mostly called inside
     std::uint64_t unmeasured = 0;  ///< PartVerdict::kRest
 
     /// \param scale  of the other mesh's sizes.

@@ -332,7 +332,7 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
         py::arg("distance_mean") = accuracy.distance_mean, py::arg("distance_p99") = accuracy.distance_p99,
         py::arg("normal_mean") = accuracy.normal_mean, py::arg("unknown_percent") = accuracy.unknown_percent,
         py::arg("lost_parts") = run.part_accuracy.countOf(PartVerdict::kLost),
-        py::arg("ignored_parts") = run.part_accuracy.ignored.lost,
+        py::arg("ignored_parts") = run.part_accuracy.countOf(PartVerdict::kMinor),
         py::arg("grade") = verdictOf(run.wrongPercent(), run.part_accuracy, run.collider.unit).grade,
         py::arg("places") = placesOf(run.places));
     return py::make_tuple(measured, textsOf(run.warnings));

@@ -60,11 +60,6 @@ std::string sideText(const PartAccuracy& accuracy) {
     return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
 }
 
-/// "3 parts are"
-std::string partsAre(std::uint64_t count) {
-    return countText(count, "part") + (count == 1 ? " is " : " are ");
-}
-
 /// "27 of 82 parts are lost"
 std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
     const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest);
@@ -93,15 +88,17 @@ std::string groupsText(const PartsAccuracy& accuracy, bool materials, const std:
 
 std::string ignoredText(const IgnoredParts& ignored, const std::string& unit) {
     std::string text;
-    if (ignored.lost > 0) {
-        text = std::to_string(ignored.lost) + " of " + countText(ignored.parts, "part") + ", at most " +
-               lengthText(ignored.size, unit) + " long, " + (ignored.lost == 1 ? "is" : "are") +
-               " not represented";
-    }
-    if (ignored.unmeasured > 0) {
-        text += (text.empty() ? "" : "; ") + std::string("the smallest ") + partsAre(ignored.unmeasured) +
-                "not measured";
-    }
+    const auto add = [&](std::uint64_t count, const std::string& parts, const char* state) {
+        if (count > 0) {
+            text += (text.empty() ? "" : "; ") + parts + (count == 1 ? " is " : " are ") + state;
+        }
+    };
+    const std::string of_all = " of " + countText(ignored.parts, "part");
+    add(ignored.lost,
+        std::to_string(ignored.lost) + of_all + ", at most " + lengthText(ignored.size, unit) + " long,",
+        "not represented");
+    add(ignored.thick, std::to_string(ignored.thick) + of_all, "thicker than the mesh");
+    add(ignored.unmeasured, "the smallest " + countText(ignored.unmeasured, "part"), "not measured");
     return text;
 }
 
@@ -201,7 +198,7 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
             text;
     }
     text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
-    if (accuracy.ignored.lost > 0) {
+    if (accuracy.countOf(PartVerdict::kMinor) > 0) {
         text += "Parts shorter than " + lengthText(accuracy.detail, collider.unit) +
                 ", or off by less than " + lengthText(kNoticeableExcess * accuracy.detail, collider.unit) +
                 ", do not lower the grade; --detail LENGTH changes that\n";
@@ -297,8 +294,11 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
     visit("parts", ignored.parts, {"Parts of the mesh"});
     visit("lost", ignored.lost,
           {"Parts that are not represented, and too small to lower the grade: more than 25 % of the points "
-           "near each are wrong"});
+           "near each are wrong, most of them called outside"});
     visit("size", ignored.size, {"Longest side of the largest of them", "object units", kFromZero});
+    visit("thick", ignored.thick,
+          {"Parts that are thicker than the mesh, by too little to lower the grade: more than 25 % of the "
+           "points near each are wrong, most of them called inside"});
     visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
 }
 

@@ -167,7 +167,8 @@ def test_a_check_judges_as_the_tool_does(bake, arguments, mesh, tmp_path):
         accuracy = relief.check(relief.load(tmp_path / "a.relief"), mesh, **arguments)
     assert accuracy.wrong_percent == pytest.approx(said["verdict"]["wrong_percent"], abs=1e-12)
     assert (accuracy.grade, accuracy.lost_parts) == (said["verdict"]["grade"], said["verdict"]["lost_parts"])
-    assert accuracy.ignored_parts == said["verdict"]["ignored_parts"]["lost"]
+    ignored = said["verdict"]["ignored_parts"]
+    assert accuracy.ignored_parts == ignored["lost"] + ignored["thick"]
     assert len(accuracy.places) == len(said["worst_places"])
     for place, other in zip(accuracy.places, said["worst_places"]):
         assert place.position == pytest.approx(other["position"], abs=1e-6)
