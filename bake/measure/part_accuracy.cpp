@@ -26,8 +26,8 @@ constexpr double kExposed = 0.05;
 constexpr double kFloatStep = 1e-6;
 /// Times that the distance of the points from a part that seems to be absent is halved.
 constexpr int kCloser = 5;
-/// Points that confirm a lost part, in units of those that found it.
-constexpr std::uint32_t kConfirm = 4;
+/// Points that confirm a lost part, which fewer have found.
+constexpr std::uint32_t kConfirm = 256;
 
 /// The triangles of each part with cumulative areas.
 class PartTriangles {
@@ -76,9 +76,8 @@ class PartMeter {
 
     [[nodiscard]] PartAccuracy measure(std::uint32_t part, std::uint32_t points) const {
         const PartAccuracy found = judge(part, points);
-        const std::uint32_t more = std::min(kConfirm * points, options_.points);
         const bool lost = found.state == PartVerdict::kLost || found.state == PartVerdict::kMinor;
-        return lost && more > points ? judge(part, more) : found;
+        return lost && points < kConfirm ? judge(part, kConfirm) : found;
     }
 
   private:

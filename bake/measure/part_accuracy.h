@@ -14,7 +14,7 @@
 namespace relief {
 
 struct PartOptions {
-    std::uint32_t points = 1000;         ///< of each part, at most
+    std::uint32_t points = 1000;         ///< of each part, at most; a lost one is confirmed by at least 256
     std::uint32_t points_min = 48;       ///< of each part, at least
     std::uint64_t points_all = 200'000;  ///< of all parts together, but for points_min
     std::size_t parts_max = 10'000;      ///< the largest ones are measured
@@ -88,7 +88,7 @@ struct PartsAccuracy {
 
 /// Measures at points near each part's surface in the baked solid: area-weighted, with an isotropic Gaussian offset, which is
 /// less for a part that is thinner and seems to be absent. Truth is the side of the whole mesh, but a shell ends at its
-/// right_thickness. A lost part is measured again by more points. It is minor if it is shorter than the detail, or if it is
+/// right_thickness. A part that fewer than 256 points call lost is measured again by 256. It is minor if it is shorter than the detail, or if it is
 /// there and kNoticeableExcess of the detail off the surface is right; but missing minor parts are lost if they count together and
 /// the detail is the default. The same for any number of threads.
 /// \param query  of the solid of `parts`.

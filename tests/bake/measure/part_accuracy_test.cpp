@@ -183,6 +183,23 @@ TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
     EXPECT_EQ(measured(shape, fieldOfBoxes({cube.bounds})).countOf(PartVerdict::kLost), 1U);
 }
 
+TEST(PartAccuracy, ALostPartIsConfirmedByMorePoints) {
+    // Boxes that are too large by half the distance of their points: about 20 % are wrong, with few points at times 25 %.
+    std::vector<TriangleMesh> boxes;
+    std::vector<Bounds> bounds;
+    for (int i = 0; i < 40; ++i) {
+        boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(1.0)));
+        bounds.push_back(boxes.back().bounds);
+        bounds.back().min -= glm::vec3(0.005F);
+        bounds.back().max += glm::vec3(0.005F);
+    }
+    PartOptions options;
+    options.points = 64;
+    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes(bounds), options);
+    EXPECT_EQ(found.countOf(PartVerdict::kLost), 0U);
+    EXPECT_EQ(found.countOf(PartVerdict::kCoarse), 40U);
+}
+
 TEST(PartAccuracy, CoarsePartsCountByTheirArea) {
     // Cubes that are too small by half the distance of their points.
     for (const double side : {10.0, 0.5}) {
