@@ -475,8 +475,8 @@ class Director {
         if (const std::uint64_t shells = result_.shape.unjoined_shells; shells > 0) {
             result_.notices.push_back(
                 mesh.name + ": " + countText(shells, "open shell") +
-                " within another one, with mouths too far apart to join: the space between and within is "
-                "full; to free it, close the gap between the rims in the mesh");
+                " within another one, with mouths too far apart to join: the space within is full; to free "
+                "it, close the gap between the rims in the mesh");
         }
         if (const std::uint64_t sheets = result_.shape.closable_sheets; sheets > 0) {
             result_.notices.push_back(

@@ -255,12 +255,12 @@ ShellWalls joinRims(const std::vector<OpenShell>& shells) {
         }
     }
     for (std::size_t k = 0; k < rimmed.size(); ++k) {
-        bool near = false;
-        for (std::size_t i = 0; i < k && !done[k] && !near; ++i) {
-            const bool is_full = (rimmed[i].shell->is_solid && !done[i]) || rimmed[k].shell->is_solid;
-            near = is_full && nearlyFace(rimmed[i], rimmed[k]);
+        for (std::size_t i = 0; i < k && !done[k]; ++i) {
+            if ((rimmed[i].shell->is_solid || rimmed[k].shell->is_solid) &&
+                nearlyFace(rimmed[i], rimmed[k])) {
+                joined.unjoined.push_back({rimmed[i].index, rimmed[k].index});
+            }
         }
-        joined.unjoined += near ? 1 : 0;
     }
     return joined;
 }

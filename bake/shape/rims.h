@@ -2,6 +2,7 @@
 // The two open shells of a double-walled vessel, joined at their rims.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct ShellWall {
 
 struct ShellWalls {
     std::vector<ShellWall> walls;
-    std::size_t unjoined = 0;  ///< shells within another one that is full, with nearly facing mouths
+    /// Outer and inner shells with nearly facing mouths, by the inner one: it is in no wall, and either may be a solid.
+    std::vector<std::array<std::size_t, 2>> unjoined;
 };
 
 /// Joins each outer shell to an inner one. The holes of the inner one that face no hole of the outer one have to be

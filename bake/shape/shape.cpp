@@ -204,6 +204,7 @@ class Shaper {
         Sheet sheet;
         ShapeAs as = ShapeAs::kAuto;
         Role role;
+        bool full = false;  ///< closed by itself, and a solid
     };
 
     /// Restarts without copies, which hide the inside: the rest has to be wound again.
@@ -458,6 +459,7 @@ class Shaper {
         for (std::size_t i = 0; i < holed.size(); ++i) {
             const Closed part = RELIEF_TRY(std::move(closed[i]));
             if (part.mesh && part.is_body) {
+                holed[i]->full = true;
                 add(part);
                 ++report_.solids_with_holes;
             } else if (holed[i]->role.kind == Kind::kPerhapsHoled) {
@@ -470,6 +472,13 @@ class Shaper {
         for (const std::vector<Open*>& parts : left) {
             if (!parts.empty()) {
                 RELIEF_TRY(closeTogether(parts));
+            }
+        }
+        std::optional<std::size_t> counted;
+        for (const auto& [outer, inner] : unjoined_) {
+            if ((open_[outer].full || open_[inner].full) && counted != inner) {
+                counted = inner;
+                ++report_.unjoined_shells;
             }
         }
         return {};
@@ -512,7 +521,9 @@ class Shaper {
         }
         std::vector<bool> joined(open_.size(), false);
         ShellWalls walls = joinRims(shells);
-        report_.unjoined_shells = walls.unjoined;
+        for (const auto& [outer, inner] : walls.unjoined) {
+            unjoined_.push_back({parts[outer], parts[inner]});
+        }
         for (ShellWall& wall : walls.walls) {
             const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(wall.mesh)));
             const Closed solid = RELIEF_TRY(close(finished, true));
@@ -654,9 +665,10 @@ class Shaper {
     const ShapeOptions& options_;
     std::vector<std::uint32_t> welded_;
     std::vector<Part> parts_;
-    std::vector<ShapeAs> kinds_;  // of the triangles; empty: options_.as
-    std::vector<Open> open_;      // of parts_
-    std::uint32_t bodies_ = 0;    // by parity, numbered from 1
+    std::vector<ShapeAs> kinds_;                        // of the triangles; empty: options_.as
+    std::vector<Open> open_;                            // of parts_
+    std::vector<std::array<std::size_t, 2>> unjoined_;  // of open_: ShellWalls::unjoined
+    std::uint32_t bodies_ = 0;                          // by parity, numbered from 1
     SurfacePartsBuilder collected_;
     SolidUnion union_;
     ShapeReport report_;
@@ -726,7 +738,7 @@ void fields(FieldVisitor& visit, const ShapeReport& report) {
           {"Open parts whose inside is mostly hidden; their holes are closed"});
     visit("sheets", report.sheets, {"Parts that are visible from both sides; they become shells"});
     visit("unjoined_shells", report.unjoined_shells,
-          {"Open shells within another one that is full, with mouths that nearly face each other"});
+          {"Open shells within another one, with mouths that nearly face each other, whose inside is full"});
     visit("closable_sheets", report.closable_sheets,
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});

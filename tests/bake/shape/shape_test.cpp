@@ -301,13 +301,28 @@ TEST(Shape, ShellsWithUnlikeRimsAreAWall) {
 TEST(Shape, AVesselWhoseShellsAreNotJoinedIsReported) {
     const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 16); };
     const TriangleMesh mug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.2}});
+    const TriangleMesh jug = turn({{0.0, 0.0}, {0.5, 0.0}, {0.5, 0.8}, {0.15, 1.2}});
+    const TriangleMesh low = turn({{0.0, 0.02}, {0.3, 0.02}, {0.3, 0.6}});
+    for (const TriangleMesh& outer : {mug, jug}) {
+        const ShapedMesh shape = shaped(joined({outer, low}));
+        EXPECT_EQ(shape.report.unjoined_shells, 1U);
+        EXPECT_TRUE(queryOf(shape.mesh).inside({0.0F, 0.3F, 0.0F}));
+    }
     const auto unjoined = [](const std::vector<TriangleMesh>& meshes) {
         return shaped(joined(meshes)).report.unjoined_shells;
     };
-    EXPECT_EQ(unjoined({mug, turn({{0.0, 0.02}, {0.3, 0.02}, {0.3, 0.6}})}), 1U);
     const TriangleMesh liner = turn({{0.0, 0.02}, {0.48, 0.02}, {0.48, 1.2}});
     EXPECT_EQ(unjoined({mug, liner}), 0U);
     EXPECT_EQ(unjoined({mug, scaled(mug, 1.0, {3, 0, 0})}), 0U);
+    // A crate in a crate: both stay open.
+    const auto crate = [](const glm::dvec3& scale, double y) {
+        return moved(makeOpenBox(), [&](const glm::dvec3& p) { return p * scale + glm::dvec3(0.0, y, 0.0); });
+    };
+    const ShapedMesh crates =
+        shaped(joined({crate({1.0, 0.5, 1.0}, 0.0), crate({0.55, 0.425, 0.55}, -0.05)}));
+    expectKinds(crates.report, 0, 0, 2, 0);
+    EXPECT_FALSE(queryOf(crates.mesh).inside(glm::vec3(0.0F)));
+    EXPECT_EQ(crates.report.unjoined_shells, 0U);
 }
 
 TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
