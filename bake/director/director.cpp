@@ -478,6 +478,13 @@ class Director {
                 " within another one, with mouths too far apart to join: the space within is full; to free "
                 "it, close the gap between the rims in the mesh");
         }
+        if (const std::uint64_t walls = result_.shape.unclear_walls; walls > 0) {
+            result_.notices.push_back(
+                mesh.name + ": joined two open shells into a wall " +
+                (walls == 1 ? "once" : std::to_string(walls) + " times") +
+                ", although the inner one is not wound as a lining: the space within is "
+                "free; if it is a body in its clothes, bake with --as solid");
+        }
         if (const std::uint64_t sheets = result_.shape.closable_sheets; sheets > 0) {
             result_.notices.push_back(
                 mesh.name + ": " + countText(sheets, "sheet") +

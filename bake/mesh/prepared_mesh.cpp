@@ -14,6 +14,7 @@ struct PreparedMesh::State {
 
     TriangleMesh mesh;
     bool wound_outwards = false;
+    std::vector<bool> turned;
     std::optional<MeshEdges> edges;
     std::optional<std::vector<OddEdge>> odd_edges;
     std::optional<bool> several_shells;
@@ -118,6 +119,7 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
             std::swap(state.mesh.triangles[i].y, state.mesh.triangles[i].z);
         }
     }
+    state.turned = turn;
     state.edges.reset();
     // The direction of odd edges follows the winding; that a mesh has none does not.
     if (state.odd_edges && !state.odd_edges->empty()) {
@@ -127,6 +129,10 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
     state.orientation.reset();
     state.tree.reset();
     return wound;
+}
+
+const std::vector<bool>& PreparedMesh::turned() const {
+    return state_->turned;
 }
 
 PreparedMesh PreparedMesh::unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies) {

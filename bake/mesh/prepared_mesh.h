@@ -48,6 +48,8 @@ class PreparedMesh {
     /// The mesh as windOutwards leaves it. Derived data that turns cannot change is kept; without a turn, all is.
     /// \param turn  per triangle: swap its second and third corner.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
+    /// As last passed to woundOutwards; empty if it has turned none.
+    [[nodiscard]] const std::vector<bool>& turned() const;
     /// Parts that each enclose a volume; the inside is their union.
     /// \param bodies  per triangle: 0 for those, wound outwards, whose winding number decides; else the number of a body
     ///     that decides by the parity of a ray's crossings.

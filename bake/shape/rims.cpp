@@ -164,7 +164,7 @@ void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vecto
 }
 
 /// nullopt: too few rims of the inner shell face rims of the outer one, or it is not within the outer one.
-std::optional<TriangleMesh> wallBetween(const RimmedShell& outer, const RimmedShell& inner) {
+std::optional<ShellWall> wallBetween(const RimmedShell& outer, const RimmedShell& inner) {
     if (!outer.mesh().bounds.meets(inner.mesh().bounds)) {
         return std::nullopt;
     }
@@ -215,7 +215,7 @@ std::optional<TriangleMesh> wallBetween(const RimmedShell& outer, const RimmedSh
     if (volumeWithin(wall, unmatched, first) >= kWallVolume * outer.volume) {
         return std::nullopt;  // one beside the other
     }
-    return wall;
+    return ShellWall{outer.index, inner.index, turn, std::move(wall)};
 }
 
 /// A shell within another one, whose largest rims nearly face each other.
@@ -248,8 +248,8 @@ ShellWalls joinRims(const std::vector<OpenShell>& shells) {
             if (done[k] || !(rimmed[i].shell->is_solid || rimmed[k].shell->is_solid)) {
                 continue;
             }
-            if (std::optional<TriangleMesh> wall = wallBetween(rimmed[i], rimmed[k])) {
-                joined.walls.push_back({rimmed[i].index, rimmed[k].index, std::move(*wall)});
+            if (std::optional<ShellWall> wall = wallBetween(rimmed[i], rimmed[k])) {
+                joined.walls.push_back(std::move(*wall));
                 done[i] = done[k] = true;
             }
         }

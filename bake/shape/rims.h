@@ -19,7 +19,8 @@ struct OpenShell {
 struct ShellWall {
     std::size_t outer = 0;  ///< index of the shell
     std::size_t inner = 0;
-    TriangleMesh mesh;  ///< before finishMesh; small holes may be left
+    bool alike = false;  ///< both were wound alike: to the outside, or into the space within
+    TriangleMesh mesh;   ///< before finishMesh; small holes may be left
 };
 
 struct ShellWalls {

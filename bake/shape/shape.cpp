@@ -131,8 +131,18 @@ Result<bool> isCutOffBelow(const PreparedMesh& closed, bool z_is_up) {
 
 class Shaper {
   public:
-    Shaper(const PreparedMesh& mesh, const ShapeOptions& options)
-        : prepared_(mesh), mesh_(*mesh), options_(options), collected_(mesh_), union_(mesh_) {
+    /// \param turned  per triangle, earlier than by windOutwards; empty: none.
+    Shaper(const PreparedMesh& mesh, const ShapeOptions& options, std::vector<bool> turned = {})
+        : prepared_(mesh),
+          mesh_(*mesh),
+          options_(options),
+          turned_(std::move(turned)),
+          collected_(mesh_),
+          union_(mesh_) {
+        turned_.resize(mesh_.triangles.size(), false);
+        for (std::size_t i = 0; i < mesh.turned().size(); ++i) {
+            turned_[i] = turned_[i] != mesh.turned()[i];
+        }
         report_.as = options.as;
         for (const NamedShape& named : options.named) {
             report_.named.push_back({named, 0});
@@ -215,18 +225,20 @@ class Shaper {
             rest.warnings.push_back(mesh_.name + ": " + warning);
         }
         rest.source_triangles = mesh_.sourceTriangles();
+        std::vector<bool> turned = turned_;
         std::size_t kept = 0;
         for (std::size_t i = 0, next = 0; i < mesh_.triangles.size(); ++i) {
             if (next < copies.size() && copies[next] == i) {
                 ++next;
             } else {
+                turned[kept] = turned_[i];
                 moveTriangle(rest, i, kept++);
             }
         }
         keepTriangles(rest, kept);
         rest = RELIEF_TRY(finishMesh(std::move(rest)));
         const Winding winding = RELIEF_TRY(windOutwards(std::move(rest)));
-        ShapedMesh shaped = RELIEF_TRY(Shaper(winding.mesh, options_).run());
+        ShapedMesh shaped = RELIEF_TRY(Shaper(winding.mesh, options_, std::move(turned)).run());
         shaped.report.named = report_.named;
         return shaped;
     }
@@ -489,6 +501,20 @@ class Shaper {
                part.as == ShapeAs::kAuto;
     }
 
+    /// A sheet runs against the winding of the file; nullopt if only some of its triangles do.
+    [[nodiscard]] std::optional<bool> turnedSinceImport(const Sheet& sheet) const {
+        std::size_t turned = 0;
+        for (std::size_t i = 0; i < sheet.triangles.size(); ++i) {
+            const glm::uvec3& t = sheet.triangles[i];
+            const glm::dvec3 a = sheet.positions[t.x];
+            const glm::dvec3 normal =
+                cross(glm::dvec3(sheet.positions[t.y]) - a, glm::dvec3(sheet.positions[t.z]) - a);
+            const bool against = dot(normal, planeOf(mesh_, sheet.sources[i]).normal) < 0.0;
+            turned += against != turned_[sheet.sources[i]] ? 1 : 0;
+        }
+        return turned == 0 || turned == sheet.triangles.size() ? std::optional(turned > 0) : std::nullopt;
+    }
+
     /// Adds the walls of joined shells, whose inside is free. \return per part: it is joined to another one.
     Result<std::vector<bool>> addWalls() {
         std::vector<Bounds> bounds;
@@ -531,6 +557,10 @@ class Shaper {
                 add(solid);
                 ++report_.solids_with_holes;
                 joined[parts[wall.outer]] = joined[parts[wall.inner]] = true;
+                const std::optional<bool> outer = turnedSinceImport(open_[parts[wall.outer]].sheet);
+                const std::optional<bool> inner = turnedSinceImport(open_[parts[wall.inner]].sheet);
+                const bool alike = wall.alike != (outer != inner);
+                report_.unclear_walls += !outer || !inner || alike ? 1 : 0;
             }
         }
         return joined;
@@ -663,6 +693,7 @@ class Shaper {
     const PreparedMesh& prepared_;
     const TriangleMesh& mesh_;
     const ShapeOptions& options_;
+    std::vector<bool> turned_;  // of the triangles: against the winding of the file
     std::vector<std::uint32_t> welded_;
     std::vector<Part> parts_;
     std::vector<ShapeAs> kinds_;                        // of the triangles; empty: options_.as
@@ -742,6 +773,9 @@ void fields(FieldVisitor& visit, const ShapeReport& report) {
     visit("closable_sheets", report.closable_sheets,
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});
+    visit("unclear_walls", report.unclear_walls,
+          {"Walls made of two open shells whose inner one is not wound to face the space within, as a lining "
+           "is: it may be a body in its clothes"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
     visit("voids", report.voids,
           {"Voids that sheets and solids seal together; they are full, but with --voids hollow"});

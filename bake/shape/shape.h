@@ -40,6 +40,8 @@ struct ShapeReport {
     std::uint64_t closable_sheets = 0;  ///< large ones that closed holes would make solids
     std::uint64_t unjoined_shells =
         0;  ///< within another one, with nearly facing mouths, whose inside is full
+    std::uint64_t unclear_walls =
+        0;  ///< of two joined shells whose winding does not tell a lining from a body
     std::uint64_t terrains = 0;
     std::uint64_t voids = 0;                 ///< sealed by sheets, and full
     std::uint64_t coincident_triangles = 0;  ///< dropped from sheets, and from solids closed without them

@@ -325,6 +325,36 @@ TEST(Shape, AVesselWhoseShellsAreNotJoinedIsReported) {
     EXPECT_EQ(crates.report.unjoined_shells, 0U);
 }
 
+/// A body in its clothes has the shells of a vessel; only their winding may differ.
+TEST(Shape, AWallThatMayBeABodyInItsClothesIsReported) {
+    const auto turn = [](const std::vector<glm::dvec2>& profile) { return makeTurned(profile, 24); };
+    const TriangleMesh torso = turn({{0.3, 0.0}, {0.34, 0.5}, {0.3, 0.9}, {0.12, 1.0}});
+    const TriangleMesh jacket = turn({{0.36, -0.05}, {0.4, 0.5}, {0.36, 0.92}, {0.16, 1.0}});
+    TriangleMesh mixed = reversed(torso);
+    for (std::size_t i = 0; i < mixed.triangles.size(); i += 3) {
+        std::swap(mixed.triangles[i].y, mixed.triangles[i].z);
+    }
+    const TriangleMesh ball = makeIcosphere({2.0, 0.5, 0.0}, 0.2, 1);
+    const auto unclear = [&](const TriangleMesh& outer, const TriangleMesh& inner) {
+        // Copies restart the shaper.
+        const ShapeReport report = shaped(joined({inner, outer, ball, ball})).report;
+        expectKinds(report, 1, 1, 0, 0);
+        const ShapeReport alone = shaped(joined({inner, outer})).report;
+        expectKinds(alone, 0, 1, 0, 0);
+        EXPECT_EQ(alone.unclear_walls, report.unclear_walls);
+        return alone.unclear_walls;
+    };
+    EXPECT_EQ(unclear(jacket, torso), 1U);
+    EXPECT_EQ(unclear(reversed(jacket), reversed(torso)), 1U);
+    EXPECT_EQ(unclear(jacket, mixed), 1U);
+    EXPECT_EQ(unclear(jacket, reversed(torso)), 0U);
+    EXPECT_EQ(unclear(reversed(jacket), torso), 0U);
+    const ShapedMesh solid = shaped(joined({torso, jacket}), ShapeAs::kSolid);
+    expectKinds(solid.report, 0, 2, 0, 0);
+    EXPECT_EQ(solid.report.unclear_walls, 0U);
+    EXPECT_TRUE(queryOf(solid.mesh).inside({0.0F, 0.5F, 0.0F}));
+}
+
 TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
     TriangleMesh mixed = makeOpenBox();
     for (std::size_t i = 0; i < mixed.triangles.size(); i += 2) {
