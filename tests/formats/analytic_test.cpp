@@ -257,41 +257,6 @@ TEST(CubeCoordinates, DirectionIsTheInverse) {
     }
 }
 
-TEST(Analytic, SphereByThreeFrontBackMapsIsRightButForATexelAtTheSurface) {
-    constexpr std::uint32_t kSize = 64;
-    constexpr double kRadius = 0.9;
-    const glm::dvec3 center(0.4, -0.3, 0.2);
-    const auto sphere = makeSphere(center, kRadius);
-    const Collider collider =
-        threeMaps(*sphere, center, glm::dmat3(1.0), kRadius, kSize, MapFormat::kFrontBackHalf);
-    const double side = 2.0 * kRadius * kSize / (kSize - 6);
-    // P and the centre of its texel are half a texel's diagonal apart at most. So is what their rays see of
-    // the sphere from them; the depth is off by a half-float's step along the ray.
-    const double bound = std::sqrt(0.5) * side / kSize + side * (0x1p-11 + 1e-6);
-
-    std::mt19937 random(17);
-    std::uniform_real_distribution<double> within(-1.4 * kRadius, 1.4 * kRadius);
-    int near_surface = 0;
-    for (int i = 0; i < 100'000; ++i) {
-        const glm::vec3 p(center + glm::dvec3(within(random), within(random), within(random)));
-        const double distance = glm::length(glm::dvec3(p) - center) - kRadius;
-        const FieldSample sample = evaluate(collider, p);
-        ASSERT_GE(sample.map, 0);
-        if (std::abs(distance) > bound) {
-            ASSERT_EQ(sample.inside(), distance < 0.0) << "at distance " << distance;
-        } else {
-            ++near_surface;
-        }
-        // Along a ray no surface is nearer than the nearest: no vote is smaller than the true distance.
-        if (distance > bound) {
-            ASSERT_GE(sample.distance, distance - bound);
-        } else if (distance < -bound) {
-            ASSERT_LE(sample.distance, distance + bound);
-        }
-    }
-    EXPECT_LT(near_surface, 100'000 / 10);
-}
-
 /// [−2, 2]² × [−1, 1], every inner texel full with its surface at z = 0.
 DepthMap plateMap(Compare compare) {
     const auto half_space = makeBox({0.0, 0.0, compare == Compare::kLess ? 50.0 : -50.0}, glm::dvec3(50.0));

@@ -24,6 +24,7 @@
 #include "formats/row_spans.h"
 #include "formats/validate.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 #include "tests/seeds.h"
 
 namespace relief {
@@ -181,25 +182,24 @@ void expectIssue(const Bytes& bytes, IssueCode code, int map = -1, const Contain
     const Issue expected{code, map, {}, {}};
     SCOPED_TRACE(expected.id());
     shownCodes().insert(code);
-    const Result<Inspection> inspection = inspectContainer(bytes, limits);
-    ASSERT_TRUE(inspection);
+    const Inspection inspection = required(inspectContainer(bytes, limits));
     std::string listed;
     bool found = false;
-    for (const Issue& issue : inspection->issues) {
+    for (const Issue& issue : inspection.issues) {
         listed += issue.id() + " map " + std::to_string(issue.map) + ": " + issue.message + "\n";
         found = found || (issue.code == code && issue.map == map);
     }
     EXPECT_TRUE(found) << listed;
     const Result<Collider> read = readContainer(bytes, limits);
-    EXPECT_EQ(inspection->damaged(), !read) << listed;
+    EXPECT_EQ(inspection.damaged(), !read) << listed;
     if (expected.severity() == Severity::kWarning) {
         EXPECT_TRUE(read);
-        EXPECT_EQ(inspection->issues.size(), 1U) << listed;
+        EXPECT_EQ(inspection.issues.size(), 1U) << listed;
         return;
     }
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().code, errorOf(code)) << read.error().message;
-    EXPECT_EQ(inspection->errorCode(), errorOf(code)) << listed;
+    EXPECT_EQ(inspection.errorCode(), errorOf(code)) << listed;
     EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
 }
 
@@ -226,10 +226,9 @@ Recipe zstdRecipe(const Bytes& frame) {
 
 TEST(Crafted, TheRecipeItselfIsRead) {
     for (const Recipe& recipe : {Recipe{}, zstdRecipe(compress(kRaw))}) {
-        const Result<Collider> read = readContainer(fileOf(recipe));
-        ASSERT_TRUE(read) << read.error().message;
-        ASSERT_EQ(read->maps.size(), 2U);
-        EXPECT_EQ(read->maps[1].texels, kRaw);
+        const Collider read = required(readContainer(fileOf(recipe)));
+        ASSERT_EQ(read.maps.size(), 2U);
+        EXPECT_EQ(read.maps[1].texels, kRaw);
     }
 }
 
@@ -491,11 +490,10 @@ void expectTexelLies() {
         map.raw_size = 16 * 16 * 8;
         map.stored.assign(16 * 16 * 8, std::byte{0xff});
     });
-    const Result<Collider> fixed = readContainer(fileOf(recipe));
-    ASSERT_TRUE(fixed) << fixed.error().message;
-    EXPECT_EQ(fixed->maps[0].decode, Decode::kProjected);
-    EXPECT_EQ(fixed->maps[1].decode, Decode::kPlane);
-    EXPECT_EQ(fixed->maps[1].format, MapFormat::kFrontBackFixed);
+    const Collider fixed = required(readContainer(fileOf(recipe)));
+    EXPECT_EQ(fixed.maps[0].decode, Decode::kProjected);
+    EXPECT_EQ(fixed.maps[1].decode, Decode::kPlane);
+    EXPECT_EQ(fixed.maps[1].format, MapFormat::kFrontBackFixed);
     recipe.maps[1].format = 2;
     expectIssue(fileOf(recipe), IssueCode::kTexels, 1);
 }
@@ -508,9 +506,8 @@ TEST(Crafted, EveryLieHasItsIssueAndTheReadmeListsThemAll) {
     expectZstdLies();
     expectRowLies();
     expectTexelLies();
-    const Result<Bytes> file = readFile(RELIEF_SOURCE_DIR "/formats/README.md");
-    ASSERT_TRUE(file);
-    const std::string text(reinterpret_cast<const char*>(file->data()), file->size());
+    const Bytes file = required(readFile(RELIEF_SOURCE_DIR "/formats/README.md"));
+    const std::string text(reinterpret_cast<const char*>(file.data()), file.size());
     const std::regex row("\\| RLF-([0-9]{4}) \\| ([a-z]+) \\| [^|\n]+ \\|\n");
     std::vector<IssueCode> listed;
     for (std::sregex_iterator match(text.begin(), text.end(), row), end; match != end; ++match) {
@@ -556,11 +553,9 @@ void expectSoundOrRefused(const Bytes& bytes, int& read_count) {
     ASSERT_TRUE(info);
     const Result<void> valid = validate(*read);
     ASSERT_TRUE(valid) << valid.error().message;
-    const Result<Bytes> again = writeContainer(*read);
-    ASSERT_TRUE(again) << again.error().message;
-    const Result<Collider> second = readContainer(*again);
-    ASSERT_TRUE(second) << second.error().message;
-    ASSERT_EQ(*second, *read);
+    const Bytes again = required(writeContainer(*read));
+    const Collider second = required(readContainer(again));
+    ASSERT_EQ(second, *read);
     for (const glm::vec3 p : {glm::vec3(0.0F), glm::vec3(0.5F, 0.25F, -0.5F), glm::vec3(-3e38F)}) {
         ASSERT_FALSE(std::isnan(evaluate(*read, p).distance));
     }

@@ -20,6 +20,7 @@
 #include "formats/validate.h"
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -36,10 +37,9 @@ TEST(Container, RoundTripsAtEveryLevelAndAnyAlignmentAreTheSameBytes) {
         std::vector<std::byte> shifted(static_cast<std::size_t>(level % 16));
         const std::size_t shift = shifted.size();
         shifted.insert(shifted.end(), bytes.begin(), bytes.end());
-        const Result<Collider> read = readContainer(std::span(shifted).subspan(shift));
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(*read, collider) << "level " << level;
-        EXPECT_EQ(written(*read, level), bytes);
+        const Collider read = required(readContainer(std::span(shifted).subspan(shift)));
+        EXPECT_EQ(read, collider) << "level " << level;
+        EXPECT_EQ(written(read, level), bytes);
     }
 }
 
@@ -51,9 +51,8 @@ TEST(Container, SmallestMapsAndEmptyTexts) {
     collider.maps.push_back(
         test::emptyMap(test::CubeFrame{{0, 0, 0}, glm::dmat3(1.0), {1, 1, 1}}, Compare::kGreater, 1));
     for (const int level : {0, 9}) {
-        const Result<Collider> read = readContainer(written(collider, level));
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(*read, collider);
+        const Collider read = required(readContainer(written(collider, level)));
+        EXPECT_EQ(read, collider);
     }
 }
 
@@ -67,9 +66,8 @@ TEST(Container, MapsOfGapsAreReadAndNeedVersion12) {
     for (const int level : {0, 19}) {
         const std::vector<std::byte> bytes = written(collider, level);
         EXPECT_EQ(readContainerInfo(bytes)->minor, 2);
-        const Result<Collider> read = readContainer(bytes);
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(read->maps, collider.maps);
+        const Collider read = required(readContainer(bytes));
+        EXPECT_EQ(read.maps, collider.maps);
     }
 }
 
@@ -80,13 +78,10 @@ TEST(Container, AnimationsComeBackAndNeedVersion15) {
     }
     const std::vector<std::byte> bytes = written(collider, 0);
     EXPECT_EQ(readContainerInfo(bytes)->minor, 5);
-    const Result<Collider> read = readContainer(bytes);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(*read, collider);
+    const Collider read = required(readContainer(bytes));
+    EXPECT_EQ(read, collider);
     collider.animation.resize(std::size_t{17} << 20);
-    const Result<std::vector<std::byte>> refused = writeContainer(collider, {});
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
+    expectError(writeContainer(collider, {}), ErrorCode::kLimit);
 }
 
 TEST(Container, LayoutIsTheOneOfTheReadme) {
@@ -100,15 +95,14 @@ TEST(Container, LayoutIsTheOneOfTheReadme) {
         ContainerHeader header;
         std::memcpy(&header, bytes.data(), sizeof(header));
         EXPECT_EQ(header.file_size, bytes.size());
-        const Result<ContainerInfo> info = readContainerInfo(bytes);
-        ASSERT_TRUE(info) << info.error().message;
-        EXPECT_EQ(info->major, 1);
-        EXPECT_EQ(info->minor, level == 0 ? 1 : 0) << "the lowest that holds it";
-        EXPECT_EQ(info->file_size, bytes.size());
-        ASSERT_EQ(info->payloads.size(), collider.maps.size());
+        const ContainerInfo info = required(readContainerInfo(bytes));
+        EXPECT_EQ(info.major, 1);
+        EXPECT_EQ(info.minor, level == 0 ? 1 : 0) << "the lowest that holds it";
+        EXPECT_EQ(info.file_size, bytes.size());
+        ASSERT_EQ(info.payloads.size(), collider.maps.size());
         std::uint64_t end = 64 + header.metadata_size;
-        for (std::size_t i = 0; i < info->payloads.size(); ++i) {
-            const PayloadInfo& payload = info->payloads[i];
+        for (std::size_t i = 0; i < info.payloads.size(); ++i) {
+            const PayloadInfo& payload = info.payloads[i];
             EXPECT_EQ(payload.offset % 64, 0U);
             EXPECT_GE(payload.offset, end);
             EXPECT_LT(payload.offset, end + 64);
@@ -295,9 +289,7 @@ TEST(Writer, RefusesWhatTheReaderWouldRefuse) {
 
 TEST(Writer, RefusesUnknownCompressionLevels) {
     for (const int level : {-1, 20, 1000}) {
-        const Result<std::vector<std::byte>> bytes = writeContainer(oneMapOfEveryFormat(), {level});
-        ASSERT_FALSE(bytes);
-        EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
+        expectError(writeContainer(oneMapOfEveryFormat(), {level}), ErrorCode::kUsage);
     }
 }
 
@@ -359,9 +351,8 @@ TEST(Files, SaveAndLoadNameTheFile) {
     const test::TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "a.relief";
     ASSERT_TRUE(saveCollider(path, oneMapOfEveryFormat(), {3}));
-    const Result<Collider> read = loadCollider(path);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(*read, oneMapOfEveryFormat());
+    const Collider read = required(loadCollider(path));
+    EXPECT_EQ(read, oneMapOfEveryFormat());
     const auto expectNamed = [](const auto& result, ErrorCode code, const char* name) {
         ASSERT_FALSE(result);
         EXPECT_EQ(result.error().code, code);

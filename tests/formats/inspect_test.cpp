@@ -10,6 +10,7 @@
 
 #include "formats/container.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 
 namespace relief {
 namespace {
@@ -57,9 +58,8 @@ TEST(Inspect, SaysWhatIsLeftOfADamagedFile) {
     Collider collider = test::readmeExample();
     collider.maps.resize(3, collider.maps[0]);
     const Bytes good = written(collider);
-    const Result<ContainerInfo> info = readContainerInfo(good);
-    ASSERT_TRUE(info);
-    const auto at = [&](std::size_t map) { return static_cast<std::size_t>(info->payloads[map].offset); };
+    const ContainerInfo info = required(readContainerInfo(good));
+    const auto at = [&](std::size_t map) { return static_cast<std::size_t>(info.payloads[map].offset); };
     using enum PartState;
 
     Bytes bytes = good;

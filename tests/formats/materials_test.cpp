@@ -11,6 +11,7 @@
 #include "formats/inspect.h"
 #include "formats/material_response.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 
 namespace relief::test {
 namespace {
@@ -101,13 +102,11 @@ TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
     collider.materials = someMaterials();
     for (const int level : {0, 9}) {
         const std::vector<std::byte> bytes = written(collider, level);
-        const Result<Collider> read = readContainer(bytes);
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(*read, collider);
-        const Result<Inspection> inspection = inspectContainer(bytes);
-        ASSERT_TRUE(inspection);
-        EXPECT_FALSE(inspection->damaged());
-        EXPECT_EQ(inspection->minor, 6);
+        const Collider read = required(readContainer(bytes));
+        EXPECT_EQ(read, collider);
+        const Inspection inspection = required(inspectContainer(bytes));
+        EXPECT_FALSE(inspection.damaged());
+        EXPECT_EQ(inspection.minor, 6);
     }
     collider.materials = {};
     EXPECT_EQ(written(collider), without);

@@ -50,8 +50,6 @@ Scene sceneOf(const Shape& shape, double half, std::uint32_t size, const glm::dm
 struct Errors {
     double mean = 0.0;          // texels
     double over_a_texel = 0.0;  // share of the points whose distance is off by more
-    double without_search =
-        0.0;  // the mean of evaluate() at the same points; one that says far counts as a texel
     int inside = 0;
     int count = 0;
 };
@@ -82,14 +80,11 @@ Errors measure(const Scene& scene, const Distance& truth, double half) {
         const double error = std::abs(nearest.distance - distance) / scene.texel;
         errors.mean += error;
         errors.over_a_texel += error > 1.0 ? 1.0 : 0.0;
-        errors.without_search +=
-            vote.distance < kFarOutside ? std::abs(vote.distance - distance) / scene.texel : 1.0;
         errors.inside += distance < 0.0 ? 1 : 0;
         ++errors.count;
     }
     errors.mean /= errors.count;
     errors.over_a_texel /= errors.count;
-    errors.without_search /= errors.count;
     EXPECT_GT(errors.inside, errors.count / 10);
     EXPECT_LT(errors.inside, errors.count / 2);
     return errors;
@@ -102,7 +97,6 @@ TEST(NearestSurface, Sphere) {
         scene, [&](const glm::dvec3& p) { return glm::length(p) - kRadius; }, 1.3);
     EXPECT_LT(errors.mean, 0.04);
     EXPECT_LT(errors.over_a_texel, 0.002);
-    EXPECT_GT(errors.without_search, 0.5);
 }
 
 /// Only one map, so that the surface is steep in its texels beside the hole, where it is seen at grazing angles.
@@ -124,7 +118,6 @@ TEST(NearestSurface, TorusAndItsHole) {
         1.2);
     EXPECT_LT(errors.mean, 0.06);
     EXPECT_LT(errors.over_a_texel, 0.005);
-    EXPECT_GT(errors.without_search, 0.5);
 }
 
 /// Each map sees an edge between two texels, and corners stick out of all of them.
@@ -136,11 +129,8 @@ TEST(NearestSurface, BoxSeenAskew) {
         scene, [&](const glm::dvec3& p) { return boxDistance(p, half); }, 0.9);
     EXPECT_LT(errors.mean, 0.06);
     EXPECT_LT(errors.over_a_texel, 0.02);
-    EXPECT_GT(errors.without_search, 0.3);
     // Off a convex edge the plane of either face is nearer than the edge is.
     double worst = 0.0;
-    double too_near = 0.0;  // by evaluate()
-    int points = 0;
     for (int i = 0; i <= 100; ++i) {
         for (const double off : {2.0, 4.0, 8.0}) {
             // Beside an edge along y, at an equal distance from both of its faces.
@@ -149,13 +139,9 @@ TEST(NearestSurface, BoxSeenAskew) {
             const double truth = boxDistance(glm::dvec3(p), half);
             ASSERT_NEAR(truth, std::sqrt(2.0) * off * scene.texel, 1e-6);
             worst = std::max(worst, std::abs(nearestSurface(scene.collider, p).distance - truth));
-            too_near = std::max(too_near, truth - evaluate(scene.collider, p).distance);
-            ++points;
         }
     }
     EXPECT_LT(worst, 1.0 * scene.texel);
-    EXPECT_GT(too_near, 2.0 * scene.texel);
-    EXPECT_EQ(points, 303);
 }
 
 /// A cube in the middle sees floor and walls at grazing angles beside their edges.
@@ -171,17 +157,14 @@ TEST(NearestSurface, InABoxTheNearestOfItsWallsCounts) {
     std::uniform_real_distribution<float> x(-0.24F, 0.24F);
     std::uniform_real_distribution<float> z(-0.39F, 0.1F);
     double worst = 0.0;
-    double without = 0.0;
     for (int i = 0; i < 5000; ++i) {
         const glm::vec3 p(x(random), 0.5F * x(random), z(random));
         const double truth = boxDistance(glm::dvec3(p), half);
         const SurfaceSample nearest = nearestSurface(collider, p);
         ASSERT_LT(nearest.distance, 0.0F);
         worst = std::max(worst, std::abs(nearest.distance - truth));
-        without = std::max(without, std::abs(evaluate(collider, p).distance - truth));
     }
     EXPECT_LT(worst, 0.05) << "a fifth of half the box";
-    EXPECT_GT(without, 0.1);
 }
 
 /// Whatever a valid file may hold, at whatever finite point: nothing but finite numbers, and evaluate()'s side.

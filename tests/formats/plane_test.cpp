@@ -88,50 +88,6 @@ TEST(PlaneDecode, AStandingPlaneIsExactAllAlongTheRay) {
     }
 }
 
-TEST(PlaneDecode, OnASphereTheErrorIsOfSecondOrderInTheTexelSize) {
-    // On the sphere itself, |n·(P − S)| = |P − S|²/2R: exact, and a quarter for half the texel. The paper's
-    // decode halves.
-    constexpr double kRadius = 1.0;
-    const auto sphere = makeSphere({0, 0, 0}, kRadius);
-    const OrthographicFrame frame = centeredFrame({0, 0, 0}, kTurned, glm::dvec3(2.4));
-    double before[2] = {0.0, 0.0};
-    for (const std::uint32_t size : {32U, 64U, 128U, 256U}) {
-        double mean[2] = {0.0, 0.0};
-        for (const Decode decode : {Decode::kPlane, Decode::kProjected}) {
-            DepthMap map = makeMap(*sphere, frame, MapFormat::kFloat32, Compare::kLess, size, size);
-            map.decode = decode;
-            const double texel = frame.sides.x / size;
-            std::mt19937 random(12);
-            std::uniform_real_distribution<double> within(-0.7, 0.7);
-            constexpr int kCount = 20'000;
-            for (int i = 0; i < kCount;) {
-                const glm::dvec2 across(within(random), within(random));
-                if (glm::length(across) > 0.7) {
-                    continue;  // a texel there may miss the sphere
-                }
-                ++i;
-                const double z = -std::sqrt(kRadius * kRadius - glm::dot(across, across));
-                const glm::vec3 p(frame.axes * glm::dvec3(across, z));
-                const double error = std::abs(static_cast<double>(vote(map, p)->distance));
-                if (decode == Decode::kPlane) {
-                    // |P − S| is at most half a texel's diagonal over the smallest cosine that it crosses.
-                    const double half_diagonal = std::sqrt(0.5) * texel;
-                    const double farthest = 0.7 + half_diagonal;
-                    const double chord = half_diagonal / std::sqrt(1.0 - farthest * farthest);
-                    ASSERT_LE(error, chord * chord / (2.0 * kRadius) + 2e-6);
-                }
-                mean[decode == Decode::kPlane ? 0 : 1] += error / kCount;
-            }
-        }
-        if (before[0] > 0.0) {
-            EXPECT_NEAR(before[0] / mean[0], 4.0, 0.4) << size;
-            EXPECT_NEAR(before[1] / mean[1], 2.0, 0.1) << size;
-        }
-        before[0] = mean[0];
-        before[1] = mean[1];
-    }
-}
-
 TEST(PlaneDecode, VolumeWindowAndEmptyTexelsAreThoseOfProjected) {
     const auto sphere = makeSphere({0, 0, 0}, 0.7);
     std::vector<DepthMap> maps;

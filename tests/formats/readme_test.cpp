@@ -12,6 +12,7 @@
 #include "formats/container.h"
 #include "formats/validate.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 
 namespace relief {
 namespace {
@@ -44,9 +45,8 @@ std::vector<std::byte> parseDump(const std::string& text) {
 TEST(Readme, HexdumpIsTheContainerOfTheExample) {
     const std::vector<std::byte> bytes = parseDump(readme());
     EXPECT_EQ(bytes, test::written(test::readmeExample()));
-    const Result<Collider> read = readContainer(bytes);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(*read, test::readmeExample());
+    const Collider read = required(readContainer(bytes));
+    EXPECT_EQ(read, test::readmeExample());
 }
 
 TEST(Readme, VotesOfTheExample) {

@@ -12,6 +12,7 @@
 
 #include "formats/animation/mesh_parts.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/results.h"
 
 namespace relief {
 namespace {
@@ -150,10 +151,9 @@ TEST(AnimatedMesh, ComesBackFromItsBytes) {
             dress(mesh);
         }
         const std::vector<std::byte> bytes = writeAnimatedMesh(mesh);
-        const Result<AnimatedMesh> read = readAnimatedMesh(bytes);
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(*read, mesh);
-        EXPECT_EQ(writeAnimatedMesh(*read), bytes);
+        const AnimatedMesh read = required(readAnimatedMesh(bytes));
+        EXPECT_EQ(read, mesh);
+        EXPECT_EQ(writeAnimatedMesh(read), bytes);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -80,9 +81,7 @@ TEST_F(FileGuardTest, FoldersThatAreMadeLaterHoldFiles) {
         EXPECT_TRUE(done) << done.error().message;
     }
     for (const char* file : {"new", "new/sub", "linked", "missing/a", "new/sub/deeper/a"}) {
-        const auto done = guard_.writes(in(file), "--new", made);
-        ASSERT_FALSE(done) << file;
-        EXPECT_EQ(done.error().code, ErrorCode::kIo) << done.error().message;
+        expectError(guard_.writes(in(file), "--new", made), ErrorCode::kIo);
     }
     EXPECT_FALSE(fs::exists(in("new")));
 }
@@ -243,10 +242,7 @@ TEST_F(FileGuardTest, FoldersThatItMadeAndThatStayEmptyAreRemoved) {
     make(true);
     EXPECT_TRUE(fs::exists(in("a/b")) && fs::exists(in("d/e")) && fs::exists(in("empty/f")));
     for (const char* name : {"scene", "scene/a", "real/input/b"}) {
-        const auto made = guard_.makes(in(name), "--new");
-        ASSERT_FALSE(made) << name;
-        EXPECT_EQ(made.error().code, ErrorCode::kIo);
-        EXPECT_NE(made.error().message.find("cannot make the folder '"), std::string::npos);
+        expectError(guard_.makes(in(name), "--new"), ErrorCode::kIo, "cannot make the folder '");
     }
 }
 

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -79,9 +80,8 @@ TEST_F(FileIo, RoundTripOfAllKindsOfSizes) {
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{1}, std::size_t{4096}, mib - 1, mib, mib + 1, 5 * mib}) {
         ASSERT_TRUE(writeFile(in("a"), pattern(size)));
-        const auto read = readFile(in("a"), size);
-        ASSERT_TRUE(read) << read.error().message;
-        ASSERT_EQ(*read, pattern(size));
+        const auto read = required(readFile(in("a"), size));
+        ASSERT_EQ(read, pattern(size));
     }
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
@@ -262,9 +262,7 @@ TEST_F(FileIo, StandardInputAndOutput) {
 TEST_F(FileIo, TheLimitIsInclusiveForFilesAndStreams) {
     ASSERT_TRUE(writeFile(in("a"), pattern(1000)));
     EXPECT_TRUE(readFile(in("a"), 1000));
-    const auto beyond = readFile(in("a"), 999);
-    ASSERT_FALSE(beyond);
-    EXPECT_EQ(beyond.error().code, ErrorCode::kLimit);
+    expectError(readFile(in("a"), 999), ErrorCode::kLimit);
     // A stream tells its length only by ending.
     for (const std::uint64_t limit : {std::uint64_t{1000}, std::uint64_t{999}}) {
         int ends[2];
@@ -275,9 +273,7 @@ TEST_F(FileIo, TheLimitIsInclusiveForFilesAndStreams) {
         ::close(ends[0]);
         EXPECT_EQ(streamed.has_value(), limit == 1000);
     }
-    const auto endless = readFile("/dev/zero", 5'000'000);
-    ASSERT_FALSE(endless);
-    EXPECT_EQ(endless.error().code, ErrorCode::kLimit);
+    expectError(readFile("/dev/zero", 5'000'000), ErrorCode::kLimit);
     EXPECT_FALSE(readFile("/dev/zero", 0));
     EXPECT_TRUE(readFile("/dev/null", 0));
     EXPECT_GT(readFile("/proc/self/status").value().size(), 100U) << "a file that does not tell its size";

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "formats/base/file_io.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -50,16 +51,15 @@ class BrickAtlasTest : public testing::Test {
 
 TEST_F(BrickAtlasTest, ComesBackAsItWas) {
     const BrickAtlas atlas = smallAtlas();
-    const Result<BrickAtlas> read = saved(atlas);
-    ASSERT_TRUE(read) << read.error().message;
+    const BrickAtlas read = required(saved(atlas));
     const std::vector<std::byte> bytes = readFile(path_).value();
-    ASSERT_TRUE(saved(*read));
+    ASSERT_TRUE(saved(read));
     EXPECT_EQ(readFile(path_).value(), bytes);
-    EXPECT_EQ(read->box, atlas.box);
-    EXPECT_EQ(read->cells, atlas.cells);
-    EXPECT_EQ(read->index, atlas.index);
-    EXPECT_EQ(read->codes, atlas.codes);
-    EXPECT_EQ(read->bricks(), 2U);
+    EXPECT_EQ(read.box, atlas.box);
+    EXPECT_EQ(read.cells, atlas.cells);
+    EXPECT_EQ(read.index, atlas.index);
+    EXPECT_EQ(read.codes, atlas.codes);
+    EXPECT_EQ(read.bricks(), 2U);
 }
 
 TEST_F(BrickAtlasTest, LiesAreRefused) {
@@ -82,9 +82,7 @@ TEST_F(BrickAtlasTest, LiesAreRefused) {
     for (std::size_t i = 0; i < lies.size(); ++i) {
         BrickAtlas atlas = smallAtlas();
         lies[i](atlas);
-        const Result<BrickAtlas> read = saved(atlas);
-        ASSERT_FALSE(read) << i;
-        EXPECT_EQ(read.error().code, ErrorCode::kInvalidInput) << i;
+        expectError(saved(atlas), ErrorCode::kInvalidInput);
     }
 }
 

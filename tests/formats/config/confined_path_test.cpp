@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -33,11 +34,7 @@ class ScenePaths : public testing::Test {
         EXPECT_EQ(*path, folder_ / text);
     }
     void expectError(const std::string& text, const std::string& part) {
-        const auto path = resolveInside(folder_, text);
-        ASSERT_FALSE(path) << text << " is " << path->native();
-        EXPECT_EQ(path.error().code, ErrorCode::kInvalidInput);
-        EXPECT_NE(path.error().message.find(part), std::string::npos) << path.error().message;
-        EXPECT_EQ(path.error().message.find('\n'), std::string::npos);
+        relief::expectError(resolveInside(folder_, text), ErrorCode::kInvalidInput, part);
     }
 
     test::TemporaryFolder temporary_;
@@ -122,9 +119,8 @@ TEST_F(ScenePaths, EveryWayToNameTheFolder) {
 // One folder more, and nothing beside it; the scene's own stays.
 TEST_F(ScenePaths, ARootMayBeNamedToo) {
     const fs::path root = base_ / "scenes_too";
-    const auto resolved = resolveInside(folder_, "../scenes_too/c.relief", "scene", root);
-    ASSERT_TRUE(resolved) << resolved.error().message;
-    EXPECT_EQ(*resolved, folder_ / "../scenes_too/c.relief");
+    const auto resolved = required(resolveInside(folder_, "../scenes_too/c.relief", "scene", root));
+    EXPECT_EQ(resolved, folder_ / "../scenes_too/c.relief");
     EXPECT_TRUE(resolveInside(folder_, "a.relief", "scene", root));
     EXPECT_TRUE(resolveInside(folder_, "../scenes/a.relief", "scene", root));
     EXPECT_TRUE(resolveInside(folder_, "../scenes_too/none/d.relief", "scene", base_));
@@ -144,9 +140,7 @@ TEST_F(ScenePaths, ARootIsAFolderAndADashIsAFile) {
     EXPECT_EQ(*resolveInside("", "-"), fs::path("./-"));
     EXPECT_TRUE(checkRoot(folder_));
     for (const fs::path& none : {folder_ / "a.relief", folder_ / "none"}) {
-        const auto checked = checkRoot(none);
-        ASSERT_FALSE(checked);
-        EXPECT_EQ(checked.error().code, ErrorCode::kIo);
+        relief::expectError(checkRoot(none), ErrorCode::kIo);
     }
 }
 

@@ -7,6 +7,8 @@
 #include <glm/vec3.hpp>
 #include <string>
 
+#include "tests/results.h"
+
 namespace relief {
 namespace {
 
@@ -75,23 +77,22 @@ std::string mistake(const std::string& text) {
 }
 
 TEST(TomlReader, EveryForm) {
-    const auto thing = read(
-        "side = [1, 2, 3]\ncount = [2, 4]\nrange = [-1, 0.5]\nspeed = 3\naxis = [0, 0, -2]\nfile = "
-        "\"a.obj\"\n"
-        "[[part]]\nweight = 2\n[[part]]\nweight = 1e-60\n");
-    ASSERT_TRUE(thing) << thing.error().message;
-    EXPECT_EQ(thing->form, Form::kBox) << "by its side";
-    EXPECT_EQ(*thing->side, glm::vec3(1.0F, 2.0F, 3.0F));
-    EXPECT_EQ(thing->least, 2U);
-    EXPECT_EQ(thing->most, 4U);
-    EXPECT_EQ(thing->low, -1.0F);
-    EXPECT_EQ(thing->high, 0.5F);
-    EXPECT_TRUE(thing->has_speed);
-    EXPECT_EQ(thing->axis, glm::vec3(0.0F, 0.0F, -1.0F));
-    EXPECT_EQ(thing->file, std::filesystem::path("dir/a.obj"));
-    EXPECT_EQ(thing->origin, "f.toml:6:8");
-    ASSERT_EQ(thing->parts.size(), 2U);
-    EXPECT_GT(thing->parts[1].weight, 0.0F) << "above zero in the file, above zero as a float";
+    const auto thing = required(
+        read("side = [1, 2, 3]\ncount = [2, 4]\nrange = [-1, 0.5]\nspeed = 3\naxis = [0, 0, -2]\nfile = "
+             "\"a.obj\"\n"
+             "[[part]]\nweight = 2\n[[part]]\nweight = 1e-60\n"));
+    EXPECT_EQ(thing.form, Form::kBox) << "by its side";
+    EXPECT_EQ(*thing.side, glm::vec3(1.0F, 2.0F, 3.0F));
+    EXPECT_EQ(thing.least, 2U);
+    EXPECT_EQ(thing.most, 4U);
+    EXPECT_EQ(thing.low, -1.0F);
+    EXPECT_EQ(thing.high, 0.5F);
+    EXPECT_TRUE(thing.has_speed);
+    EXPECT_EQ(thing.axis, glm::vec3(0.0F, 0.0F, -1.0F));
+    EXPECT_EQ(thing.file, std::filesystem::path("dir/a.obj"));
+    EXPECT_EQ(thing.origin, "f.toml:6:8");
+    ASSERT_EQ(thing.parts.size(), 2U);
+    EXPECT_GT(thing.parts[1].weight, 0.0F) << "above zero in the file, above zero as a float";
     EXPECT_EQ(read("count = 3\n")->most, 3U);
     EXPECT_FALSE(read("")->has_speed);
 }

@@ -13,6 +13,7 @@
 #include "tests/formats/analytic_shapes.h"
 #include "tests/formats/random_patches.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -54,9 +55,8 @@ TEST(World, IsReadAsItWasWrittenAndEveryLineIsOneThing) {
   ]
 }
 )");
-    const Result<World> read = parseWorld(text);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(worldText(*read), text);
+    const World read = required(parseWorld(text));
+    EXPECT_EQ(worldText(read), text);
 }
 
 TEST(World, WhatIsNoneIsRefusedWithItsPlaceAndCure) {
@@ -247,9 +247,8 @@ TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
     world_.bodies = {{0, "here", {0.0F, 0.0F, 0.0F}},
                      {0, "turned", {0.5F, 0.25F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "far", {900.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}, 0.5F}};
-    Result<LoadedWorld> loaded = load();
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    const WorldField field(*std::move(loaded));
+    LoadedWorld loaded = required(load());
+    const WorldField field(std::move(loaded));
     const Bounds& box = collider_.bounds;
     int inside = 0;
     for (int i = 0; i < 20 * 20 * 20; ++i) {
@@ -288,9 +287,8 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
     world_.bodies = {{0, "a", {0.0F, 0.0F, 0.0F}},
                      {0, "b", {2.0F, 1.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "c", {-1.0F, 0.5F, 3.0F}, {0.5F, 0.5F, 0.5F, 0.5F}, 0.5F}};
-    Result<LoadedWorld> loaded = load();
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    const WorldField field(*std::move(loaded));
+    LoadedWorld loaded = required(load());
+    const WorldField field(std::move(loaded));
     const std::vector<std::uint32_t> every{0, 1, 2};
     std::uniform_real_distribution<float> at(-8.0F, 12.0F);
     int known = 0;
@@ -311,9 +309,8 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
 TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {
     collider_.bounds.min.y = 0.4F;  // the mesh is the top of the solid
     writeCollider();
-    Result<LoadedWorld> loaded = load();
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    const WorldField field(*std::move(loaded));
+    LoadedWorld loaded = required(load());
+    const WorldField field(std::move(loaded));
     const glm::vec3 below(0.01F, -0.3F, 0.02F);
     EXPECT_TRUE(field.evaluate(below).inside());
     EXPECT_EQ(field.bodiesIn({below, below}), std::vector<std::uint32_t>{0});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {
@@ -49,11 +50,10 @@ TEST_F(FlowFileTest, ARawVolumeRunsAlongXFirst) {
         FlowFile from = file(bytes("a.raw", values.data(), values.size() * sizeof(float)));
         from.size = {4, 3, 2};
         from.components = components;
-        const auto flow = loadFlow(from);
-        ASSERT_TRUE(flow) << flow.error().message;
+        const auto flow = required(loadFlow(from));
         const std::uint32_t node = 1 + 4 * (2 + 3 * 1);
-        EXPECT_EQ(flow->nodes.at(node), glm::vec3(values[node * components], values[node * components + 1],
-                                                  components == 3 ? values[node * components + 2] : 0.0F));
+        EXPECT_EQ(flow.nodes.at(node), glm::vec3(values[node * components], values[node * components + 1],
+                                                 components == 3 ? values[node * components + 2] : 0.0F));
 
         // A byte more, a byte less.
         values.push_back(0.0F);

@@ -12,6 +12,8 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "tests/results.h"
+
 namespace relief {
 namespace {
 
@@ -34,25 +36,23 @@ void expectError(const Result<PictureMesh>& mesh, const std::string& part,
 }
 
 TEST(ObjMesh, VerticesAndFaces) {
-    const auto mesh = obj(
+    const auto mesh = required(obj(
         "\xef\xbb\xbf# a comment\r\no thing\nv 0 0 0\nv 1 0 0 1.0\n  v\t1 1e0 +0\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"
-        "f 1/1/1 2//1 3/1 # and a comment\nf -4 -2 -1\nf 1 2 3 4\ns off");
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    EXPECT_EQ(mesh->positions.size(), 4U);
-    EXPECT_EQ(mesh->positions[2], glm::vec3(1.0F, 1.0F, 0.0F));
-    EXPECT_EQ(mesh->triangles, (Triangles{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3}));
+        "f 1/1/1 2//1 3/1 # and a comment\nf -4 -2 -1\nf 1 2 3 4\ns off"));
+    EXPECT_EQ(mesh.positions.size(), 4U);
+    EXPECT_EQ(mesh.positions[2], glm::vec3(1.0F, 1.0F, 0.0F));
+    EXPECT_EQ(mesh.triangles, (Triangles{0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3}));
 }
 
 TEST(ObjMesh, ColorsBehindEveryVertex) {
-    const auto mesh = obj("v 0 0 0 1 0 0\nv 1 0 0 1 0.5 2\nv 0 1 0 1 0 -1 1\nf 1 2 3\n");
-    ASSERT_TRUE(mesh) << mesh.error().message;
+    const auto mesh = required(obj("v 0 0 0 1 0 0\nv 1 0 0 1 0.5 2\nv 0 1 0 1 0 -1 1\nf 1 2 3\n"));
     using Color = std::array<std::uint8_t, 4>;
-    EXPECT_EQ(mesh->colors, (std::vector<Color>{{255, 0, 0, 255}, {255, 128, 255, 255}, {0, 0, 255, 255}}));
+    EXPECT_EQ(mesh.colors, (std::vector<Color>{{255, 0, 0, 255}, {255, 128, 255, 255}, {0, 0, 255, 255}}));
     EXPECT_TRUE(obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")->colors.empty()) << "not of all";
-    const PictureMesh smooth = withNormals(*mesh);
+    const PictureMesh smooth = withNormals(mesh);
     ASSERT_EQ(smooth.colors.size(), smooth.positions.size());
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_EQ(smooth.colors[smooth.triangles[i]], mesh->colors[i]);
+        EXPECT_EQ(smooth.colors[smooth.triangles[i]], mesh.colors[i]);
     }
 }
 
@@ -101,15 +101,14 @@ TEST(PlyMesh, ColorsAsBytesOrFloats) {
 }
 
 TEST(PlyMesh, AsciiWithOtherElements) {
-    const auto mesh =
+    const auto mesh = required(
         ply("ply\r\nformat ascii 1.0\ncomment x\nelement camera 1\nproperty float f\nproperty list uint8 "
             "int32 l\n" +
-            kHead + "0.5 2 7 8\n0 255 0 0\n1 255 0.5 2\n1 0 1 0\n0 9 1 -3\n  7 3 0 1 2\n7 4 0 1\n2 3\n");
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->positions.size(), 4U);
-    EXPECT_EQ(mesh->positions[1], glm::vec3(1.0F, 0.5F, 2.0F));
-    EXPECT_EQ(mesh->positions[3], glm::vec3(0.0F, 1.0F, -3.0F));
-    EXPECT_EQ(mesh->triangles, (Triangles{0, 1, 2, 0, 1, 2, 0, 2, 3}));
+            kHead + "0.5 2 7 8\n0 255 0 0\n1 255 0.5 2\n1 0 1 0\n0 9 1 -3\n  7 3 0 1 2\n7 4 0 1\n2 3\n"));
+    ASSERT_EQ(mesh.positions.size(), 4U);
+    EXPECT_EQ(mesh.positions[1], glm::vec3(1.0F, 0.5F, 2.0F));
+    EXPECT_EQ(mesh.positions[3], glm::vec3(0.0F, 1.0F, -3.0F));
+    EXPECT_EQ(mesh.triangles, (Triangles{0, 1, 2, 0, 1, 2, 0, 2, 3}));
 }
 
 /// A number's bytes in either order.
@@ -194,9 +193,8 @@ TEST(MeshFile, ByExtension) {
     expectError(loadPictureMesh("/nonexistent/a.OBJ"), "/nonexistent/a.OBJ", ErrorCode::kIo);
     const std::string path = testing::TempDir() + "relief_mesh.Ply";
     std::ofstream(path, std::ios::binary) << binaryPly(false);
-    const auto mesh = loadPictureMesh(path);
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    EXPECT_EQ(mesh->triangles.size(), 9U);
+    const auto mesh = required(loadPictureMesh(path));
+    EXPECT_EQ(mesh.triangles.size(), 9U);
     std::filesystem::remove(path);
 }
 

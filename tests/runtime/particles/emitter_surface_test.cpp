@@ -14,6 +14,7 @@
 
 #include "runtime/particles/emitter.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/results.h"
 #include "tests/runtime/particles/statistics.h"
 
 namespace relief {
@@ -43,9 +44,7 @@ struct Grid {
 
 EmitterSurface surfaceOf(const std::vector<glm::uvec3>& triangles, const std::vector<glm::vec3>& positions,
                          std::vector<float> weights = {}) {
-    auto made = EmitterSurface::create(triangles, std::move(weights), positions);
-    EXPECT_TRUE(made) << made.error().message;
-    return std::move(*made);
+    return required(EmitterSurface::create(triangles, std::move(weights), positions));
 }
 
 std::vector<EmitterSurface::Place> drawn(const EmitterSurface& surface, int count = kCount,

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <optional>
 
+#include "tests/results.h"
 #include "tests/runtime/particles/statistics.h"
 
 namespace relief {
@@ -359,10 +360,7 @@ TEST(Emitter, CheckNamesTheWrongSetting) {
     for (const auto& [field, change] : wrong) {
         EmitterSettings settings = fountain();
         change(settings);
-        const auto checked = Emitter::check(settings);
-        ASSERT_FALSE(checked) << field;
-        EXPECT_EQ(checked.error().code, ErrorCode::kUsage);
-        EXPECT_NE(checked.error().message.find(field), std::string::npos) << checked.error().message;
+        expectError(Emitter::check(settings), ErrorCode::kUsage, field);
     }
 }
 

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/results.h"
+
 namespace relief {
 namespace {
 
@@ -26,12 +28,11 @@ void expectError(const std::string& text, const std::string& start,
 }
 
 TEST(PointList, CsvWithAndWithoutNormals) {
-    const auto plain = parse("x,y,z\r\n# a comment\n\n 1 , -2.5,\t3e1\r\n+4,5,6");
-    ASSERT_TRUE(plain) << plain.error().message;
-    ASSERT_EQ(plain->positions.size(), 2U);
-    EXPECT_EQ(plain->positions[0], glm::vec3(1.0F, -2.5F, 30.0F));
-    EXPECT_EQ(plain->positions[1], glm::vec3(4.0F, 5.0F, 6.0F));
-    EXPECT_TRUE(plain->normals.empty());
+    const auto plain = required(parse("x,y,z\r\n# a comment\n\n 1 , -2.5,\t3e1\r\n+4,5,6"));
+    ASSERT_EQ(plain.positions.size(), 2U);
+    EXPECT_EQ(plain.positions[0], glm::vec3(1.0F, -2.5F, 30.0F));
+    EXPECT_EQ(plain.positions[1], glm::vec3(4.0F, 5.0F, 6.0F));
+    EXPECT_TRUE(plain.normals.empty());
     const auto normals = parse("1,2,3,0,0,-8\n4,5,6,3,0,4\n");
     ASSERT_TRUE(normals);
     EXPECT_EQ(normals->normals[0], glm::vec3(0.0F, 0.0F, -1.0F));
@@ -62,16 +63,16 @@ std::string header(const std::string& format, const std::string& count, const st
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
 
 TEST(PointList, AsciiPly) {
-    const auto list = parse(header("ascii", "2",
-                                   "property uchar red\nproperty double z\nproperty float y\nproperty int x\n"
-                                   "property float nx\nproperty float ny\nproperty float nz\n") +
-                            "255 3.5 2 1 0 2 0\n\n0 6 5 4 -1 0 0\n3 0 1 2\n");
-    ASSERT_TRUE(list) << list.error().message;
-    ASSERT_EQ(list->positions.size(), 2U);
-    EXPECT_EQ(list->positions[0], glm::vec3(1.0F, 2.0F, 3.5F));
-    EXPECT_EQ(list->positions[1], glm::vec3(4.0F, 5.0F, 6.0F));
-    EXPECT_EQ(list->normals[0], glm::vec3(0.0F, 1.0F, 0.0F));
-    EXPECT_EQ(list->normals[1], glm::vec3(-1.0F, 0.0F, 0.0F));
+    const auto list =
+        required(parse(header("ascii", "2",
+                              "property uchar red\nproperty double z\nproperty float y\nproperty int x\n"
+                              "property float nx\nproperty float ny\nproperty float nz\n") +
+                       "255 3.5 2 1 0 2 0\n\n0 6 5 4 -1 0 0\n3 0 1 2\n"));
+    ASSERT_EQ(list.positions.size(), 2U);
+    EXPECT_EQ(list.positions[0], glm::vec3(1.0F, 2.0F, 3.5F));
+    EXPECT_EQ(list.positions[1], glm::vec3(4.0F, 5.0F, 6.0F));
+    EXPECT_EQ(list.normals[0], glm::vec3(0.0F, 1.0F, 0.0F));
+    EXPECT_EQ(list.normals[1], glm::vec3(-1.0F, 0.0F, 0.0F));
 }
 
 template <class T>
@@ -101,10 +102,9 @@ TEST(PointList, BinaryPlyOfEveryTypeAndByteOrder) {
             append(text, 0.0, big);
             append(text, std::int8_t{-3}, big);
         }
-        const auto list = parse(text);
-        ASSERT_TRUE(list) << list.error().message;
-        EXPECT_EQ(list->positions[1], glm::vec3(-301.0F, 65535.0F, 1e8F));
-        EXPECT_EQ(list->normals[0], glm::vec3(0.0F, 0.0F, -1.0F));
+        const auto list = required(parse(text));
+        EXPECT_EQ(list.positions[1], glm::vec3(-301.0F, 65535.0F, 1e8F));
+        EXPECT_EQ(list.normals[0], glm::vec3(0.0F, 0.0F, -1.0F));
         text.pop_back();
         expectError(text, "p: vertex 1: it ends too early");
     }

@@ -90,17 +90,6 @@ TEST(Random, ConeIsUniformInSolidAngle) {
     }
 }
 
-TEST(Random, NormalIsNormal) {
-    const auto cdf = [](double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); };
-    const auto draws = values(6, standardNormal);
-    EXPECT_LT(test::kolmogorov(draws, cdf), test::kKolmogorovMax);
-    double fourth = 0.0;
-    for (const double x : draws) {
-        fourth += x * x * x * x / kCount;
-    }
-    EXPECT_NEAR(fourth, 3.0, 5.0 * std::sqrt(96.0 / kCount));  // the tails: its variance is 105 − 9
-}
-
 TEST(Random, OneMinusCosineIsThatOfTheLibrary) {
     EXPECT_EQ(oneMinusCosine(0.0), 0.0);
     EXPECT_DOUBLE_EQ(oneMinusCosine(90.0), 1.0);

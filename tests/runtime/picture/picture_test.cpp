@@ -6,6 +6,7 @@
 
 #include "runtime/files/ply.h"
 #include "runtime/files/png.h"
+#include "tests/results.h"
 
 namespace relief {
 namespace {
@@ -14,9 +15,7 @@ TEST(Png, RefusesSizesThatDoNotFit) {
     const std::vector<std::uint8_t> rgb(12);
     for (const auto& [width, height] :
          {std::pair{0U, 4U}, {4U, 0U}, {2U, 3U}, {70000U, 1U}, {0xffffffffU, 0xffffffffU}}) {
-        const auto bytes = encodePng(rgb, width, height);
-        ASSERT_FALSE(bytes);
-        EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
+        expectError(encodePng(rgb, width, height), ErrorCode::kUsage);
     }
     EXPECT_TRUE(encodePng(rgb, 2, 2));
 }
@@ -34,14 +33,11 @@ TEST(Png, LibpngReadsBackWhatWasWritten) {
     }
     const std::vector<std::byte> bytes = encodePng(rgb, kWidth, kHeight).value();
     EXPECT_EQ(*encodePng(rgb, kWidth, kHeight), bytes) << "the same pixels must give the same bytes";
-    const auto picture = decodePng(bytes, "'a.png'");
-    ASSERT_TRUE(picture) << picture.error().message;
-    EXPECT_EQ(picture->width, kWidth);
-    EXPECT_EQ(picture->rgba, rgba);
+    const auto picture = required(decodePng(bytes, "'a.png'"));
+    EXPECT_EQ(picture.width, kWidth);
+    EXPECT_EQ(picture.rgba, rgba);
     for (std::size_t i = 0; i + 13 < bytes.size(); ++i) {  // only the end mark may be missing
-        const auto cut = decodePng(std::span(bytes).first(i), "'a.png'");
-        ASSERT_FALSE(cut) << i;
-        EXPECT_EQ(cut.error().code, ErrorCode::kInvalidInput);
+        expectError(decodePng(std::span(bytes).first(i), "'a.png'"), ErrorCode::kInvalidInput);
     }
     const std::vector<std::uint8_t> row(std::size_t{3} * (kPngReadSideMax + 1));
     EXPECT_EQ(decodePng(*encodePng(row, kPngReadSideMax + 1, 1), "'a.png'").error().code, ErrorCode::kLimit);

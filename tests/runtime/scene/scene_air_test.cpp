@@ -25,19 +25,11 @@ TEST(SceneAir, KeysReachTheAir) {
         "[curl_noise]\namplitude = 0.5\nscale = 2\noctaves = 4\ndrift = 2000\nseed = 4294967295\n"
         "[flow]\nraw = \"f.raw\"\nsize = [512, 1, 8]\ncomponents = 2\noutside = \"edge\"\ngain = -2\n" +
         kBox + "[forces]\nwind = [1, 0, 0]\nviscosity = 1.8e-5\n");
-    ASSERT_EQ(scene.air.attractors.size(), 2U);
-    EXPECT_EQ(scene.air.attractors[0].position, glm::vec3(1, 2, 3));
-    EXPECT_EQ(scene.air.attractors[0].strength, 4.0F);
-    EXPECT_EQ(scene.air.attractors[0].radius, 0.5F);
-    EXPECT_EQ(scene.air.attractors[1].falloff, 0);
-    EXPECT_EQ(scene.air.attractors[1].reach, 2.5F);
-    EXPECT_EQ(scene.air.vortices.at(0).axis, glm::vec3(0, 0, -1)) << "of unit length";
-    EXPECT_EQ(scene.air.vortices[0].falloff, 2);
-    EXPECT_EQ(scene.air.curl_noise->amplitude, 0.5F);
-    EXPECT_EQ(scene.air.curl_noise->scale, 2.0F);
-    EXPECT_EQ(scene.air.curl_noise->octaves, 4);
-    EXPECT_EQ(scene.air.curl_noise->drift, 2000.0F);
-    EXPECT_EQ(scene.air.curl_noise->seed, 4294967295U);
+    EXPECT_EQ(scene.air.attractors,
+              (std::vector<Attractor>{{{1, 2, 3}, 4.0F, 0.5F}, {{0, 0, 0}, -1.0F, 1.0F, 0, 2.5F}}));
+    EXPECT_EQ(scene.air.vortices,  // with an axis of unit length
+              (std::vector<Vortex>{{{1, 0, 1}, {0, 0, -1}, 3.0F, 0.25F, 2}}));
+    EXPECT_EQ(scene.air.curl_noise, (CurlNoise{0.5F, 2.0F, 4, 2000.0F, 4294967295U}));
     EXPECT_EQ(scene.flow->origin, "dir/scene.toml:26:7: flow.raw: ");
     EXPECT_EQ(scene.flow->size, (std::array<std::uint32_t, 3>{512, 1, 8}));
     EXPECT_EQ(scene.flow->components, 2U);

@@ -27,15 +27,9 @@ SceneCollider turning() {
     SceneCollider collider;
     collider.posed = true;
     collider.pose.scale = 2.0F;
-    PoseKey key;
-    key.pose.scale = 2.0F;
-    key.time = 2.0;
-    key.pose.position = {1.0F, 0.0F, 0.0F};
-    collider.keys.push_back(key);
-    key.time = 4.0;
-    key.pose.position = {5.0F, 0.0F, 0.0F};
-    key.pose.rotation = glm::angleAxis(2.0F / 3.0F * std::numbers::pi_v<float>, glm::vec3(0.0F, 0.0F, 1.0F));
-    collider.keys.push_back(key);
+    const float angle = 2.0F / 3.0F * std::numbers::pi_v<float>;
+    collider.keys = {{2.0, {{1.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F, 0.0F}, 2.0F}},
+                     {4.0, {{5.0F, 0.0F, 0.0F}, glm::angleAxis(angle, glm::vec3(0.0F, 0.0F, 1.0F)), 2.0F}}};
     return collider;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "runtime/scene/scene_births.h"
+#include "tests/results.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
@@ -75,20 +76,19 @@ TEST(SceneEmitter, MomentsAndSpeeds) {
 }
 
 TEST(SceneEmitter, DefaultsOfSeveral) {
-    const auto scene = withDefaults(
+    const auto scene = required(withDefaults(
         goodScene(kSceneHead +
                   "[time]\ndt = 0.1\nsteps = 100\n[particles]\ncapacity = 10000\n"
                   "[[emitter]]\nrate = 100\n[[emitter]]\nburst = 100\nburst_every = 1\nduration = 4.5\n"
                   "[[emitter]]\nstart = 5\ndirection = [0, 1, 0]\n"),
-        unitBounds());
-    ASSERT_TRUE(scene) << scene.error().message;
+        unitBounds()));
     // 10000 less 1000 by the first's rate and 5 bursts of 100: 4250 for each of the two that say no rate.
-    EXPECT_NEAR(scene->emitters[1].rate, 8500.0 / 2.0 / 4.5, 1e-4);
-    EXPECT_NEAR(scene->emitters[2].rate, 8500.0 / 2.0 / 5.0, 1e-4);
-    EXPECT_EQ(scene->emitters[2].velocity, glm::vec3(0.0F));
-    EXPECT_EQ(scene->emitters[2].velocity_spread, glm::vec3(0.0F));
-    EXPECT_FLOAT_EQ(scene->emitters[2].aim->speed_max, 1.6F);  // 0.8 of the longest side, 2
-    EXPECT_GT(scene->emitters[2].box_min.y, 1.0F);
+    EXPECT_NEAR(scene.emitters[1].rate, 8500.0 / 2.0 / 4.5, 1e-4);
+    EXPECT_NEAR(scene.emitters[2].rate, 8500.0 / 2.0 / 5.0, 1e-4);
+    EXPECT_EQ(scene.emitters[2].velocity, glm::vec3(0.0F));
+    EXPECT_EQ(scene.emitters[2].velocity_spread, glm::vec3(0.0F));
+    EXPECT_FLOAT_EQ(scene.emitters[2].aim->speed_max, 1.6F);  // 0.8 of the longest side, 2
+    EXPECT_GT(scene.emitters[2].box_min.y, 1.0F);
 
     const std::string full =
         kSceneHead + "[particles]\ncapacity = 10\n[[emitter]]\nrate = 100\n[[emitter]]\n";
@@ -103,25 +103,22 @@ TEST(SceneSpawn, EveryKeyIsRead) {
                   "most = 70\nlifetime = [0.5, 2]\ninherit = 0.25\nspeed = [1, 3]\nkick = 0.5\n"
                   "cone = 20\nmin_speed = 0.75\nseed = 6\n[[spawn]]\non = \"death\"\nspeed = 2\n"
                   "[[spawn]]\non = \"collision\"\n");
-    SpawnSettings wanted;
-    wanted.of = 0;
-    wanted.type = 1;
-    wanted.count_min = 2;
-    wanted.count_max = 5;
-    wanted.most = 70;
-    wanted.lifetime_min = 0.5F;
-    wanted.lifetime_max = 2.0F;
-    wanted.inherit = 0.25F;
-    wanted.speed_min = 1.0F;
-    wanted.speed_max = 3.0F;
-    wanted.kick = 0.5F;
-    wanted.cone_degrees = 20.0F;
-    wanted.min_speed = 0.75F;
+    const SpawnSettings wanted{.of = 0,
+                               .min_speed = 0.75F,
+                               .type = 1,
+                               .count_min = 2,
+                               .count_max = 5,
+                               .most = 70,
+                               .lifetime_min = 0.5F,
+                               .lifetime_max = 2.0F,
+                               .inherit = 0.25F,
+                               .speed_min = 1.0F,
+                               .speed_max = 3.0F,
+                               .kick = 0.5F,
+                               .cone_degrees = 20.0F};
     EXPECT_TRUE(SpawnSettings(scene.spawns.at(0)) == wanted);
     EXPECT_EQ(scene.spawns[0].seed, 6U);
-    SpawnSettings death;
-    death.on = SpawnOn::kDeath;
-    death.speed_min = death.speed_max = 2.0F;
+    const SpawnSettings death{.on = SpawnOn::kDeath, .speed_min = 2.0F, .speed_max = 2.0F};
     EXPECT_TRUE(SpawnSettings(scene.spawns.at(1)) == death);
     EXPECT_EQ(scene.spawns.at(2).cone_degrees, 60.0F);
 }
@@ -130,18 +127,16 @@ TEST(SceneEmitter, MadeEmittersGiveBirth) {
     const test::TemporaryFolder folder;
     folder.write("points.csv", "1,2,3\n");
     const auto make = [&](const std::string& keys) {
-        auto scene = parseScene(kSceneHead + "[emitter]\n" + keys, folder.path() / "scene.toml");
-        EXPECT_TRUE(scene) << scene.error().message;
-        auto complete = withDefaults(std::move(*scene), unitBounds());
+        auto scene = required(parseScene(kSceneHead + "[emitter]\n" + keys, folder.path() / "scene.toml"));
+        auto complete = withDefaults(std::move(scene), unitBounds());
         EXPECT_TRUE(complete);
         return makeEmitters(complete->emitters, SceneMeshes{});
     };
-    auto made = make(
-        "points = \"points.csv\"\nburst = 3\nrate = 0\nvelocity_spread = [0, 0, 0]\n"
-        "velocity = [4, 5, 6]\ntype = 3\nlifetime = 2\n");
-    ASSERT_TRUE(made) << made.error().message;
+    auto made =
+        required(make("points = \"points.csv\"\nburst = 3\nrate = 0\nvelocity_spread = [0, 0, 0]\n"
+                      "velocity = [4, 5, 6]\ntype = 3\nlifetime = 2\n"));
     std::vector<Birth> births;
-    emitAll(*made, 0.1, 100, births);
+    emitAll(made, 0.1, 100, births);
     ASSERT_EQ(births.size(), 3U);
     EXPECT_EQ(births[0].position, glm::vec3(1, 2, 3));
     EXPECT_EQ(births[0].velocity, glm::vec3(4, 5, 6));

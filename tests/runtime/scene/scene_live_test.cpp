@@ -6,6 +6,7 @@
 
 #include <numbers>
 
+#include "tests/results.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
@@ -36,16 +37,15 @@ TEST(SceneLive, TheMeshIsReadAndItsMapsHoldTheMotion) {
     collider.live.emplace();
     collider.live->amplitude = 0.25F;
     collider.live->phase = 180.0F;
-    const auto live = loadLiveMesh(collider);
-    ASSERT_TRUE(live) << live.error().message;
-    EXPECT_EQ(live->mesh.positions.size(), 5U) << "no vertex is doubled";
-    EXPECT_EQ(live->mesh.normals.size(), 5U);
-    EXPECT_FLOAT_EQ(live->wobble.phase, std::numbers::pi_v<float>);
-    EXPECT_EQ(live->wobble.wavelength, 2.0F) << "half of the longest side";
-    ASSERT_EQ(live->frames.maps.size(), 3U);
-    EXPECT_LE(live->frames.bounds.min.z, -0.25F);
-    EXPECT_GE(live->frames.bounds.max.x, 4.25F);
-    EXPECT_LE(live->frames.bounds.max.x, 4.5F);
+    const auto live = required(loadLiveMesh(collider));
+    EXPECT_EQ(live.mesh.positions.size(), 5U) << "no vertex is doubled";
+    EXPECT_EQ(live.mesh.normals.size(), 5U);
+    EXPECT_FLOAT_EQ(live.wobble.phase, std::numbers::pi_v<float>);
+    EXPECT_EQ(live.wobble.wavelength, 2.0F) << "half of the longest side";
+    ASSERT_EQ(live.frames.maps.size(), 3U);
+    EXPECT_LE(live.frames.bounds.min.z, -0.25F);
+    EXPECT_GE(live.frames.bounds.max.x, 4.25F);
+    EXPECT_LE(live.frames.bounds.max.x, 4.5F);
 
     collider.path = folder.path() / "none.obj";
     EXPECT_TRUE(loadLiveMesh(collider).error().message.starts_with("scene.toml:2:8: collider.mesh: "));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/scene/scene_pictures.h"
+#include "tests/results.h"
 #include "tests/runtime/scene/scene_text.h"
 
 namespace relief {
@@ -26,40 +27,36 @@ TEST(SceneLooks, EveryKey) {
     EXPECT_EQ(scene.render.atlas_rows, 2U);
     EXPECT_EQ(scene.render.mesh, std::filesystem::path("dir/m.obj"));
     ASSERT_EQ(scene.types.size(), 3U);
-    ParticleLook first;
-    first.size = {{0.0F, 0.25F}};
-    first.color = {{0.0F, {1.0F, 0.0F, 0.5F}}};
-    EXPECT_EQ(scene.types[0].look, first);
-    ParticleLook second;
-    second.size = {{0.0F, 1.0F}, {0.5F, 2.0F}};
-    second.color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {1.0F, {0.0F, 1.0F, 0.0F}}};
-    second.opacity = {{0.0F, 0.0F}, {1.0F, 1.0F}};
-    second.rotation = {{0.25F, -3.0F}};
-    second.turn = 1.0F;
-    second.spin = 2.0F;
-    second.cell_first = 3;
-    second.cell_last = 7;
-    second.lit = false;
-    second.fade_in = 0.0F;  // opacity says itself how it comes and goes
-    second.fade_out = 0.0F;
-    EXPECT_EQ(scene.types[1].look, second);
+    EXPECT_EQ(scene.types[0].look,
+              (ParticleLook{.size = {{0.0F, 0.25F}}, .color = {{0.0F, {1.0F, 0.0F, 0.5F}}}}));
+    EXPECT_EQ(scene.types[1].look,
+              (ParticleLook{.size = {{0.0F, 1.0F}, {0.5F, 2.0F}},
+                            .color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {1.0F, {0.0F, 1.0F, 0.0F}}},
+                            .opacity = {{0.0F, 0.0F}, {1.0F, 1.0F}},
+                            .rotation = {{0.25F, -3.0F}},
+                            .turn = 1.0F,
+                            .spin = 2.0F,
+                            .cell_first = 3,
+                            .cell_last = 7,
+                            .lit = false,
+                            .fade_in = 0.0F,  // opacity says itself how it comes and goes
+                            .fade_out = 0.0F}));
     EXPECT_EQ(scene.types[2].look.cell_last, 6U);
     EXPECT_EQ(scene.types[2].look.fade_out, 2.0F);
 }
 
 TEST(SceneCamera, KeysAreFollowedAndFilledFromTheCamera) {
-    const auto scene =
+    const auto scene = required(
         withDefaults(good("[camera]\ntarget = [0, 1, 0]\nfov = 40\n"
                           "[[camera.key]]\ntime = 0\neye = [4, 1, 0]\n"
                           "[[camera.key]]\ntime = 2\neye = [8, 1, 0]\ntarget = [0, 3, 0]\nfov = 20\n"),
-                     unitBounds());
-    ASSERT_TRUE(scene) << scene.error().message;
-    const Camera camera = sceneCamera(*scene, unitBounds(), 1.0);
+                     unitBounds()));
+    const Camera camera = sceneCamera(scene, unitBounds(), 1.0);
     EXPECT_EQ(camera.eye, glm::vec3(6.0F, 1.0F, 0.0F));
     EXPECT_EQ(camera.target, glm::vec3(0.0F, 2.0F, 0.0F));
     EXPECT_EQ(camera.fov, 30.0F);
     EXPECT_GT(camera.far_plane, 6.0F);
-    EXPECT_EQ(sceneCamera(*scene, unitBounds(), 0.0).target, glm::vec3(0.0F, 1.0F, 0.0F));
+    EXPECT_EQ(sceneCamera(scene, unitBounds(), 0.0).target, glm::vec3(0.0F, 1.0F, 0.0F));
 }
 
 }  // namespace

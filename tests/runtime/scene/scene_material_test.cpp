@@ -5,6 +5,7 @@
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_emitter.h"
+#include "tests/results.h"
 #include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
@@ -27,20 +28,19 @@ void writeBox(const test::TemporaryFolder& folder) {
 TEST(SceneMaterial, ResponsesReachTheCollidersByName) {
     const test::TemporaryFolder folder;
     writeBox(folder);
-    const auto loaded =
-        loadAll(folder.write("scene.toml",
-                             kHead + "[[material]]\nname = \"stove\"\nfriction = 0.75\nlifetime_loss = 3\n"
-                                     "[[material]]\nname = \"oak\"\nrestitution = 0.125\n"
-                                     "[[spawn]]\non = \"collision\"\nmaterial = \"stove\"\n"),
-                {});
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    const std::vector<Material>& list = loaded->colliders.front()->materials.list;
+    const auto loaded = required(loadAll(
+        folder.write("scene.toml", kHead +
+                                       "[[material]]\nname = \"stove\"\nfriction = 0.75\nlifetime_loss = 3\n"
+                                       "[[material]]\nname = \"oak\"\nrestitution = 0.125\n"
+                                       "[[spawn]]\non = \"collision\"\nmaterial = \"stove\"\n"),
+        {}));
+    const std::vector<Material>& list = loaded.colliders.front()->materials.list;
     EXPECT_EQ(list[0], (Material{"oak", 0.125F, 0.25F}));
     EXPECT_EQ(list[1], (Material{"stove", 1.0F, 0.75F, 3.0F}));
     // Of the names of the textures; one that is not among them is never hit.
     const std::vector<std::string> names{"oak", "stove"};
-    EXPECT_EQ(makeSpawners(loaded->scene.spawns, names).front().settings().material, 1);
-    EXPECT_EQ(makeSpawners(loaded->scene.spawns, std::span(names).first(1)).front().settings().material, 1);
+    EXPECT_EQ(makeSpawners(loaded.scene.spawns, names).front().settings().material, 1);
+    EXPECT_EQ(makeSpawners(loaded.scene.spawns, std::span(names).first(1)).front().settings().material, 1);
 }
 
 TEST(SceneMaterial, UnknownNamesAreErrors) {
@@ -67,9 +67,8 @@ TEST(SceneMaterial, WorldsHaveThemToo) {
     world.colliders[0].hash.assign(32, '0');
     world.colliders[0].gpu_bytes = 1;
     world.bodies.resize(1);
-    const auto read = parseWorld(worldText(world));
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->materials, world.materials);
+    const auto read = required(parseWorld(worldText(world)));
+    EXPECT_EQ(read.materials, world.materials);
     world.materials[1].name = "oak";
     EXPECT_EQ(parseWorld(worldText(world)).error().code, ErrorCode::kInvalidInput);
     world.materials.clear();

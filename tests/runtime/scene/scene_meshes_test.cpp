@@ -7,6 +7,7 @@
 #include <set>
 
 #include "runtime/scene/scene_world.h"
+#include "tests/results.h"
 #include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
@@ -78,9 +79,8 @@ TEST_F(DrawnMeshesTest, AFileHasTheNameThatAContainerHas) {
         World world = namedWorld();
         world.colliders[1].mesh = name;
         const LoadedScene scene = loaded(world, "world = \"world.json\"\n");
-        const auto files = drawnFiles(scene);
-        ASSERT_TRUE(files) << files.error().message;
-        EXPECT_EQ(files->back(), folder_.path() / "props_chair.obj");
+        const auto files = required(drawnFiles(scene));
+        EXPECT_EQ(files.back(), folder_.path() / "props_chair.obj");
     }
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_meshes.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/results.h"
 #include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
@@ -30,18 +31,17 @@ TEST(ScenePlay, IsLoadedWithItsClip) {
     ASSERT_TRUE(saveCollider(folder.path() / "tube.relief", animatedContainer(bendingTube(12, 8))));
     const std::string two = kHead + "position = [3, 0, 0]\nplay = { clip = \"bend\" }\n" + kHead +
                             "play = { clip = \"grow\", start = 0.25, repeat = false }\n" + kHead;
-    const auto loaded = loadAll(folder.write("scene.toml", two), {});
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    ASSERT_TRUE(loaded->played[0] && loaded->played[1]);
-    EXPECT_FALSE(loaded->played[2]) << "at rest";
-    EXPECT_EQ(loaded->played[0]->mesh, loaded->played[1]->mesh) << "read once";
-    const AnimatedMesh& mesh = *loaded->played[0]->mesh;
-    EXPECT_EQ(loaded->played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "again from the beginning";
-    EXPECT_EQ(loaded->played[1]->poseAt(0.5), poseAt(mesh, mesh.clips[1], 0.75));
-    EXPECT_EQ(loaded->played[1]->poseAt(7.0), poseAt(mesh, mesh.clips[1], 1.0));
+    const auto loaded = required(loadAll(folder.write("scene.toml", two), {}));
+    ASSERT_TRUE(loaded.played[0] && loaded.played[1]);
+    EXPECT_FALSE(loaded.played[2]) << "at rest";
+    EXPECT_EQ(loaded.played[0]->mesh, loaded.played[1]->mesh) << "read once";
+    const AnimatedMesh& mesh = *loaded.played[0]->mesh;
+    EXPECT_EQ(loaded.played[0]->poseAt(2.5), poseAt(mesh, mesh.clips[0], 0.5)) << "again from the beginning";
+    EXPECT_EQ(loaded.played[1]->poseAt(0.5), poseAt(mesh, mesh.clips[1], 0.75));
+    EXPECT_EQ(loaded.played[1]->poseAt(7.0), poseAt(mesh, mesh.clips[1], 1.0));
     // The tube bends to -x by a little more than 1.
-    EXPECT_LE(loaded->bounds.min.x, 3.0F - 1.05F);
-    EXPECT_GE(loaded->bounds.max.x, 3.09F);
+    EXPECT_LE(loaded.bounds.min.x, 3.0F - 1.05F);
+    EXPECT_GE(loaded.bounds.max.x, 3.09F);
 }
 
 TEST(ScenePlay, MissingClipsAndMeshesAreNamed) {
@@ -75,11 +75,10 @@ TEST(ScenePlay, MaterialsHaveTheirColoursInPictures) {
     for (const auto& [keys, rest] :
          {std::pair<std::string, Color>("color = [0, 1, 0.2]\n", {0, 255, 51, 255}),
           std::pair<std::string, Color>("", {189, 153, 133, 255})}) {  // clay
-        const auto loaded = load(keys + "[[collider.material]]\nname = \"sleeve\"\ncolor = [1, 0.4, 0]\n");
-        ASSERT_TRUE(loaded) << loaded.error().message;
-        const auto drawn = loadDrawnMeshes(*loaded);
-        ASSERT_TRUE(drawn) << drawn.error().message;
-        const std::vector<Color>& colors = drawn->meshes.front().colors;
+        const auto loaded =
+            required(load(keys + "[[collider.material]]\nname = \"sleeve\"\ncolor = [1, 0.4, 0]\n"));
+        const auto drawn = required(loadDrawnMeshes(loaded));
+        const std::vector<Color>& colors = drawn.meshes.front().colors;
         ASSERT_EQ(colors.size(), mesh.positions.size());
         std::vector<Color> expected(colors.size(), rest);
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/results.h"
 #include "tests/runtime/scene/scene_text.h"
 
 namespace relief {
@@ -118,14 +119,10 @@ TEST(Scene, EveryPrefixAndEveryFlippedByteIsSurvived) {
 }
 
 TEST(Scene, MissingAndOversizedFiles) {
-    const auto missing = loadScene("/nonexistent/scene.toml");
-    ASSERT_FALSE(missing);
-    EXPECT_EQ(missing.error().code, ErrorCode::kIo);
+    expectError(loadScene("/nonexistent/scene.toml"), ErrorCode::kIo);
     const std::string path = testing::TempDir() + "relief_scene_large.toml";
     std::ofstream(path) << std::string((1 << 20) + 1, '#');
-    const auto large = loadScene(path);
-    ASSERT_FALSE(large);
-    EXPECT_EQ(large.error().code, ErrorCode::kLimit);
+    expectError(loadScene(path), ErrorCode::kLimit);
     std::filesystem::remove(path);
 }
 

@@ -13,6 +13,7 @@
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_pictures.h"
 #include "tests/formats/sample_colliders.h"
+#include "tests/results.h"
 #include "tests/runtime/collider/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
 
@@ -90,9 +91,8 @@ TEST(SceneWorld, TheDefaultCameraFramesALevel) {
     for (const glm::vec3& half :
          {glm::vec3(90.0F, 12.0F, 90.0F), glm::vec3(4.0F, 30.0F, 2.0F), glm::vec3(300.0F, 0.0F, 5.0F)}) {
         const Bounds bounds{-half, half};
-        const auto scene = withDefaults(placed("[render]\nsize = [640, 360]\n"), bounds);
-        ASSERT_TRUE(scene) << scene.error().message;
-        const Camera camera = sceneCamera(*scene, bounds, 0.0);
+        const auto scene = required(withDefaults(placed("[render]\nsize = [640, 360]\n"), bounds));
+        const Camera camera = sceneCamera(scene, bounds, 0.0);
         glm::vec2 most(0.0F);
         for (int i = 0; i < 8; ++i) {
             const glm::bvec3 high((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);

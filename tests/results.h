@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The value of a Result that must be good, and what the error of one that must fail says.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+/// The value of a Result, without which the test cannot go on.
+template <class T>
+T required(Result<T> result, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    if (!result) {
+        ADD_FAILURE_AT(file, line) << result.error().message;
+    }
+    return std::move(result).value();  // throws: the test ends
+}
+
+/// Fails with this code and a message of one line that has the words.
+template <class T>
+void expectError(const Result<T>& result, ErrorCode code, std::string_view words = {},
+                 const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    const testing::ScopedTrace trace(file, line, std::string(words));
+    ASSERT_FALSE(result) << "accepted";
+    EXPECT_EQ(result.error().code, code) << result.error().message;
+    EXPECT_NE(result.error().message.find(words), std::string::npos) << result.error().message;
+    EXPECT_EQ(result.error().message.find('\n'), std::string::npos) << result.error().message;
+}
+
+}  // namespace relief
