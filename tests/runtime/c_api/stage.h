@@ -13,7 +13,9 @@
 #include <functional>
 #include <memory>
 #include <regex>
+#include <set>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -27,6 +29,7 @@
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "tests/formats/animation/animated_meshes.h"
+#include "tests/results.h"
 #include "tests/runtime/collider/analytic_collider.h"
 
 namespace relief::c_api {
@@ -43,9 +46,8 @@ inline void expectError(const std::string& part) {
 class Stage {
   public:
     Stage() {
-        auto context = GlContext::create(GlApi::kGl33Core);
-        EXPECT_TRUE(context) << context.error().message;
-        context_ = std::move(*context);
+        auto context = required(GlContext::create(GlApi::kGl33Core));
+        context_ = std::move(context);
         Collider box = analytic::frontBackCollider(analytic::box({-0.4, -0.2, -0.3}, {0.4, 0.2, 0.3}), 16);
         box.materials.list = {{"cloth"}, {"felt"}};
         AnimatedMesh tube = bendingTube(8, 6);
@@ -160,15 +162,12 @@ class Stage {
         } else if constexpr (std::is_same_v<T, const void*>) {
             return bytes_.data();
         } else if constexpr (std::is_same_v<T, size_t>) {
-            return name == "size"           ? bytes_.size()
-                   : name == "body"         ? 1
-                   : name == "clip"         ? 1
-                   : name == "material"     ? 1
-                   : name == "joint"        ? 1
-                   : name == "joint_count"  ? 2
-                   : name == "weight_count" ? 1
-                   : name == "gpu_bytes"    ? std::size_t{1} << 20
-                                            : kItems;
+            static const std::set<std::string> kOne{"body", "clip", "material", "joint", "weight_count"};
+            return name == "size"          ? bytes_.size()
+                   : name == "joint_count" ? 2
+                   : name == "gpu_bytes"   ? std::size_t{1} << 20
+                   : kOne.contains(name)   ? 1
+                                           : kItems;
         } else if constexpr (std::is_same_v<T, float>) {
             return 0.01F;
         } else if constexpr (std::is_same_v<T, uint32_t>) {
@@ -187,6 +186,8 @@ class Stage {
             return 0;
         } else if constexpr (std::is_same_v<T, float*>) {
             return name == "min" ? low : high;
+        } else if constexpr (std::is_same_v<T, const std::uint32_t*>) {
+            return bodies;
         } else if constexpr (std::is_same_v<T, relief_textures*>) {
             return name == "world_textures"      ? world_textures
                    : name == "animated_textures" ? animated_textures
@@ -223,13 +224,8 @@ class Stage {
         const auto drop = [handle](auto*& one) {
             one = reinterpret_cast<std::uintptr_t>(one) == handle ? nullptr : one;
         };
-        drop(collider);
-        drop(textures);
-        drop(particles);
-        drop(picture);
-        drop(world);
-        drop(animation);
-        drop(emitter);
+        const auto handles = std::tie(collider, textures, particles, picture, world, animation, emitter);
+        std::apply([&](auto&... one) { (drop(one), ...); }, handles);
     }
 
     relief_collider* collider = nullptr;
@@ -283,29 +279,14 @@ class Stage {
         EXPECT_TRUE(writeFile(world_path_, std::as_bytes(std::span(text))));
     }
 
-    // One for each type of pointer: another in relief.h does not compile.
-    const relief_collider* pointer(const relief_collider* /*type*/) { return collider; }
-    relief_collider* pointer(relief_collider* /*type*/) { return collider; }
-    const relief_textures* pointer(const relief_textures* /*type*/) { return textures; }
-    const relief_world* pointer(const relief_world* /*type*/) { return world; }
-    relief_world* pointer(relief_world* /*type*/) { return world; }
-    const std::uint32_t* pointer(const std::uint32_t* /*type*/) { return bodies; }
-    std::uint32_t* pointer(std::uint32_t* /*type*/) { return bodies_found; }
-    const relief_ball* pointer(const relief_ball* /*type*/) { return balls; }
-    relief_pose* pointer(relief_pose* /*type*/) { return &pose; }
-    const relief_particles* pointer(const relief_particles* /*type*/) { return particles; }
-    relief_particles* pointer(relief_particles* /*type*/) { return particles; }
-    relief_picture* pointer(relief_picture* /*type*/) { return picture; }
-    const relief_particles_options* pointer(const relief_particles_options* /*type*/) { return &options; }
-    const relief_birth* pointer(const relief_birth* /*type*/) { return births; }
-    const relief_picture_options* pointer(const relief_picture_options* /*type*/) { return &picture_options; }
-    const relief_view* pointer(const relief_view* /*type*/) { return &view; }
-    relief_particle* pointer(relief_particle* /*type*/) { return states; }
-    relief_sample* pointer(relief_sample* /*type*/) { return samples; }
-    relief_animation* pointer(relief_animation* /*type*/) { return animation; }
-    const relief_animation* pointer(const relief_animation* /*type*/) { return animation; }
-    relief_emitter* pointer(relief_emitter* /*type*/) { return emitter; }
-    const relief_emitter_options* pointer(const relief_emitter_options* /*type*/) { return &emitter_options; }
+    /// What an argument of this type points to: another type in relief.h does not compile.
+    template <class T>
+    T pointer(T /*type*/) {
+        using Thing = std::remove_const_t<std::remove_pointer_t<T>>;
+        return std::get<Thing*>(std::tuple(collider, textures, world, particles, picture, animation, emitter,
+                                           &options, &births[0], &picture_options, &emitter_options, &view,
+                                           &states[0], &samples[0], &balls[0], &pose, &bodies_found[0]));
+    }
 
     std::unique_ptr<GlContext> context_;
     std::filesystem::path path_;

@@ -39,15 +39,13 @@ class AnimatedColliderGlTest : public CollisionTest {
   protected:
     void makeAnimated(const SharedMesh& mesh, const Pose& pose = {},
                       const AnimatedColliderOptions& options = {}) {
-        auto made = AnimatedCollider::create(mesh, options);
-        ASSERT_TRUE(made) << made.error().message;
-        animated_.emplace(std::move(*made));
+        auto made = required(AnimatedCollider::create(mesh, options));
+        animated_.emplace(std::move(made));
         pose_ = pose;
         const ColliderBody body{
             .collider = &animated_->frames(), .pose = animated_->placed(pose), .live = true};
-        auto textures = ColliderTextures::create(std::span(&body, 1));
-        ASSERT_TRUE(textures) << textures.error().message;
-        textures_ = std::make_unique<ColliderTextures>(std::move(*textures));
+        auto textures = required(ColliderTextures::create(std::span(&body, 1)));
+        textures_ = std::make_unique<ColliderTextures>(std::move(textures));
         show();
     }
     void show() {

@@ -22,6 +22,7 @@
 
 #include "formats/collider.h"
 #include "runtime/gl/gl_capabilities.h"
+#include "tests/results.h"
 #include "tests/runtime/collider/field_query.h"
 #include "tests/runtime/collider/patch_rounding.h"
 
@@ -111,17 +112,15 @@ inline Agreement compareAt(const Collider& collider, const glm::vec3& p, const F
 
 inline void expectAgreement(const Collider& collider, std::span<const glm::vec3> points, float texel,
                             double border_share_max) {
-    Result<FieldQuery> query = FieldQuery::create(collider);
-    ASSERT_TRUE(query) << query.error().message;
-    const Result<std::vector<FieldSample>> samples = query->evaluate(points);
-    ASSERT_TRUE(samples) << samples.error().message;
-    ASSERT_EQ(samples->size(), points.size());
+    FieldQuery query = required(FieldQuery::create(collider));
+    const std::vector<FieldSample> samples = required(query.evaluate(points));
+    ASSERT_EQ(samples.size(), points.size());
     std::size_t at_border = 0;
     std::size_t none = 0;
     std::size_t votes = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        votes += (*samples)[i].map >= 0 ? 1U : 0U;
-        switch (compareAt(collider, points[i], (*samples)[i], kBorder * texel)) {
+        votes += (samples)[i].map >= 0 ? 1U : 0U;
+        switch (compareAt(collider, points[i], (samples)[i], kBorder * texel)) {
             case Agreement::kExact:
                 break;
             case Agreement::kAtBorder:
@@ -130,9 +129,9 @@ inline void expectAgreement(const Collider& collider, std::span<const glm::vec3>
             case Agreement::kNone:
                 if (none++ < 5) {
                     const FieldSample cpu = evaluate(collider, points[i]);
-                    ADD_FAILURE() << "point " << i << ": GPU " << (*samples)[i].distance << " map "
-                                  << (*samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map
-                                  << ", normals " << glm::length((*samples)[i].normal - cpu.normal)
+                    ADD_FAILURE() << "point " << i << ": GPU " << (samples)[i].distance << " map "
+                                  << (samples)[i].map << ", CPU " << cpu.distance << " map " << cpu.map
+                                  << ", normals " << glm::length((samples)[i].normal - cpu.normal)
                                   << " apart";
                 }
                 break;

@@ -15,6 +15,7 @@
 #include "runtime/collider/collider_textures.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
+#include "tests/results.h"
 #include "tests/runtime/gl/query_program.h"
 
 namespace relief {
@@ -129,9 +130,8 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
 /// The field of textures that are there already. \param defines  lines for the shader.
 inline std::vector<FieldSample> fieldOf(const ColliderTextures& textures, std::span<const glm::vec3> points,
                                         const std::string& defines = {}) {
-    const auto query = FieldQuery::create(textures, defines);
-    EXPECT_TRUE(query) << query.error().message;
-    auto samples = query->evaluate(points);
+    const auto query = required(FieldQuery::create(textures, defines));
+    auto samples = query.evaluate(points);
     EXPECT_TRUE(samples) << samples.error().message;
     return samples.value_or(std::vector<FieldSample>(points.size()));
 }

@@ -279,10 +279,9 @@ TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) 
             }
         }
         const std::vector<glm::vec3> points = randomPoints(kPoints, random);
-        const auto textures = ColliderTextures::create(collider);
-        ASSERT_TRUE(textures) << textures.error().message;
-        const std::vector<FieldSample> full = fieldOf(*textures, points);
-        const std::vector<FieldSample> early = fieldOf(*textures, points, "#define RELIEF_QUERY_INSIDE\n");
+        const auto textures = required(ColliderTextures::create(collider));
+        const std::vector<FieldSample> full = fieldOf(textures, points);
+        const std::vector<FieldSample> early = fieldOf(textures, points, "#define RELIEF_QUERY_INSIDE\n");
         double at_border = 0.0;
         double other_sign = 0.0;
         for (std::size_t i = 0; i < kPoints; ++i) {

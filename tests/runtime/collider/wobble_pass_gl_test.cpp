@@ -63,14 +63,13 @@ RELIEF_INSTANTIATE_GL_TESTS(WobblePassGlTest);
 TEST_P(WobblePassGlTest, FollowsItsFormulaAndKeepsTheCallersState) {
     const Points points = somePoints(5000);
     const CallerState caller;
-    auto pass = WobblePass::create(kSome, points.positions, points.normals);
-    ASSERT_TRUE(pass) << pass.error().message;
+    auto pass = required(WobblePass::create(kSome, points.positions, points.normals));
     caller.expectKept("create");
     float moved = 0.0F;
     for (const double time : {0.0, 0.3, 777.7}) {
-        pass->run(time);
+        pass.run(time);
         caller.expectKept("run");
-        const std::vector<glm::vec3> gpu = read(*pass);
+        const std::vector<glm::vec3> gpu = read(pass);
         const std::vector<glm::vec3> all = relief::wobbled(kSome, points.positions, points.normals, time);
         ASSERT_EQ(gpu.size(), points.positions.size());
         ASSERT_EQ(all.size(), points.positions.size());
@@ -97,11 +96,10 @@ TEST_P(WobblePassGlTest, NormalsAreThoseOfTheMovedSurface) {
         wanted.push_back(glm::normalize(glm::vec3(slope * std::cos(phaseAt(0, time, p.x)),
                                                   slope * std::cos(phaseAt(1, time, p.y)), 1.0)));
     }
-    auto pass =
-        WobblePass::create(kSome, points.positions, points.normals, VertexOutput::kPositionsAndNormals);
-    ASSERT_TRUE(pass) << pass.error().message;
-    pass->run(time);
-    const std::vector<glm::vec3> gpu = read(*pass);
+    auto pass = required(
+        WobblePass::create(kSome, points.positions, points.normals, VertexOutput::kPositionsAndNormals));
+    pass.run(time);
+    const std::vector<glm::vec3> gpu = read(pass);
     ASSERT_EQ(gpu.size(), 2 * wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         EXPECT_LE(glm::length(gpu[2 * i + 1] - wanted[i]), 2e-3F) << i;
@@ -112,9 +110,7 @@ TEST_P(WobblePassGlTest, WhatMakesNoSenseIsRefused) {
     const Points points = somePoints(3);
     const auto refused = [&](const Wobble& wobble, std::span<const glm::vec3> positions,
                              std::span<const glm::vec3> normals) {
-        const auto pass = WobblePass::create(wobble, positions, normals);
-        ASSERT_FALSE(pass);
-        EXPECT_EQ(pass.error().code, ErrorCode::kUsage);
+        expectError(WobblePass::create(wobble, positions, normals), ErrorCode::kUsage);
     };
     const float nan = std::numeric_limits<float>::quiet_NaN();
     refused(kSome, {}, {});

@@ -310,7 +310,6 @@ TEST_P(DepthMapRendererGlTest, EveryTriangleOwnsItsSlot) {
     EXPECT_GT(covered, 1500);
 }
 
-// What a plain state gives, a hostile one gives as well, and keeps.
 TEST_P(DepthMapRendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     const Mesh mesh = sheet({-0.8F, -0.7F}, {0.6F, 0.8F}, 3, [](float x, float y) { return 0.5F * x * y; });
     const auto run = [&](const std::function<void(const char*)>& check) {

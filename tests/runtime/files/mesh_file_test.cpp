@@ -168,7 +168,6 @@ TEST(PlyMesh, Hostile) {
     expectError(ply(xyz + "element face 18446744073709551615\nend_header\n0 0 0\n1 0 0\n0 1 0\n"), "");
 }
 
-// Every prefix and every flipped byte is read or refused; the sanitizers see the rest.
 TEST(PlyMesh, EveryPrefixAndEveryFlippedByteIsSurvived) {
     for (const bool big : {false, true}) {
         const std::string text = binaryPly(big);

@@ -41,10 +41,9 @@ EGLContext noRobustContext(EGLDisplay display, EGLConfig config, EGLContext shar
 using GlDeviceTest = GlTest;
 
 TEST_P(GlDeviceTest, ThePlatformIsNamed) {
-    const auto any = GlContext::create(GetParam());
-    ASSERT_TRUE(any) << any.error().message;
-    EXPECT_EQ(ending((*any)->description()), "surfaceless") << "the first that is there";
-    EXPECT_EQ((*any)->api(), GetParam());
+    const auto any = required(GlContext::create(GetParam()));
+    EXPECT_EQ(ending(any->description()), "surfaceless") << "the first that is there";
+    EXPECT_EQ(any->api(), GetParam());
 }
 
 TEST_P(GlDeviceTest, MissingPlatformsAreNamed) {
@@ -61,10 +60,8 @@ TEST_P(GlDeviceTest, MissingPlatformsAreNamed) {
         EXPECT_NE(any.error().message.find(name), std::string::npos) << "all that was tried is named";
     }
     EXPECT_EQ(any.error().message.find('\n'), std::string::npos);
-    const auto device = GlContext::create({.api = GetParam(), .device = std::size_t{0}});
-    EXPECT_FALSE(device);
-    EXPECT_EQ(device.error().code, ErrorCode::kUnsupported);
-    EXPECT_NE(device.error().message.find("device 0"), std::string::npos);
+    expectError(GlContext::create({.api = GetParam(), .device = std::size_t{0}}), ErrorCode::kUnsupported,
+                "device 0");
     epoxy_eglGetPlatformDisplayEXT = platform;
     epoxy_eglGetDisplay = real_display;
 }

@@ -14,17 +14,9 @@
 #include "runtime/gl/gl_context.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
+#include "tests/results.h"
 
 namespace relief {
-
-/// The value of a Result, without which the test cannot go on.
-template <class T>
-T required(Result<T> result) {
-    if (!result) {
-        ADD_FAILURE() << result.error().message;
-    }
-    return std::move(result).value();  // throws: the test ends
-}
 
 inline std::string glApiTestName(const testing::TestParamInfo<GlApi>& info) {
     return info.param == GlApi::kGles30 ? "Gles30" : "Gl33Core";

@@ -54,7 +54,6 @@ TEST_P(ArgumentsGlTest, SystemsOutOfRange) {
     EXPECT_EQ(particles_->counts().alive, 0U);
 }
 
-// Numbers that are none are refused wherever they come in, and what was there before goes on.
 TEST_P(ArgumentsGlTest, NumbersThatAreNone) {
     ASSERT_TRUE(particles_->setForces({.gravity = {0.0F, -8.0F, 0.0F}, .drag = 0.0F}));
     ASSERT_TRUE(particles_->setGround(-100.0F));

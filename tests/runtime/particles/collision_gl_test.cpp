@@ -125,7 +125,6 @@ TEST_P(CollisionGlTest, EachTypeReactsInItsOwnWay) {
     }
 }
 
-// One collider in its own space, and the floor: each type stops at what it collides with.
 TEST_P(CollisionGlTest, ATypeGoesThroughWhatItDoesNotCollideWith) {
     std::vector<ParticleType> types(4);
     types[1].collides = kCollidesWithGround;
@@ -195,7 +194,6 @@ TEST_P(CollisionGlTest, MasksOfSeveralBodies) {
     }
 }
 
-// A run that begins before time 0: its clock shows it, and no particle notices.
 TEST_P(CollisionGlTest, ARunMayBeginBeforeTimeZero) {
     std::vector<ParticleState> of[2];
     for (const double start : {0.0, -2.0}) {

@@ -213,7 +213,6 @@ TEST_P(EventsGlTest, TheLastOfTheirRowsDieInFullView) {
     EXPECT_EQ(particles_->extent(), 1U);
 }
 
-// The particles are the same to the last bit whether somebody asks or not, and without setEvents nothing is made.
 TEST_P(EventsGlTest, AskingChangesNoParticle) {
     std::vector<std::vector<ParticleState>> states;
     for (const bool ask : {false, true}) {
@@ -309,7 +308,6 @@ TEST_P(EventsGlTest, EachListKeepsWhatItsOptionsAskFor) {
     }
 }
 
-// The list on the GPU is the one that comes back.
 TEST_P(EventsGlTest, TheListIsThereForShaders) {
     make({.capacity = 5000});
     ASSERT_TRUE(particles_->setEvents(EventOptions{.lasting = true, .most = 2000}));

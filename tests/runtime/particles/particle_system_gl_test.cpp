@@ -201,58 +201,6 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
     }
 }
 
-// Closed form of semi-implicit Euler under gravity g after n steps: v = v0 + n dt g, and
-// P = P0 + n dt v0 + n(n+1)/2 dt² g. A bounce in step n turns v0 + (n−1) dt g into −ε times it.
-TEST_P(ParticleSystemGlTest, BouncesOnAPlaneInClosedForm) {
-    constexpr double kRestitution = 0.7;
-    const Vec gravity(0.0, -4.0, 0.0);
-    const auto dt = static_cast<double>(kDt);
-    for (const bool by_floor : {true, false}) {
-        make({.capacity = 8});
-        if (by_floor) {
-            EXPECT_TRUE(particles_->setGround(0.0F));
-        } else {
-            // A slab whose top, y = 0, one float map sees from above: what lies beside is empty, and above is in front.
-            const analytic::Shape slab = analytic::box({-2.0, -1.0, -2.0}, {2.0, 0.0, 2.0});
-            Collider collider;
-            collider.bounds = slab.bounds;
-            collider.maps = {
-                analytic::orthographicMap(slab, MapFormat::kFloat32, Compare::kLess, {1, false}, 64)};
-            collideWith(collider);
-        }
-        EXPECT_TRUE(particles_->setForces({glm::vec3(gravity), {}, 0.0F}));
-        EXPECT_TRUE(particles_->setCollision({static_cast<float>(kRestitution), 0.0F, 0.0F}));
-        // Where the last flight began.
-        Vec p0(0.03, 1.0, 0.03);
-        Vec v0(0.05, 0.5, -0.04);
-        spawn({birthAt(glm::vec3(p0), glm::vec3(v0))});
-        int n = 0;
-        int bounces = 0;
-        for (int i = 0; i < 500; ++i) {
-            step();
-            const ParticleState particle = state().at(0);
-            const Vec p(particle.position);
-            const Vec v(particle.velocity);
-            ++n;
-            if (particle.contact == Contact::kNone) {
-                const Vec expected = p0 + n * dt * v0 + 0.5 * n * (n + 1.0) * dt * dt * gravity;
-                // Rounding of at most one ulp of 2 a step.
-                ASSERT_NEAR(glm::length(p - expected), 0.0, 500 * 2.4e-7) << "step " << i;
-            } else {
-                const Vec arrives = v0 + (n - 1) * dt * gravity;
-                ASSERT_NEAR(v.y, -kRestitution * std::min(arrives.y, 0.0), 1e-5) << "step " << i;
-                ASSERT_NEAR(v.x, arrives.x, 1e-6);
-                ++bounces;
-                p0 = p;
-                v0 = v;
-                n = 0;
-            }
-            ASSERT_GT(p.y, 0.0);
-        }
-        EXPECT_GT(bounces, 4);
-    }
-}
-
 // Wind and drag: v' = (v + dt (g + k w)) / (1 + dt k) tends to the terminal velocity w + g/k without overshooting, for any
 // dt · k; k is drag / mass, or 6π η r / m by Stokes' law.
 TEST_P(ParticleSystemGlTest, DragIsThatOfTheClosedForm) {
@@ -333,8 +281,6 @@ TEST_P(ParticleSystemGlTest, SnowRestsExactlyOnASphereAndNotInIt) {
     }
 }
 
-// Caught particles leave: born anywhere inside, with gravity pressing them in, or in free flight into the
-// body, in which no contact makes them faster.
 TEST_P(ParticleSystemGlTest, CaughtParticlesLeave) {
     const Collider ball = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
     for (const bool gravity : {true, false}) {

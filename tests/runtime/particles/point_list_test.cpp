@@ -141,7 +141,6 @@ TEST(PointList, WrongPly) {
     expectError(header("binary_little_endian", "4194304", kXyz), "p: vertex 0: it ends too early");
 }
 
-// Every prefix and every flipped byte is read or refused; the sanitizers watch.
 TEST(PointList, EveryPrefixAndFlippedByteIsSurvived) {
     std::string binary = header("binary_little_endian", "2", kXyz);
     for (int i = 0; i < 6; ++i) {

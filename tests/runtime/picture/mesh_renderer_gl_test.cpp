@@ -144,7 +144,6 @@ TEST_P(MeshRendererGlTest, FogTakesOnTheBackground) {
     EXPECT_GT(far.b, far.g + 60.0F);
 }
 
-// Feet leave prints in pictures, and between them by press(); a lifted foot leaves none, and a print is of snow.
 TEST_P(MeshRendererGlTest, FeetLeaveTheirPrintsInSnowAndNowhereElse) {
     const glm::vec3 pressed(3.0F, 0.0F, -1.0F);
     const glm::vec3 lifted(3.0F, 0.3F, 3.5F);

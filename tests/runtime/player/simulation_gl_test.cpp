@@ -43,24 +43,22 @@ box_min = [-1.2, 2.3, -1.2]
 box_max = [2.2, 2.5, 1.2]
 rate = 6000
 )";
-    const auto loaded = loadAll(folder.write("scene.toml", scene), {});
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    auto made = Simulation::create(*loaded);
-    ASSERT_TRUE(made) << made.error().message;
+    const auto loaded = required(loadAll(folder.write("scene.toml", scene), {}));
+    auto made = required(Simulation::create(loaded));
     for (int step = 0; step < 90; ++step) {
-        ASSERT_TRUE(made->step());
+        ASSERT_TRUE(made.step());
     }
-    const auto particles = made->particles().readState();
+    const auto particles = made.particles().readState();
     ASSERT_TRUE(particles);
     EXPECT_GT(particles->size(), 4000U);
     std::size_t hit = 0;
     std::size_t inside = 0;
-    const double time = made->particles().time();
+    const double time = made.particles().time();
     for (std::size_t i = 0; i < 2; ++i) {
-        const std::vector<glm::vec3> positions = posed(mesh, loaded->played[i]->poseAt(time));
+        const std::vector<glm::vec3> positions = posed(mesh, loaded.played[i]->poseAt(time));
         for (const ParticleState& particle : *particles) {
             hit += particle.collisions > 0 ? 1 : 0;
-            const glm::vec3 p = toObject(poseAt(loaded->scene.colliders[i], time), particle.position);
+            const glm::vec3 p = toObject(poseAt(loaded.scene.colliders[i], time), particle.position);
             // Only near it: solid angles are slow.
             const bool near = glm::all(glm::lessThan(glm::abs(p - glm::vec3(0, 1, 0)), glm::vec3(1.3F)));
             inside += near && windingNumber(positions, mesh.triangles, p) > 0.5 ? 1 : 0;
@@ -68,8 +66,8 @@ rate = 6000
     }
     EXPECT_GT(hit, 100U);
     EXPECT_LE(inside, 5U) << "of " << particles->size();
-    ASSERT_NE(made->mesh(1), nullptr);
-    EXPECT_EQ(made->mesh(1)->triangleCount(), mesh.triangles.size());
+    ASSERT_NE(made.mesh(1), nullptr);
+    EXPECT_EQ(made.mesh(1)->triangleCount(), mesh.triangles.size());
 }
 
 // The list of events is as short as the spawns can use, or long for a log: the particles are the same.
@@ -100,26 +98,24 @@ of = "drop"
 type = "splash"
 most = 30
 )";
-    const auto loaded = loadAll(folder.write("scene.toml", scene), {});
-    ASSERT_TRUE(loaded) << loaded.error().message;
+    const auto loaded = required(loadAll(folder.write("scene.toml", scene), {}));
     const auto run = [&](bool log, std::size_t& longest) {
-        auto made = Simulation::create(*loaded);
-        EXPECT_TRUE(made) << made.error().message;
+        auto made = required(Simulation::create(loaded));
         std::uint64_t next = 1;
         if (log) {
-            EXPECT_TRUE(made->listHits(0.0F, [&](const StepEvents& events) -> Result<void> {
+            EXPECT_TRUE(made.listHits(0.0F, [&](const StepEvents& events) -> Result<void> {
                 EXPECT_EQ(events.tag, next++);
                 longest = std::max(longest, events.events.size());
                 return {};
             }));
         }
         for (int step = 0; step < 60; ++step) {
-            EXPECT_TRUE(made->step());
+            EXPECT_TRUE(made.step());
         }
-        EXPECT_TRUE(made->finishEvents());
+        EXPECT_TRUE(made.finishEvents());
         EXPECT_EQ(next, log ? 61U : 1U);
-        EXPECT_GT(made->refused(), 100U);
-        return std::pair(made->refused(), made->particles().readState().value());
+        EXPECT_GT(made.refused(), 100U);
+        return std::pair(made.refused(), made.particles().readState().value());
     };
     std::size_t longest = 0;
     const auto [refused, plain] = run(false, longest);

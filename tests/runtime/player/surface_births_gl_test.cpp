@@ -10,7 +10,6 @@
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
-#include "tests/runtime/collider/analytic_collider.h"
 #include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/gl/gl_test.h"
 #include "tests/temporary_folder.h"
@@ -43,20 +42,18 @@ class SurfaceBirthsGlTest : public GlTest {
             std::string(collides ? "" : "collides = []\n") + "[[collider]]\nfile = \"tube.relief\"\n" +
             collider + "[[emitter]]\nshape = \"surface\"\nattach = 0\nlifetime = 9\n" + emitter;
         loaded_ = std::make_unique<LoadedScene>();
-        auto loaded = loadAll(folder_.write("scene.toml", scene), {});
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        *loaded_ = std::move(*loaded);
-        auto made = Simulation::create(*loaded_);
-        EXPECT_TRUE(made) << made.error().message;
+        auto loaded = required(loadAll(folder_.write("scene.toml", scene), {}));
+        *loaded_ = std::move(loaded);
+        auto made = required(Simulation::create(*loaded_));
         for (int step = 0; step < steps; ++step) {
             if (own) {
-                const double end = made->particles().time() + double{loaded_->scene.time.dt};
-                EXPECT_TRUE(made->setPose(0, loaded_->played[0]->poseAt(end)));
+                const double end = made.particles().time() + double{loaded_->scene.time.dt};
+                EXPECT_TRUE(made.setPose(0, loaded_->played[0]->poseAt(end)));
             }
-            EXPECT_TRUE(made->step());
+            EXPECT_TRUE(made.step());
         }
-        time_ = made->particles().time();
-        auto particles = made->particles().readState();
+        time_ = made.particles().time();
+        auto particles = made.particles().readState();
         EXPECT_TRUE(particles);
         return *particles;
     }
@@ -161,24 +158,6 @@ TEST_P(SurfaceBirthsGlTest, TakeOnTheVelocityOfTheirPlace) {
         ASSERT_LT(glm::length(velocity - glm::dvec3(spark.velocity)), 0.01) << born;
         ASSERT_GT(glm::length(velocity), 0.5);
     }
-}
-
-// Dust beneath the lower end of the tube, which stands a finger above a box. SceneTouch has the rule's closed forms.
-TEST_P(SurfaceBirthsGlTest, LieWhereTheyTouchAnotherCollider) {
-    Collider box = analytic::frontBackCollider(analytic::box({-3.0, -0.5, -3.0}, {3.0, -0.02, 3.0}), 64);
-    box.materials.list = {{"earth"}};
-    box.materials.size = 1.0F;
-    ASSERT_TRUE(saveCollider(folder_.path() / "earth.relief", box));
-    const std::string keys = "rate = 20000\nspeed = 0\n";
-    const auto low = [](const ParticleState& one) { return one.position.y < 0.1F; };
-    const std::vector<ParticleState> all = played(keys, 20);
-    const std::vector<ParticleState> dust = played(
-        keys + "touching = { within = 0.12, material = \"earth\" }\n[[collider]]\nfile = \"earth.relief\"\n",
-        20);
-    EXPECT_GT(dust.size(), 100U);
-    // The map's heights may decide otherwise at the very limit.
-    EXPECT_NEAR(static_cast<double>(dust.size()), static_cast<double>(std::ranges::count_if(all, low)), 3.0);
-    EXPECT_NEAR(static_cast<double>(dust.size()), static_cast<double>(std::ranges::count_if(dust, low)), 3.0);
 }
 
 // A skeleton of the program's own is a jump at first, and from then on moves as the same clip does.

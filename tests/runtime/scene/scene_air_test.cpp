@@ -42,7 +42,6 @@ TEST(SceneAir, KeysReachTheAir) {
     EXPECT_TRUE(checkAir(good("[curl_noise]\namplitude = 1e-300\nscale = 1e-300\n").air));
 }
 
-/// Every key and default of the air, and none of what the scene does not have.
 TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
     const auto report = [&](const std::string& more) {
         const auto scene = withDefaults(good(more), unitBounds());

@@ -95,8 +95,6 @@ TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
     EXPECT_TRUE(std::isfinite(flat->camera.eye->x));
 }
 
-// Every prefix of a full scene is either read or refused; under the sanitizers this finds what a parser
-// forgot.
 TEST(Scene, EveryPrefixAndEveryFlippedByteIsSurvived) {
     const std::string text =
         kSceneHead +

@@ -109,9 +109,8 @@ class WorldStreamGlTest : public GlTest {
         return WorldStream::create(world_, bodies_, coarse, std::move(source), options);
     }
     void open(const StreamOptions& options) {
-        auto made = make(options);
-        ASSERT_TRUE(made) << made.error().message;
-        stream_ = *std::move(made);
+        auto made = required(make(options));
+        stream_ = std::move(made);
     }
     void updates(int count, const std::vector<PointOfInterest>& points) {
         for (int i = 0; i < count; ++i) {
@@ -375,10 +374,9 @@ double coarseHill(double x, double z, int column, int row) {
 fs::path writeTiles(const fs::path& folder) {
     World world;
     const auto write = [&](const Collider& collider, const std::string& name) {
-        const auto bytes = writeContainer(collider);
-        EXPECT_TRUE(bytes) << bytes.error().message;
-        EXPECT_TRUE(writeFile(folder / name, *bytes));
-        return WorldFile{name, xxh3_128Hex(*bytes), collider.gpuBytes()};
+        const auto bytes = required(writeContainer(collider));
+        EXPECT_TRUE(writeFile(folder / name, bytes));
+        return WorldFile{name, xxh3_128Hex(bytes), collider.gpuBytes()};
     };
     for (int row = 0; row < kTiles; ++row) {
         for (int column = 0; column < kTiles; ++column) {
@@ -430,9 +428,8 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
     const fs::path path = writeTiles(folder.path());
     const std::uint64_t bytes = kTileBytes * (kTiles * kTiles + 16);
     for (const bool finish : {false, true}) {
-        auto world = WorldStream::open(path, {.gpu_bytes = bytes, .upload_bytes = 32});
-        ASSERT_TRUE(world) << world.error().message;
-        const std::vector<ParticleState> state = flight(**world, finish);
+        auto world = required(WorldStream::open(path, {.gpu_bytes = bytes, .upload_bytes = 32}));
+        const std::vector<ParticleState> state = flight(*world, finish);
         std::size_t resting = 0;
         std::size_t deeper = 0;
         for (const ParticleState& particle : state) {
@@ -450,9 +447,9 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
         }
         EXPECT_GT(resting, 1500U) << "the others fall, or come out, where maps have changed";
         EXPECT_LT(deeper, 20U);
-        EXPECT_TRUE((*world)->takeWarnings().empty());
+        EXPECT_TRUE(world->takeWarnings().empty());
         if (finish) {
-            EXPECT_GT((*world)->counts().uploaded, 20 * kTileBytes);
+            EXPECT_GT(world->counts().uploaded, 20 * kTileBytes);
             auto again = WorldStream::open(path, {.gpu_bytes = bytes, .upload_bytes = 800});
             ASSERT_TRUE(again);
             const std::vector<ParticleState> same = flight(**again, true);
@@ -470,12 +467,11 @@ TEST_P(WorldStreamBooksGlTest, FilesThatAreMissingOrOthersAreNamed) {
     fs::remove(folder.path() / "3-4.relief");
     fs::remove(folder.path() / "5-5.relief");
     fs::copy_file(folder.path() / "1-1.relief", folder.path() / "5-5.relief");
-    auto world = WorldStream::open(path);
-    ASSERT_TRUE(world) << world.error().message;
+    auto world = required(WorldStream::open(path));
     const PointOfInterest all{{30.0F, 0.0F, 30.0F}, 200.0F};
-    EXPECT_TRUE((*world)->finish({&all, 1}));
-    EXPECT_EQ((*world)->counts().present, std::size_t{kTiles * kTiles - 2});
-    const std::vector<std::string> warnings = (*world)->takeWarnings();
+    EXPECT_TRUE(world->finish({&all, 1}));
+    EXPECT_EQ(world->counts().present, std::size_t{kTiles * kTiles - 2});
+    const std::vector<std::string> warnings = world->takeWarnings();
     ASSERT_EQ(warnings.size(), 2U);
     EXPECT_NE((warnings[0] + warnings[1]).find("3-4.relief"), std::string::npos);
     EXPECT_NE((warnings[0] + warnings[1]).find("'5-5.relief') has other contents"), std::string::npos)
