@@ -244,19 +244,6 @@ TEST(CubeCoordinates, EqualComponentsGoToXThenY) {
     EXPECT_EQ(cubeCoordinates({0.5F, -1, -1}).face, 3U);
 }
 
-TEST(CubeCoordinates, DirectionIsTheInverse) {
-    for (std::uint32_t face = 0; face < 6; ++face) {
-        for (float s = 0.03125F; s < 1.0F; s += 0.0625F) {
-            for (float t = 0.03125F; t < 1.0F; t += 0.0625F) {
-                const CubeCoordinates at = cubeCoordinates(cubeDirection({face, s, t}));
-                EXPECT_EQ(at.face, face);
-                EXPECT_NEAR(at.s, s, 1e-6F);
-                EXPECT_NEAR(at.t, t, 1e-6F);
-            }
-        }
-    }
-}
-
 /// [−2, 2]² × [−1, 1], every inner texel full with its surface at z = 0.
 DepthMap plateMap(Compare compare) {
     const auto half_space = makeBox({0.0, 0.0, compare == Compare::kLess ? 50.0 : -50.0}, glm::dvec3(50.0));

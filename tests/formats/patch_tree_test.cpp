@@ -182,21 +182,6 @@ TEST(PatchTree, CellsWithoutPatchesKeepTheirSideWhateverTheirPlaneSays) {
     EXPECT_TRUE(vote(part, {0.5F, 0.5F, 0.5F}));
 }
 
-TEST(PatchTree, RandomTreesAreValidAndVoteFinitely) {
-    std::mt19937 random(5);
-    std::uniform_real_distribution<float> unit(-0.2F, 4.2F);
-    for (int repeat = 0; repeat < 20; ++repeat) {
-        const DepthMap map = randomPatches(random);
-        const Result<void> valid = validatePatches(map.texels);
-        ASSERT_TRUE(valid) << valid.error().message;
-        for (int i = 0; i < 5000; ++i) {
-            const Vote said = *vote(map, {unit(random), unit(random), unit(random)});
-            EXPECT_TRUE(std::isfinite(said.distance));
-            EXPECT_TRUE(said.distance == kFarOutside || std::abs(glm::length(said.normal) - 1.0F) < 1e-5F);
-        }
-    }
-}
-
 TEST(PatchTree, BrokenTreesAreRefused) {
     const glm::vec3 up(0, 1, 0);
     const PatchRecord leaf = PatchRecord::flat(true, up, -1.0F);

@@ -4,6 +4,7 @@
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -15,11 +16,8 @@
 #include <thread>
 #include <utility>
 
-#include "formats/animation/mesh_pose.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
-#include "runtime/collider/world_bodies.h"
-#include "runtime/particles/particle_system.h"
 #include "tests/formats/random_patches.h"
 #include "tests/runtime/c_api/stage.h"
 #include "tests/temporary_folder.h"
@@ -430,44 +428,26 @@ TEST_F(CApi, AWorldIsThatOfItsBodies) {
         EXPECT_NEAR(samples[i].normal[1], 1.0F, 1e-3F);
     }
 
-    const LoadedWorld loaded = loadWorld(stage_.worldPath()).value();
-    ColliderTextures textures = ColliderTextures::create(worldBodies(loaded)).value();
-    ParticleSystem system = ParticleSystem::create({.capacity = 64}).value();
-    ASSERT_TRUE(system.setCollider(&textures));
-    const ParticleType type{};
-    ASSERT_TRUE(system.setTypes(std::span(&type, 1)));
-    ASSERT_TRUE(system.setForces({{0.0F, -1.0F, 0.0F}, {}, 0.0F, 0.0F}));
     relief_particles* particles = relief_particles_create(stage_.world_textures, &stage_.options);
     ASSERT_NE(particles, nullptr) << relief_error();
-    std::vector<Birth> births;
     for (std::size_t i = 0; i < kItems; ++i) {
-        relief_birth& birth = stage_.births[i];
-        birth.position[0] = 2.0F * static_cast<float>(i);
-        birth.position[1] = 1.2F;
-        births.push_back({{birth.position[0], 1.2F, 0.0F}, {}, birth.lifetime, 0});
+        stage_.births[i].position[0] = 2.0F * static_cast<float>(i);
+        stage_.births[i].position[1] = 1.2F;
     }
     ASSERT_EQ(relief_particles_spawn(particles, stage_.births, kItems), kItems);
-    ASSERT_EQ(system.spawn(births).value(), kItems);
-    std::vector<Pose> poses = worldPoses(loaded.world);
     const std::uint32_t body = 3;
     for (int step = 0; step < 180; ++step) {
         const bool moves = step < 60;  // it goes aside, and nothing is below the last particle
-        poses[body].position.x += moves ? 0.05F : 0.0F;
-        const relief_pose to{{poses[body].position.x, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
+        const relief_pose to{{6.0F + 0.05F * static_cast<float>(step), 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 1.0F}};
         ASSERT_EQ(relief_textures_set_poses(stage_.world_textures, moves ? &body : nullptr,
                                             moves ? &to : nullptr, moves ? 1 : 0),
                   0);
-        textures.setPoses(poses);
         ASSERT_EQ(relief_particles_step(particles, 1.0F / 60.0F), 0) << relief_error();
-        ASSERT_TRUE(system.step(1.0F / 60.0F));
     }
     ASSERT_EQ(relief_particles_read(particles, stage_.states, kItems), static_cast<std::int64_t>(kItems));
-    const auto states = system.readState().value();
-    ASSERT_EQ(states.size(), kItems);
     for (std::size_t i = 0; i < kItems; ++i) {
-        EXPECT_EQ(std::memcmp(stage_.states[i].position, &states[i].position, sizeof(states[i].position)), 0);
-        EXPECT_EQ(stage_.states[i].collisions, states[i].collisions) << i;
         EXPECT_EQ(stage_.states[i].collisions > 0, i != body) << "a body that has moved aside stops nothing";
+        EXPECT_EQ(stage_.states[i].position[0], stage_.births[i].position[0]) << "it falls straight down";
     }
     relief_particles_free(particles);
 }

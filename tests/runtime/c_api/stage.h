@@ -258,8 +258,6 @@ class Stage {
     float low[3];
     float high[3];
 
-    [[nodiscard]] const std::filesystem::path& worldPath() const { return world_path_; }
-
   private:
     /// As many boxes as there are items, two units apart; the second is turned and twice as large, the last named as the first.
     void writeWorld(const Collider& box) {

@@ -42,31 +42,21 @@ double dotOf(const glm::vec3& a, const glm::vec3& b) {
 }
 
 EmitterSettings snow() {
-    EmitterSettings settings;
-    settings.box_min = {-1.0F, 2.0F, 5.0F};
-    settings.box_max = {3.0F, 2.5F, 5.0F};  // flat along z
-    settings.velocity = {0.0F, -2.0F, 1.0F};
-    settings.velocity_spread = {0.5F, 0.0F, 2.0F};
-    settings.lifetime_min = 3.0F;
-    settings.lifetime_max = 7.0F;
-    settings.type = 5;
-    return settings;
+    return {.box_min = {-1.0F, 2.0F, 5.0F},
+            .box_max = {3.0F, 2.5F, 5.0F},  // flat along z
+            .velocity = {0.0F, -2.0F, 1.0F},
+            .velocity_spread = {0.5F, 0.0F, 2.0F},
+            .lifetime_min = 3.0F,
+            .lifetime_max = 7.0F,
+            .type = 5};
 }
 
 EmitterSettings round(EmitterShape shape) {
-    EmitterSettings settings;
-    settings.shape = shape;
-    settings.center = {3.0F, -1.0F, 2.0F};
-    settings.radius = 0.5F;
-    settings.normal = {0.0F, 6.0F, 8.0F};
-    return settings;
+    return {.shape = shape, .center = {3.0F, -1.0F, 2.0F}, .radius = 0.5F, .normal = {0.0F, 6.0F, 8.0F}};
 }
 
 EmitterSettings aimed(const EmitterAim& aim) {
-    EmitterSettings settings;
-    settings.velocity = glm::vec3(0.0F);
-    settings.aim = aim;
-    return settings;
+    return {.velocity = glm::vec3(0.0F), .aim = aim};
 }
 
 TEST(Emitter, DrawsFollowTheirDistributions) {
@@ -391,19 +381,6 @@ TEST(EmitterMotion, EachBirthIsCarriedAtItsOwnMoment) {
     const float h = std::sqrt(0.5F);
     expectNear(births[1].position, {2.0F + h, 0.5F, -h}, 1e-5F, "place a second before");
     expectNear(births[1].velocity, {3.0F * h, 0.0F, 3.0F * h}, 1e-5F, "velocity a second before");
-}
-
-TEST(EmitterMotion, InheritsAShareOfItsVelocity) {
-    EmitterMotion motion;
-    motion.keys = spin();
-    motion.inherit = 0.5F;
-    Birth birth{{1.0F, 0.5F, 0.0F}, {0.0F, 0.0F, 0.0F}};
-    carry(motion, 0.0, std::span(&birth, 1));
-    // 2 along x, and pi/4 a second about y of an arm along x: -pi/4 along z.
-    expectNear(birth.velocity, {1.0F, 0.0F, -kPi / 8.0F}, 1e-5F, "velocity");
-    Birth after{{1.0F, 0.5F, 0.0F}, {0.0F, 0.0F, 0.0F}};
-    carry(motion, 9.0, std::span(&after, 1));
-    EXPECT_EQ(after.velocity, glm::vec3(0.0F)) << "it rests";
 }
 
 // Both ways one upon the other: positions by hand, velocities by differences of them.

@@ -59,20 +59,18 @@ class SurfaceBirthsGlTest : public GlTest {
     }
 
     /// The places of the tube's vertices in the world.
-    std::vector<glm::dvec3> tubeAt(double time) const { return tubeAt(time, time); }
-    /// Without forces it flies straight on: its age times its velocity ago it was there.
-    static glm::dvec3 birthplace(const ParticleState& spark) {
-        return glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
-    }
-    std::vector<glm::dvec3> tubeAt(double of_body, double of_clip) const {
-        const Pose pose = poseAt(loaded_->scene.colliders[0], of_body);
+    std::vector<glm::dvec3> tubeAt(double time) const {
+        const Pose pose = poseAt(loaded_->scene.colliders[0], time);
         std::vector<glm::dvec3> out;
-        for (const glm::vec3& p : posed(mesh_, loaded_->played[0]->poseAt(of_clip))) {
+        for (const glm::vec3& p : posed(mesh_, loaded_->played[0]->poseAt(time))) {
             out.emplace_back(toWorld(pose, p));
         }
         return out;
     }
-
+    /// Without forces it flies straight on: its age times its velocity ago it was there.
+    static glm::dvec3 birthplace(const ParticleState& spark) {
+        return glm::dvec3(spark.position) - double{spark.age} * glm::dvec3(spark.velocity);
+    }
     const AnimatedMesh mesh_ = bendingTube(16, 20);
     const test::TemporaryFolder folder_;
     std::unique_ptr<LoadedScene> loaded_;
@@ -94,21 +92,13 @@ double distanceTo(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                 : std::min({toSide(a, b), toSide(b, c), toSide(c, a)});
 }
 
-/// How far a point is from the tube, and the place there as shares of the corners of a triangle.
-struct Nearest {
-    double distance = std::numeric_limits<double>::infinity();
-    glm::uvec3 triangle{0};
-};
-Nearest nearest(const std::vector<glm::dvec3>& at, const std::vector<glm::uvec3>& triangles,
-                const glm::dvec3& p) {
-    Nearest best;
+double distanceTo(const std::vector<glm::dvec3>& at, const std::vector<glm::uvec3>& triangles,
+                  const glm::dvec3& p) {
+    double least = std::numeric_limits<double>::infinity();
     for (const glm::uvec3& t : triangles) {
-        const double distance = distanceTo(at[t.x], at[t.y], at[t.z], p);
-        if (distance < best.distance) {
-            best = {distance, t};
-        }
+        least = std::min(least, distanceTo(at[t.x], at[t.y], at[t.z], p));
     }
-    return best;
+    return least;
 }
 
 // Births by rate have moments of their own, between two poses.
@@ -120,44 +110,13 @@ TEST_P(SurfaceBirthsGlTest, LieWhereItWasAtTheirOwnMoment) {
     for (const ParticleState& spark : sparks) {
         const double born = time_ - double{spark.age};
         const glm::dvec3 place = birthplace(spark);
-        worst = std::max(worst, nearest(tubeAt(born), mesh_.triangles, place).distance);
-        still = std::max(still, nearest(tubeAt(born + 0.5 * kDt), mesh_.triangles, place).distance);
+        worst = std::max(worst, distanceTo(tubeAt(born), mesh_.triangles, place));
+        still = std::max(still, distanceTo(tubeAt(born + 0.5 * kDt), mesh_.triangles, place));
     }
     // r (ω dt)² / 8, of the clip's quarter turn a second at an arm of 2.2.
     constexpr double kTurn = 1.5708;
     EXPECT_LT(worst, 2.2 * kTurn * kTurn * kDt * kDt / 8 + 2e-5);
     EXPECT_GT(still, 10 * worst) << "half a step later it has gone on";
-}
-
-// Of a speed of 0 and all of the surface's own, a particle goes with the place that it was born on.
-TEST_P(SurfaceBirthsGlTest, TakeOnTheVelocityOfTheirPlace) {
-    const std::vector<ParticleState> sparks =
-        played("rate = 0\nburst = 300\nburst_every = 0.2\nspeed = 0\ninherit = 1\n", 21);
-    ASSERT_EQ(sparks.size(), 900U);
-    for (const ParticleState& spark : sparks) {
-        const double born = time_ - double{spark.age};
-        const glm::dvec3 place = birthplace(spark);
-        const std::vector<glm::dvec3> tube = tubeAt(born);
-        const Nearest at_birth = nearest(tube, mesh_.triangles, place);
-        const glm::uvec3 t = at_birth.triangle;
-        ASSERT_LT(at_birth.distance, 2e-5) << "of a length of 4, at " << born;
-        // Its share of the corners, by areas.
-        const glm::dvec3 n = glm::cross(tube[t.y] - tube[t.x], tube[t.z] - tube[t.x]);
-        glm::dvec3 share(glm::dot(glm::cross(tube[t.z] - tube[t.y], place - tube[t.y]), n),
-                         glm::dot(glm::cross(tube[t.x] - tube[t.z], place - tube[t.z]), n),
-                         glm::dot(glm::cross(tube[t.y] - tube[t.x], place - tube[t.x]), n));
-        share /= share.x + share.y + share.z;
-        const auto at = [&](double of_body, double of_clip) {
-            const std::vector<glm::dvec3> then = tubeAt(of_body, of_clip);
-            return share.x * then[t.x] + share.y * then[t.y] + share.z * then[t.z];
-        };
-        // The body's own motion is that of the moment, the bending's the mean of the step before.
-        constexpr double kInch = 1e-3;
-        const glm::dvec3 velocity =
-            (at(born + kInch, born) - at(born, born)) / kInch + (at(born, born) - at(born, born - kDt)) / kDt;
-        ASSERT_LT(glm::length(velocity - glm::dvec3(spark.velocity)), 0.01) << born;
-        ASSERT_GT(glm::length(velocity), 0.5);
-    }
 }
 
 // A skeleton of the program's own is a jump at first, and from then on moves as the same clip does.
