@@ -9,7 +9,6 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <string>
 

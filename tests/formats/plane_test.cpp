@@ -9,7 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <random>
-#include <string>
 
 #include "formats/collider.h"
 #include "formats/normal_index.h"

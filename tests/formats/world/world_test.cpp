@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"

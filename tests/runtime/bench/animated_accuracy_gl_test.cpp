@@ -8,7 +8,6 @@
 #include <glm/glm.hpp>
 #include <iostream>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "bake/mesh/inside.h"

@@ -8,9 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <regex>
 #include <set>

@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <numbers>
 #include <vector>
 
 #include "runtime/gl/gl_functions.h"

@@ -2,7 +2,6 @@
 // Programs of the tests that evaluate a shader of Relief's at the texels of a picture.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>

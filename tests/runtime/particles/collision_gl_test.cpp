@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <map>
 #include <memory>
 
 #include "runtime/gl/gl_functions.h"

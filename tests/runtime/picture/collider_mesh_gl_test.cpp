@@ -2,12 +2,10 @@
 // A collider drawn from its mesh, against the same one drawn from its depth maps and against the closed form.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <limits>
-#include <optional>
 
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"

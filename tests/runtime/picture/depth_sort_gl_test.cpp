@@ -14,7 +14,6 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "runtime/gl/gl_functions.h"

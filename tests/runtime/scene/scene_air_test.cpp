@@ -11,14 +11,10 @@
 namespace relief {
 namespace {
 
-Scene good(const std::string& more) {
-    return goodScene(kSceneHead + more);
-}
-
 const std::string kBox = "box_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
 
 TEST(SceneAir, KeysReachTheAir) {
-    const Scene scene = good(
+    const Scene scene = sceneWith(
         "[[attractor]]\nposition = [1, 2, 3]\nstrength = 4\nradius = 0.5\n"
         "[[attractor]]\nposition = [0, 0, 0]\nstrength = -1\nradius = 1\nfalloff = 0\nreach = 2.5\n"
         "[[vortex]]\ncenter = [1, 0, 1]\naxis = [0, 0, -1e-20]\nstrength = 3\nradius = 0.25\nfalloff = 2\n"
@@ -39,12 +35,12 @@ TEST(SceneAir, KeysReachTheAir) {
     EXPECT_EQ(scene.air.viscosity, 1.8e-5F);
     EXPECT_TRUE(checkAir(scene.air));
     // The smallest that the file may say is still taken by the runtime.
-    EXPECT_TRUE(checkAir(good("[curl_noise]\namplitude = 1e-300\nscale = 1e-300\n").air));
+    EXPECT_TRUE(checkAir(sceneWith("[curl_noise]\namplitude = 1e-300\nscale = 1e-300\n").air));
 }
 
 TEST(SceneAir, TheReportHasWhatThePlayerPlays) {
     const auto report = [&](const std::string& more) {
-        const auto scene = withDefaults(good(more), unitBounds());
+        const auto scene = withDefaults(sceneWith(more), unitBounds());
         EXPECT_TRUE(scene);
         PlayerReport result;
         result.scene = scene.value_or(Scene{});

@@ -7,14 +7,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/scene/scene_live.h"
+#include "tests/results.h"
 #include "tests/runtime/scene/scene_text.h"
+#include "tests/temporary_folder.h"
 
 namespace relief {
 namespace {
-
-Scene good(const std::string& more) {
-    return goodScene(kSceneHead + more);
-}
 
 void expectNear(const glm::vec3& a, const glm::vec3& b, float bound) {
     EXPECT_NEAR(a.x, b.x, bound);
@@ -56,15 +55,15 @@ TEST(SceneCollider, EveryKey) {
     expectNear(toWorld(poseAt(second, 9.0), {1.0F, 2.0F, 3.0F}), {-1.0F, 2.0F, -3.0F}, 1e-6F);
     EXPECT_EQ(second.path, std::filesystem::path("dir/b/b.relief"));
     EXPECT_EQ(second.origin, "dir/scene.toml:16:8");
-    const Scene tiny = good("axis = [0, 0, 1e-30]\nangle = 90\n");
+    const Scene tiny = sceneWith("axis = [0, 0, 1e-30]\nangle = 90\n");
     expectNear(toWorld(tiny.colliders.front().pose, {1.0F, 0.0F, 0.0F}), {0.0F, 1.0F, 0.0F}, 1e-6F);
 }
 
 TEST(SceneCollider, AnyKeyOfItsPlacePosesIt) {
-    EXPECT_FALSE(good("").colliders.front().posed);
+    EXPECT_FALSE(sceneWith("").colliders.front().posed);
     for (const char* key : {"position = [0, 0, 0]", "angle = 0", "scale = 1", "restitution = 1",
                             "friction = 0", "[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1"}) {
-        EXPECT_TRUE(good(std::string(key) + "\n").colliders.front().posed) << key;
+        EXPECT_TRUE(sceneWith(std::string(key) + "\n").colliders.front().posed) << key;
     }
 }
 
@@ -92,7 +91,7 @@ TEST(WorldBounds, HoldEveryPlaceOfATurningBox) {
 }
 
 TEST(SceneTypes, WhatTheyLeaveOpenIsThatOfCollisions) {
-    const Scene scene = good(
+    const Scene scene = sceneWith(
         "[collision]\nrestitution = 0.2\nfriction = 0.3\nfriction_threshold = 0.4\n[[type]]\n"
         "[[type]]\nname = \"rain\"\nmass = 2\nradius = 0.25\nrestitution = 0.5\nfriction = 0.75\n"
         "friction_threshold = 0\non_collision = \"die\"\nlifetime_loss = 1.5\n");
@@ -109,6 +108,46 @@ TEST(SceneTypes, WhatTheyLeaveOpenIsThatOfCollisions) {
     EXPECT_EQ(rain.friction_threshold, 0.0F);
     EXPECT_EQ(rain.on_collision, OnCollision::kDie);
     EXPECT_EQ(rain.lifetime_loss, 1.5F);
+}
+
+TEST(SceneLive, Keys) {
+    const SceneCollider collider =
+        goodScene(
+            "[collider]\nmesh = \"a.obj\"\nresolution = 100\n"
+            "deform = { amplitude = 0.2, frequency = 0.5, phase = 180, wavelength = 3 }\n")
+            .colliders.front();
+    ASSERT_TRUE(collider.live);
+    EXPECT_EQ(collider.path, "dir/a.obj");
+    EXPECT_EQ(collider.resolution, 100U);
+    EXPECT_FLOAT_EQ(collider.live->amplitude, 0.2F);
+    EXPECT_FLOAT_EQ(collider.live->frequency, 0.5F);
+    EXPECT_EQ(collider.live->wavelength, 3.0F);
+}
+
+TEST(SceneLive, TheMeshIsReadAndItsMapsHoldTheMotion) {
+    const test::TemporaryFolder folder;
+    SceneCollider collider;
+    collider.path = folder.write("bar.obj",
+                                 "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 0 1 0\nv 2 0.5 1\n"
+                                 "f 1 3 2\nf 1 4 3\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+    collider.origin = "scene.toml:2:8";
+    collider.live.emplace();
+    collider.live->amplitude = 0.25F;
+    collider.live->phase = 180.0F;
+    const auto live = required(loadLiveMesh(collider));
+    EXPECT_EQ(live.mesh.positions.size(), 5U) << "no vertex is doubled";
+    EXPECT_EQ(live.mesh.normals.size(), 5U);
+    EXPECT_FLOAT_EQ(live.wobble.phase, std::numbers::pi_v<float>);
+    EXPECT_EQ(live.wobble.wavelength, 2.0F) << "half of the longest side";
+    ASSERT_EQ(live.frames.maps.size(), 3U);
+    EXPECT_LE(live.frames.bounds.min.z, -0.25F);
+    EXPECT_GE(live.frames.bounds.max.x, 4.25F);
+    EXPECT_LE(live.frames.bounds.max.x, 4.5F);
+
+    collider.path = folder.path() / "none.obj";
+    EXPECT_TRUE(loadLiveMesh(collider).error().message.starts_with("scene.toml:2:8: collider.mesh: "));
+    collider.path = folder.write("point.obj", "v 1 1 1\nf 1 1 1\n");
+    expectErrorOf(loadLiveMesh(collider), "scene.toml:2:8", "");
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <glm/glm.hpp>
 
 #include "formats/container.h"
 #include "runtime/scene/loaded_scene.h"

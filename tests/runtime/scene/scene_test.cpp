@@ -14,13 +14,9 @@
 namespace relief {
 namespace {
 
-Scene good(const std::string& more) {
-    return goodScene(kSceneHead + more);
-}
-
 TEST(Scene, FramesFromOneStepToAnother) {
     const auto due = [](const std::string& render, const std::string& time = "steps = 25\n") {
-        const Scene scene = good("[time]\n" + time + "[render]\n" + render);
+        const Scene scene = sceneWith("[time]\n" + time + "[render]\n" + render);
         std::vector<std::uint32_t> steps;
         for (std::uint32_t step = 0; step <= scene.time.steps; ++step) {
             if (frameDue(scene, step)) {
@@ -42,10 +38,11 @@ TEST(Scene, FramesFromOneStepToAnother) {
 }
 
 TEST(Scene, PrewarmIsWholeSteps) {
-    EXPECT_EQ(prewarmSteps(good("")), 0U);
-    EXPECT_EQ(prewarmSteps(good("[time]\ndt = 0.1\nprewarm = 0.3\n")), 3U) << "0.1 of a float is not 0.1";
-    EXPECT_EQ(prewarmSteps(good("[time]\ndt = 0.1\nprewarm = 0.31\n")), 4U);
-    EXPECT_EQ(prewarmSteps(good("[time]\nprewarm = 2\n")), 120U);
+    EXPECT_EQ(prewarmSteps(sceneWith("")), 0U);
+    EXPECT_EQ(prewarmSteps(sceneWith("[time]\ndt = 0.1\nprewarm = 0.3\n")), 3U)
+        << "0.1 of a float is not 0.1";
+    EXPECT_EQ(prewarmSteps(sceneWith("[time]\ndt = 0.1\nprewarm = 0.31\n")), 4U);
+    EXPECT_EQ(prewarmSteps(sceneWith("[time]\nprewarm = 2\n")), 120U);
 }
 
 TEST(Scene, BodiesThatATypeCollidesWith) {
@@ -53,7 +50,7 @@ TEST(Scene, BodiesThatATypeCollidesWith) {
         const Scene scene = goodScene(kSceneHead + kSceneHead + more + "[[type]]\ncollides = " + list + "\n");
         return particleTypes(scene).at(0).collides;
     };
-    EXPECT_EQ(particleTypes(good("[[type]]\n")).at(0).collides, kCollidesWithAll);
+    EXPECT_EQ(particleTypes(sceneWith("[[type]]\n")).at(0).collides, kCollidesWithAll);
     EXPECT_EQ(collides("[]"), 0U);
     EXPECT_EQ(collides("[1]"), 2U);
     EXPECT_EQ(collides("[0, \"ground\"]"), 1U + kCollidesWithGround);
@@ -63,7 +60,7 @@ TEST(Scene, BodiesThatATypeCollidesWith) {
 }
 
 TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
-    const auto scene = withDefaults(good(""), unitBounds());
+    const auto scene = withDefaults(sceneWith(""), unitBounds());
     ASSERT_TRUE(scene);
     // The longest side is 2: births start above the box, the floor is its lower end.
     EXPECT_GT(scene->emitters[0].box_min.y, 1.0F);
@@ -73,9 +70,9 @@ TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
     EXPECT_NEAR(scene->emitters[0].rate * 5.0, 65536.0, 1e-2) << "the whole capacity is born by the end";
     EXPECT_GT(scene->camera.eye->z, 2.0F);
     const auto given =
-        withDefaults(good("[emitter]\npoint = [1, 2, 3]\nduration = 2\nvelocity = [0, 0, 0]\n"
-                          "velocity_spread = [0, 1, 0]\n[forces]\ngravity = [0, -9.81, 0]\n[ground]\n"
-                          "height = -4\n[camera]\neye = [1, 1, 1]\n[render]\npoint_size = 0.5\n"),
+        withDefaults(sceneWith("[emitter]\npoint = [1, 2, 3]\nduration = 2\nvelocity = [0, 0, 0]\n"
+                               "velocity_spread = [0, 1, 0]\n[forces]\ngravity = [0, -9.81, 0]\n[ground]\n"
+                               "height = -4\n[camera]\neye = [1, 1, 1]\n[render]\npoint_size = 0.5\n"),
                      unitBounds());
     ASSERT_TRUE(given);
     EXPECT_EQ(given->emitters[0].box_max, glm::vec3(1, 2, 3));
@@ -86,11 +83,11 @@ TEST(Scene, OnlyWhatIsLeftOpenIsFilledFromTheBounds) {
     EXPECT_EQ(*given->ground.height, -4.0F);
     EXPECT_EQ(*given->camera.eye, glm::vec3(1.0F));
     EXPECT_EQ(*given->render.point_size, 0.5F);
-    EXPECT_FALSE(withDefaults(good("[camera]\neye = [0, 50, 0]\n"), unitBounds()))
+    EXPECT_FALSE(withDefaults(sceneWith("[camera]\neye = [0, 50, 0]\n"), unitBounds()))
         << "straight above a target that is filled in";
-    EXPECT_FALSE(withDefaults(good(""), Bounds{}));
-    EXPECT_FALSE(withDefaults(good(""), {glm::vec3(-3e38F), glm::vec3(3e38F)}));
-    const auto flat = withDefaults(good(""), {glm::vec3(1.0F), glm::vec3(1.0F)});
+    EXPECT_FALSE(withDefaults(sceneWith(""), Bounds{}));
+    EXPECT_FALSE(withDefaults(sceneWith(""), {glm::vec3(-3e38F), glm::vec3(3e38F)}));
+    const auto flat = withDefaults(sceneWith(""), {glm::vec3(1.0F), glm::vec3(1.0F)});
     ASSERT_TRUE(flat);
     EXPECT_TRUE(std::isfinite(flat->camera.eye->x));
 }

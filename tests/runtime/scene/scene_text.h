@@ -29,6 +29,11 @@ inline Scene goodScene(const std::string& text) {
     return scene.value_or(none);
 }
 
+/// The scene of a collider and more.
+inline Scene sceneWith(const std::string& more) {
+    return goodScene(kSceneHead + more);
+}
+
 inline Bounds unitBounds() {
     Bounds bounds;
     bounds.add({-1.0F, 0.0F, -0.5F});
