@@ -204,7 +204,7 @@ void expectIssue(const Bytes& bytes, IssueCode code, int map = -1, const Contain
 
 /// The second map of two, changed.
 void expectMapIssue(IssueCode code, const std::function<void(MapRecipe&)>& change) {
-    expectIssue(fileOf(with([&](Recipe& r) { change(r.maps[1]); })), code, 1);
+    expectIssue(fileOf(with([&](auto& r) { change(r.maps[1]); })), code, 1);
 }
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -217,7 +217,7 @@ Bytes compress(const Bytes& raw) {
 
 /// The second map of two, compressed, its frame as given.
 Recipe zstdRecipe(const Bytes& frame) {
-    return with([&](Recipe& r) {
+    return with([&](auto& r) {
         r.maps[1].compression = 1;
         r.maps[1].stored = frame;
     });
@@ -233,7 +233,7 @@ TEST(Crafted, TheRecipeItselfIsRead) {
 
 TEST(Crafted, LaterMinorVersionsAreRead) {
     for (const std::uint16_t minor : {std::uint16_t{1}, std::uint16_t{7}, std::uint16_t{65535}}) {
-        const Bytes bytes = fileOf(with([&](Recipe& r) {
+        const Bytes bytes = fileOf(with([&](auto& r) {
             r.header = [=](ContainerHeader& h) { h.minor = minor; };
             r.later_fields = true;
         }));
@@ -246,20 +246,20 @@ TEST(Crafted, LaterMinorVersionsAreRead) {
 void expectHeaderLies() {
     using enum IssueCode;
     const std::pair<IssueCode, std::function<void(ContainerHeader&)>> lies[] = {
-        {kMajorVersion, [](ContainerHeader& h) { h.major = 2; }},
-        {kMajorVersion, [](ContainerHeader& h) { h.major = 0; }},
-        {kHeaderField, [](ContainerHeader& h) { h.header_size = 72; }},
-        {kHeaderField, [](ContainerHeader& h) { h.reserved = 1; }},
-        {kHeaderField, [](ContainerHeader& h) { h.metadata_offset = 128; }},
-        {kHeaderField, [](ContainerHeader& h) { h.metadata_offset = ~std::uint64_t{0}; }},
-        {kTruncated, [](ContainerHeader& h) { h.file_size += 1; }},
-        {kTruncated, [](ContainerHeader& h) { h.file_size = ~std::uint64_t{0}; }},
-        {kTrailingBytes, [](ContainerHeader& h) { h.file_size -= 1; }},
-        {kTrailingBytes, [](ContainerHeader& h) { h.file_size = 0; }},
-        {kMetadataLimit, [](ContainerHeader& h) { h.metadata_size = ~std::uint64_t{0}; }},
-        {kMetadataPlace, [](ContainerHeader& h) { h.metadata_size = 1 << 24; }},
-        {kMetadataChecksum, [](ContainerHeader& h) { h.metadata_hash ^= 1; }},
-        {kLaterMinor, [](ContainerHeader& h) { h.minor = kContainerMinor + 1; }},
+        {kMajorVersion, [](auto& h) { h.major = 2; }},
+        {kMajorVersion, [](auto& h) { h.major = 0; }},
+        {kHeaderField, [](auto& h) { h.header_size = 72; }},
+        {kHeaderField, [](auto& h) { h.reserved = 1; }},
+        {kHeaderField, [](auto& h) { h.metadata_offset = 128; }},
+        {kHeaderField, [](auto& h) { h.metadata_offset = ~std::uint64_t{0}; }},
+        {kTruncated, [](auto& h) { h.file_size += 1; }},
+        {kTruncated, [](auto& h) { h.file_size = ~std::uint64_t{0}; }},
+        {kTrailingBytes, [](auto& h) { h.file_size -= 1; }},
+        {kTrailingBytes, [](auto& h) { h.file_size = 0; }},
+        {kMetadataLimit, [](auto& h) { h.metadata_size = ~std::uint64_t{0}; }},
+        {kMetadataPlace, [](auto& h) { h.metadata_size = 1 << 24; }},
+        {kMetadataChecksum, [](auto& h) { h.metadata_hash ^= 1; }},
+        {kLaterMinor, [](auto& h) { h.minor = kContainerMinor + 1; }},
     };
     for (const auto& [code, lie] : lies) {
         Recipe recipe;
@@ -274,8 +274,8 @@ void expectHeaderLies() {
         expectIssue(bytes, code);
     }
     // A later major version may lay out all the rest differently: it is named first.
-    expectIssue(fileOf(with([](Recipe& r) {
-                    r.header = [](ContainerHeader& h) { h.major = 256; };
+    expectIssue(fileOf(with([](auto& r) {
+                    r.header = [](auto& h) { h.major = 256; };
                     r.bytes = [](Bytes& b) { b[60] ^= std::byte{1}; };
                 })),
                 kMajorVersion);
@@ -285,21 +285,21 @@ void expectMetadataLies() {
     using enum IssueCode;
     // Of values, the writer's tests have every rule: reader and writer share them.
     const std::pair<IssueCode, std::function<void(Recipe&)>> lies[] = {
-        {kMetadataTable, [](Recipe& r) { r.identifier = "RLF2"; }},
-        {kNoMap, [](Recipe& r) { r.maps.clear(); }},
+        {kMetadataTable, [](auto& r) { r.identifier = "RLF2"; }},
+        {kNoMap, [](auto& r) { r.maps.clear(); }},
         {kBounds,
-         [](Recipe& r) {
+         [](auto& r) {
              r.bounds_max = {1, kNaN, 1};
          }},
-        {kUnit, [](Recipe& r) { r.unit = "a unit of great length"; }},
-        {kProvenance, [](Recipe& r) { r.mesh_name = std::string("a\0.obj", 6); }},
-        {kProvenance, [](Recipe& r) { r.mesh_hash = "00112233445566778899AABBCCDDEEFF"; }},
-        {kProvenance, [](Recipe& r) { r.tool_version = "\x1b]0;owned\x07"; }},
-        {kProvenance, [](Recipe& r) { r.options.assign((1 << 20) + 1, 'o'); }},
-        {kNoMeshHash, [](Recipe& r) { r.mesh_hash.clear(); }},
-        {kNoToolVersion, [](Recipe& r) { r.options.clear(); }},
-        {kNoToolVersion, [](Recipe& r) { r.tool_version.clear(); }},
-        {kNoTriangles, [](Recipe& r) { r.triangles = 0; }},
+        {kUnit, [](auto& r) { r.unit = "a unit of great length"; }},
+        {kProvenance, [](auto& r) { r.mesh_name = std::string("a\0.obj", 6); }},
+        {kProvenance, [](auto& r) { r.mesh_hash = "00112233445566778899AABBCCDDEEFF"; }},
+        {kProvenance, [](auto& r) { r.tool_version = "\x1b]0;owned\x07"; }},
+        {kProvenance, [](auto& r) { r.options.assign((1 << 20) + 1, 'o'); }},
+        {kNoMeshHash, [](auto& r) { r.mesh_hash.clear(); }},
+        {kNoToolVersion, [](auto& r) { r.options.clear(); }},
+        {kNoToolVersion, [](auto& r) { r.tool_version.clear(); }},
+        {kNoTriangles, [](auto& r) { r.triangles = 0; }},
     };
     for (const auto& [code, lie] : lies) {
         expectIssue(fileOf(with(lie)), code);
@@ -341,54 +341,54 @@ void expectPayloadLies() {
     using enum IssueCode;
     const std::uint64_t first = readContainerInfo(fileOf({}))->payloads[0].offset;
     const std::pair<IssueCode, std::function<void(MapRecipe&)>> lies[] = {
-        {kFrame, [](MapRecipe& m) { m.format = 6; }},
-        {kFrame, [](MapRecipe& m) { m.format = 255; }},
-        {kFrame, [](MapRecipe& m) { m.format = 4; }},  // "less" of a front-back map
-        {kFrame, [](MapRecipe& m) { m.compare = 4; }},
-        {kFrame, [](MapRecipe& m) { m.decode = 2; }},
-        {kFrame, [](MapRecipe& m) { m.rows[2] = m.rows[0]; }},
-        {kMapSizeLimit, [](MapRecipe& m) { m.width = 0xffffffff; }},
-        {kPayloadSize, [](MapRecipe& m) { m.compression = 3; }},
-        {kPayloadSize, [](MapRecipe& m) { m.compression = 2; }},  // rows of fixed8
-        {kPayloadSize, [](MapRecipe& m) { m.compression = 1; }},  // packed, and no smaller
-        {kPayloadSize, [](MapRecipe& m) { m.raw_size = 1023; }},
-        {kPayloadSize, [](MapRecipe& m) { m.raw_size = ~std::uint64_t{0}; }},
-        {kPayloadSize, [](MapRecipe& m) { m.stored_size = 1023; }},
-        {kPayloadSize, [](MapRecipe& m) { m.stored_size = ~std::uint64_t{0}; }},
-        {kPayloadSize, [](MapRecipe& m) { m.height = 17; }},
+        {kFrame, [](auto& m) { m.format = 6; }},
+        {kFrame, [](auto& m) { m.format = 255; }},
+        {kFrame, [](auto& m) { m.format = 4; }},  // "less" of a front-back map
+        {kFrame, [](auto& m) { m.compare = 4; }},
+        {kFrame, [](auto& m) { m.decode = 2; }},
+        {kFrame, [](auto& m) { m.rows[2] = m.rows[0]; }},
+        {kMapSizeLimit, [](auto& m) { m.width = 0xffffffff; }},
+        {kPayloadSize, [](auto& m) { m.compression = 3; }},
+        {kPayloadSize, [](auto& m) { m.compression = 2; }},  // rows of fixed8
+        {kPayloadSize, [](auto& m) { m.compression = 1; }},  // packed, and no smaller
+        {kPayloadSize, [](auto& m) { m.raw_size = 1023; }},
+        {kPayloadSize, [](auto& m) { m.raw_size = ~std::uint64_t{0}; }},
+        {kPayloadSize, [](auto& m) { m.stored_size = 1023; }},
+        {kPayloadSize, [](auto& m) { m.stored_size = ~std::uint64_t{0}; }},
+        {kPayloadSize, [](auto& m) { m.height = 17; }},
         {kPayloadSize,  // 1 GiB from 100 bytes: less than a zstd frame could be
-         [](MapRecipe& m) {
+         [](auto& m) {
              m.compression = 1;
              m.width = m.height = 16384;
              m.stored.resize(100);
          }},
         {kPayloadSize,  // 2 GiB from one byte less than the rows of that map take
-         [](MapRecipe& m) {
+         [](auto& m) {
              m.format = 4;
              m.compare = m.compression = 2;
              m.width = m.height = 16384;
              m.raw_size = std::uint64_t{1} << 31U;
              m.stored.resize(65'535);
          }},
-        {kPayloadPlace, [&](MapRecipe& m) { m.offset = first; }},
-        {kPayloadPlace, [&](MapRecipe& m) { m.offset = first + 1024 + 1; }},
-        {kPayloadPlace, [&](MapRecipe& m) { m.offset = first + 1024 + 64; }},
-        {kPayloadPlace, [](MapRecipe& m) { m.offset = 0; }},
-        {kPayloadPlace, [](MapRecipe& m) { m.offset = ~std::uint64_t{0} - 63; }},
+        {kPayloadPlace, [&](auto& m) { m.offset = first; }},
+        {kPayloadPlace, [&](auto& m) { m.offset = first + 1024 + 1; }},
+        {kPayloadPlace, [&](auto& m) { m.offset = first + 1024 + 64; }},
+        {kPayloadPlace, [](auto& m) { m.offset = 0; }},
+        {kPayloadPlace, [](auto& m) { m.offset = ~std::uint64_t{0} - 63; }},
         {kPayloadEnd,
-         [](MapRecipe& m) {
+         [](auto& m) {
              m.height = 17;
              m.stored_size = 16 * 17 * 4;
          }},
-        {kPayloadChecksum, [](MapRecipe& m) { m.hash_change = 1; }},
-        {kNothingCovered, [](MapRecipe& m) { std::ranges::fill(m.stored, std::byte{0}); }},
+        {kPayloadChecksum, [](auto& m) { m.hash_change = 1; }},
+        {kNothingCovered, [](auto& m) { std::ranges::fill(m.stored, std::byte{0}); }},
     };
     for (const auto& [code, lie] : lies) {
         expectMapIssue(code, lie);
     }
-    expectIssue(fileOf(with([](Recipe& r) { r.maps[0].offset = 64; })), kPayloadPlace, 0);
+    expectIssue(fileOf(with([](auto& r) { r.maps[0].offset = 64; })), kPayloadPlace, 0);
     // Bytes that belong to nothing.
-    expectIssue(fileOf(with([](Recipe& r) {
+    expectIssue(fileOf(with([](auto& r) {
                     r.bytes = [](Bytes& b) {
                         b.resize(b.size() + 64);
                         const std::uint64_t size = b.size();
@@ -397,7 +397,7 @@ void expectPayloadLies() {
                     };
                 })),
                 kBytesBehind);
-    expectIssue(fileOf(with([&](Recipe& r) { r.bytes = [&](Bytes& b) { b[first - 1] = std::byte{1}; }; })),
+    expectIssue(fileOf(with([&](auto& r) { r.bytes = [&](Bytes& b) { b[first - 1] = std::byte{1}; }; })),
                 kPadding, 0);
 }
 
@@ -407,7 +407,7 @@ void expectLimits() {
     expectIssue(bytes, IssueCode::kMapLimit, -1, {1, 2048});
     expectIssue(bytes, IssueCode::kTexelLimit, 1, {2, 2047});
     // Each map below the limit, all together beyond it.
-    const Result<Collider> read = readContainer(fileOf(with([](Recipe& r) {
+    const Result<Collider> read = readContainer(fileOf(with([](auto& r) {
         for (MapRecipe& map : r.maps) {
             map.compression = 1;
             map.width = map.height = 16384;
@@ -466,22 +466,22 @@ void asRows(MapRecipe& m, const std::function<void(Bytes&)>& spoil) {
 
 void expectRowLies() {
     const Result<Collider> sound =
-        readContainer(fileOf(with([](Recipe& r) { asRows(r.maps[1], [](Bytes&) {}); })));
+        readContainer(fileOf(with([](auto& r) { asRows(r.maps[1], [](Bytes&) {}); })));
     ASSERT_TRUE(sound) << sound.error().message;
     EXPECT_EQ(texelsOf(rowSpans(sound->maps[1])), 2U);
     EXPECT_EQ(sound->maps[1].texelAt(0, 5, 3)[7], std::byte{1});
     // Every other lie is RowSpans.OneMapHasOneForm's.
     for (const std::size_t size : {std::size_t{0}, std::size_t{63}, std::size_t{64}, std::size_t{72}}) {
         expectMapIssue(IssueCode::kPayloadUnpack,
-                       [&](MapRecipe& m) { asRows(m, [&](Bytes& b) { b.resize(size); }); });
+                       [&](auto& m) { asRows(m, [&](Bytes& b) { b.resize(size); }); });
     }
     expectMapIssue(IssueCode::kPayloadSize,  // as long as the texels themselves
-                   [](MapRecipe& m) { asRows(m, [](Bytes& b) { b.resize(2048); }); });
+                   [](auto& m) { asRows(m, [](Bytes& b) { b.resize(2048); }); });
 }
 
 /// Decode without a field, as a default is written, is the projected one; fixed-point front-back texels may hold any bits, half floats may not.
 void expectTexelLies() {
-    Recipe recipe = with([](Recipe& r) {
+    Recipe recipe = with([](auto& r) {
         MapRecipe& map = r.maps[1];
         map.format = 4;
         map.compare = 2;

@@ -51,34 +51,30 @@ TEST(Materials, EveryFaultIsFound) {
         std::function<void(Materials&)> spoil;
     };
     for (const Case& wrong : std::vector<Case>{
-             {"a tree of materials, but no material", [](Materials& m) { m.list.clear(); }},
-             {"materials[1] has the name 'oak' of one before it",
-              [](Materials& m) { m.list[1].name = "oak"; }},
-             {"materials[0] has a name that is no UTF-8", [](Materials& m) { m.list[0].name = "\x80"; }},
-             {"longer than 256 bytes", [](Materials& m) { m.list[0].name.assign(257, 'a'); }},
-             {"materials[2] has a restitution", [](Materials& m) { m.list[2].restitution = 1.5F; }},
-             {"materials[2] has a restitution", [](Materials& m) { m.list[2].friction = std::nanf(""); }},
-             {"materials[1] has a lifetime_loss", [](Materials& m) { m.list[1].lifetime_loss = -1.0F; }},
-             {"there are 256 materials", [](Materials& m) { m.list.resize(256); }},
-             {"with the materials more than 256", [](Materials& m) { m.sides.resize(254); }},
-             {"a pair of sides", [](Materials& m) { m.sides[0].axis = 9; }},
-             {"a pair of sides", [](Materials& m) { m.sides[0].against = 3; }},
-             {"the cube of the materials", [](Materials& m) { m.size = 0.0F; }},
-             {"the cube of the materials", [](Materials& m) { m.origin.x = std::nanf(""); }},
-             {"material node 0 has its octants at another node",
-              [](Materials& m) { m.nodes[0].head = 0x80U; }},
-             {"material node 0 has its octants at another node",
-              [](Materials& m) { m.nodes[0].head = 2U << 8U | 0x80U; }},
-             {"material node 1 has its octants at another node",
-              [](Materials& m) { m.nodes[1].head = 1U << 8U; }},
-             {"material node 1 belongs to no other", [](Materials& m) { m.nodes[0].head = 0; }},
+             {"a tree of materials, but no material", [](auto& m) { m.list.clear(); }},
+             {"materials[1] has the name 'oak'", [](auto& m) { m.list[1].name = "oak"; }},
+             {"materials[0] has a name that is no UTF-8", [](auto& m) { m.list[0].name = "\x80"; }},
+             {"longer than 256 bytes", [](auto& m) { m.list[0].name.assign(257, 'a'); }},
+             {"materials[2] has a restitution", [](auto& m) { m.list[2].restitution = 1.5F; }},
+             {"materials[2] has a restitution", [](auto& m) { m.list[2].friction = std::nanf(""); }},
+             {"materials[1] has a lifetime_loss", [](auto& m) { m.list[1].lifetime_loss = -1.0F; }},
+             {"there are 256 materials", [](auto& m) { m.list.resize(256); }},
+             {"with the materials more than 256", [](auto& m) { m.sides.resize(254); }},
+             {"a pair of sides", [](auto& m) { m.sides[0].axis = 9; }},
+             {"a pair of sides", [](auto& m) { m.sides[0].against = 3; }},
+             {"the cube of the materials", [](auto& m) { m.size = 0.0F; }},
+             {"the cube of the materials", [](auto& m) { m.origin.x = std::nanf(""); }},
+             {"node 0 has its octants", [](auto& m) { m.nodes[0].head = 0x80U; }},
+             {"node 0 has its octants", [](auto& m) { m.nodes[0].head = 2U << 8U | 0x80U; }},
+             {"node 1 has its octants", [](auto& m) { m.nodes[1].head = 1U << 8U; }},
+             {"material node 1 belongs to no other", [](auto& m) { m.nodes[0].head = 0; }},
              {"nodes of materials are missing",
-              [](Materials& m) {
+              [](auto& m) {
                   m.nodes[1].head = 2U << 8U | 1U;
                   m.nodes[1].leaves[0] = 0;
               }},
-             {"octant of a material that does not exist", [](Materials& m) { m.nodes[1].leaves[3] = 4; }},
-             {"octant of a material that does not exist", [](Materials& m) { m.nodes[0].leaves[7] = 1; }}}) {
+             {"octant of a material", [](auto& m) { m.nodes[1].leaves[3] = 4; }},
+             {"octant of a material", [](auto& m) { m.nodes[0].leaves[7] = 1; }}}) {
         Materials materials = someMaterials();
         wrong.spoil(materials);
         const std::string fault = faultOfMaterials(materials);

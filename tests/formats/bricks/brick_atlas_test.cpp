@@ -64,20 +64,20 @@ TEST_F(BrickAtlasTest, ComesBackAsItWas) {
 
 TEST_F(BrickAtlasTest, LiesAreRefused) {
     const std::vector<std::function<void(BrickAtlas&)>> lies = {
-        [](BrickAtlas& atlas) { atlas.index[0] = BrickAtlas::kFirstBrick + 2; },
-        [](BrickAtlas& atlas) { atlas.index.pop_back(); },
-        [](BrickAtlas& atlas) {
+        [](auto& atlas) { atlas.index[0] = BrickAtlas::kFirstBrick + 2; },
+        [](auto& atlas) { atlas.index.pop_back(); },
+        [](auto& atlas) {
             atlas.cubes = {65536, 65536, 65536};
         },
-        [](BrickAtlas& atlas) { atlas.cubes.x = 0; },
-        [](BrickAtlas& atlas) { atlas.cells.y = 3; },
-        [](BrickAtlas& atlas) { atlas.codes.pop_back(); },
-        [](BrickAtlas& atlas) { atlas.codes[3] = 128; },
-        [](BrickAtlas& atlas) { atlas.bits = 12; },
-        [](BrickAtlas& atlas) { atlas.range = std::numeric_limits<float>::quiet_NaN(); },
-        [](BrickAtlas& atlas) { atlas.cube_size.z = 0.0F; },
-        [](BrickAtlas& atlas) { atlas.origin.x = std::numeric_limits<float>::infinity(); },
-        [](BrickAtlas& atlas) { std::swap(atlas.box.min, atlas.box.max); },
+        [](auto& atlas) { atlas.cubes.x = 0; },
+        [](auto& atlas) { atlas.cells.y = 3; },
+        [](auto& atlas) { atlas.codes.pop_back(); },
+        [](auto& atlas) { atlas.codes[3] = 128; },
+        [](auto& atlas) { atlas.bits = 12; },
+        [](auto& atlas) { atlas.range = std::numeric_limits<float>::quiet_NaN(); },
+        [](auto& atlas) { atlas.cube_size.z = 0.0F; },
+        [](auto& atlas) { atlas.origin.x = std::numeric_limits<float>::infinity(); },
+        [](auto& atlas) { std::swap(atlas.box.min, atlas.box.max); },
     };
     for (std::size_t i = 0; i < lies.size(); ++i) {
         BrickAtlas atlas = smallAtlas();

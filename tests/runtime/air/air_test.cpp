@@ -49,22 +49,22 @@ TEST(Air, WrongSettingsAreNamed) {
         one.spoil(air);
         expectError(checkAir(air), code, one.part);
     };
-    for (const Case& one : {Case{"wind", [&](AirSettings& a) { a.wind.y = nan; }},
-                            Case{"viscosity", [](AirSettings& a) { a.viscosity = -1.0F; }},
-                            Case{"9 attractors", [](AirSettings& a) { a.attractors.resize(9); }},
-                            Case{"9 vortices", [](AirSettings& a) { a.vortices.resize(9); }},
-                            Case{"attractor 2", [](AirSettings& a) { a.attractors[2].radius = 0.0F; }},
-                            Case{"attractor 3", [](AirSettings& a) { a.attractors[3].falloff = 3; }},
-                            Case{"attractor 4", [&](AirSettings& a) { a.attractors[4].strength = nan; }},
-                            Case{"vortex 1", [](AirSettings& a) { a.vortices[1].axis = glm::vec3(0.0F); }},
-                            Case{"vortex 7", [](AirSettings& a) { a.vortices[7].falloff = -1; }},
-                            Case{"octaves", [](AirSettings& a) { a.curl_noise->octaves = 5; }},
-                            Case{"scale", [](AirSettings& a) { a.curl_noise->scale = 0.0F; }},
-                            Case{"drift", [](AirSettings& a) { a.curl_noise->drift = 1001.0F; }}}) {
+    for (const Case& one : {Case{"wind", [&](auto& a) { a.wind.y = nan; }},
+                            Case{"viscosity", [](auto& a) { a.viscosity = -1.0F; }},
+                            Case{"9 attractors", [](auto& a) { a.attractors.resize(9); }},
+                            Case{"9 vortices", [](auto& a) { a.vortices.resize(9); }},
+                            Case{"attractor 2", [](auto& a) { a.attractors[2].radius = 0.0F; }},
+                            Case{"attractor 3", [](auto& a) { a.attractors[3].falloff = 3; }},
+                            Case{"attractor 4", [&](auto& a) { a.attractors[4].strength = nan; }},
+                            Case{"vortex 1", [](auto& a) { a.vortices[1].axis = glm::vec3(0.0F); }},
+                            Case{"vortex 7", [](auto& a) { a.vortices[7].falloff = -1; }},
+                            Case{"octaves", [](auto& a) { a.curl_noise->octaves = 5; }},
+                            Case{"scale", [](auto& a) { a.curl_noise->scale = 0.0F; }},
+                            Case{"drift", [](auto& a) { a.curl_noise->drift = 1001.0F; }}}) {
         expectNamed(one, ErrorCode::kUsage);
     }
     const auto expectFlowNamed = [&](const char* part, const FlowField& flow, ErrorCode code) {
-        expectNamed({part, [&](AirSettings& a) { a.flow = std::make_shared<FlowField>(flow); }}, code);
+        expectNamed({part, [&](auto& a) { a.flow = std::make_shared<FlowField>(flow); }}, code);
     };
     const std::vector<glm::vec3> still(4, glm::vec3(0.0F));
     FlowField hole{.size = {2, 1, 2}, .nodes = still};
