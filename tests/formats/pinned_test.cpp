@@ -91,11 +91,10 @@ void addMaterials(std::ostream& text, const Materials& materials) {
 void addMap(std::ostream& text, const DepthMap& map) {
     text << "map format " << static_cast<int>(map.format) << " compare " << compareName(map.compare)
          << " decode " << decodeName(map.decode) << " size " << map.width << ' ' << map.height << " encloses "
-         << map.encloses << " empty_is_outside " << map.empty_is_outside << '\n';
+         << map.encloses << " empty_is_outside " << map.empty_is_outside;
+    addHash(text, " texels", map.texels);
     const auto& row = map.object_to_map.row;
-    addNumbers(text, "object_to_map", {row[0], row[1], row[2]}, 4);
-    addNumbers(text, "object_per_map", {glm::vec4(map.object_per_map, 0)}, 3);
-    addHash(text, "texels", map.texels);
+    addNumbers(text, "frame", {row[0], row[1], row[2], glm::vec4(map.object_per_map, 0)}, 4);
 }
 
 void addAnswer(std::ostream& text, const Collider& collider, const glm::vec3& p) {
@@ -125,7 +124,7 @@ void addAnswers(std::ostream& text, const Collider& collider) {
             p[axis] = bounds.min[axis] + share * bounds.size()[axis];
         }
         addAnswer(all, collider, p);
-        if (i == 11) {
+        if (i == 3) {
             text << all.str();
         }
     }
