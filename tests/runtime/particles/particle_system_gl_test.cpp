@@ -59,8 +59,8 @@ class ParticleSystemGlTest : public CollisionTest {
 };
 RELIEF_INSTANTIATE_STEP_TESTS(ParticleSystemGlTest);
 
-// Every particle of every step is compared with the CPU's step from the GPU's own previous state, every index with the
-// CPU's own bookkeeping of births and deaths, and every hit, where nothing moves, with what the CPU's step ran into.
+// Every particle of every step is compared with the CPU's step from the GPU's own previous state, and every index with the CPU's
+// own bookkeeping of births and deaths.
 //
 // Tolerance: a GPU may fuse multiply and add, and takes 2.5 ulp for a division and 2 for 1/sqrt (Vulkan's and
 // GLSL's usual bounds; OpenGL gives none). A step chains about ten such operations on numbers below 4, so 16
@@ -121,9 +121,6 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
         std::uint64_t compared = 0;
         std::uint64_t excused = 0;
         std::map<Contact, std::uint64_t> contacts;
-        std::map<int, std::uint64_t> hits;  // by body
-        std::uint64_t hits_excused = 0;
-        ASSERT_TRUE(particles_->setEvents(EventOptions{.lasting = true}));
         for (int i = 0; i < 100; ++i) {
             std::vector<Birth> births;
             for (int k = 0; k < 60; ++k) {
@@ -148,18 +145,6 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
                 textures_->setPoses(poses);
             }
             step();
-            for (const ParticleEvent& hit : moves ? std::vector<ParticleEvent>{} : takeEvents().events) {
-                const ParticleState& was = live.at(hit.index);
-                const ReferenceState cpu = referenceStep(reference, was.position, was.velocity);
-                const bool same = hit.body == cpu.body && glm::length(hit.normal - cpu.normal) < 1e-5F &&
-                                  glm::length(hit.velocity - cpu.arrival) < 1e-5F &&
-                                  std::abs(hit.speed - cpu.speed) < 1e-5F &&
-                                  glm::length(hit.position - cpu.touch) < 1e-4F;
-                ++hits[hit.body];
-                hits_excused += same ? 0 : 1;
-                EXPECT_TRUE(same || cpu.ambiguous || cpu.speed < 0.1F)
-                    << "step " << i << " index " << hit.index;
-            }
             std::map<std::uint32_t, ParticleState> after;
             for (const ParticleState& particle : state()) {
                 after[particle.index] = particle;
@@ -194,8 +179,6 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
         EXPECT_GT(compared, 100'000U);
         EXPECT_GT(contacts[Contact::kCollided], 2'000U);
         EXPECT_GT(contacts[Contact::kCaught], 1'000U);
-        EXPECT_TRUE(moves || (hits[-1] > 500 && hits[0] > 500));
-        EXPECT_LE(hits_excused, (hits[-1] + hits[0]) / 20);
         EXPECT_LT(static_cast<double>(excused),
                   static_cast<double>(excused_max) * static_cast<double>(compared));
     }

@@ -40,12 +40,6 @@ struct ReferenceState {
     /// or cube faces, to the edge of a volume, or to a vote of 0, so that another rounding may decide
     /// otherwise.
     bool ambiguous = false;
-    /// What it ran into, and the arrival there, if it is not caught.
-    int body = -2;
-    glm::vec3 normal{0.0F};
-    glm::vec3 touch{0.0F};    ///< place
-    glm::vec3 arrival{0.0F};  ///< velocity
-    float speed = 0.0F;       ///< towards the surface, relative to it
 };
 
 inline float dot(const glm::vec3& a, const glm::vec3& b) {
@@ -171,11 +165,6 @@ inline ReferenceState referenceStep(const ReferenceSettings& settings, const glm
             out.ambiguous = out.ambiguous || std::abs(vn) < 1e-5F;
         } else {
             out.contact = Contact::kCollided;
-            out.body = ahead.body;
-            out.normal = n;
-            out.touch = p_star - (vn < 0.0F ? std::min(ahead.distance / vn, dt) : 0.0F) * v;
-            out.arrival = v;
-            out.speed = std::max(-vn, 0.0F);
             const glm::vec3 along = relative - vn * n;
             const float threshold = type.friction_threshold;
             const float still = 1e-3F * dt * glm::length(gravity);
