@@ -168,7 +168,7 @@ DepthMap turnedPatches(std::mt19937& random) {
 // Twenty kinds of company: none, planar maps alone, a cube alone, both; the patches first, last or between.
 TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
     std::mt19937 random(test::seedFrom(31));
-    int asked = 0, by_patches = 0, bounded = 0;
+    int asked = 0, by_patches = 0;
     for (unsigned repeat = 0; repeat < 20; ++repeat) {
         Collider collider;
         const unsigned company = repeat % 5;
@@ -192,25 +192,12 @@ TEST_P(FieldQueryGlTest, PatchesAgreeWithTheCpuAloneAndAmongOtherMaps) {
         points.insert(points.end(), near.begin(), near.end());
         SCOPED_TRACE(repeat);
         expectAgreement(collider, points, 1.0F / 60.0F, 5e-3);
-        const DepthMap& tree = collider.maps[static_cast<std::size_t>(place)];
-        for (std::size_t i = 0; i < points.size(); i += 20) {
+        for (std::size_t i = 0; company > 0 && i < points.size(); i += 20) {
             const FieldSample cpu = evaluate(collider, points[i]);
-            asked += company > 0 && cpu.map >= 0 ? 1 : 0;
-            by_patches += company > 0 && cpu.map == place ? 1 : 0;
-            const auto votes = cpu.map == place ? rounding::patchVotes(tree, points[i])
-                                                : std::vector<rounding::RoundedVote>{};
-            if (!votes.empty() &&
-                patchLeafAt(tree.texels, tree.object_to_map.apply(points[i])).record.kind() ==
-                    PatchRecord::Kind::kPatch) {
-                // The bound that a GPU is held to holds for the CPU, too.
-                ++bounded;
-                ASSERT_TRUE(std::any_of(votes.begin(), votes.end(), [&](const auto& vote) {
-                    return isWithin(cpu, vote);
-                })) << i;
-            }
+            asked += cpu.map >= 0 ? 1 : 0;
+            by_patches += cpu.map == place ? 1 : 0;
         }
     }
-    EXPECT_GT(bounded, 100);
     // Both decide often.
     EXPECT_GT(by_patches, asked / 5);
     EXPECT_LT(by_patches, asked - asked / 5);
@@ -264,7 +251,7 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
     }
 }
 
-TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) {
+TEST_P(FieldQueryGlTest, TheEarlyOutAgreesWithTheCpu) {
     std::mt19937 random(29);
     std::size_t inside = 0;
     constexpr std::size_t kPoints = 10'000;
@@ -279,27 +266,14 @@ TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) 
         }
         const std::vector<glm::vec3> points = randomPoints(kPoints, random);
         const auto textures = required(ColliderTextures::create(collider));
-        const std::vector<FieldSample> full = fieldOf(textures, points);
         const std::vector<FieldSample> early = fieldOf(textures, points, "#define RELIEF_QUERY_INSIDE\n");
         double at_border = 0.0;
-        double other_sign = 0.0;
         for (std::size_t i = 0; i < kPoints; ++i) {
             const FieldSample& own = early[i];
-            const auto agreesWith = [&own](bool is_inside, int map, const glm::vec3& normal) {
-                return own.inside() == is_inside && own.map == map &&
-                       glm::length(own.normal - normal) <= kNormal;
-            };
-            // On the GPU itself the same votes give the same sign, unless its compiler fuses them differently.
-            other_sign += own.inside() == full[i].inside() &&
-                                  (!own.inside() || agreesWith(true, full[i].map, full[i].normal))
-                              ? 0.0
-                              : 1.0;
-            if (!own.inside()) {
-                ASSERT_EQ(own.normal, glm::vec3(0.0F)) << i;
-            }
             const auto agreesAt = [&](const glm::vec3& p) {
                 const InsideSample cpu = evaluateInside(collider, p);
-                return agreesWith(cpu.inside, cpu.map, cpu.normal);
+                return own.inside() == cpu.inside && own.map == cpu.map &&
+                       glm::length(own.normal - cpu.normal) <= kNormal;
             };
             if (!agreesAt(points[i])) {
                 bool near = false;
@@ -312,7 +286,6 @@ TEST_P(FieldQueryGlTest, TheEarlyOutIsTheSignOfTheWholeWalkAndAgreesWithTheCpu) 
             inside += own.inside() ? 1U : 0U;
         }
         EXPECT_LE(at_border, 2e-3 * kPoints);
-        EXPECT_LE(other_sign, 1e-4 * kPoints);
     }
     EXPECT_GT(inside, 12 * kPoints / 20);
     EXPECT_LT(inside, 12 * kPoints / 2);
