@@ -242,8 +242,7 @@ TEST_F(WorldFolder, TheBodiesAtAPointDecideAsAllOfThem) {
     world_.bodies = {{0, "here", {0.0F, 0.0F, 0.0F}},
                      {0, "turned", {0.5F, 0.25F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "far", {900.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F, 0.0F}, 0.5F}};
-    LoadedWorld loaded = required(load());
-    const WorldField field(std::move(loaded));
+    const WorldField field(required(load()));
     const Bounds& box = collider_.bounds;
     int inside = 0;
     for (int i = 0; i < 20 * 20 * 20; ++i) {
@@ -282,8 +281,7 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
     world_.bodies = {{0, "a", {0.0F, 0.0F, 0.0F}},
                      {0, "b", {2.0F, 1.0F, 0.0F}, {0.0F, 0.6F, 0.0F, 0.8F}, 2.0F},
                      {0, "c", {-1.0F, 0.5F, 3.0F}, {0.5F, 0.5F, 0.5F, 0.5F}, 0.5F}};
-    LoadedWorld loaded = required(load());
-    const WorldField field(std::move(loaded));
+    const WorldField field(required(load()));
     const std::vector<std::uint32_t> every{0, 1, 2};
     std::uniform_real_distribution<float> at(-8.0F, 12.0F);
     int known = 0;
@@ -304,8 +302,7 @@ TEST_F(WorldFolder, PatchesAreAskedWhereTheirBoxesAre) {
 TEST_F(WorldFolder, GroundBelowTheMeshIsOfItsBody) {
     collider_.bounds.min.y = 0.4F;  // the mesh is the top of the solid
     writeCollider();
-    LoadedWorld loaded = required(load());
-    const WorldField field(std::move(loaded));
+    const WorldField field(required(load()));
     const glm::vec3 below(0.01F, -0.3F, 0.02F);
     EXPECT_TRUE(field.evaluate(below).inside());
     EXPECT_EQ(field.bodiesIn({below, below}), std::vector<std::uint32_t>{0});

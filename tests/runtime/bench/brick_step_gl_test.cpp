@@ -55,14 +55,12 @@ struct State {
 class BrickStepGlTest : public testing::TestWithParam<StepPath> {
   protected:
     void SetUp() override {
-        std::unique_ptr<GlContext> context = required(GlContext::create(GlApi::kGl33Core));
-        context_ = std::move(context);
+        context_ = required(GlContext::create(GlApi::kGl33Core));
         // Slanted, so that the axes of grid, texture and box are not alike.
         const glm::dmat3 turn = test::rotation({1, 2, 3}, 40.0);
         TriangleMesh mesh = test::joined({test::makeTorusMesh(1.0, 0.35, 96, 48),
                                           test::makeBoxMesh({0.1, 0.2, 0.9}, {0.9, 0.3, 0.2}, turn)});
-        MeshQuery query = required(MeshQuery::build(std::move(mesh)));
-        query_ = std::make_unique<MeshQuery>(std::move(query));
+        query_ = std::make_unique<MeshQuery>(required(MeshQuery::build(std::move(mesh))));
         Collider box;  // a scene is a box for it alone
         box.bounds = query_->mesh().bounds;
         scene_ = makeBenchScene(std::move(box), kParticles, kBenchLifetime);

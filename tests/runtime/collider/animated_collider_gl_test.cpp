@@ -43,8 +43,7 @@ class AnimatedColliderGlTest : public CollisionTest {
   protected:
     void makeAnimated(const SharedMesh& mesh, const Pose& pose = {},
                       const AnimatedColliderOptions& options = {}) {
-        auto made = required(AnimatedCollider::create(mesh, options));
-        animated_.emplace(std::move(made));
+        animated_.emplace(required(AnimatedCollider::create(mesh, options)));
         pose_ = pose;
         const ColliderBody body{
             .collider = &animated_->frames(), .pose = animated_->placed(pose), .live = true};

@@ -127,8 +127,9 @@ TEST(SceneEmitter, MadeEmittersGiveBirth) {
     const test::TemporaryFolder folder;
     folder.write("points.csv", "1,2,3\n");
     const auto make = [&](const std::string& keys) {
-        auto scene = required(parseScene(kSceneHead + "[emitter]\n" + keys, folder.path() / "scene.toml"));
-        auto complete = withDefaults(std::move(scene), unitBounds());
+        auto complete = withDefaults(
+            required(parseScene(kSceneHead + "[emitter]\n" + keys, folder.path() / "scene.toml")),
+            unitBounds());
         EXPECT_TRUE(complete);
         return makeEmitters(complete->emitters, SceneMeshes{});
     };

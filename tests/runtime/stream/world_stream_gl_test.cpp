@@ -108,10 +108,7 @@ class WorldStreamGlTest : public GlTest {
         source_ = source.get();
         return WorldStream::create(world_, bodies_, coarse, std::move(source), options);
     }
-    void open(const StreamOptions& options) {
-        auto made = required(make(options));
-        stream_ = std::move(made);
-    }
+    void open(const StreamOptions& options) { stream_ = required(make(options)); }
     void updates(int count, const std::vector<PointOfInterest>& points) {
         for (int i = 0; i < count; ++i) {
             ASSERT_TRUE(stream_->update(points));
