@@ -42,21 +42,31 @@ double dotOf(const glm::vec3& a, const glm::vec3& b) {
 }
 
 EmitterSettings snow() {
-    return {.box_min = {-1.0F, 2.0F, 5.0F},
-            .box_max = {3.0F, 2.5F, 5.0F},  // flat along z
-            .velocity = {0.0F, -2.0F, 1.0F},
-            .velocity_spread = {0.5F, 0.0F, 2.0F},
-            .lifetime_min = 3.0F,
-            .lifetime_max = 7.0F,
-            .type = 5};
+    EmitterSettings settings;
+    settings.box_min = {-1.0F, 2.0F, 5.0F};
+    settings.box_max = {3.0F, 2.5F, 5.0F};  // flat along z
+    settings.velocity = {0.0F, -2.0F, 1.0F};
+    settings.velocity_spread = {0.5F, 0.0F, 2.0F};
+    settings.lifetime_min = 3.0F;
+    settings.lifetime_max = 7.0F;
+    settings.type = 5;
+    return settings;
 }
 
 EmitterSettings round(EmitterShape shape) {
-    return {.shape = shape, .center = {3.0F, -1.0F, 2.0F}, .radius = 0.5F, .normal = {0.0F, 6.0F, 8.0F}};
+    EmitterSettings settings;
+    settings.shape = shape;
+    settings.center = {3.0F, -1.0F, 2.0F};
+    settings.radius = 0.5F;
+    settings.normal = {0.0F, 6.0F, 8.0F};
+    return settings;
 }
 
 EmitterSettings aimed(const EmitterAim& aim) {
-    return {.velocity = glm::vec3(0.0F), .aim = aim};
+    EmitterSettings settings;
+    settings.velocity = glm::vec3(0.0F);
+    settings.aim = aim;
+    return settings;
 }
 
 TEST(Emitter, DrawsFollowTheirDistributions) {

@@ -36,7 +36,9 @@ std::vector<Birth> birthsOf(const SpawnSettings& settings, const std::vector<Par
 }
 
 TEST(Spawner, AHitMakesWhatItSays) {
-    const SpawnSettings settings{.type = 1,
+    const SpawnSettings settings{.of = {},
+                                 .material = {},
+                                 .type = 1,
                                  .count_min = 200,
                                  .count_max = 200,
                                  .lifetime_min = 0.5F,
@@ -72,7 +74,7 @@ TEST(Spawner, AHitMakesWhatItSays) {
 }
 
 TEST(Spawner, OnlyWhatIsAskedForCounts) {
-    SpawnSettings settings{.of = 1, .min_speed = 2.0F, .count_min = 3, .count_max = 3};
+    SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = {}, .count_min = 3, .count_max = 3};
     auto lasting = hitOf(3, 1, 5.0F);
     lasting.lasts = true;
     ParticleEvent age;
@@ -103,7 +105,7 @@ TEST(Spawner, OnlyWhatIsAskedForCounts) {
 
 // Births and refusals are all that were due, whatever the limits; the same seed gives the same.
 TEST(Spawner, NothingIsLostAboveTheLimits) {
-    SpawnSettings settings{.count_min = 2, .count_max = 6};
+    SpawnSettings settings{.of = {}, .material = {}, .count_min = 2, .count_max = 6};
     std::vector<ParticleEvent> hits;
     for (std::uint32_t i = 0; i < 1000; ++i) {
         hits.push_back(hitOf(i, 0, 1.0F));
@@ -170,6 +172,8 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
     age.death = true;
     age.velocity = {3.0F, 0.0F, 0.0F};
     SpawnSettings settings{.on = SpawnOn::kDeath,
+                           .of = {},
+                           .material = {},
                            .count_min = 3000,
                            .count_max = 3000,
                            .inherit = 2.0F,
@@ -192,7 +196,7 @@ TEST(Spawner, DeathsOfAgeThrowAllRoundOrAlongTheWay) {
 
 // An event of a particle that is lost makes nothing that is: it counts as refused.
 TEST(Spawner, WhatIsLostHasNoChildren) {
-    const SpawnSettings settings{.count_min = 3, .count_max = 3, .inherit = 1.0F};
+    const SpawnSettings settings{.of = {}, .material = {}, .count_min = 3, .count_max = 3, .inherit = 1.0F};
     for (const float wrong : {std::nanf(""), std::numeric_limits<float>::infinity()}) {
         ParticleEvent lost = hitOf(7, 0, 4.0F);
         lost.velocity.x = wrong;

@@ -105,6 +105,7 @@ TEST(SceneSpawn, EveryKeyIsRead) {
                   "[[spawn]]\non = \"collision\"\n");
     const SpawnSettings wanted{.of = 0,
                                .min_speed = 0.75F,
+                               .material = {},
                                .type = 1,
                                .count_min = 2,
                                .count_max = 5,
@@ -118,7 +119,8 @@ TEST(SceneSpawn, EveryKeyIsRead) {
                                .cone_degrees = 20.0F};
     EXPECT_TRUE(SpawnSettings(scene.spawns.at(0)) == wanted);
     EXPECT_EQ(scene.spawns[0].seed, 6U);
-    const SpawnSettings death{.on = SpawnOn::kDeath, .speed_min = 2.0F, .speed_max = 2.0F};
+    const SpawnSettings death{
+        .on = SpawnOn::kDeath, .of = {}, .material = {}, .speed_min = 2.0F, .speed_max = 2.0F};
     EXPECT_TRUE(SpawnSettings(scene.spawns.at(1)) == death);
     EXPECT_EQ(scene.spawns.at(2).cone_degrees, 60.0F);
 }

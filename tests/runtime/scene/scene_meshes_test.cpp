@@ -160,8 +160,10 @@ TEST(SceneLooks, EveryKey) {
     EXPECT_EQ(scene.render.atlas_rows, 2U);
     EXPECT_EQ(scene.render.mesh, std::filesystem::path("dir/m.obj"));
     ASSERT_EQ(scene.types.size(), 3U);
-    EXPECT_EQ(scene.types[0].look,
-              (ParticleLook{.size = {{0.0F, 0.25F}}, .color = {{0.0F, {1.0F, 0.0F, 0.5F}}}}));
+    ParticleLook first;
+    first.size = {{0.0F, 0.25F}};
+    first.color = {{0.0F, {1.0F, 0.0F, 0.5F}}};
+    EXPECT_EQ(scene.types[0].look, first);
     EXPECT_EQ(scene.types[1].look,
               (ParticleLook{.size = {{0.0F, 1.0F}, {0.5F, 2.0F}},
                             .color = {{0.0F, {1.0F, 0.0F, 0.0F}}, {1.0F, {0.0F, 1.0F, 0.0F}}},
