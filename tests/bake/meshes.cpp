@@ -14,12 +14,7 @@ TriangleMesh finished(std::vector<glm::vec3> positions, std::vector<glm::uvec3> 
     mesh.content_hash = std::string(32, '0');
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(triangles);
-    Result<TriangleMesh> result = finishMesh(std::move(mesh));
-    if (!result) {
-        ADD_FAILURE() << result.error().message;
-        std::abort();
-    }
-    return *result;
+    return required(finishMesh(std::move(mesh)));
 }
 
 TriangleMesh makeBoxMesh(const glm::dvec3& center, const glm::dvec3& half, const glm::dmat3& axes) {
@@ -29,18 +24,10 @@ TriangleMesh makeBoxMesh(const glm::dvec3& center, const glm::dvec3& half, const
                               (corner & 4U) != 0 ? 1 : -1);
         positions.emplace_back(center + axes * (sign * half));
     }
-    return finished(positions, {{0, 4, 6},
-                                {0, 6, 2},
-                                {1, 3, 7},
-                                {1, 7, 5},
-                                {0, 1, 5},
-                                {0, 5, 4},
-                                {2, 6, 7},
-                                {2, 7, 3},
-                                {0, 2, 3},
-                                {0, 3, 1},
-                                {4, 5, 7},
-                                {4, 7, 6}});
+    const std::vector<glm::uvec3> triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
+                                               {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                               {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+    return finished(positions, triangles);
 }
 
 TriangleMesh makeIcosphere(const glm::dvec3& center, double radius, int levels) {
@@ -206,12 +193,7 @@ TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
 }
 
 MeshQuery queryOf(PreparedMesh mesh) {
-    Result<MeshQuery> query = MeshQuery::build(std::move(mesh));
-    if (!query) {
-        ADD_FAILURE() << query.error().message;
-        std::abort();
-    }
-    return std::move(*query);
+    return required(MeshQuery::build(std::move(mesh)));
 }
 
 TriangleMesh reversed(TriangleMesh mesh) {
@@ -221,22 +203,23 @@ TriangleMesh reversed(TriangleMesh mesh) {
     return mesh;
 }
 
+Collider bakeMaps(const PreparedMesh& mesh, std::vector<MapSpec> maps, Quality quality, Prefer prefer) {
+    BakeOptions options;
+    options.maps = std::move(maps);
+    options.quality = quality;
+    options.prefer = prefer;
+    return required(bake(mesh, options)).collider;
+}
+
 Collider bakeSpecs(const PreparedMesh& mesh, const std::vector<std::string>& specs, std::uint32_t resolution,
                    unsigned threads) {
     BakeOptions options;
     options.resolution = resolution;
     options.threads = threads;
     for (const std::string& text : specs) {
-        const Result<MapSpec> spec = parseMapSpec(text, kPaperDefaults);
-        EXPECT_TRUE(spec) << spec.error().message;
-        options.maps.push_back(spec.value_or(MapSpec{}));
+        options.maps.push_back(required(parseMapSpec(text, kPaperDefaults)));
     }
-    const Result<Baked> baked = bake(mesh, options);
-    if (!baked) {
-        ADD_FAILURE() << baked.error().message;
-        std::abort();
-    }
-    return baked->collider;
+    return required(bake(mesh, options)).collider;
 }
 
 DepthMap bakeMap(const TriangleMesh& mesh, const std::string& spec, std::uint32_t resolution) {

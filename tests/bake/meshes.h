@@ -15,6 +15,7 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/pipeline/bake.h"
 #include "tests/formats/rotation.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -73,6 +74,9 @@ template <class Gone>
 /// Of a mesh that must be right.
 [[nodiscard]] MeshQuery queryOf(PreparedMesh mesh);
 
+/// Bakes maps, which must be possible.
+[[nodiscard]] Collider bakeMaps(const PreparedMesh& mesh, std::vector<MapSpec> maps,
+                                Quality quality = Quality::kNormal, Prefer prefer = Prefer::kNeither);
 /// Bakes specs, which must be right. Maps that do not say otherwise are of the paper's texels: projected,
 /// half.
 [[nodiscard]] Collider bakeSpecs(const PreparedMesh& mesh, const std::vector<std::string>& specs,

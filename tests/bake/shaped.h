@@ -9,11 +9,7 @@
 namespace relief::test {
 
 [[nodiscard]] inline ShapedMesh shapedBy(TriangleMesh mesh, const ShapeOptions& options) {
-    Result<Winding> winding = windOutwards(std::move(mesh));
-    EXPECT_TRUE(winding);
-    Result<ShapedMesh> shape = shapeMesh(winding->mesh, options);
-    EXPECT_TRUE(shape) << shape.error().message;
-    return std::move(*shape);
+    return required(shapeMesh(required(windOutwards(std::move(mesh))).mesh, options));
 }
 
 inline void expectKinds(const ShapeReport& report, std::uint64_t solids, std::uint64_t holed,

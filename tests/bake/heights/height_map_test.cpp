@@ -8,7 +8,6 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
-#include <gtest/gtest.h>
 #include <png.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -101,19 +100,22 @@ class HeightMaps : public testing::Test {
         return png;
     }
 
-    /// Errors of opening a file, or of reading its rows.
-    static Error errorOf(const fs::path& path, const char* settings) {
-        Result<HeightMap> map = HeightMap::open(path, parseHeightsSpec(settings).value());
-        if (!map) {
-            return map.error();
-        }
-        std::vector<float> row(map->columns());
-        for (std::uint32_t i = 0; i < map->rows(); ++i) {
-            if (const Result<void> read = map->next(row); !read) {
+    /// The error of reading all rows.
+    template <class Rows>
+    static Error errorOfRows(Rows& rows) {
+        std::vector<float> row(rows.columns());
+        for (std::uint64_t i = 0; i < rows.rows(); ++i) {
+            if (const Result<void> read = rows.next(row); !read) {
                 return read.error();
             }
         }
         return {ErrorCode::kFailure, "it was read"};
+    }
+
+    /// Errors of opening a file, or of reading its rows.
+    static Error errorOf(const fs::path& path, const char* settings) {
+        Result<HeightMap> map = HeightMap::open(path, parseHeightsSpec(settings).value());
+        return map ? errorOfRows(*map) : map.error();
     }
 
     static void refuses(const fs::path& path, const char* settings, const char* words,
@@ -124,26 +126,19 @@ class HeightMaps : public testing::Test {
     /// The error of decoding it in this process.
     static Error decodeError(std::span<const std::byte> bytes) {
         Result<std::unique_ptr<SampleRows>> rows = openImageRows(bytes);
-        if (!rows) {
-            return rows.error();
-        }
-        std::vector<float> row((*rows)->columns());
-        for (std::uint64_t i = 0; i < (*rows)->rows(); ++i) {
-            if (const Result<void> read = (*rows)->next(row); !read) {
-                return read.error();
-            }
-        }
-        return {ErrorCode::kFailure, "it was read"};
+        return rows ? errorOfRows(**rows) : rows.error();
     }
 
-    static std::vector<float> heightsOf(const fs::path& path, const char* settings) {
-        Result<HeightMap> map = HeightMap::open(path, parseHeightsSpec(settings).value());
-        EXPECT_TRUE(map) << map.error().message;
+    /// \param hole  what stands for a NaN.
+    static std::vector<float> heightsOf(const fs::path& path, const char* settings,
+                                        float hole = std::numeric_limits<float>::quiet_NaN()) {
+        HeightMap map = required(HeightMap::open(path, parseHeightsSpec(settings).value()));
         std::vector<float> all;
-        for (std::uint32_t i = 0; map && i < map->rows(); ++i) {
-            std::vector<float> row(map->columns());
-            EXPECT_TRUE(map->next(row));
-            all.insert(all.end(), row.begin(), row.end());
+        std::vector<float> row(map.columns());
+        for (std::uint32_t i = 0; i < map.rows(); ++i) {
+            EXPECT_TRUE(map.next(row));
+            std::ranges::transform(row, std::back_inserter(all),
+                                   [&](float h) { return std::isnan(h) ? hole : h; });
         }
         return all;
     }
@@ -153,13 +148,12 @@ class HeightMaps : public testing::Test {
 };
 
 TEST(HeightsSettings, AreReadAndWrittenBack) {
-    const Result<HeightsSpec> spec =
-        parseHeightsSpec("spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512");
-    ASSERT_TRUE(spec) << spec.error().message;
-    EXPECT_EQ(spec->offset.at, glm::dvec3(-1.0, 0.0, 2.5));
-    EXPECT_EQ(toString(*spec), "spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512");
+    const HeightsSpec spec = required(
+        parseHeightsSpec("spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512"));
+    EXPECT_EQ(spec.offset.at, glm::dvec3(-1.0, 0.0, 2.5));
+    EXPECT_EQ(toString(spec), "spacing=0.25,low=-3,high=500.5,hole=0,width=2048,offset=-1/0/2.5,tile=512");
     EXPECT_EQ(toString(*parseHeightsSpec("high=1,low=0")), "spacing=1,low=0,high=1");
-    EXPECT_EQ(toString(*parseHeightsSpec(toString(*spec))), toString(*spec));
+    EXPECT_EQ(toString(*parseHeightsSpec(toString(spec))), toString(spec));
 }
 
 TEST(HeightsSettings, ThatMakeNoSenseAreRefusedWithACure) {
@@ -195,9 +189,7 @@ TEST_F(HeightMaps, OfSixteenAndEightBitsGoFromLowToHigh) {
               wanted);
     const fs::path bytes =
         writePng("b.png", PNG_FORMAT_GRAY, 2, 2, {std::byte{0}, std::byte{255}, std::byte{51}, std::byte{7}});
-    const std::vector<float> few = heightsOf(bytes, "low=0,high=5,hole=7");
-    EXPECT_EQ(std::vector<float>(few.begin(), few.begin() + 3), (std::vector<float>{0.0F, 5.0F, 1.0F}));
-    EXPECT_TRUE(std::isnan(few[3]));
+    EXPECT_EQ(heightsOf(bytes, "low=0,high=5,hole=7", 9.0F), (std::vector<float>{0.0F, 5.0F, 1.0F, 9.0F}));
 }
 
 TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
@@ -207,12 +199,8 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
     image.channels.push_back(
         {"Y", {1.5F, -20.0F, std::numeric_limits<float>::quiet_NaN(), 8848.0F, -9999.0F, 0.1F}});
     const fs::path path = write("a.exr", *encodeExr(image));
-    const std::vector<float> heights = heightsOf(path, "hole=-9999");
-    EXPECT_EQ(heights[0], 1.5F);
-    EXPECT_EQ(heights[3], 8848.0F);
-    EXPECT_EQ(heights[5], 0.1F);
-    EXPECT_TRUE(std::isnan(heights[2]));
-    EXPECT_TRUE(std::isnan(heights[4]));
+    EXPECT_EQ(heightsOf(path, "hole=-9999", 9.0F),
+              (std::vector<float>{1.5F, -20.0F, 9.0F, 8848.0F, 9.0F, 0.1F}));
     refuses(path, "low=0,high=1", "a.exr': --heights low is for unsigned samples", ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
     refuses(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
@@ -263,10 +251,8 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
     EXPECT_EQ(heightsOf(big, "type=int16"), (std::vector<float>{1792.0F, -3585.0F, 128.0F, 1.0F}));
     const fs::path floats =
         write("f.bin", {0x3f, 0xc0, 0, 0, 0xc2, 0x28, 0, 0, 0, 0, 0, 0, 0x7f, 0xc0, 0, 0});
-    const std::vector<float> metres = heightsOf(floats, "type=float32,order=big");
-    EXPECT_EQ(std::vector<float>(metres.begin(), metres.begin() + 3),
-              (std::vector<float>{1.5F, -42.0F, 0.0F}));
-    EXPECT_TRUE(std::isnan(metres[3]));
+    EXPECT_EQ(heightsOf(floats, "type=float32,order=big", 9.0F),
+              (std::vector<float>{1.5F, -42.0F, 0.0F, 9.0F}));
     refuses(floats, "type=float32,width=3", "no rows of 3 samples of 32 bits; give another width or type");
     refuses(big, "type=float32", "no square of samples of 32 bits");
     refuses(big, "type=int16,low=0", "low is for unsigned samples, and these are heights", ErrorCode::kUsage);
@@ -278,10 +264,7 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
     // As SRTM has it, with or without the width; what is given comes first.
     const fs::path hgt = write("N00E000.HGT", {0x00, 0x07, 0xff, 0xf1, 0x80, 0x00, 0x01, 0x00});
     for (const char* const settings : {"spacing=30", "spacing=30,width=2"}) {
-        const std::vector<float> heights = heightsOf(hgt, settings);
-        EXPECT_EQ(heights[1], -15.0F);
-        EXPECT_TRUE(std::isnan(heights[2]));
-        EXPECT_EQ(heights[3], 256.0F);
+        EXPECT_EQ(heightsOf(hgt, settings, 9.0F), (std::vector<float>{7.0F, -15.0F, 9.0F, 256.0F}));
     }
     EXPECT_EQ(heightsOf(hgt, "order=little,hole=1")[0], 1792.0F);
     // An image is one under any name.
@@ -527,8 +510,7 @@ TEST_F(HeightMaps, ImagesAreDecodedByASandboxedProcess) {
     }
     const fs::path png = writePng("a.png", PNG_FORMAT_LINEAR_Y, kSide, kSide, pixels);
     {
-        Result<HeightMap> map = HeightMap::open(png, parseHeightsSpec("low=0,high=65535").value());
-        ASSERT_TRUE(map) << map.error().message;
+        HeightMap map = required(HeightMap::open(png, parseHeightsSpec("low=0,high=65535").value()));
         for (int times = 0; times < 2; ++times) {
             const std::string worker = children();
             ASSERT_NE(worker, "");
@@ -536,17 +518,16 @@ TEST_F(HeightMaps, ImagesAreDecodedByASandboxedProcess) {
             EXPECT_EQ(statusOf(worker, "NoNewPrivs:"), "1");
             std::vector<float> row(kSide);
             for (std::uint32_t i = 0; i < kSide; ++i) {
-                ASSERT_TRUE(map->next(row));
+                ASSERT_TRUE(map.next(row));
                 std::uint16_t wanted = 0;
                 std::memcpy(&wanted, &pixels[2 * (std::size_t{i} * kSide + i)], 2);
                 ASSERT_EQ(row[i], static_cast<float>(wanted));
             }
-            ASSERT_TRUE(map->rewind());
+            ASSERT_TRUE(map.rewind());
         }
     }
     EXPECT_EQ(children(), "");
-    ImportLimits limits;
-    limits.seconds = 0;
+    ImportLimits limits{.seconds = 0};
     const Result<HeightMap> none = HeightMap::open(png, parseHeightsSpec("low=0,high=1").value(), limits);
     ASSERT_FALSE(none);
     expectError(none.error(), "a.png': the importer's limits must be", ErrorCode::kUsage);

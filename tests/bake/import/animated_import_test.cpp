@@ -2,8 +2,6 @@
 // Animated meshes of glTF files: their poses against closed forms and another reader, and what is refused.
 #include "bake/import/animated_import.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -35,9 +33,7 @@ Result<AnimatedImport> load(const GltfScribe& scribe, const ImportOptions& optio
 }
 
 AnimatedImport loaded(const GltfScribe& scribe, const ImportOptions& options = {}) {
-    Result<AnimatedImport> import = load(scribe, options);
-    EXPECT_TRUE(import) << (import ? "" : import.error().message);
-    return import ? std::move(*import) : AnimatedImport{};
+    return required(load(scribe, options));
 }
 
 std::vector<glm::vec3> at(const AnimatedMesh& mesh, const std::string& clip, double seconds) {
@@ -186,10 +182,9 @@ TEST(AnimatedImport, InstancesAndJointsOutsideTheSceneMove) {
 
 void compareWithTheBook(const GltfCase& file, std::size_t clips) {
     const TemporaryFolder folder;
-    const Result<AnimatedImport> import =
-        importAnimatedFileInWorker(writeGltf(file, folder, "a"), ImportKind::kAnimated, {}, {});
-    ASSERT_TRUE(import) << import.error().message;
-    const AnimatedMesh& mesh = import->mesh;
+    const AnimatedImport import =
+        required(importAnimatedFileInWorker(writeGltf(file, folder, "a"), ImportKind::kAnimated, {}, {}));
+    const AnimatedMesh& mesh = import.mesh;
     const std::vector<double> lengths = gltfLengthsByTheBook(file);
     ASSERT_EQ(lengths.size(), clips);
     ASSERT_EQ(mesh.clips.size(), clips);
@@ -280,18 +275,17 @@ TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
     moves.json["animations"][0]["channels"].push_back(lost);
     const fs::path file = writeGltf(still.file(), folder, "still");
     const fs::path clips = writeGltf(moves.file(), folder, "moves");
-    const Result<AnimatedImport> merged = importAnimatedInWorker(file, {clips, clips});
-    ASSERT_TRUE(merged) << merged.error().message;
-    const AnimatedMesh& mesh = merged->mesh;
+    const AnimatedImport merged = required(importAnimatedInWorker(file, {clips, clips}));
+    const AnimatedMesh& mesh = merged.mesh;
     ASSERT_EQ(mesh.clips.size(), 4U);
     EXPECT_EQ(mesh.clips[2].name, "drive 2");
-    EXPECT_TRUE(warns(merged->rest, "moves.glb: another clip has the name 'drive'"));
+    EXPECT_TRUE(warns(merged.rest, "moves.glb: another clip has the name 'drive'"));
     EXPECT_TRUE(
-        warns(merged->rest, "moves.glb: left out what moves nodes that the mesh does not have: 'elsewhere'"));
+        warns(merged.rest, "moves.glb: left out what moves nodes that the mesh does not have: 'elsewhere'"));
     const AnimatedMesh own = loaded(robot()).mesh;
     EXPECT_EQ(at(mesh, "drive", 1.2), at(own, "drive", 1.2));
     EXPECT_EQ(at(mesh, "turn 2", 2.0), at(own, "turn", 2.0));
-    EXPECT_EQ(merged->rest.dependencies.size(), 3U);
+    EXPECT_EQ(merged.rest.dependencies.size(), 3U);
 
     moves.json["nodes"] = {{{"name", "elsewhere"}}, {{"name", "BASE"}}, Json::object()};
     const fs::path strange = writeGltf(moves.file(), folder, "strange");
@@ -443,10 +437,9 @@ TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
         GltfCase file = (i % 3 == 0 ? bendingBar() : i % 3 == 1 ? robot() : morphingCube()).file();
         const std::string change = mutateGltf(file.document, dice);
         SCOPED_TRACE(change);
-        const Result<std::vector<std::byte>> bytes = readFile(writeGltf(file, folder, "m"));
-        ASSERT_TRUE(bytes);
+        const std::vector<std::byte> bytes = required(readFile(writeGltf(file, folder, "m")));
         const auto kind = i % 2 == 0 ? ImportKind::kAnimated : ImportKind::kClips;
-        ImportJob job{"'m.glb'", "m.glb", "glb", *bytes, -1, {}};
+        ImportJob job{"'m.glb'", "m.glb", "glb", bytes, -1, {}};
         job.kind = kind;
         const Result<TriangleMesh> raw = importRaw(job);
         ++(raw ? read : refused);
@@ -469,14 +462,13 @@ TEST(AnimatedImport, OtherFormatsAreNotRead) {
 
 TEST(AnimatedImport, AnswersOfAWorkerThatLiesAreRefused) {
     const TemporaryFolder folder;
-    const Result<ImportSource> source = ImportSource::open(folder.write("l.glb", "glTF"));
-    ASSERT_TRUE(source);
+    const ImportSource source = required(ImportSource::open(folder.write("l.glb", "glTF")));
     const AnimatedMesh mesh = loaded(robot()).mesh;
     TriangleMesh honest;
     honest.animation = writeAnimatedMesh(mesh);
-    EXPECT_TRUE(source->finishAnimated(TriangleMesh(honest), ImportKind::kClips)->mesh.positions.empty());
-    EXPECT_FALSE(source->finish(honest)) << "an animation that nobody wanted";
-    EXPECT_FALSE(source->finishLevel(honest));
+    EXPECT_TRUE(source.finishAnimated(TriangleMesh(honest), ImportKind::kClips)->mesh.positions.empty());
+    EXPECT_FALSE(source.finish(honest)) << "an animation that nobody wanted";
+    EXPECT_FALSE(source.finishLevel(honest));
     const auto changed = [&](const std::function<void(AnimatedMesh&)>& change) {
         return [mesh, change](TriangleMesh& raw) {
             AnimatedMesh bad = mesh;
@@ -495,7 +487,7 @@ TEST(AnimatedImport, AnswersOfAWorkerThatLiesAreRefused) {
                           changed([](AnimatedMesh& bad) { bad.nodes[1].translation.x = 1e30F; }),
                       },
                       [&](TriangleMesh raw) {
-                          return source->finishAnimated(std::move(raw), ImportKind::kAnimated).has_value();
+                          return source.finishAnimated(std::move(raw), ImportKind::kAnimated).has_value();
                       });
 }
 

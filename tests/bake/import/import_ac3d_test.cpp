@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // AC3D: objects as nodes, placed by all that is above them; surfaces of every kind; text as TORCS and people write it.
-#include <gtest/gtest.h>
-
 #include "bake/import/level_folder.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
@@ -28,12 +26,10 @@ std::string tetrahedron(const std::string& name, const std::string& keys = "",
 TEST(Ac3d, ObjectsAreBodiesPlacedByAllAboveThem) {
     // The kids of a shifted object move along; x becomes y by 'rot', whose triples are the images of the axes.
     const TemporaryFolder folder;
-    const Result<Level> imported = importLevel(folder.write(
+    const Level read = required(importLevel(folder.write(
         "l.acc", kHead + "OBJECT world\nkids 2\nOBJECT group\nname \"yard\"\nloc 10 0 0\nkids 1\n" +
                      tetrahedron("tower", "loc 0 1 0\nrot 0 1 0 -1 0 0 0 0 1\n", "1") +
-                     tetrahedron("flag", "loc 5 0 0\n") + tetrahedron("tree")));
-    ASSERT_TRUE(imported) << imported.error().message;
-    const Level& read = *imported;
+                     tetrahedron("flag", "loc 5 0 0\n") + tetrahedron("tree"))));
     ASSERT_EQ(read.bodies.size(), 3U);
     ASSERT_EQ(read.meshes.size(), 1U);
     EXPECT_EQ(read.meshes[0].triangles.size(), 4U);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials of mesh files: names by surface, responses of KHR_physics_rigid_bodies, and what of them makes meshes of a level differ.
-#include <gtest/gtest.h>
-
 #include "bake/import/level_folder.h"
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
@@ -31,23 +29,21 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
                                                          "," + node(R"("translation":[9,0,0])"),
                                                 .roots = "0,1,2",
                                                 .more = kPhysics}));
-    const auto mesh = importMesh(path);
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->surface_names.size(), 3U);
-    EXPECT_EQ(mesh->surface_names[0], (SurfaceName{0, "", "rubber", 0.75F, 1.0F}));
-    EXPECT_EQ(mesh->surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.6F})) << "the schema's friction";
-    EXPECT_EQ(mesh->surface_names[2], (SurfaceName{2, "", "", 1.0F, 0.0F}));
+    const auto mesh = required(importMesh(path));
+    ASSERT_EQ(mesh.surface_names.size(), 3U);
+    EXPECT_EQ(mesh.surface_names[0], (SurfaceName{0, "", "rubber", 0.75F, 1.0F}));
+    EXPECT_EQ(mesh.surface_names[1], (SurfaceName{1, "", "ice", 0.25F, 0.6F})) << "the schema's friction";
+    EXPECT_EQ(mesh.surface_names[2], (SurfaceName{2, "", "", 1.0F, 0.0F}));
     // Of a level the three nodes are three meshes, each of a single surface, whose name stays.
-    const auto level = importLevel(path);
-    ASSERT_TRUE(level) << level.error().message;
-    ASSERT_EQ(level->meshes.size(), 3U);
-    ASSERT_EQ(level->meshes[0].surface_names.size(), 1U);
-    EXPECT_EQ(level->meshes[0].surface_names[0].material, "rubber");
-    EXPECT_TRUE(level->meshes[0].labels.empty());
-    EXPECT_TRUE(level->meshes[2].surface_names.empty());
-    EXPECT_TRUE(hasSeveralMaterials(level->meshes));
-    EXPECT_FALSE(hasSeveralMaterials(std::span(level->meshes).first(1)));
-    EXPECT_FALSE(hasSeveralMaterials(std::span(level->meshes).subspan(2)));
+    const auto level = required(importLevel(path));
+    ASSERT_EQ(level.meshes.size(), 3U);
+    ASSERT_EQ(level.meshes[0].surface_names.size(), 1U);
+    EXPECT_EQ(level.meshes[0].surface_names[0].material, "rubber");
+    EXPECT_TRUE(level.meshes[0].labels.empty());
+    EXPECT_TRUE(level.meshes[2].surface_names.empty());
+    EXPECT_TRUE(hasSeveralMaterials(level.meshes));
+    EXPECT_FALSE(hasSeveralMaterials(std::span(level.meshes).first(1)));
+    EXPECT_FALSE(hasSeveralMaterials(std::span(level.meshes).subspan(2)));
     // Without materials they are one.
     ImportOptions without;
     without.materials = false;
@@ -55,9 +51,9 @@ TEST(ImportMaterials, PhysicsMaterialsNameSurfacesAndTheirResponses) {
 }
 
 TEST(ImportMaterials, AMaterialThatOnlyStatesFrictionDoesNotBounce) {
-    const auto mesh = importText("m.gltf", tetrahedronGltf({.nodes = node(physics("3")), .more = kPhysics}));
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    EXPECT_EQ(mesh->surface_names.at(0), (SurfaceName{0, "", "tar", 0.0F, 1.0F}));
+    const auto mesh =
+        required(importText("m.gltf", tetrahedronGltf({.nodes = node(physics("3")), .more = kPhysics})));
+    EXPECT_EQ(mesh.surface_names.at(0), (SurfaceName{0, "", "tar", 0.0F, 1.0F}));
 }
 
 TEST(ImportMaterials, CombineModesWarnOnceIfTheyWouldChangeMuch) {

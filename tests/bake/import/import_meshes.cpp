@@ -163,9 +163,7 @@ Result<TriangleMesh> importTextInWorker(const std::string& name, std::string_vie
 }
 
 TriangleMesh imported(const std::string& name, std::string_view contents, const ImportOptions& options) {
-    Result<TriangleMesh> mesh = importText(name, contents, options);
-    EXPECT_TRUE(mesh) << name << ": " << mesh.error().message;
-    return mesh ? std::move(*mesh) : TriangleMesh();
+    return required(importText(name, contents, options));
 }
 
 void expectFault(const Error& error, const std::string& words, ErrorCode code) {

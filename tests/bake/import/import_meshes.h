@@ -12,6 +12,8 @@
 
 #include "bake/import/mesh_import.h"
 
+#include "tests/results.h"
+
 namespace relief::test {
 
 [[nodiscard]] std::string tetrahedronObj();

@@ -2,10 +2,7 @@
 // What a worker that a hostile mesh has taken over may answer.
 #include "bake/import/import_message.h"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <random>
 
@@ -46,18 +43,17 @@ TEST(ImportMessage, CarriesMeshesAndErrors) {
             raw.surface_names = {{0, "hut", "wood"}, {1, "tower", ""}};
             raw.labels = {1};
         }
-        const Result<TriangleMesh> read = readImportMessage(bytesOf(raw));
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(read->unit, raw.unit);
-        EXPECT_EQ(read->positions, raw.positions);
-        EXPECT_EQ(read->triangles, raw.triangles);
-        EXPECT_EQ(read->marks, raw.marks);
-        EXPECT_EQ(read->labels, raw.labels);
-        EXPECT_EQ(read->surface_names, raw.surface_names);
-        EXPECT_EQ(read->dependencies, raw.dependencies);
-        EXPECT_EQ(read->dependency_hashes, raw.dependency_hashes);
-        EXPECT_EQ(read->warnings, raw.warnings);
-        EXPECT_EQ(read->unused_vertices, raw.unused_vertices);
+        const TriangleMesh read = required(readImportMessage(bytesOf(raw)));
+        EXPECT_EQ(read.unit, raw.unit);
+        EXPECT_EQ(read.positions, raw.positions);
+        EXPECT_EQ(read.triangles, raw.triangles);
+        EXPECT_EQ(read.marks, raw.marks);
+        EXPECT_EQ(read.labels, raw.labels);
+        EXPECT_EQ(read.surface_names, raw.surface_names);
+        EXPECT_EQ(read.dependencies, raw.dependencies);
+        EXPECT_EQ(read.dependency_hashes, raw.dependency_hashes);
+        EXPECT_EQ(read.warnings, raw.warnings);
+        EXPECT_EQ(read.unused_vertices, raw.unused_vertices);
     }
     expectLiesRefused(
         raw,
@@ -88,8 +84,7 @@ TEST(ImportMessage, EveryTruncationAndExtensionIsRefused) {
 TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
     // The sanitizers watch; nothing but a mesh that finishMesh takes or an error may come out.
     const TemporaryFolder folder;
-    const Result<ImportSource> source = ImportSource::open(folder.write("t.obj", tetrahedronObj()));
-    ASSERT_TRUE(source);
+    const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
     const std::vector<std::byte> whole = bytesOf(rawTriangle());
     std::mt19937 random(seedFrom(5));
     int refused = 0;
@@ -101,7 +96,7 @@ TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
         }
         Result<TriangleMesh> raw = readImportMessage(bytes);
         if (raw) {
-            raw = source->finish(std::move(*raw), kNames);
+            raw = source.finish(std::move(*raw), kNames);
         }
         refused += raw ? 0 : 1;
     }
@@ -111,8 +106,7 @@ TEST(ImportMessage, AnyFlippedBitsAreReadSafely) {
 
 TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
     const TemporaryFolder folder;
-    const Result<ImportSource> source = ImportSource::open(folder.write("t.obj", tetrahedronObj()));
-    ASSERT_TRUE(source);
+    const ImportSource source = required(ImportSource::open(folder.write("t.obj", tetrahedronObj())));
     expectLiesRefused(
         rawTriangle(),
         {[](TriangleMesh& raw) { raw.unit = "parsec"; },
@@ -126,29 +120,26 @@ TEST(ImportSource, ClaimsOfTheWorkerAreChecked) {
          [](TriangleMesh& raw) { raw.marks = {3}; }, [](TriangleMesh& raw) { raw.marks.clear(); },
          [](TriangleMesh& raw) { raw.positions[1].x = std::numeric_limits<float>::quiet_NaN(); }},
         [&](TriangleMesh raw) {
-            const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
+            const Result<TriangleMesh> mesh = source.finish(std::move(raw), kNames);
             EXPECT_TRUE(mesh || mesh.error().code == ErrorCode::kInvalidInput);
             EXPECT_TRUE(mesh || mesh.error().message.find("t.obj") != std::string::npos);
             return mesh.has_value();
         });
-    EXPECT_FALSE(source->finish(rawTriangle())) << "marks that nobody asked for";
+    EXPECT_FALSE(source.finish(rawTriangle())) << "marks that nobody asked for";
 }
 
 TEST(ImportSource, FilesAreNamedAsTheyCanBeOpenedAndSorted) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.write("t.obj", tetrahedronObj());
-    const Result<ImportSource> source = ImportSource::open(path);
-    ASSERT_TRUE(source);
+    const ImportSource source = required(ImportSource::open(path));
     TriangleMesh raw = rawTriangle();
     raw.dependencies = {"z.mtl", "a.mtl"};
     raw.dependency_hashes = {std::string(32, 'f'), std::string(32, '0')};
-    const Result<TriangleMesh> mesh = source->finish(std::move(raw), kNames);
-    ASSERT_TRUE(mesh);
+    const TriangleMesh mesh = required(source.finish(std::move(raw), kNames));
     using Words = std::vector<std::string>;
-    EXPECT_EQ(mesh->dependencies, Words({path, folder.path() / "a.mtl", folder.path() / "z.mtl"}));
-    EXPECT_EQ(mesh->dependency_hashes,
-              Words({mesh->content_hash, std::string(32, '0'), std::string(32, 'f')}));
-    EXPECT_EQ(mesh->warnings, std::vector<std::string>{"t.obj: something"});
+    EXPECT_EQ(mesh.dependencies, Words({path, folder.path() / "a.mtl", folder.path() / "z.mtl"}));
+    EXPECT_EQ(mesh.dependency_hashes, Words({mesh.content_hash, std::string(32, '0'), std::string(32, 'f')}));
+    EXPECT_EQ(mesh.warnings, std::vector<std::string>{"t.obj: something"});
 }
 
 }  // namespace

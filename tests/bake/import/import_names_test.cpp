@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangles have the names that somebody asks for, in files as exporters write them and as nobody should.
-#include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "bake/import/mesh_import.h"
 #include "tests/bake/import/import_meshes.h"
@@ -23,11 +20,8 @@ ImportOptions asking(const Names& names) {
 void expectMarks(const std::string& name, const std::string& text,
                  const std::vector<std::pair<Names, Marks>>& cases) {
     for (const auto& [names, marks] : cases) {
-        const Result<TriangleMesh> mesh = importTextInWorker(name, text, asking(names));
-        const Result<TriangleMesh> here = importText(name, text, asking(names));
-        ASSERT_TRUE(mesh && here) << (mesh ? here : mesh).error().message;
-        EXPECT_EQ(mesh->marks, marks) << (names.empty() ? "" : names[0]);
-        EXPECT_EQ(here->marks, marks);
+        EXPECT_EQ(required(importTextInWorker(name, text, asking(names))).marks, marks);
+        EXPECT_EQ(imported(name, text, asking(names)).marks, marks);
     }
 }
 
@@ -149,9 +143,8 @@ TEST(ImportNames, EveryTriangleHasItsNodeAndItsMaterial) {
     for (const auto& [name, text, surfaces] : cases) {
         SCOPED_TRACE(name);
         const TriangleMesh here = imported(name, text);
-        const Result<TriangleMesh> there = importTextInWorker(name, text);
-        ASSERT_TRUE(there);
-        EXPECT_TRUE(there->labels == here.labels && there->surface_names == here.surface_names);
+        const TriangleMesh there = required(importTextInWorker(name, text));
+        EXPECT_TRUE(there.labels == here.labels && there.surface_names == here.surface_names);
         Names names;
         for (const std::uint32_t label : here.labels) {
             names.push_back(here.surface_names[label].node + "/" + here.surface_names[label].material);

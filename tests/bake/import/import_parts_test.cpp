@@ -2,8 +2,6 @@
 // Everything in a mesh file but triangles is counted, named or refused; nothing is left out without a warning.
 #include "bake/import/import_scene.h"
 
-#include <gtest/gtest.h>
-
 #include "bake/import/mesh_import.h"
 #include "formats/polygons/obj_mesh.h"
 #include "tests/bake/import/import_meshes.h"
@@ -88,7 +86,7 @@ TEST(ImportParts, UnusedVerticesOfEachFormat) {
     const std::string half = R"("bufferView":1,"componentType":5123,"count":3,"type":"SCALAR")";
     expectRead(
         {{"a.obj", tetrahedronObj(), {}},
-         {"b.obj", tetrahedronObj() + "v 9 9 9\nv 9 9 9\n", {warning}, 2},
+         {"b.obj", tetrahedronObj() + "v 9 9 9\nv 9 9 9\nf 1 1 2\nf 2 2 2\n", {warning}, 2},
          {"a.ply", ply, {warning}, 2},
          // The first three of the twelve indices: one corner of four has no triangle.
          {"a.gltf",

@@ -2,8 +2,6 @@
 // PLY files whose surface is known in closed form: faces, strips, and what is neither.
 #include "formats/polygons/ply_mesh.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -72,7 +70,12 @@ constexpr const char* kBoxHeader =
 const std::vector<std::int64_t> kBoxStrip = {0, 1, 4, 5,  6, 7, 2, -1, 2,  7, 3, -1, 2,
                                              3, 0, 1, -1, 0, 4, 2, 6,  -1, 1, 3, 5,  7};
 
-/// \param triangles  the same, in the same order, each written out.
+// The same, in the same order.
+const std::vector<std::vector<std::int64_t>> kBoxTriangles = {{0, 1, 4}, {4, 1, 5}, {4, 5, 6}, {6, 5, 7},
+                                                              {6, 7, 2}, {2, 7, 3}, {2, 3, 0}, {0, 3, 1},
+                                                              {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {5, 3, 7}};
+
+/// \param triangles  each written out.
 std::string boxOf(const std::string& encoding, bool triangles = false) {
     PlyWriter ply(encoding);
     ply.line("obj_info a box").line(kBoxHeader);
@@ -86,18 +89,7 @@ std::string boxOf(const std::string& encoding, bool triangles = false) {
     if (!triangles) {
         return ply.list<std::int32_t, std::int32_t>(kBoxStrip).end().text();
     }
-    for (const std::vector<std::int64_t>& triangle : std::vector<std::vector<std::int64_t>>{{0, 1, 4},
-                                                                                            {4, 1, 5},
-                                                                                            {4, 5, 6},
-                                                                                            {6, 5, 7},
-                                                                                            {6, 7, 2},
-                                                                                            {2, 7, 3},
-                                                                                            {2, 3, 0},
-                                                                                            {0, 3, 1},
-                                                                                            {0, 4, 2},
-                                                                                            {2, 4, 6},
-                                                                                            {1, 3, 5},
-                                                                                            {5, 3, 7}}) {
+    for (const std::vector<std::int64_t>& triangle : kBoxTriangles) {
         ply.list<std::uint8_t, std::int32_t>(triangle).end();
     }
     return ply.text();
@@ -108,9 +100,7 @@ Result<PolygonMesh> read(const std::string& text) {
 }
 
 PolygonMesh polygons(const std::string& text) {
-    Result<PolygonMesh> mesh = read(text);
-    EXPECT_TRUE(mesh) << mesh.error().message;
-    return mesh ? std::move(*mesh) : PolygonMesh();
+    return required(read(text));
 }
 
 // Three corners in a plane, in text.
@@ -129,14 +119,13 @@ TEST(ImportPly, AStripBakesAsItsTrianglesDo) {
     const DepthMap expected = bakeMap(truth, "float:dir=-z,size=32");
     for (const char* encoding : kEncodings) {
         SCOPED_TRACE(encoding);
-        const Result<TriangleMesh> mesh = importTextInWorker("strips.ply", boxOf(encoding));
-        ASSERT_TRUE(mesh) << mesh.error().message;
-        EXPECT_EQ(mesh->positions, truth.positions);
-        EXPECT_EQ(mesh->triangles, truth.triangles);
-        EXPECT_NEAR(signedVolume(*mesh), 6.0, 1e-12);
-        EXPECT_EQ(mesh->unused_vertices, 0U);
-        EXPECT_TRUE(mesh->warnings.empty());
-        EXPECT_EQ(bakeMap(*mesh, "float:dir=-z,size=32").texels, expected.texels);
+        const TriangleMesh mesh = required(importTextInWorker("strips.ply", boxOf(encoding)));
+        EXPECT_EQ(mesh.positions, truth.positions);
+        EXPECT_EQ(mesh.triangles, truth.triangles);
+        EXPECT_NEAR(signedVolume(mesh), 6.0, 1e-12);
+        EXPECT_EQ(mesh.unused_vertices, 0U);
+        EXPECT_TRUE(mesh.warnings.empty());
+        EXPECT_EQ(bakeMap(mesh, "float:dir=-z,size=32").texels, expected.texels);
     }
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Text formats as people write them: each file below is valid and was misread, or is wrong and was read.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>

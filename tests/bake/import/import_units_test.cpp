@@ -2,8 +2,6 @@
 // One tetrahedron in every format, with units and axes: it must lie at the same coordinates.
 #include "bake/import/import_units.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/geometric.hpp>
 #include <limits>
 #include <span>

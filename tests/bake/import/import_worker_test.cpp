@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hostile meshes through the worker: right, or refused with one clear line; and nothing outside the folder is
 // opened. What needs real limits of memory is in tests/cli/import.sh: the address sanitizer knows none.
-#include <gtest/gtest.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -53,17 +52,16 @@ TEST(ImportWorker, GivesTheSameMeshAsTheImporterInThisProcess) {
          {fs::path("/usr/share/glmark2/models/bunny.obj"), folder.write("t.gltf", tetrahedronGltf()),
           folder.write("T.DAE", tetrahedronDae("<unit meter=\"0.0254\"/><up_axis>Z_UP</up_axis>"))}) {
         SCOPED_TRACE(path);
-        const Result<TriangleMesh> here = importMesh(path, {"", UpAxis::kPlusX});
-        const Result<TriangleMesh> there = importMeshInWorker(path, {"", UpAxis::kPlusX});
-        ASSERT_TRUE(here && there) << (here ? there : here).error().message;
-        EXPECT_EQ(there->positions, here->positions);
-        EXPECT_EQ(there->triangles, here->triangles);
-        EXPECT_EQ(there->name, here->name);
-        EXPECT_EQ(there->content_hash, here->content_hash);
-        EXPECT_EQ(there->unit, here->unit);
-        EXPECT_EQ(there->warnings, here->warnings);
-        EXPECT_EQ(there->dependencies, here->dependencies);
-        EXPECT_EQ(there->bounds, here->bounds);
+        const TriangleMesh here = required(importMesh(path, {"", UpAxis::kPlusX}));
+        const TriangleMesh there = required(importMeshInWorker(path, {"", UpAxis::kPlusX}));
+        EXPECT_EQ(there.positions, here.positions);
+        EXPECT_EQ(there.triangles, here.triangles);
+        EXPECT_EQ(there.name, here.name);
+        EXPECT_EQ(there.content_hash, here.content_hash);
+        EXPECT_EQ(there.unit, here.unit);
+        EXPECT_EQ(there.warnings, here.warnings);
+        EXPECT_EQ(there.dependencies, here.dependencies);
+        EXPECT_EQ(there.bounds, here.bounds);
     }
 }
 
@@ -73,12 +71,11 @@ TEST(ImportWorker, MaterialsBesideAreReadAndRecorded) {
     constexpr std::string_view kText = "newmtl z\n";
     folder.write("z.mtl", kText);
     folder.write("sub/a.mtl", "newmtl a\n");
-    const Result<TriangleMesh> mesh =
-        load(folder, "t.obj", "mtllib z.mtl\nmtllib sub/a.mtl\n" + tetrahedronObj());
-    ASSERT_TRUE(mesh) << mesh.error().message;
-    ASSERT_EQ(mesh->dependencies.size(), 3U);
-    EXPECT_EQ(mesh->dependencies[1], folder.path() / "sub/a.mtl");
-    EXPECT_EQ(mesh->dependency_hashes[2], xxh3_128Hex(std::as_bytes(std::span(kText.data(), kText.size()))));
+    const TriangleMesh mesh =
+        required(load(folder, "t.obj", "mtllib z.mtl\nmtllib sub/a.mtl\n" + tetrahedronObj()));
+    ASSERT_EQ(mesh.dependencies.size(), 3U);
+    EXPECT_EQ(mesh.dependencies[1], folder.path() / "sub/a.mtl");
+    EXPECT_EQ(mesh.dependency_hashes[2], xxh3_128Hex(std::as_bytes(std::span(kText.data(), kText.size()))));
 }
 
 TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
@@ -97,12 +94,11 @@ TEST(ImportWorker, NoFileOutsideTheFolderIsOpened) {
          {std::string("../secret.mtl"), secret.string(), std::string("./../secret.mtl"),
           std::string("link.mtl"), std::string("up/secret.mtl"), std::string("..\\secret.mtl")}) {
         SCOPED_TRACE(name);
-        const Result<TriangleMesh> mesh =
-            load(folder, "in/t.obj", "mtllib " + name + "\nusemtl secret\n" + tetrahedronObj());
+        const TriangleMesh mesh =
+            required(load(folder, "in/t.obj", "mtllib " + name + "\nusemtl secret\n" + tetrahedronObj()));
         // A material library is of no use here: a warning, and the mesh.
-        ASSERT_TRUE(mesh) << mesh.error().message;
-        EXPECT_TRUE(warns(*mesh, "left out '"));
-        EXPECT_EQ(mesh->dependencies.size(), 1U);
+        EXPECT_TRUE(warns(mesh, "left out '"));
+        EXPECT_EQ(mesh.dependencies.size(), 1U);
         EXPECT_FALSE(watch.opened());
     }
     for (const auto& [uri, words] :
@@ -207,9 +203,7 @@ TEST(ImportWorker, TrianglesAreCountedBeforeTheyAreMade) {
     const fs::path gltf = folder.write("i.gltf", manyNodes(100));
     const fs::path dae = folder.write("t.dae", tetrahedronDae(""));
     const auto with = [](const fs::path& file, std::uint64_t triangles) {
-        ImportLimits limits;
-        limits.triangles = triangles;
-        return importMeshInWorker(file, {}, limits);
+        return importMeshInWorker(file, {}, {.triangles = triangles});
     };
     EXPECT_TRUE(with(gltf, 400));
     expectRefused(with(gltf, 399), "more than 399 triangles", ErrorCode::kLimit);

@@ -2,9 +2,6 @@
 // Levels: each different mesh once, placed by poses where these keep its shape.
 #include "bake/import/level_folder.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <limits>
 
 #include "bake/import/import_source.h"
@@ -21,9 +18,7 @@ class Levels : public testing::Test {
   protected:
     fs::path write(const std::string& name, const std::string& text) { return temporary_.write(name, text); }
     Level level(const fs::path& path, const ImportOptions& options = {}) {
-        Result<Level> read = importLevel(path, options);
-        EXPECT_TRUE(read) << read.error().message;
-        return read ? std::move(*read) : Level();
+        return required(importLevel(path, options));
     }
     Level gltf(const std::string& nodes, const std::string& roots, const ImportOptions& options = {}) {
         return level(write("l.gltf", tetrahedronGltf({.nodes = nodes, .roots = roots})), options);
@@ -42,21 +37,20 @@ glm::dvec3 placed(const LevelBody& body, const glm::dvec3& p) {
 
 /// The corners that the level has, placed, are those of the same file as one mesh, in its order.
 void expectSameCorners(const Level& level, const fs::path& path, const ImportOptions& options = {}) {
-    const Result<TriangleMesh> whole = importMeshInWorker(path, options);
-    ASSERT_TRUE(whole) << whole.error().message;
+    const TriangleMesh whole = required(importMeshInWorker(path, options));
     std::size_t triangle = 0;
     for (const LevelBody& body : level.bodies) {
         const TriangleMesh& mesh = level.meshes.at(body.mesh);
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t, ++triangle) {
-            ASSERT_LT(triangle, whole->triangles.size());
-            const auto wanted = cornersOf(*whole, static_cast<std::uint32_t>(triangle));
+            ASSERT_LT(triangle, whole.triangles.size());
+            const auto wanted = cornersOf(whole, static_cast<std::uint32_t>(triangle));
             const auto corners = cornersOf(mesh, t);
             for (std::size_t k = 0; k < 3; ++k) {
                 EXPECT_LT(glm::distance(placed(body, corners[k]), glm::dvec3(wanted[k])), 1e-5) << triangle;
             }
         }
     }
-    EXPECT_EQ(triangle, whole->triangles.size());
+    EXPECT_EQ(triangle, whole.triangles.size());
 }
 
 TEST_F(Levels, OneMeshInManyNodesIsOne) {
@@ -151,9 +145,7 @@ TEST_F(Levels, OfAFolderEachFileIsAMesh) {
     ImportOptions options;
     options.names = {"a"};
     EXPECT_EQ(importLevel(folder_, options).error().code, ErrorCode::kUsage);
-    ImportLimits limits;
-    limits.triangles = 9;
-    EXPECT_EQ(importLevel(folder_, {}, limits).error().code, ErrorCode::kLimit) << "12 together";
+    EXPECT_EQ(importLevel(folder_, {}, {.triangles = 9}).error().code, ErrorCode::kLimit) << "12 together";
     write("e.gltf", tetrahedronGltf());
     expectRefused(importLevel(folder_), "has a unit, unlike files before it; give --unit");
     options.names.clear();
@@ -167,12 +159,9 @@ TEST_F(Levels, OfAFolderEachFileIsAMesh) {
 
 TEST_F(Levels, TrianglesOfAMeshCountOnceAndBodiesHaveALimit) {
     const fs::path path = write("l.gltf", manyNodes(100));
-    ImportLimits limits;
-    limits.triangles = 50;
+    ImportLimits limits{.triangles = 50};
     EXPECT_FALSE(importMeshInWorker(path, {}, limits));
-    const Result<Level> read = importLevelInWorker(path, {}, limits);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->bodies.size(), 100U);
+    EXPECT_EQ(required(importLevelInWorker(path, {}, limits)).bodies.size(), 100U);
     limits.triangles = 3;
     expectRefused(importLevelInWorker(path, {}, limits), "--max-triangles", ErrorCode::kLimit);
     expectRefused(importLevelInWorker(write("m.gltf", manyNodes(kLevelBodiesMax + 1))), "65536",
@@ -219,9 +208,8 @@ TEST_F(Levels, AnswersOfAWorkerThatLiesAreRefused) {
     honest.triangles = {{0, 1, 2}};
     honest.level_meshes = {{"m", 3, 1}};
     honest.level_bodies = {{0, "n", {0, 0, 0}, {0, 0, 0, 1}, 1.0}};
-    const Result<ImportSource> source = ImportSource::open(write("l.obj", "v 0 0 0\n"));
-    ASSERT_TRUE(source);
-    EXPECT_FALSE(source->finish(honest)) << "a level that nobody wanted";
+    const ImportSource source = required(ImportSource::open(write("l.obj", "v 0 0 0\n")));
+    EXPECT_FALSE(source.finish(honest)) << "a level that nobody wanted";
     const double nan = std::numeric_limits<double>::quiet_NaN();
     expectLiesRefused(honest,
                       {
@@ -242,7 +230,7 @@ TEST_F(Levels, AnswersOfAWorkerThatLiesAreRefused) {
                           [](TriangleMesh& raw) { raw.triangles[0].x = 3; },
                           [&](TriangleMesh& raw) { raw.positions[0].x = static_cast<float>(nan); },
                       },
-                      [&](TriangleMesh raw) { return source->finishLevel(std::move(raw)).has_value(); });
+                      [&](TriangleMesh raw) { return source.finishLevel(std::move(raw)).has_value(); });
 }
 
 }  // namespace
