@@ -2,8 +2,6 @@
 // A request and its fields: read from words, written as a command line, and read from what containers record.
 #include "bake/director/bake_request.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -33,14 +31,12 @@ std::string wordsOf(const std::string& options) {
 
 TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
     BakeRequest request;
-    ASSERT_TRUE(setField(request, "map", "cube:size=16,compare=less"));
-    ASSERT_TRUE(setField(request, "decode", "projected"));
-    ASSERT_TRUE(setField(request, "depth", "half"));
-    ASSERT_TRUE(setField(request, "paper", "true"));
-    ASSERT_TRUE(setField(request, "budget", "1.5MB"));
-    ASSERT_TRUE(setField(request, "max_error", "2.5%"));
-    ASSERT_TRUE(setField(request, "thickness", "auto=0.25"));
-    ASSERT_TRUE(setField(request, "up", "-z"));
+    for (const std::string field :
+         {"map=cube:size=16,compare=less", "decode=projected", "depth=half", "paper=true", "budget=1.5MB",
+          "max_error=2.5%", "thickness=auto=0.25", "up=-z"}) {
+        const std::size_t equals = field.find('=');
+        ASSERT_TRUE(setField(request, field.substr(0, equals), field.substr(equals + 1))) << field;
+    }
     EXPECT_EQ(request.budget, 1'500'000U);
     EXPECT_EQ(request.max_error, 2.5F);
     EXPECT_TRUE(request.thickness && request.thickness->by_part);
@@ -73,10 +69,7 @@ TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
           std::tuple{"threads", "1.5", "--threads is '1.5' but must be"},
           std::tuple{"no_such", "1", "unknown option --no-such"}}) {
         BakeRequest request;
-        const Result<void> set = setField(request, name, word);
-        ASSERT_FALSE(set) << name;
-        EXPECT_EQ(set.error().code, ErrorCode::kUsage);
-        EXPECT_TRUE(set.error().message.starts_with(begin)) << set.error().message;
+        expectError(setField(request, name, word), ErrorCode::kUsage, begin);
     }
 }
 
@@ -89,11 +82,8 @@ TEST(BakeRequest, LengthsMayHaveAUnitBehindThem) {
     }
     for (const char* word : {"1inch", "cm", "0mm", "-1cm", "1cmm", "1e30km"}) {
         BakeRequest request;
-        const Result<void> set = setField(request, "texel", word);
-        ASSERT_FALSE(set) << word;
-        EXPECT_TRUE(set.error().message.starts_with("--texel is '" + std::string(word) +
-                                                    "' but must be a length above 0"))
-            << set.error().message;
+        expectError(setField(request, "texel", word), ErrorCode::kUsage,
+                    "--texel is '" + std::string(word) + "' but must be a length above 0");
     }
 }
 
@@ -183,23 +173,18 @@ TEST(RecordedBake, NamesSurviveTheRecord) {
     }
     BakeRequest request;
     request.map = {"cube:size=8"};
-    Result<BakeResult> baked = bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1}));
-    ASSERT_TRUE(baked) << baked.error().message;
-    Collider& collider = baked->baked.collider;
+    BakeResult baked = required(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
+    Collider& collider = baked.baked.collider;
     for (const std::string& word : asWords(report)) {
         collider.provenance.options.push_back({"as", word});
     }
-    const Result<std::vector<std::byte>> bytes = writeContainer(collider);
-    ASSERT_TRUE(bytes) << bytes.error().message;
-    const Result<Collider> back = readContainer(*bytes);
-    ASSERT_TRUE(back) << back.error().message;
-    const RecordedBake read = recordedBake(back->provenance.options);
+    const Collider back = required(readContainer(required(writeContainer(collider))));
+    const RecordedBake read = recordedBake(back.provenance.options);
     EXPECT_TRUE(read.understood);
-    const Result<ShapeOptions> shape = parseShapeOptions(read.request.as);
-    ASSERT_TRUE(shape);
-    EXPECT_EQ(shape->as, options.as);
-    EXPECT_EQ(shape->named, options.named);
-    EXPECT_TRUE(back->provenance.optionsText().ends_with(" --as %41=terrain"));
+    const ShapeOptions shape = required(parseShapeOptions(read.request.as));
+    EXPECT_EQ(shape.as, options.as);
+    EXPECT_EQ(shape.named, options.named);
+    EXPECT_TRUE(back.provenance.optionsText().ends_with(" --as %41=terrain"));
     const RecordedBake old = recorded("--as caf\xc3\xa9%20%41%25=shell");
     EXPECT_EQ(old.request.as, std::vector<std::string>{"caf\xc3\xa9 A%=shell"});
 }
@@ -210,18 +195,15 @@ TEST(RecordedBake, KnowsIfVoidsAreFull) {
         request.budget = 20'000;
         request.thickness = Thickness{0.06, false};
         request.voids = voids;
-        Result<BakeResult> baked = bake(request, {}, makeRooms());
-        EXPECT_TRUE(baked) << baked.error().message;
-        Collider& collider = baked->baked.collider;
+        BakeResult baked = required(bake(request, {}, makeRooms()));
+        Collider& collider = baked.baked.collider;
         if (forget) {
             std::erase_if(collider.provenance.options,
                           [](const RecordedOption& o) { return o.name == "voids"; });
         }
         CheckRequest check_request;
         check_request.samples = 1'000;
-        const Result<MeshCheck> checked = check(check_request, std::move(collider), makeRooms());
-        EXPECT_TRUE(checked) << checked.error().message;
-        return checked->shape.voids;
+        return required(check(check_request, std::move(collider), makeRooms())).shape.voids;
     };
     EXPECT_EQ(checkedVoids({}, false), 1U);
     EXPECT_EQ(checkedVoids(VoidsAs::kHollow, false), 0U);
@@ -232,18 +214,13 @@ TEST(RecordedBake, MakesTheSolidThatWasBaked) {
     TriangleMesh box = makeBoxMesh({0, 0, 0}, {1, 1, 1});
     box.triangles.pop_back();
     const auto solid = [&](const char* options) { return makeSolid(recorded(options).request, box); };
-    const Result<ShapedMesh> closed = solid("");
-    ASSERT_TRUE(closed);
-    EXPECT_TRUE(closed->mesh.closed());
-    const Result<ShapedMesh> kept = solid("--holes keep");
-    ASSERT_TRUE(kept);
-    EXPECT_EQ(kept->mesh->triangles.size(), 11U);
-    const Result<ShapedMesh> shell = solid("--as shell --thickness 0.1");
-    ASSERT_TRUE(shell);
-    EXPECT_NEAR(shell->report.thickness, 0.1, 1e-6);
-    const Result<ShapedMesh> wrapped = repairedSolid(recorded("--holes keep --repair wrap=0.1").request, box);
-    ASSERT_TRUE(wrapped);
-    EXPECT_TRUE(wrapped->mesh.closed());
+    const ShapedMesh closed = required(solid(""));
+    EXPECT_TRUE(closed.mesh.closed());
+    EXPECT_EQ(required(solid("--holes keep")).mesh->triangles.size(), 11U);
+    EXPECT_NEAR(required(solid("--as shell --thickness 0.1")).report.thickness, 0.1, 1e-6);
+    const ShapedMesh wrapped =
+        required(repairedSolid(recorded("--holes keep --repair wrap=0.1").request, box));
+    EXPECT_TRUE(wrapped.mesh.closed());
     // A record like this must not make a check run for hours.
     EXPECT_FALSE(repairedSolid(recorded("--repair wrap=0.001").request, box));
 }
@@ -284,43 +261,39 @@ TEST(Director, BakesTheRestPoseOfAMeshThatMoves) {
     request.mesh = folder.write("box.gltf", document).string();
     request.animated = true;
     request.resolution = 32;
-    const Result<BakeResult> baked = bake(request);
-    ASSERT_TRUE(baked) << baked.error().message;
-    const Collider& collider = baked->baked.collider;
+    const BakeResult baked = required(bake(request));
+    const Collider& collider = baked.baked.collider;
     EXPECT_EQ(collider.bounds.min, glm::vec3(0, 0, 5)) << "where it is at rest";
     EXPECT_EQ(collider.maps.size(), 3U);
     EXPECT_EQ(collider.provenance.optionsText(), "--quality normal --resolution 32 --animated");
     const RecordedBake again = recordedBake(collider.provenance.options);
     EXPECT_TRUE(again.understood && again.request.animated && settingsOf(again.request));
-    const Result<AnimatedMesh> mesh = readAnimatedMesh(collider.animation);
-    ASSERT_TRUE(mesh);
-    ASSERT_EQ(mesh->triangles.size(), 13U);
+    const AnimatedMesh mesh = required(readAnimatedMesh(collider.animation));
+    ASSERT_EQ(mesh.triangles.size(), 13U);
     // Outside by the maps is outside where the mesh is drawn too.
     double volume = 0.0;
-    for (const glm::uvec3& t : mesh->triangles) {
-        volume += glm::dot(mesh->positions[t.x], glm::cross(mesh->positions[t.y], mesh->positions[t.z]));
+    for (const glm::uvec3& t : mesh.triangles) {
+        volume += glm::dot(mesh.positions[t.x], glm::cross(mesh.positions[t.y], mesh.positions[t.z]));
     }
     EXPECT_NEAR(volume, 6.0, 1e-5);
-    EXPECT_EQ(findClip(*mesh, "go"), 0U);
+    EXPECT_EQ(findClip(mesh, "go"), 0U);
+}
+
+MeshCheck checkOf(const BakeResult& baked, const TriangleMesh& mesh) {
+    CheckRequest request;
+    request.samples = 2000;
+    return required(check(request, baked.baked.collider, mesh));
 }
 
 TEST(Director, BakesAMeshInMemory) {
     BakeRequest request;
     request.budget = 60'000;
-    const Result<BakeResult> planned = bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1}));
-    ASSERT_TRUE(planned) << planned.error().message;
-    EXPECT_LE(planned->baked.collider.gpuBytes(), 60'000U);
-    EXPECT_TRUE(planned->plan && planned->wrong && planned->wrong->total() < 5.0);
-    CheckRequest fewer;
-    fewer.samples = 2000;
-    const Result<MeshCheck> checked =
-        check(fewer, planned->baked.collider, makeBoxMesh({0, 0, 0}, {1, 1, 1}));
-    ASSERT_TRUE(checked) << checked.error().message;
-    EXPECT_LT(checked->wrongPercent(), 5.0);
+    const BakeResult planned = required(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
+    EXPECT_LE(planned.baked.collider.gpuBytes(), 60'000U);
+    EXPECT_TRUE(planned.plan && planned.wrong && planned.wrong->total() < 5.0);
+    EXPECT_LT(checkOf(planned, makeBoxMesh({0, 0, 0}, {1, 1, 1})).wrongPercent(), 5.0);
     // bakeSolid() makes the same maps of a mesh that needs nothing before.
-    const Result<Baked> solid = bakeSolid(request, planned->mesh.mesh);
-    ASSERT_TRUE(solid);
-    EXPECT_EQ(solid->collider.maps, planned->baked.collider.maps);
+    EXPECT_EQ(required(bakeSolid(request, planned.mesh.mesh)).collider.maps, planned.baked.collider.maps);
     request.import.unit = "mm";
     EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
 }
@@ -335,15 +308,14 @@ TEST(Director, WarnsWhereTheGradeIsNotGood) {
     BakeRequest request;
     for (const auto& [budget, grade] : {std::pair{32'000U, "fair"}, {64'000U, "good"}}) {
         request.budget = budget;
-        const Result<BakeResult> baked = bake(request, {}, joined(rods));
-        ASSERT_TRUE(baked) << baked.error().message;
-        EXPECT_EQ(gradeOf(baked->wrong->total()), grade) << baked->wrong->total();
+        const BakeResult baked = required(bake(request, {}, joined(rods)));
+        EXPECT_EQ(gradeOf(baked.wrong->total()), grade) << baked.wrong->total();
         const std::string warned = "% wrong near the surface; try --budget";
         EXPECT_EQ(std::ranges::any_of(
-                      baked->baked.report.warnings,
+                      baked.baked.report.warnings,
                       [&](const std::string& warning) { return warning.find(warned) != std::string::npos; }),
                   budget == 32'000U);
-        EXPECT_NE(bakeText(baked->summary(false), "x.relief", 1).find("% wrong near the surface"),
+        EXPECT_NE(bakeText(baked.summary(false), "x.relief", 1).find("% wrong near the surface"),
                   std::string::npos);
     }
 }
@@ -353,22 +325,18 @@ TEST(Director, AdvisesNothingButTheOriginWhereFloatsAreCoarse) {
                                     [](const glm::dvec3& p) { return p + glm::dvec3(4e5, 0.0, 8e5); });
     BakeRequest request;
     request.budget = 20'000;
-    const Result<BakeResult> baked = bake(request, {}, mesh);
-    ASSERT_TRUE(baked) << baked.error().message;
-    ASSERT_GT(baked->wrong->total(), 5.0);
+    const BakeResult baked = required(bake(request, {}, mesh));
+    ASSERT_GT(baked.wrong->total(), 5.0);
     const std::string warning = coarseFloatsWarning(mesh).value();
     EXPECT_NE(warning.find("move it to the origin"), std::string::npos);
     // The share is stated all the same, without a budget.
-    ASSERT_EQ(baked->baked.report.warnings.size(), 2U);
-    EXPECT_EQ(baked->baked.report.warnings[0], warning);
-    EXPECT_NE(baked->baked.report.warnings[1].find("% wrong near the surface; move it to the origin"),
+    ASSERT_EQ(baked.baked.report.warnings.size(), 2U);
+    EXPECT_EQ(baked.baked.report.warnings[0], warning);
+    EXPECT_NE(baked.baked.report.warnings[1].find("% wrong near the surface; move it to the origin"),
               std::string::npos);
-    CheckRequest fewer;
-    fewer.samples = 2000;
-    const Result<MeshCheck> checked = check(fewer, baked->baked.collider, mesh);
-    ASSERT_TRUE(checked) << checked.error().message;
-    EXPECT_EQ(checked->warnings, std::vector{warning});
-    EXPECT_TRUE(adviceFor(*checked, "mesh.obj", "out.relief").empty());
+    const MeshCheck checked = checkOf(baked, mesh);
+    EXPECT_EQ(checked.warnings, std::vector{warning});
+    EXPECT_TRUE(adviceFor(checked, "mesh.obj", "out.relief").empty());
     EXPECT_FALSE(coarseFloatsWarning(makeIcosphere({0, 0, 0}, 1.0, 1)));
 }
 

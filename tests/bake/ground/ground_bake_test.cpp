@@ -2,8 +2,6 @@
 // Height maps baked into tiles: seams against the exact surface, and drops that fall on them.
 #include "bake/ground/ground_bake.h"
 
-#include <gtest/gtest.h>
-
 #include <map>
 #include <random>
 

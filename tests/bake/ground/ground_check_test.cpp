@@ -2,8 +2,6 @@
 // Ground measured against its height map: what is off by a known length, and what is lost, must be found.
 #include "bake/ground/ground_check.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/bake/ground/height_grids.h"
 #include "tests/bake/threads.h"
 
@@ -31,9 +29,7 @@ class GroundChecks : public RawHeights {
     }
     [[nodiscard]] GroundAccuracy check(const char* name, const std::string& settings,
                                        const WorldField& field) const {
-        Result<GroundAccuracy> result = tryCheck(name, spec(settings), field);
-        EXPECT_TRUE(result) << result.error().message;
-        return result ? std::move(*result) : GroundAccuracy();
+        return required(tryCheck(name, spec(settings), field));
     }
 };
 
@@ -134,10 +130,7 @@ TEST_F(GroundChecks, WrongMapsAndBodiesAreRefused) {
     const WorldField turned(std::move(loaded));
     const auto refused = [&](const char* name, const char* settings, const WorldField& ground,
                              std::uint64_t samples, ErrorCode code, const char* words) {
-        const Result<GroundAccuracy> result = tryCheck(name, spec(settings), ground, samples);
-        ASSERT_FALSE(result);
-        EXPECT_EQ(result.error().code, code);
-        EXPECT_NE(result.error().message.find(words), std::string::npos) << result.error().message;
+        expectError(tryCheck(name, spec(settings), ground, samples), code, words);
     };
     refused("other.raw", "", field, 100, ErrorCode::kInvalidInput,
             "other.raw: its ground lies from (0, 0) to (119, 119)");

@@ -2,8 +2,6 @@
 // Trees of patches from heights against closed forms and the exact bilinear surface.
 #include "bake/ground/ground_tree.h"
 
-#include <gtest/gtest.h>
-
 #include <functional>
 #include <random>
 
@@ -173,10 +171,9 @@ TEST(GroundTree, SquaresThatTouchAHoleHaveNoGround) {
     EXPECT_GE(vote(cut.map, {3.5F, 4.7F, 2.5F})->distance, 0.0F);
     EXPECT_LT(vote(cut.map, {5.5F, 4.9F, 2.5F})->distance, 0.0F);
     // Without any square there is nothing.
-    const Result<Ground> none =
-        bakeGround(gridOf(5, 5, [](double x, double) { return x == 2.0 ? 1.0 : double{kHole}; }), {});
-    ASSERT_TRUE(none);
-    EXPECT_EQ(none->squares, 0U);
+    const Ground none = required(
+        bakeGround(gridOf(5, 5, [](double x, double) { return x == 2.0 ? 1.0 : double{kHole}; }), {}));
+    EXPECT_EQ(none.squares, 0U);
 }
 
 TEST(GroundTree, SteepSquaresErrAsideByLessThanAShareOfASquare) {
@@ -224,10 +221,7 @@ TEST(GroundTree, HeightsThatNoTreeHoldsAreRefusedBeforeTheyTakeMemory) {
     std::mt19937 random(seedFrom(2));
     const HeightGrid noise = gridOf(600, 600, [&](double, double) { return 1e5 * double(random() % 1000); });
     for (const GroundPlace& place : {GroundPlace{1.0, {}}, GroundPlace{1e-3, {}}, GroundPlace{1e-6, {}}}) {
-        const Result<Ground> ground = bakeGround(noise, place);
-        ASSERT_FALSE(ground);
-        EXPECT_EQ(ground.error().code, ErrorCode::kLimit);
-        EXPECT_NE(ground.error().message.find("larger spacing"), std::string::npos) << ground.error().message;
+        expectError(bakeGround(noise, place), ErrorCode::kLimit, "larger spacing");
     }
 }
 

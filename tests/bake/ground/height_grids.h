@@ -14,6 +14,7 @@
 #include "formats/base/file_io.h"
 #include "formats/container.h"
 #include "formats/world/world_field.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -62,28 +63,23 @@ class RawHeights : public testing::Test {
     }
     [[nodiscard]] Result<GroundResult> tryBake(const char* name, const HeightsSpec& heights,
                                                const std::filesystem::path& into) const {
-        Result<HeightMap> map = HeightMap::open(folder_.path() / name, heights);
-        EXPECT_TRUE(map) << map.error().message;
+        HeightMap map = required(HeightMap::open(folder_.path() / name, heights));
         GroundOptions options;
         options.heights = heights;
         options.folder = into;
-        return bakeGroundOf(*map, options);
+        return bakeGroundOf(map, options);
     }
     /// \param into  empty: one container.
     [[nodiscard]] GroundResult bake(const char* name, const HeightsSpec& heights,
                                     const std::filesystem::path& into = {}) const {
-        Result<GroundResult> result = tryBake(name, heights, into);
-        EXPECT_TRUE(result) << result.error().message;
-        return std::move(*result);
+        return required(tryBake(name, heights, into));
     }
     [[nodiscard]] std::filesystem::path world() const {
         std::filesystem::create_directories(folder_.path() / "world");
         return folder_.path() / "world";
     }
     [[nodiscard]] WorldField load(WorldDetail detail = WorldDetail::kFine) const {
-        Result<LoadedWorld> loaded = loadWorld(world() / kWorldFileName, {}, detail);
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        return WorldField(std::move(*loaded));
+        return WorldField(required(loadWorld(world() / kWorldFileName, {}, detail)));
     }
 
     TemporaryFolder folder_;

@@ -3,8 +3,6 @@
 // closed form. A tree whose cells are too large, not dilated or turned the wrong way is wrong at more than a hundredth of them.
 #include "bake/materials/material_tree.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -190,9 +188,7 @@ BakeResult baked(const TriangleMesh& mesh, const Format& format, std::optional<u
     }
     request.no_check = true;
     request.threads = threads;
-    Result<BakeResult> result = bake(request, {}, mesh);
-    EXPECT_TRUE(result) << format.name << ": " << (result ? "" : result.error().message);
-    return result ? std::move(*result) : BakeResult();
+    return required(bake(request, {}, mesh));
 }
 
 bool isWithinItsShare(const Collider& collider) {
@@ -246,11 +242,7 @@ TEST(MaterialTree, IsTheSameForAnyNumberOfThreadsAndSurvivesTheContainer) {
     const Collider collider = baked(scene.mesh, patches, 1).baked.collider;
     EXPECT_EQ(collider, baked(scene.mesh, patches, 4).baked.collider);
     for (const int level : {0, 3}) {
-        const auto bytes = writeContainer(collider, {level});
-        ASSERT_TRUE(bytes);
-        const auto read = readContainer(*bytes);
-        ASSERT_TRUE(read) << read.error().message;
-        EXPECT_EQ(*read, collider);
+        EXPECT_EQ(required(readContainer(required(writeContainer(collider, {level})))), collider);
     }
 }
 
@@ -291,18 +283,14 @@ TEST(MaterialTree, TooManyNamesAndOneWithTwoResponsesAreErrors) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         mesh.labels.push_back(i % 300);
     }
-    const auto many = materialSource(mesh, false);
-    ASSERT_FALSE(many);
-    EXPECT_EQ(many.error().code, ErrorCode::kLimit);
+    expectError(materialSource(mesh, false), ErrorCode::kLimit);
     mesh.surface_names = {{0, "floor", "wood", 0.5F, 0.0F}, {1, "door", "wood", 0.25F, 0.0F}};
     for (std::uint32_t& label : mesh.labels) {
         label %= 2;
     }
-    const auto twice = materialSource(mesh, false);
-    ASSERT_FALSE(twice);
-    EXPECT_EQ(twice.error().code, ErrorCode::kInvalidInput);
-    EXPECT_NE(twice.error().message.find("'wood'"), std::string::npos) << twice.error().message;
-    EXPECT_NE(twice.error().message.find("'door'"), std::string::npos) << twice.error().message;
+    for (const char* const name : {"'wood'", "'door'"}) {
+        expectError(materialSource(mesh, false), ErrorCode::kInvalidInput, name);
+    }
 }
 
 }  // namespace

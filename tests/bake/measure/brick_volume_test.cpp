@@ -43,9 +43,7 @@ TEST(BrickVolume, PlaneIsExactButForTheCodes) {
 TEST(BrickVolume, SignsOfTwoBallsAreRightBeyondTheBendOfAVoxel) {
     const MeshQuery query =
         queryOf(joined({makeIcosphere({-1.5, 0, 0}, 1.0, 5), makeIcosphere({1.25, 0.2, 0}, 0.75, 5)}));
-    AccuracyOptions options;
-    options.samples = 2000;
-    const TruthSamples samples = sampleTruth(query, options);
+    const TruthSamples samples = sampleTruth(query, {.samples = 2000});
     for (const BrickLayout& layout : layouts()) {
         const BrickVolume volume = BrickVolume::build(query, layout, 100'000);
         // Between nodes a distance bends by an eighth of the curvature a voxel squared, along each of two axes; leaves of

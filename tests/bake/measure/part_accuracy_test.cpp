@@ -3,8 +3,6 @@
 // that makes a sheet thicker than anybody asked for.
 #include "bake/measure/part_accuracy.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <glm/common.hpp>
 
@@ -84,9 +82,7 @@ TEST(PartAccuracy, APillarThatIsAbsentIsLostHoweverLittleOfTheAreaItIs) {
 }
 
 PartOptions fewPoints() {
-    PartOptions options;
-    options.points = 100;
-    return options;
+    return {.points = 100};
 }
 
 /// A slab of 200 with 60 boxes on it, of which the field knows none.
@@ -216,13 +212,11 @@ TEST(PartAccuracy, CoarsePartsCountByTheirArea) {
 }
 
 TEST(PartAccuracy, TheSmallestOfTooManyPartsAreCounted) {
-    PartOptions options;
-    options.parts_max = 50;
     std::vector<TriangleMesh> boxes;
     for (int i = 0; i < 60; ++i) {
         boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(1.0)));
     }
-    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes({}), options);
+    const PartsAccuracy found = measured(shaped(joined(boxes)), fieldOfBoxes({}), {.parts_max = 50});
     EXPECT_EQ(found.ignored.unmeasured, 10U);
     EXPECT_NE(verdictOf(0.0, found, "").text.find("10 parts are not measured"), std::string::npos);
 }
@@ -316,11 +310,9 @@ TEST(PartAccuracy, IsTheSameForAnyNumberOfThreads) {
         boxes.push_back(makeBoxMesh({3.0 * i, 0.0, 0.0}, glm::dvec3(0.1 + 0.03 * i)));
     }
     const ShapedMesh shape = shaped(joined(boxes));
-    PartOptions options;
-    options.parts_max = 30;
-    options.points_all = 3000;
     const auto measure = [&] {
-        return measured(shape, fieldOfBoxes({boxes[5].bounds, boxes[30].bounds}), options);
+        return measured(shape, fieldOfBoxes({boxes[5].bounds, boxes[30].bounds}),
+                        {.points_all = 3000, .parts_max = 30});
     };
     const PartsAccuracy all = measure();
     const PartsAccuracy again = onThreads(1, measure);

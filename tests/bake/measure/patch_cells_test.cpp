@@ -19,10 +19,8 @@ constexpr glm::vec3 kUp(0.0F, 0.0F, 1.0F);
 /// Two roots beside each other along x, each 4 object units wide, from the origin. The first is split; of its octants 1 is a
 /// patch of 3² heights, 6 is split and holds a patch of 5², and the others have no record. The second root is outside.
 DepthMap handMade() {
-    PatchHeights five;
-    five.side = 5;
-    PatchHeights three;
-    three.side = 3;
+    PatchHeights five{.side = 5};
+    PatchHeights three{.side = 3};
     DepthMap map;
     map.format = MapFormat::kPatches;
     map.decode = Decode::kPlane;

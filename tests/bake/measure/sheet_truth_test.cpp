@@ -2,7 +2,6 @@
 // The truth about shells against closed forms, and what it finds in a hollow one that its own solid calls right.
 #include "bake/bench/sheet_truth.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "bake/measure/accuracy.h"
@@ -13,10 +12,7 @@ namespace relief::test {
 namespace {
 
 ShapeOptions shellOf(double thickness) {
-    ShapeOptions options;
-    options.as = ShapeAs::kShell;
-    options.thickness = thickness;
-    return options;
+    return {.as = ShapeAs::kShell, .thickness = thickness};
 }
 
 /// The share of the points that a solid has on the wrong side.
@@ -36,9 +32,7 @@ TEST(SheetTruth, ARodInsideItsShellIsFull) {
     EXPECT_EQ(truth->inside({0, 0.071F, 0}), false);
     EXPECT_EQ(truth->inside({0, 0.05F, 0.05F}), std::nullopt);  // at an edge: its mitre
     const MeshQuery solid = queryOf(shaped.mesh);
-    AccuracyOptions options;
-    options.samples = 5000;
-    const std::vector<TruthPoint> points = truth->sample(solid, options);
+    const std::vector<TruthPoint> points = truth->sample(solid, {.samples = 5000});
     EXPECT_GT(points.size(), 4000U);
     EXPECT_EQ(wrongIn(solid, points).total(), 0.0);
     // As it was when its inner offset turned over: hollow by 0.03. A point of that solid's own has nothing against it.
@@ -57,8 +51,7 @@ TEST(SheetTruth, ASheetAndABlockAreEachAsTheyCame) {
     const Result<SheetTruth> truth = SheetTruth::build(PreparedMesh(mesh), shaped);
     ASSERT_TRUE(truth && !truth->empty());
     EXPECT_EQ(truth->inside({5, 0, 0}), false);
-    AccuracyOptions few;
-    few.samples = 2000;
+    AccuracyOptions few{.samples = 2000};
     const std::vector<TruthPoint> points = truth->sample(queryOf(shaped.mesh), few);
     EXPECT_GT(points.size(), 1900U);
     for (const TruthPoint& point : points) {
@@ -66,9 +59,8 @@ TEST(SheetTruth, ASheetAndABlockAreEachAsTheyCame) {
     }
     // Of a mesh without sheets there is nothing to measure.
     const TriangleMesh block = makeBoxMesh({0, 0, 0}, {1, 1, 1});
-    const Result<SheetTruth> none = SheetTruth::build(PreparedMesh(block), shapedBy(block, options));
-    ASSERT_TRUE(none);
-    EXPECT_TRUE(none->empty() && none->sample(queryOf(block), few).empty());
+    const SheetTruth none = required(SheetTruth::build(PreparedMesh(block), shapedBy(block, options)));
+    EXPECT_TRUE(none.empty() && none.sample(queryOf(block), few).empty());
 }
 
 }  // namespace

@@ -3,10 +3,8 @@
 // lies behind another part, sheets and open meshes.
 #include "bake/measure/worst_places.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "tests/bake/meshes.h"
@@ -23,11 +21,10 @@ struct Measured {
 };
 
 Measured measured(const TriangleMesh& mesh, const Collider& collider, std::uint32_t samples = 40'000) {
-    const Result<MeshQuery> query = MeshQuery::build(mesh);
-    EXPECT_TRUE(query);
-    const TruthSamples truth = sampleTruth(*query, {.samples = samples});
-    const Sights sights(collider.maps, *query);
-    return {worstPlaces(truth, *query, sights, collider), sights.unseenPercent(truth.surface)};
+    const MeshQuery query = required(MeshQuery::build(mesh));
+    const TruthSamples truth = sampleTruth(query, {.samples = samples});
+    const Sights sights(collider.maps, query);
+    return {worstPlaces(truth, query, sights, collider), sights.unseenPercent(truth.surface)};
 }
 
 std::vector<std::string> threeViews(const std::string& size) {

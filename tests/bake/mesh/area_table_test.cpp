@@ -2,8 +2,6 @@
 // Triangles by their share of the area, against a sum over all of them.
 #include "bake/mesh/area_table.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
 #include <vector>

@@ -2,8 +2,6 @@
 // What a ray through a mesh costs, against counts by hand.
 #include "bake/mesh/ray_cost.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 

@@ -2,8 +2,6 @@
 // Parts by labels, and those that lie astray.
 #include "bake/mesh/surface_parts.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/bake/meshes.h"
 
 namespace relief::test {

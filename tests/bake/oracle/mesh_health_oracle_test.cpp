@@ -20,11 +20,10 @@ TEST(MeshHealthOracle, CountsAreCgals) {
     ASSERT_EQ(std::system(unpack.c_str()), 0) << "Debian package libcgal-demo";
     for (const char* name :
          {"man", "lion-head", "mech-holes-shark", "blobby_3cc", "knot2", "mushroom", "pig"}) {
-        const Result<TriangleMesh> mesh =
-            importMesh(folder.path() / "data/meshes" / (std::string(name) + ".off"));
-        ASSERT_TRUE(mesh) << mesh.error().message;
-        const MeshHealth health = inspectMesh(*mesh);
-        const SurfaceMesh surface = toCgal(*mesh);
+        const TriangleMesh mesh =
+            required(importMesh(folder.path() / "data/meshes" / (std::string(name) + ".off")));
+        const MeshHealth health = inspectMesh(mesh);
+        const SurfaceMesh surface = toCgal(mesh);
         std::uint64_t borders = 0;
         for (const SurfaceMesh::Halfedge_index h : surface.halfedges()) {
             borders += surface.is_border(h) ? 1U : 0U;

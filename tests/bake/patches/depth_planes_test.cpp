@@ -74,14 +74,13 @@ void expectTheNearerFace(const Plate& plate, double beside = 0.0) {
     double off = 0.0;
     for (int i = 0; i < 5000; ++i) {
         const Plate::Point point = plate.pointAt(random, 0.005, 0.45);
-        const std::optional<Vote> found = vote(plate.map, point.position);
-        ASSERT_TRUE(found);
-        ASSERT_LT(found->distance, 0.0F);
+        const Vote found = vote(plate.map, point.position).value();
+        ASSERT_LT(found.distance, 0.0F);
         if (std::abs((glm::conjugate(plate.turn) * glm::dvec3(point.position)).x) < beside) {
             continue;
         }
-        turned = std::max(turned, degreesBetween(found->normal, point.normal));
-        off = std::max(off, std::abs(double{found->distance} + point.depth));
+        turned = std::max(turned, degreesBetween(found.normal, point.normal));
+        off = std::max(off, std::abs(double{found.distance} + point.depth));
     }
     EXPECT_LT(turned, 1.0);
     EXPECT_LT(off, 0.01);
@@ -103,11 +102,10 @@ TEST_P(PlateTest, PointsBesideAFaceHaveItsSideAndItsNormal) {
     int wrong = 0;
     for (int i = 0; i < 5000; ++i) {
         const Plate::Point point = plate.pointAt(random, -0.05, 0.05);
-        const std::optional<Vote> found = vote(plate.map, point.position);
-        ASSERT_TRUE(found);
-        wrong += std::abs(point.depth) > 1e-3 && (found->distance < 0.0F) != (point.depth > 0.0) ? 1 : 0;
-        if (found->distance < kFarOutside) {  // else it is beyond the volume of the map
-            turned = std::max(turned, degreesBetween(found->normal, point.normal));
+        const Vote found = vote(plate.map, point.position).value();
+        wrong += std::abs(point.depth) > 1e-3 && (found.distance < 0.0F) != (point.depth > 0.0) ? 1 : 0;
+        if (found.distance < kFarOutside) {  // else it is beyond the volume of the map
+            turned = std::max(turned, degreesBetween(found.normal, point.normal));
         }
     }
     EXPECT_EQ(wrong, 0);

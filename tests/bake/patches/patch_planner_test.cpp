@@ -26,11 +26,8 @@ DepthMap checked(const MeshQuery& query, std::uint64_t bytes) {
 }
 
 double wrongPercent(const MeshQuery& query, const DepthMap& map, std::uint32_t points) {
-    AccuracyOptions options;
-    options.samples = points;
-    options.seed = 5;
     int wrong = 0;
-    for (const TruthPoint& point : sampleNear(query, options)) {
+    for (const TruthPoint& point : sampleNear(query, {.samples = points, .seed = 5})) {
         wrong += (vote(map, point.position)->distance < 0.0F) != point.inside() ? 1 : 0;
     }
     return 100.0 * wrong / points;
@@ -128,11 +125,9 @@ TEST(CellColumns, AgreeWithRaysThroughTheMesh) {
     // Even numbers, in whose planes the cells' faces would lie.
     expectColumnsAgree(queryOf(makeBoxMesh({0, 0, 0}, {1, 0.5, 0.25})), 0);
     // Two balls that overlap are one solid by the winding number.
-    TriangleMesh balls =
-        joined({makeIcosphere({-0.3, 0, 0}, 1.0, 3), makeIcosphere({0.6, 0.2, 0.1}, 0.8, 3)});
-    const auto wound = windOutwards(std::move(balls));
-    ASSERT_TRUE(wound);
-    expectColumnsAgree(queryOf(wound->mesh), 0);
+    const auto balls =
+        windOutwards(joined({makeIcosphere({-0.3, 0, 0}, 1.0, 3), makeIcosphere({0.6, 0.2, 0.1}, 0.8, 3)}));
+    expectColumnsAgree(queryOf(required(balls).mesh), 0);
 }
 
 TEST(CellColumns, ClippedTrianglesAddUpToTheirArea) {
@@ -166,12 +161,11 @@ TEST(PatchPlanner, FacesOfABoxAreExactButForTheCodes) {
         const double z = 0.6 * unit(random);  // the same points by every compiler
         const double y = 1.0 + 0.01 * unit(random);
         const glm::dvec3 local(0.6 * unit(random), y, z);
-        const std::optional<Vote> said = vote(map, glm::vec3(axes * local));
-        ASSERT_TRUE(said);
+        const Vote said = vote(map, glm::vec3(axes * local)).value();
         // Beside the patches a cell has a coarse plane alone, whose normal is up to 2 degrees off: none has an edge of the box in it here.
-        ASSERT_NEAR(said->distance, local.y - 1.0, 0.02 * double{map.object_per_map.x});
-        ASSERT_TRUE((said->distance < 0.0F) == (local.y < 1.0) || std::abs(local.y - 1.0) < 1e-3);
-        ASSERT_GT(glm::dot(glm::dvec3(said->normal), axes[1]), 0.999);
+        ASSERT_NEAR(said.distance, local.y - 1.0, 0.02 * double{map.object_per_map.x});
+        ASSERT_TRUE((said.distance < 0.0F) == (local.y < 1.0) || std::abs(local.y - 1.0) < 1e-3);
+        ASSERT_GT(glm::dot(glm::dvec3(said.normal), axes[1]), 0.999);
     }
 }
 
@@ -273,11 +267,10 @@ TEST(PatchPlanner, BallsMistakesFallWithTheBytes) {
 }
 
 DepthMap byTexel(const MeshQuery& query, double texel) {
-    Result<PatchTree> tree = bakePatches(query, {.bytes = kPatchBytesMax, .texel = texel});
-    EXPECT_TRUE(tree) << tree.error().message;
-    EXPECT_EQ(tree->texel, texel);
-    EXPECT_TRUE(validateFrame(tree->map) && validateTexels(tree->map));
-    return std::move(tree->map);
+    PatchTree tree = required(bakePatches(query, {.bytes = kPatchBytesMax, .texel = texel}));
+    EXPECT_EQ(tree.texel, texel);
+    EXPECT_TRUE(validateFrame(tree.map) && validateTexels(tree.map));
+    return std::move(tree.map);
 }
 
 TEST(PatchTexel, ABallIsNowhereOffByMoreThanTheTexelAllows) {
@@ -323,9 +316,7 @@ TEST(PatchTexel, AThinHandleOfALargePlateIsThere) {
     for (const Box& box : boxes) {
         parts.push_back(makeBoxMesh(box.center, box.half));
     }
-    const auto wound = windOutwards(joined(parts));
-    ASSERT_TRUE(wound);
-    const MeshQuery query = queryOf(wound->mesh);
+    const MeshQuery query = queryOf(required(windOutwards(joined(parts))).mesh);
     const DepthMap map = byTexel(query, kTexel);
     MersenneRandom random(4);
     int inside = 0;
@@ -352,29 +343,26 @@ TEST(PatchTexel, AThinHandleOfALargePlateIsThere) {
 TEST(PatchTexel, WithinABudgetIsAsFineAsThatAllows) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 5));
     PatchOptions options{.bytes = 20'000, .texel = 0.001, .coarsen = true};
-    const Result<PatchTree> tree = bakePatches(query, options);
-    ASSERT_TRUE(tree) << tree.error().message;
-    EXPECT_LE(tree->map.texels.size(), 20'000U);
-    EXPECT_GT(tree->texel, 0.001);
+    const PatchTree tree = required(bakePatches(query, options));
+    EXPECT_LE(tree.map.texels.size(), 20'000U);
+    EXPECT_GT(tree.texel, 0.001);
     // A tree that takes less is not coarsened, and one that takes a little more than it may is refused. Without a budget the tree
     // has the same surface, and maybe more depth planes.
-    const DepthMap whole = byTexel(query, tree->texel);
-    EXPECT_GE(whole.texels.size(), tree->map.texels.size());
+    const DepthMap whole = byTexel(query, tree.texel);
+    EXPECT_GE(whole.texels.size(), tree.map.texels.size());
     MersenneRandom random(5);
     for (int i = 0; i < 10'000; ++i) {
         const glm::vec3 p(2.0 * inCube(random));
-        const std::optional<Vote> bounded = vote(tree->map, p);
+        const std::optional<Vote> bounded = vote(tree.map, p);
         ASSERT_EQ(bounded.has_value(), vote(whole, p).has_value());
         ASSERT_TRUE(!bounded || (bounded->distance < 0.0F) == (vote(whole, p)->distance < 0.0F));
     }
-    EXPECT_GT(byTexel(query, 0.9 * tree->texel).texels.size(), 20'000U);
-    options.texel = 2.0 * tree->texel;
+    EXPECT_GT(byTexel(query, 0.9 * tree.texel).texels.size(), 20'000U);
+    options.texel = 2.0 * tree.texel;
     EXPECT_EQ(bakePatches(query, options)->texel, options.texel);
     options.coarsen = false;
-    options.texel = 0.9 * tree->texel;
-    const Result<PatchTree> refused = bakePatches(query, options);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().code, ErrorCode::kLimit);
+    options.texel = 0.9 * tree.texel;
+    expectError(bakePatches(query, options), ErrorCode::kLimit);
     options.texel = 1e-7;
     EXPECT_EQ(bakePatches(query, options).error().code, ErrorCode::kUsage);
     EXPECT_LE(byTexel(query, 100.0).texels.size(), 256U) << "one cell";

@@ -42,9 +42,8 @@ struct Tree {
 };
 
 Tree cut(const TriangleMesh& mesh, const PatchOptions& planned, const PatchTileOptions& tiles) {
-    Result<PatchTree> tree = bakePatches(queryOf(mesh), planned);
-    EXPECT_TRUE(tree) << tree.error().message;
-    Tree made{std::move(tree->map), {}};
+    PatchTree tree = required(bakePatches(queryOf(mesh), planned));
+    Tree made{std::move(tree.map), {}};
     made.tiles = cutIntoTiles(made.whole, tiles);
     for (const PatchTile& tile : made.tiles) {
         EXPECT_TRUE(validateFrame(tile.map) && validateTexels(tile.map));

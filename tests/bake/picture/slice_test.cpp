@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/picture/slice.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/bake/meshes.h"
 
 namespace relief::test {
@@ -18,16 +14,15 @@ Collider sampleCollider() {
 TEST(Slice, HoldsTheFieldOfItsPoints) {
     const Collider collider = sampleCollider();
     for (int axis = 0; axis < 3; ++axis) {
-        const Result<Slice> slice = evaluateSlice(collider, {.axis = axis, .at = 0.125F, .size = 90});
-        ASSERT_TRUE(slice);
-        EXPECT_EQ(std::max(slice->width, slice->height), 90U);
+        const Slice slice = required(evaluateSlice(collider, {.axis = axis, .at = 0.125F, .size = 90}));
+        EXPECT_EQ(std::max(slice.width, slice.height), 90U);
         int inside = 0;
-        for (std::uint32_t y = 0; y < slice->height; ++y) {
-            for (std::uint32_t x = 0; x < slice->width; ++x) {
-                const glm::vec3 p = slice->point(x, y);
+        for (std::uint32_t y = 0; y < slice.height; ++y) {
+            for (std::uint32_t x = 0; x < slice.width; ++x) {
+                const glm::vec3 p = slice.point(x, y);
                 ASSERT_EQ(p[axis], 0.125F);
                 const FieldSample expected = evaluate(collider, p);
-                const FieldSample& sample = slice->sample(x, y);
+                const FieldSample& sample = slice.sample(x, y);
                 ASSERT_EQ(sample.map, expected.map);
                 ASSERT_EQ(sample.distance, expected.distance);
                 ASSERT_EQ(sample.normal, expected.normal);
@@ -36,9 +31,9 @@ TEST(Slice, HoldsTheFieldOfItsPoints) {
         }
         EXPECT_GT(inside, 100);
         // The area holds the bounds, and is centred on them.
-        const glm::vec3 first = slice->point(0, 0);
-        const glm::vec3 last = slice->point(slice->width - 1, slice->height - 1);
-        for (const int i : {slice->right, slice->up}) {
+        const glm::vec3 first = slice.point(0, 0);
+        const glm::vec3 last = slice.point(slice.width - 1, slice.height - 1);
+        for (const int i : {slice.right, slice.up}) {
             EXPECT_LT(first[i], collider.bounds.min[i]);
             EXPECT_GT(last[i], collider.bounds.max[i]);
             EXPECT_NEAR(first[i] + last[i], collider.bounds.min[i] + collider.bounds.max[i], 1e-5);

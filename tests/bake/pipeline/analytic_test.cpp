@@ -194,9 +194,7 @@ TEST(BakePlane, FlatMeshHasAVolumeAndFacesTheViewer) {
             }
             // Seen from above, distances above it are exact.
             if (direction == "-y") {
-                const std::optional<Vote> above = vote(map, {0.1F, 1.25F, -0.3F});
-                ASSERT_TRUE(above);
-                EXPECT_NEAR(above->distance, 1.0F, 1e-5);
+                EXPECT_NEAR(vote(map, {0.1F, 1.25F, -0.3F}).value().distance, 1.0F, 1e-5);
                 EXPECT_LT(vote(map, {0.1F, 0.245F, -0.3F})->distance, 0.0F);
             }
         }
@@ -292,12 +290,8 @@ TEST(BakeScale, TinyHugeAndFarMeshesBake) {
         const TriangleMesh mesh = makeBoxMesh(kBoxCenter * scale, kBoxHalf * scale);
         for (const std::string spec : {"float:dir=-x", "front-back:dir=1/1/1", "cube"}) {
             const DepthMap map = bakeMap(mesh, spec);
-            const std::optional<Vote> inside = vote(map, kBoxCenter * scale);
-            ASSERT_TRUE(inside);
-            EXPECT_LT(inside->distance, -0.2 * scale);
-            const std::optional<Vote> outside = vote(map, (kBoxCenter + 3.0 * kBoxHalf) * scale);
-            ASSERT_TRUE(outside);
-            EXPECT_GT(outside->distance, 0.0);
+            EXPECT_LT(vote(map, kBoxCenter * scale).value().distance, -0.2 * scale);
+            EXPECT_GT(vote(map, (kBoxCenter + 3.0 * kBoxHalf) * scale).value().distance, 0.0);
         }
     }
     // 1000 times its size from the origin: floats still tell its faces apart.
@@ -328,13 +322,12 @@ TEST(BakeReportTest, WarnsOfWhatIsProbablyNotMeant) {
     options.resolution = 8;
     options.maps = {*parseMapSpec("float"), *parseMapSpec("cube:compare=less"),
                     *parseMapSpec("float:box=5/5/5/6/6/6")};
-    const Result<Baked> baked = bake(mesh, options);
-    ASSERT_TRUE(baked);
-    ASSERT_EQ(baked->report.warnings.size(), 2U);
-    EXPECT_NE(baked->report.warnings[0].find("map 1"), std::string::npos);
-    EXPECT_NE(baked->report.warnings[1].find("map 2"), std::string::npos);
-    EXPECT_EQ(baked->report.maps[0].covered, 36U);
-    EXPECT_EQ(baked->report.maps[0].texels, 64U);
+    const Baked baked = required(bake(mesh, options));
+    ASSERT_EQ(baked.report.warnings.size(), 2U);
+    EXPECT_NE(baked.report.warnings[0].find("map 1"), std::string::npos);
+    EXPECT_NE(baked.report.warnings[1].find("map 2"), std::string::npos);
+    EXPECT_EQ(baked.report.maps[0].covered, 36U);
+    EXPECT_EQ(baked.report.maps[0].texels, 64U);
 }
 
 }  // namespace

@@ -23,21 +23,20 @@ void expectLittleMoreThanItNeeds(Layout layout, double percent) {
     options.layout = layout;
     std::size_t told = 0;
     options.tried = [&](const BudgetTry&) { ++told; };
-    const Result<BudgetSearchResult> found = bakeForError(query, query, options);
-    ASSERT_TRUE(found) << found.error().message;
-    EXPECT_LE(found->chosen.wrong_percent, percent);
-    EXPECT_EQ(found->chosen.bytes, found->baked.collider.gpuBytes());
-    EXPECT_EQ(found->plan.bytes, found->chosen.bytes);
-    EXPECT_LE(found->chosen.bytes, found->chosen.budget);
-    EXPECT_EQ(told, found->tries.size());
+    const BudgetSearchResult found = required(bakeForError(query, query, options));
+    EXPECT_LE(found.chosen.wrong_percent, percent);
+    EXPECT_EQ(found.chosen.bytes, found.baked.collider.gpuBytes());
+    EXPECT_EQ(found.plan.bytes, found.chosen.bytes);
+    EXPECT_LE(found.chosen.bytes, found.chosen.budget);
+    EXPECT_EQ(told, found.tries.size());
     // What it says is what measuring the result says.
     const TruthSamples truth = sampleTruth(query, options.accuracy);
-    EXPECT_EQ(measureField(truth, fieldOf(found->baked.collider)).near.total(), found->chosen.wrong_percent);
+    EXPECT_EQ(measureField(truth, fieldOf(found.baked.collider)).near.total(), found.chosen.wrong_percent);
     // A budget within a tenth below was tried, and is too small.
     bool narrow = false;
-    for (const BudgetTry& made : found->tries) {
+    for (const BudgetTry& made : found.tries) {
         EXPECT_GE(made.budget, 32'000U);
-        const double of_chosen = static_cast<double>(made.budget) / static_cast<double>(found->chosen.budget);
+        const double of_chosen = static_cast<double>(made.budget) / static_cast<double>(found.chosen.budget);
         narrow = narrow || (made.wrong_percent > percent && of_chosen < 1.0 && of_chosen > 1.0 / 1.1);
     }
     EXPECT_TRUE(narrow);
@@ -46,9 +45,8 @@ void expectLittleMoreThanItNeeds(Layout layout, double percent) {
         return;  // their threads are PatchPlanner's
     }
     options.bake.threads = 1;
-    const Result<BudgetSearchResult> again = bakeForError(query, query, options);
-    ASSERT_TRUE(again);
-    EXPECT_EQ(*writeContainer(again->baked.collider), *writeContainer(found->baked.collider));
+    EXPECT_EQ(*writeContainer(required(bakeForError(query, query, options)).baked.collider),
+              *writeContainer(found.baked.collider));
 }
 
 TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
@@ -66,25 +64,21 @@ TEST(BudgetSearch, TriesMoreBytesWhereFewSeeNothing) {
         joined({makeBoxMesh({5, 5, 5}, glm::dvec3(5.0)), makeBoxMesh({1e7, 0.5, 0.5}, glm::dvec3(0.5))});
     const MeshQuery query = queryOf(mesh);
     BudgetSearchOptions options = optionsFor(50.0);
-    const Result<BudgetSearchResult> found = bakeForError(query, query, options);
-    ASSERT_TRUE(found) << found.error().message;
-    EXPECT_GT(found->chosen.budget, options.budget_min);
+    EXPECT_GT(required(bakeForError(query, query, options)).chosen.budget, options.budget_min);
     options.budget_max = options.budget_min;
     EXPECT_EQ(bakeForError(query, query, options).error().code, ErrorCode::kFailure);
 }
 
 TEST(BudgetSearch, AnEasyPromiseCostsTheLeastBudget) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.4, 64, 32));
-    const Result<BudgetSearchResult> found = bakeForError(query, query, optionsFor(50.0));
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->chosen.budget, 32'000U);
-    EXPECT_EQ(found->tries.size(), 1U);
+    const BudgetSearchResult found = required(bakeForError(query, query, optionsFor(50.0)));
+    EXPECT_EQ(found.chosen.budget, 32'000U);
+    EXPECT_EQ(found.tries.size(), 1U);
     // One that it just misses costs more.
-    const double promise = 0.75 * found->chosen.wrong_percent;
-    const Result<BudgetSearchResult> better = bakeForError(query, query, optionsFor(promise));
-    ASSERT_TRUE(better);
-    EXPECT_LE(better->chosen.wrong_percent, promise);
-    EXPECT_GT(better->chosen.budget, 32'000U);
+    const double promise = 0.75 * found.chosen.wrong_percent;
+    const BudgetSearchResult better = required(bakeForError(query, query, optionsFor(promise)));
+    EXPECT_LE(better.chosen.wrong_percent, promise);
+    EXPECT_GT(better.chosen.budget, 32'000U);
 }
 
 TEST(BudgetSearch, SaysWhatTheBestIsWhereThePromiseCannotBeKept) {

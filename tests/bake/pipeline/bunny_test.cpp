@@ -17,12 +17,8 @@ namespace {
 constexpr const char* kBunny = "/usr/share/glmark2/models/bunny.obj";
 
 const TriangleMesh& bunny() {
-    static const Result<TriangleMesh> mesh = importMesh(kBunny);
-    if (!mesh) {
-        ADD_FAILURE() << mesh.error().message << " (Debian package glmark2-data)";
-        std::abort();
-    }
-    return *mesh;
+    static const TriangleMesh mesh = required(importMesh(kBunny));  // Debian package glmark2-data
+    return mesh;
 }
 
 const std::vector<std::string> kAllFormats = {
@@ -61,17 +57,14 @@ TEST(BakeTies, ThreadsDoNotChangeAByte) {
 
 TEST(BakeBunny, SurvivesTheContainerAndTellsItsStory) {
     const Collider collider = bakeSpecs(bunny(), kAllFormats, 32);
-    const Result<std::vector<std::byte>> bytes = writeContainer(collider);
-    ASSERT_TRUE(bytes) << bytes.error().message;
-    const Result<Collider> back = readContainer(*bytes);
-    ASSERT_TRUE(back) << back.error().message;
-    EXPECT_TRUE(*back == collider);
-    EXPECT_EQ(back->provenance.mesh_name, "bunny.obj");
-    EXPECT_EQ(back->provenance.mesh_hash, bunny().content_hash);
-    EXPECT_EQ(back->provenance.triangles, 69666U);
+    const Collider back = required(readContainer(required(writeContainer(collider))));
+    EXPECT_TRUE(back == collider);
+    EXPECT_EQ(back.provenance.mesh_name, "bunny.obj");
+    EXPECT_EQ(back.provenance.mesh_hash, bunny().content_hash);
+    EXPECT_EQ(back.provenance.triangles, 69666U);
     // The recorded options bake the same maps again.
     std::vector<std::string> specs;
-    for (const RecordedOption& option : back->provenance.options) {
+    for (const RecordedOption& option : back.provenance.options) {
         if (option.name == "map") {
             specs.push_back(option.value);
         }
@@ -83,29 +76,22 @@ TEST(BakeBunny, SurvivesTheContainerAndTellsItsStory) {
 }
 
 TEST(BakeBunny, DefaultMapsKnowInsideFromOutside) {
-    const Result<Baked> baked = bake(bunny(), {.maps = {}, .resolution = 256, .threads = 0, .progress = {}});
-    ASSERT_TRUE(baked);
-    ASSERT_EQ(baked->collider.maps.size(), 4U);
-    EXPECT_EQ(baked->collider.maps[3].compare, Compare::kGreater);
-    AccuracyOptions sampling;
-    sampling.samples = 2000;
-    const TruthSamples truth = sampleTruth(queryOf(bunny()), sampling);
+    const Baked baked =
+        required(bake(bunny(), {.maps = {}, .resolution = 256, .threads = 0, .progress = {}}));
+    ASSERT_EQ(baked.collider.maps.size(), 4U);
+    EXPECT_EQ(baked.collider.maps[3].compare, Compare::kGreater);
+    const TruthSamples truth = sampleTruth(queryOf(bunny()), {.samples = 2000});
     EXPECT_GT(std::ranges::count_if(truth.uniform, &TruthPoint::inside), 400);
-    EXPECT_LE(measureField(truth, fieldOf(baked->collider)).uniform.total(), 2.0)
+    EXPECT_LE(measureField(truth, fieldOf(baked.collider)).uniform.total(), 2.0)
         << "concavities that no map sees are told inside";
 }
 
 /// The search on maps planned for 1 MB, 0.5 % of the longest side off the surface, which is a texel, and 5 % off.
 TEST(BakeBunny, TheNearestSurfaceIsTheNearestTriangle) {
     const MeshQuery query = queryOf(bunny());
-    BakeOptions options;
-    options.maps = specsOf(planViews(query, {}).value());
-    const Collider collider = bake(query.prepared(), options).value().collider;
+    const Collider collider = bakeMaps(query.prepared(), specsOf(required(planViews(query, {}))));
     for (const double sigma : {0.005, 0.05}) {
-        AccuracyOptions sampling;
-        sampling.samples = 20'000;
-        sampling.sigma_share = sigma;
-        const TruthSamples samples = sampleTruth(query, sampling);
+        const TruthSamples samples = sampleTruth(query, {.samples = 20'000, .sigma_share = sigma});
         const double off = sigma * samples.longest_side;
         const FieldAccuracy votes = measureField(samples, fieldOf(collider));
         const FieldAccuracy found = measureField(samples, nearestFieldOf(collider));

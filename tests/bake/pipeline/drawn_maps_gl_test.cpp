@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Front-back maps of planes that DepthMapRenderer draws against baked ones, on real meshes: two programs that share the view
 // and the meaning of a texel, and no arithmetic.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,46 +47,22 @@ const fs::path& cgalMeshes() {
 
 TriangleMesh load(const std::string& name) {
     const fs::path path = name.find('/') != std::string::npos ? fs::path(name) : cgalMeshes() / name;
-    Result<TriangleMesh> mesh = importMesh(path);
-    const Result<PreparedMesh> closed = mesh ? closeHoles(std::move(*mesh)) : forward(mesh);
-    if (!closed) {
-        ADD_FAILURE() << closed.error().message;
-        std::abort();
-    }
-    return **closed;
+    return *required(closeHoles(required(importMesh(path))));
 }
 
 MapSpec specOf(const TriangleMesh& mesh, const std::string& text) {
-    const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 256);
-    EXPECT_TRUE(spec) << spec.error().message;
-    return *spec;
+    return required(completeSpec(*parseMapSpec(text), mesh, 256));
 }
 
 DepthMap drawOne(const PreparedMesh& mesh, const MapSpec& spec) {
     const View view = *makeView(spec, *mesh);
     DepthMap map = view.emptyMap();
     map.decode = spec.decode;
-    Result<GpuMesh> on_gpu = GpuMesh::create(mesh->positions, mesh->triangles);
-    const Result<DepthMapRenderer> renderer = DepthMapRenderer::create(map.width, map.height);
-    if (!on_gpu || !renderer) {
-        ADD_FAILURE() << "the map cannot be drawn";
-        std::abort();
-    }
-    renderer->render(*on_gpu, map);
-    map.texels = readTexels(*renderer);
+    GpuMesh on_gpu = required(GpuMesh::create(mesh->positions, mesh->triangles));
+    const DepthMapRenderer renderer = required(DepthMapRenderer::create(map.width, map.height));
+    renderer.render(on_gpu, map);
+    map.texels = readTexels(renderer);
     return map;
-}
-
-DepthMap bakeOne(const PreparedMesh& mesh, const MapSpec& spec) {
-    BakeOptions options;
-    options.maps = {spec};
-    options.quality = Quality::kFast;
-    const Result<Baked> baked = bake(mesh, options);
-    if (!baked) {
-        ADD_FAILURE() << baked.error().message;
-        std::abort();
-    }
-    return baked->collider.maps.front();
 }
 
 /// One end of a texel: 0 is the front, 1 the back.
@@ -154,11 +129,7 @@ double edgeDistance(const TriangleMesh& mesh, const View& view, const TexelEnd& 
 /// Of a mesh by its name.
 class DrawnMapsGlTest : public testing::TestWithParam<const char*> {
   protected:
-    void SetUp() override {
-        auto context = GlContext::create();
-        ASSERT_TRUE(context) << context.error().message;
-        context_ = std::move(*context);
-    }
+    void SetUp() override { context_ = required(GlContext::create()); }
     std::unique_ptr<GlContext> context_;
 };
 
@@ -176,7 +147,7 @@ TEST_P(DrawnMapsGlTest, TheyAreThoseOfOneRayATexel) {
         const MapSpec spec = specOf(mesh, text);
         const View view = *makeView(spec, mesh);
         const DepthMap drawn = drawOne(mesh, spec);
-        const DepthMap rays = bakeOne(mesh, spec);
+        const DepthMap rays = bakeMaps(mesh, {spec}, Quality::kFast).maps.front();
         ASSERT_EQ(drawn.decode, Decode::kPlane);
         const Agreement agreement = compareMaps(drawn, rays);
         ASSERT_GT(agreement.both, 10000U);

@@ -37,8 +37,7 @@ TEST(Pinholes, RaysAimedAtVerticesAndEdgesAreMet) {
     for (const glm::dvec3& center : {glm::dvec3(0.0), glm::dvec3(100.1, 50.3, -20.7)}) {
         for (const int levels : {2, 3, 4}) {
             const TriangleMesh ball = makeIcosphere(center, 1.0, levels);
-            const Result<RayScene> scene = RayScene::build(ball);
-            ASSERT_TRUE(scene);
+            const RayScene scene = required(RayScene::build(ball));
             std::uint64_t rays = 0;
             std::uint64_t lost = 0;
             double worst = 0.0;
@@ -66,11 +65,11 @@ TEST(Pinholes, RaysAimedAtVerticesAndEdgesAreMet) {
                         lost += hit.empty() ? 1U : 0U;
                         worst = hit.empty() ? worst : std::max(worst, std::abs(double{hit.depth()} - 0.5));
                     };
-                    count(RayProbe(*scene, view, end).trace(0, 3, 4));
+                    count(RayProbe(scene, view, end).trace(0, 3, 4));
                     if (i % 16 < 2) {  // the whole mesh is scanned for the few texels of each
                         std::array<Hit, 64> near;
                         std::array<Hit, 64> far;
-                        ScanConverter(*scene, view).scan({0, 0, 8}, near, far);
+                        ScanConverter(scene, view).scan({0, 0, 8}, near, far);
                         count((end == RayEnd::kNear ? near : far)[4 * 8 + 3]);
                     }
                 }

@@ -23,36 +23,18 @@ namespace {
 constexpr std::uint64_t kBudget = 65536;
 
 Plan planOf(const TriangleMesh& mesh, std::uint64_t budget = kBudget) {
-    Result<Plan> plan = planViews(queryOf(mesh), {budget, {}});
-    EXPECT_TRUE(plan) << plan.error().message;
-    return plan ? std::move(*plan) : Plan{};
+    return required(planViews(queryOf(mesh), {budget, {}}));
 }
 
 PlannedBake madeOf(const TriangleMesh& mesh, std::uint64_t budget = kBudget) {
     const MeshQuery query = queryOf(mesh);
-    const Result<ViewChoice> views = chooseViews(query, {});
-    EXPECT_TRUE(views) << views.error().message;
-    Result<PlannedBake> made = bakePlanned(query, *views, budget, {});
-    EXPECT_TRUE(made) << made.error().message;
-    return made ? std::move(*made) : PlannedBake{};
-}
-
-Collider bakePlan(const TriangleMesh& mesh, const Plan& plan, unsigned threads = 0,
-                  Quality quality = Quality::kNormal) {
-    BakeOptions options;
-    options.threads = threads;
-    options.quality = quality;
-    options.maps = specsOf(plan);
-    Result<Baked> baked = bake(mesh, options);
-    EXPECT_TRUE(baked) << baked.error().message;
-    return baked ? std::move(baked->collider) : Collider{};
+    const ViewChoice views = required(chooseViews(query, {}));
+    return required(bakePlanned(query, views, budget, {}));
 }
 
 WrongShare wrongNear(const TriangleMesh& mesh, const Collider& collider) {
     const MeshQuery query = queryOf(mesh);
-    AccuracyOptions options;
-    options.samples = 30'000;
-    return measureField(sampleTruth(query, options), fieldOf(collider)).near;
+    return measureField(sampleTruth(query, {.samples = 30'000}), fieldOf(collider)).near;
 }
 
 /// A box of side 2, hollow, with a small square mouth in its top: no straight line from outside reaches most
@@ -74,8 +56,7 @@ TriangleMesh makeJar() {
 TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlaneWhicheverWayIsSearched) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    PlaneFitOptions options;
-    options.reach = 0.05;
+    PlaneFitOptions options{.reach = 0.05};
     int same = 0;
     constexpr int kRepeats = 2000;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
@@ -127,11 +108,10 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlaneWhicheverWayIsSearched)
         }
         rays.pop_back();
         rays.push_back(center);
-        const std::optional<FittedPlane> torn = fit();
-        ASSERT_TRUE(torn);
-        ASSERT_FALSE(torn->stands);
-        EXPECT_LE(torn->normal.z, -1.0 / 32.0);
-        costOf(*torn);
+        const FittedPlane torn = fit().value();
+        ASSERT_FALSE(torn.stands);
+        EXPECT_LE(torn.normal.z, -1.0 / 32.0);
+        costOf(torn);
         same += straight->code == askew->code && straight->normal == askew->normal ? 1 : 0;
     }
     EXPECT_GT(same, 0.99 * kRepeats);
@@ -211,9 +191,7 @@ TEST(FittedMap, MapsBakedTogetherAreAsAlone) {
         for (const std::string& text : texts) {
             options.maps.push_back(*parseMapSpec(text));
         }
-        Result<Baked> result = bake(mesh, options);
-        EXPECT_TRUE(result) << result.error().message;
-        return result ? std::move(*result) : Baked{};
+        return required(bake(mesh, options));
     };
     const Baked together = baked(specs);
     ASSERT_EQ(together.collider.maps.size(), specs.size());
@@ -228,8 +206,8 @@ TEST(FittedMap, MapsBakedTogetherAreAsAlone) {
 
 TEST(FittedMap, SupportingPlanesHardlyEverCallAnInsidePointOutside) {
     const TriangleMesh mesh = makeTorusMesh(1.0, 0.4, 64, 32);
-    const WrongShare fitted = wrongNear(mesh, bakePlan(mesh, planOf(mesh)));
-    const WrongShare centred = wrongNear(mesh, bakePlan(mesh, planOf(mesh), 0, Quality::kFast));
+    const WrongShare fitted = wrongNear(mesh, bakeMaps(mesh, specsOf(planOf(mesh))));
+    const WrongShare centred = wrongNear(mesh, bakeMaps(mesh, specsOf(planOf(mesh)), Quality::kFast));
     EXPECT_LT(fitted.false_outside, 0.5 * centred.false_outside);
     EXPECT_LT(fitted.total(), centred.total());
 }
@@ -277,7 +255,7 @@ TEST(ViewPlanner, MakesAThirdOfTheMistakesOfThePapersMaps) {
             mesh,
             {"front-back:dir=-x,size=52x52", "front-back:dir=-y,size=52x52", "front-back:dir=-z,size=52x52"});
         ASSERT_LE(paper.gpuBytes(), kBudget);
-        EXPECT_LT(wrongNear(mesh, bakePlan(mesh, planOf(mesh))).total(),
+        EXPECT_LT(wrongNear(mesh, bakeMaps(mesh, specsOf(planOf(mesh)))).total(),
                   wrongNear(mesh, paper).total() / 3.0);
     }
 }
@@ -301,34 +279,28 @@ TEST(ViewPlanner, KeepsToItsMapsAndSaysWhatOneMoreWouldServe) {
     const MeshQuery query = queryOf(makeJar());
     PlanOptions options;
     options.views.max_maps = 1;
-    const Result<Plan> one = planViews(query, options);
-    ASSERT_TRUE(one);
-    EXPECT_EQ(one->maps.size(), 1U);
-    EXPECT_GT(one->next_gain, 0.1);  // the cavity
+    const Plan one = required(planViews(query, options));
+    EXPECT_EQ(one.maps.size(), 1U);
+    EXPECT_GT(one.next_gain, 0.1);  // the cavity
     options.views.max_maps = 64;
-    const Result<Plan> all = planViews(query, options);
-    ASSERT_TRUE(all);
-    EXPECT_GT(all->maps.size(), 1U);
-    EXPECT_LT(all->next_gain, 0.01);
+    const Plan all = required(planViews(query, options));
+    EXPECT_GT(all.maps.size(), 1U);
+    EXPECT_LT(all.next_gain, 0.01);
 }
 
 TEST(ViewPlanner, RefusesABudgetThatIsTooSmall) {
-    const Result<Plan> plan = planViews(queryOf(makeIcosphere({0, 0, 0}, 1.0, 2)), {100, {}});
-    ASSERT_FALSE(plan);
-    EXPECT_EQ(plan.error().code, ErrorCode::kUsage);
+    expectError(planViews(queryOf(makeIcosphere({0, 0, 0}, 1.0, 2)), {100, {}}), ErrorCode::kUsage);
 }
 
 /// What lies between parts far apart takes no bytes of the budget, but time and memory: it has a limit of its own.
 TEST(PlannedBake, PartsFarApartHaveMapsOfBoundedSize) {
     const MeshQuery query = queryOf(joined(
         {makeBoxMesh({0, 0, 0}, glm::dvec3(0.5)), makeBoxMesh(glm::dvec3(60'000.0), glm::dvec3(0.5))}));
-    const Result<ViewChoice> views = chooseViews(query, {});
-    ASSERT_TRUE(views) << views.error().message;
+    const ViewChoice views = required(chooseViews(query, {}));
     const auto rectangles = [&](std::uint64_t budget) {
-        const Result<Plan> plan = planSizes(*views, budget);
-        EXPECT_TRUE(plan);
+        const Plan plan = required(planSizes(views, budget));
         std::uint64_t bytes = 0;
-        for (const PlannedMap& map : plan->maps) {
+        for (const PlannedMap& map : plan.maps) {
             bytes += std::uint64_t{map.spec.format == MapFormat::kCube8 ? 24U : 8U} * map.spec.width *
                      map.spec.height;
         }

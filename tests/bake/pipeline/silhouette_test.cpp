@@ -11,12 +11,8 @@ namespace {
 
 /// Checks it against a bake of this view.
 void expectTold(const TriangleMesh& mesh, const std::string& text) {
-    BakeOptions options;
-    options.maps = {*parseMapSpec(text)};
-    const Result<Baked> baked = bake(mesh, options);
-    ASSERT_TRUE(baked) << baked.error().message;
-    const DepthMap& map = baked->collider.maps[0];
-    MapSpec spec = options.maps[0];
+    const MapSpec spec = required(parseMapSpec(text));
+    const DepthMap map = bakeMaps(mesh, {spec}).maps[0];
     const Silhouette silhouette(mesh, *makeView(spec, mesh));
     EXPECT_LE(gpuBytes(map), silhouette.gpuBytes(map.width, map.height)) << text;
     // Two texels a row at most: where an edge touches one that no ray meets.

@@ -3,47 +3,45 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/results.h"
+
 namespace relief {
 namespace {
 
 TEST(MapSpec, PatchesHaveBytesAndNothingElse) {
-    const Result<MapSpec> spec = parseMapSpec("patches:bytes=250kB", kPaperDefaults);
-    ASSERT_TRUE(spec) << spec.error().message;
-    EXPECT_EQ(spec->format, MapFormat::kPatches);
-    EXPECT_EQ(spec->bytes, 250'000U);
-    EXPECT_EQ(spec->decode, Decode::kPlane);
-    EXPECT_EQ(toString(*spec), "patches:bytes=250000");
-    EXPECT_EQ(*parseMapSpec(toString(*spec)), *spec);
+    const MapSpec spec = required(parseMapSpec("patches:bytes=250kB", kPaperDefaults));
+    EXPECT_EQ(spec.format, MapFormat::kPatches);
+    EXPECT_EQ(spec.bytes, 250'000U);
+    EXPECT_EQ(spec.decode, Decode::kPlane);
+    EXPECT_EQ(toString(spec), "patches:bytes=250000");
+    EXPECT_EQ(*parseMapSpec(toString(spec)), spec);
     EXPECT_EQ(toString(*parseMapSpec("patches")), "patches");
     EXPECT_EQ(toString(*parseMapSpec("patches:texel=0.01,bytes=1MB")), "patches:bytes=1000000,texel=0.01");
     for (const char* wrong :
          {"patches:size=64", "patches:dir=+x", "patches:decode=plane", "patches:box=tight",
           "patches:bytes=1023", "patches:bytes=1GB", "patches:bytes=many", "patches:texel=0", "cube:texel=1",
           "cube:bytes=1MB", "front-back:bytes=1MB"}) {
-        const Result<MapSpec> refused = parseMapSpec(wrong);
-        ASSERT_FALSE(refused) << wrong;
-        EXPECT_EQ(refused.error().code, ErrorCode::kUsage) << wrong;
+        SCOPED_TRACE(wrong);
+        expectError(parseMapSpec(wrong), ErrorCode::kUsage);
     }
 }
 
 TEST(MapSpecParser, ReadsEveryKey) {
-    const Result<MapSpec> spec =
-        parseMapSpec("fixed8:dir=-y,size=640x480,compare=greater,box=-1/-2/-3/1/2.5/3e1");
-    ASSERT_TRUE(spec);
-    EXPECT_EQ(spec->format, MapFormat::kFixed8);
-    EXPECT_EQ(spec->direction, glm::vec3(0, -1, 0));
-    EXPECT_EQ(spec->width, 640U);
-    EXPECT_EQ(spec->height, 480U);
-    EXPECT_EQ(spec->compare, Compare::kGreater);
-    ASSERT_TRUE(spec->box);
-    EXPECT_EQ(spec->box->max, glm::vec3(1, 2.5F, 30));
+    const MapSpec spec =
+        required(parseMapSpec("fixed8:dir=-y,size=640x480,compare=greater,box=-1/-2/-3/1/2.5/3e1"));
+    EXPECT_EQ(spec.format, MapFormat::kFixed8);
+    EXPECT_EQ(spec.direction, glm::vec3(0, -1, 0));
+    EXPECT_EQ(spec.width, 640U);
+    EXPECT_EQ(spec.height, 480U);
+    EXPECT_EQ(spec.compare, Compare::kGreater);
+    ASSERT_TRUE(spec.box);
+    EXPECT_EQ(spec.box->max, glm::vec3(1, 2.5F, 30));
 
-    const Result<MapSpec> cube = parseMapSpec("cube:center=0/0.1/-2,size=64,compare=less");
-    ASSERT_TRUE(cube);
-    EXPECT_EQ(cube->format, MapFormat::kCube8);
-    EXPECT_EQ(cube->center, glm::vec3(0, 0.1F, -2));
-    EXPECT_EQ(cube->width, 64U);
-    EXPECT_EQ(cube->height, 64U);
+    const MapSpec cube = required(parseMapSpec("cube:center=0/0.1/-2,size=64,compare=less"));
+    EXPECT_EQ(cube.format, MapFormat::kCube8);
+    EXPECT_EQ(cube.center, glm::vec3(0, 0.1F, -2));
+    EXPECT_EQ(cube.width, 64U);
+    EXPECT_EQ(cube.height, 64U);
 
     EXPECT_EQ(*parseMapSpec("float"), *parseMapSpec("float:dir=-z,box=tight"));
     EXPECT_EQ(parseMapSpec("front-back:dir=x")->direction, glm::vec3(1, 0, 0));
@@ -79,10 +77,9 @@ TEST(MapSpecParser, TextAndSpecAreOne) {
           "front-back:dir=+x,size=64x32,compare=gap,depth=unorm16,decode=plane,box=tight",
           "cube:size=256,compare=less,center=0/0.1/0,decode=projected,box=tight",
           "cube:size=1,compare=greater,decode=plane,box=-1/-1/-1/0.1/1e+20/3"}) {
-        const Result<MapSpec> spec = parseMapSpec(text);
-        ASSERT_TRUE(spec) << text;
-        EXPECT_EQ(toString(*spec), text);
-        EXPECT_EQ(*parseMapSpec(toString(*spec)), *spec);
+        const MapSpec spec = required(parseMapSpec(text));
+        EXPECT_EQ(toString(spec), text);
+        EXPECT_EQ(*parseMapSpec(toString(spec)), spec);
     }
     // One setting, one text.
     EXPECT_EQ(toString(*parseMapSpec("float:size=8,dir=-0/0/-1,compare=less")),
@@ -138,12 +135,9 @@ TEST(MapSpecParser, RefusesWithTheCure) {
     };
     for (const Case& c : cases) {
         const Result<MapSpec> spec = parseMapSpec(c.text);
-        ASSERT_FALSE(spec) << c.text;
-        EXPECT_EQ(spec.error().code, c.code) << c.text;
-        EXPECT_NE(spec.error().message.find(c.says), std::string::npos)
-            << c.text << ": " << spec.error().message;
-        EXPECT_EQ(spec.error().message.find_first_of("\n\x1b"), std::string::npos);
-        EXPECT_EQ(spec.error().message.find("--map"), 0U);
+        expectError(spec, c.code, c.says);
+        EXPECT_TRUE(!spec && spec.error().message.starts_with("--map") &&
+                    spec.error().message.find('\x1b') == std::string::npos);
     }
 }
 

@@ -11,11 +11,7 @@ namespace relief::test {
 namespace {
 
 View viewOf(const TriangleMesh& mesh, const std::string& text) {
-    const Result<MapSpec> spec = completeSpec(*parseMapSpec(text), mesh, 32);
-    EXPECT_TRUE(spec);
-    const Result<View> view = makeView(*spec, mesh);
-    EXPECT_TRUE(view);
-    return *view;
+    return required(makeView(required(completeSpec(*parseMapSpec(text), mesh, 32)), mesh));
 }
 
 TEST(ViewFrame, AxesAreThoseOfThePicture) {
@@ -49,14 +45,13 @@ TEST(ViewFrame, UpTurnsTheImage) {
     spec.width = spec.height = 12;
     spec.direction = glm::vec3(axes[1]);
     spec.up = glm::vec3(5.0 * axes[2] - 3.0 * axes[1]);
-    const Result<View> view = makeView(spec, mesh);
-    ASSERT_TRUE(view) << view.error().message;
+    const View view = required(makeView(spec, mesh));
     const glm::dvec3 wanted[] = {glm::cross(axes[1], axes[2]), axes[2], axes[1]};
     const double extent[] = {6.0, 2.0, 4.0};
     const double pad = 2.0 * 1.01e-4 * static_cast<double>(mesh.bounds.longestSide());
     for (int i = 0; i < 3; ++i) {
-        EXPECT_LT(glm::length(glm::normalize(view->axis[i]) - wanted[i]), 1e-6) << i;
-        EXPECT_NEAR(glm::length(view->axis[i]) * (i < 2 ? 10.0 / 12.0 : 1.0), extent[i], pad) << i;
+        EXPECT_LT(glm::length(glm::normalize(view.axis[i]) - wanted[i]), 1e-6) << i;
+        EXPECT_NEAR(glm::length(view.axis[i]) * (i < 2 ? 10.0 / 12.0 : 1.0), extent[i], pad) << i;
     }
     // The rule's own direction changes nothing; a direction along the view is refused.
     const View plain = viewOf(mesh, "float:dir=1/2/3");
@@ -65,9 +60,7 @@ TEST(ViewFrame, UpTurnsTheImage) {
         EXPECT_EQ(plain.axis[i], told.axis[i]);
     }
     spec.up = -2.0F * spec.direction;
-    const Result<View> none = makeView(spec, mesh);
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().code, ErrorCode::kUsage);
+    expectError(makeView(spec, mesh), ErrorCode::kUsage);
 }
 
 TEST(ViewFrame, TransformAndRaysAgree) {

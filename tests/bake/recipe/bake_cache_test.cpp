@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -59,9 +60,7 @@ TEST_F(BakeCache, NoLinkIsFollowed) {
         }
         fs::remove(folder_ / kBakeCacheName);
         fs::create_symlink("elsewhere/precious", folder_ / kBakeCacheName);
-        const auto loaded = loadBakeCache(folder_);
-        ASSERT_FALSE(loaded);
-        EXPECT_EQ(loaded.error().code, ErrorCode::kInvalidInput);
+        expectError(loadBakeCache(folder_), ErrorCode::kInvalidInput);
         ASSERT_TRUE(updateBakeCache(folder_, {{"m.relief", entry_}}));
         EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder_ / kBakeCacheName)))
             << "the link is replaced";
@@ -158,9 +157,8 @@ TEST_F(BakeCache, ReadsWhatItWrites) {
     BakeCacheEntry other = entry_;
     other.options.clear();
     ASSERT_TRUE(updateBakeCache(folder_, {{"n.relief", other}, {"gone.relief", other}}));
-    const auto read = loadBakeCache(folder_);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(*read, (BakeCacheEntries{{"m.relief", entry_}, {"n.relief", other}}))
+    const auto read = required(loadBakeCache(folder_));
+    EXPECT_EQ(read, (BakeCacheEntries{{"m.relief", entry_}, {"n.relief", other}}))
         << "both runs' entries, without the output that is gone";
 }
 
@@ -176,9 +174,7 @@ TEST_F(BakeCache, ManyWritersLoseNothing) {
         });
     }
     writers.clear();
-    const auto read = loadBakeCache(folder_);
-    ASSERT_TRUE(read) << read.error().message;
-    EXPECT_EQ(read->size(), 64U);
+    EXPECT_EQ(required(loadBakeCache(folder_)).size(), 64U);
 }
 
 TEST_F(BakeCache, WhatIsNoCacheIsRefused) {
@@ -200,9 +196,8 @@ TEST_F(BakeCache, WhatIsNoCacheIsRefused) {
           std::string(
               R"({"format":"relief-cache","version":1,"outputs":{"a":{"tool":"t","options":[],"inputs":[],)"
               R"("output_hash":"h","output_bytes":1}}})")}) {
-        const auto entries = parseBakeCache(text);
-        ASSERT_FALSE(entries) << text.substr(0, 300);
-        EXPECT_EQ(entries.error().code, ErrorCode::kInvalidInput);
+        SCOPED_TRACE(text.substr(0, 300));
+        expectError(parseBakeCache(text), ErrorCode::kInvalidInput);
     }
     put(kBakeCacheName, "{}");
     const auto loaded = loadBakeCache(folder_);
@@ -218,9 +213,8 @@ TEST(Depfile, EscapesForMakeAndNinja) {
         *depfileText({"o", "p q"}, {"a b", "c#d", "e$f", "a b", "g:h", "i\\j"}),
         "o p\\ q: \\\n  a\\ b \\\n  c\\#d \\\n  e$$f \\\n  g\\:h \\\n  i\\j\nc\\#d:\ne$$f:\ng\\:h:\ni\\j:\n");
     for (const char* name : {"", "a\nb", "a\tb", "a;b", "a=b", "a\\ b", "a\\#b", "a\\"}) {
-        const Result<std::string> text = depfileText({"o"}, {name});
-        ASSERT_FALSE(text) << name;
-        EXPECT_EQ(text.error().code, ErrorCode::kUnsupported);
+        SCOPED_TRACE(name);
+        expectError(depfileText({"o"}, {name}), ErrorCode::kUnsupported);
         EXPECT_FALSE(depfileText({name}, {"a"})) << name;
     }
     EXPECT_FALSE(depfileText({"50%"}, {"a"})) << "a pattern rule";

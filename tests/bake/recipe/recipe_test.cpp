@@ -11,6 +11,7 @@
 
 #include "bake/recipe/recipe_jobs.h"
 #include "bake/recipe/recipe_run.h"
+#include "tests/results.h"
 #include "tests/temporary_folder.h"
 
 namespace relief::test {
@@ -36,9 +37,7 @@ using Arguments = std::vector<std::string>;
 
 /// The assets of a recipe that must be right.
 std::vector<RecipeAsset> assetsOf(const std::string& rest) {
-    const auto assets = parseRecipe(recipe(rest), keys(), "r.toml");
-    EXPECT_TRUE(assets) << assets.error().message;
-    return assets ? *assets : std::vector<RecipeAsset>();
+    return required(parseRecipe(recipe(rest), keys(), "r.toml"));
 }
 
 TEST(Recipe, MergesDefaultsKeyByKey) {
@@ -148,12 +147,9 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
     };
     for (const Case& c : cases) {
         const auto assets = parseRecipe(c.text, keys(), "r.toml");
-        ASSERT_FALSE(assets) << c.says;
-        EXPECT_EQ(assets.error().code, c.code) << assets.error().message;
-        EXPECT_NE(assets.error().message.find(c.says), std::string::npos) << c.says << "\n"
-                                                                          << assets.error().message;
-        EXPECT_EQ(assets.error().message.find("r.toml:"), 0U) << assets.error().message;
-        EXPECT_EQ(assets.error().message.find_first_of("\n\x1b"), std::string::npos);
+        expectError(assets, c.code, c.says);
+        EXPECT_TRUE(!assets && assets.error().message.starts_with("r.toml:") &&
+                    assets.error().message.find('\x1b') == std::string::npos);
     }
 }
 
@@ -175,19 +171,16 @@ class RecipeJobsTest : public testing::Test {
         EXPECT_TRUE(assets) << assets.error().message;
         return assets ? recipeJobs(*assets, folder_ / "r.toml", out) : Result<RecipeJobs>(forward(assets));
     }
-    static std::vector<std::string> outputs(const Result<RecipeJobs>& found) {
+    static std::vector<std::string> outputs(const RecipeJobs& found) {
         std::vector<std::string> names;
-        for (const RecipeJob& job : found ? found->jobs : std::vector<RecipeJob>{}) {
+        for (const RecipeJob& job : found.jobs) {
             names.push_back(job.mesh + ">" + job.output);
         }
         return names;
     }
     void fails(const std::string& rest, const std::string& says, const fs::path& out = "") {
-        const auto found = jobs(rest, out);
-        ASSERT_FALSE(found) << rest;
-        EXPECT_EQ(found.error().code, ErrorCode::kInvalidInput) << found.error().message;
-        EXPECT_NE(found.error().message.find(says), std::string::npos) << found.error().message;
-        EXPECT_NE(found.error().message.find("r.toml:"), std::string::npos) << found.error().message;
+        expectError(jobs(rest, out), ErrorCode::kInvalidInput, says);
+        expectError(jobs(rest, out), ErrorCode::kInvalidInput, "r.toml:");
     }
 
     TemporaryFolder temporary_;
@@ -195,45 +188,41 @@ class RecipeJobsTest : public testing::Test {
 };
 
 TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
-    const auto found = jobs(
-        "[defaults]\noutput = 'baked/{dir}/{stem}.relief'\n"
-        "[[asset]]\nmesh = ['hill.off', '**/*.obj']\nexclude = '**/b.*'\n"
-        "[[asset]]\nmesh = 'rocks/b.obj'\noutput = './x//{name}.relief'\nplan = 'hill.off'\n");
-    ASSERT_TRUE(found) << found.error().message;
+    const RecipeJobs found =
+        required(jobs("[defaults]\noutput = 'baked/{dir}/{stem}.relief'\n"
+                      "[[asset]]\nmesh = ['hill.off', '**/*.obj']\nexclude = '**/b.*'\n"
+                      "[[asset]]\nmesh = 'rocks/b.obj'\noutput = './x//{name}.relief'\nplan = 'hill.off'\n"));
     EXPECT_EQ(outputs(found),
               (std::vector<std::string>{"hill.off>baked/hill.relief", "rocks/a.obj>baked/rocks/a.relief",
                                         "rocks/deep/a.obj>baked/rocks/deep/a.relief",
                                         "rocks/b.obj>x/b.obj.relief"}));
-    EXPECT_EQ(found->jobs[0].mesh_path, folder_ / "hill.off");
-    EXPECT_EQ(found->jobs[0].output_path, folder_ / "baked/hill.relief");
-    EXPECT_EQ(found->jobs[3].arguments,
-              std::vector<std::string>{"--plan=" + (folder_ / "hill.off").string()});
-    EXPECT_EQ(found->jobs[3].options, std::vector<std::string>{"--plan=hill.off"});
-    EXPECT_EQ(found->folders.size(), 3U) << "the folder, rocks and rocks/deep";
+    EXPECT_EQ(found.jobs[0].mesh_path, folder_ / "hill.off");
+    EXPECT_EQ(found.jobs[0].output_path, folder_ / "baked/hill.relief");
+    EXPECT_EQ(found.jobs[3].arguments, std::vector<std::string>{"--plan=" + (folder_ / "hill.off").string()});
+    EXPECT_EQ(found.jobs[3].options, std::vector<std::string>{"--plan=hill.off"});
+    EXPECT_EQ(found.folders.size(), 3U) << "the folder, rocks and rocks/deep";
     const auto elsewhere = jobs("[[asset]]\nmesh = 'hill.off'\noutput = '{stem}.relief'\n", folder_ / "out");
-    ASSERT_TRUE(elsewhere);
-    EXPECT_EQ(elsewhere->jobs[0].output_path, folder_ / "out/hill.relief");
+    EXPECT_EQ(required(elsewhere).jobs[0].output_path, folder_ / "out/hill.relief");
 }
 
 TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAMistake) {
     fails("[[asset]]\nmesh = 'rock/*.obj'\noutput = '{stem}.relief'\n", "'rock/*.obj' matches no file");
     fails("[[asset]]\nmesh = 'rocks'\noutput = '{stem}.relief'\n", "'rocks' matches no file");
-    const auto found = jobs("[[asset]]\nmesh = 'rock/*.obj'\noptional = true\noutput = '{stem}.relief'\n");
-    ASSERT_TRUE(found) << found.error().message;
-    EXPECT_TRUE(found->jobs.empty());
+    const auto found =
+        required(jobs("[[asset]]\nmesh = 'rock/*.obj'\noptional = true\noutput = '{stem}.relief'\n"));
+    EXPECT_TRUE(found.jobs.empty());
 }
 
 TEST_F(RecipeJobsTest, AWorldHasItsFolderForItself) {
-    const auto found = jobs(
-        "[[asset]]\nmesh = 'ro*/'\noutput = 'w/{stem}/world.json'\n"
-        "[[asset]]\nmesh = 'hill.off'\noutput = 'w/hill.relief'\n");
-    ASSERT_TRUE(found) << found.error().message;
+    const RecipeJobs found =
+        required(jobs("[[asset]]\nmesh = 'ro*/'\noutput = 'w/{stem}/world.json'\n"
+                      "[[asset]]\nmesh = 'hill.off'\noutput = 'w/hill.relief'\n"));
     EXPECT_EQ(outputs(found),
               (std::vector<std::string>{"rocks>w/rocks/world.json", "hill.off>w/hill.relief"}));
-    EXPECT_TRUE(found->jobs[0].world && found->jobs[0].mesh_is_folder);
-    EXPECT_FALSE(found->jobs[1].world || found->jobs[1].mesh_is_folder);
-    EXPECT_TRUE(found->jobs[0].arguments.empty());
-    EXPECT_EQ(found->jobs[0].options, std::vector<std::string>{kWorldOption})
+    EXPECT_TRUE(found.jobs[0].world && found.jobs[0].mesh_is_folder);
+    EXPECT_FALSE(found.jobs[1].world || found.jobs[1].mesh_is_folder);
+    EXPECT_TRUE(found.jobs[0].arguments.empty());
+    EXPECT_EQ(found.jobs[0].options, std::vector<std::string>{kWorldOption})
         << "or its key were a collider's";
     fs::create_symlink("w", folder_ / "link");
     const std::string level = "[[asset]]\nmesh = 'rocks/'\noutput = 'w/world.json'\n";

@@ -69,12 +69,9 @@ TEST(MeshHealth, EveryFaultIsCounted) {
     EXPECT_EQ(health.boundary_edges, 3U);
     EXPECT_FALSE(health.closed);
     EXPECT_EQ(health.closed_components, 0U);
-    const Result<void> solid = requireSolid(health, "open.obj");
-    ASSERT_FALSE(solid);
-    EXPECT_EQ(solid.error().code, ErrorCode::kInvalidInput);
-    EXPECT_NE(solid.error().message.find("open.obj: not a closed solid: 3 boundary edges"),
-              std::string::npos);
-    EXPECT_NE(solid.error().message.find("-0.5/0/0.5"), std::string::npos) << solid.error().message;
+    for (const char* const words : {"open.obj: not a closed solid: 3 boundary edges", "-0.5/0/0.5"}) {
+        expectError(requireSolid(health, "open.obj"), ErrorCode::kInvalidInput, words);
+    }
     // 4, 7, 6 is gone; of its edges 4–6 has the lowest vertices: its middle.
     EXPECT_EQ(health.first_fault->at, glm::vec3(-0.5F, 0.0F, 0.5F));
 
@@ -119,9 +116,8 @@ TEST(MeshHealth, EveryFaultIsCounted) {
 
 /// The texels of some maps of a mesh, as the tool bakes it.
 Collider bakedOutwards(const TriangleMesh& mesh) {
-    Result<Winding> winding = windOutwards(mesh);
-    EXPECT_TRUE(winding);
-    return bakeSpecs(winding->mesh,
+    Winding winding = required(windOutwards(mesh));
+    return bakeSpecs(winding.mesh,
                      {"front-back:dir=1/2/3,decode=plane", "fixed8:dir=-y", "cube:decode=plane",
                       "float:dir=-x,box=-5/-5/-5/0/5/5"},
                      48);
@@ -132,10 +128,9 @@ TEST(Winding, GoodMeshesStay) {
          {unitBox({1, 2, 3}), reversed(unitBox({0, 0, 0})), makePlane(0, 5),
           joined({unitBox({0, 0, 0}), unitBox({3, 0, 0})}),
           joined({makeIcosphere({0, 0, 0}, 1, 2), reversed(makeIcosphere({0, 0, 0}, 0.5, 2))})}) {
-        const Result<Winding> winding = windOutwards(mesh);
-        ASSERT_TRUE(winding);
-        EXPECT_EQ(winding->turned, 0U);
-        EXPECT_EQ(winding->mesh->triangles, mesh.triangles);
+        const Winding winding = required(windOutwards(mesh));
+        EXPECT_EQ(winding.turned, 0U);
+        EXPECT_EQ(winding.mesh->triangles, mesh.triangles);
     }
 }
 
@@ -145,33 +140,28 @@ TEST(Winding, ASheetKeepsTheWindingOfMostOfItsTriangles) {
     for (const std::size_t triangle : {3U, 20U, 41U}) {
         std::swap(mixed.triangles[triangle].y, mixed.triangles[triangle].z);
     }
-    const Result<Winding> winding = windOutwards(mixed);
-    ASSERT_TRUE(winding);
-    EXPECT_EQ(winding->turned, 3U);
-    EXPECT_EQ(winding->mesh->triangles, sheet.triangles);
+    const Winding winding = required(windOutwards(mixed));
+    EXPECT_EQ(winding.turned, 3U);
+    EXPECT_EQ(winding.mesh->triangles, sheet.triangles);
 }
 
 TEST(Winding, FlippedTrianglesComeBack) {
-    const Result<TriangleMesh> bunny = importMesh("/usr/share/glmark2/models/bunny.obj");
-    ASSERT_TRUE(bunny);
+    const TriangleMesh bunny = required(importMesh("/usr/share/glmark2/models/bunny.obj"));
     const TriangleMesh hollow =
         joined({makeIcosphere({0, 0, 0}, 1, 3), reversed(makeIcosphere({0, 0, 0}, 0.5, 3))});
     const TriangleMesh crossing = joined({unitBox({0, 0, 0}), unitBox({0.4, 0.3, 0.2})});
     unsigned seed = seedFrom(1);
-    for (const TriangleMesh& mesh : {*bunny, hollow, crossing, makeTorusMesh(1, 0.3, 40, 20)}) {
+    for (const TriangleMesh& mesh : {bunny, hollow, crossing, makeTorusMesh(1, 0.3, 40, 20)}) {
         const Collider truth = bakedOutwards(mesh);
         const TriangleMesh flipped = withRandomFlips(mesh, seed++);
-        const Result<Winding> winding = windOutwards(flipped);
-        ASSERT_TRUE(winding);
-        EXPECT_GT(winding->turned, mesh.triangles.size() / 3);
-        EXPECT_EQ(winding->mesh->triangles, mesh.triangles);
+        const Winding winding = required(windOutwards(flipped));
+        EXPECT_GT(winding.turned, mesh.triangles.size() / 3);
+        EXPECT_EQ(winding.mesh->triangles, mesh.triangles);
         EXPECT_EQ(bakedOutwards(flipped).maps, truth.maps);
     }
     // The inner ball, turned as a whole, is a hollow all the same.
     const TriangleMesh nested = joined({makeIcosphere({0, 0, 0}, 1, 3), makeIcosphere({0, 0, 0}, 0.5, 3)});
-    const Result<Winding> winding = windOutwards(nested);
-    ASSERT_TRUE(winding);
-    EXPECT_EQ(winding->mesh->triangles, hollow.triangles);
+    EXPECT_EQ(required(windOutwards(nested)).mesh->triangles, hollow.triangles);
 }
 
 /// A hollow whose wall was thinner than the step that rays started with, 1e-4 of the longest side, was filled.
@@ -181,9 +171,7 @@ TEST(Winding, AHollowWithAThinWallStaysAHollow) {
         const TriangleMesh outer = makeBoxMesh({0, 0, 0}, {1, 1, 1});
         const TriangleMesh inner = makeBoxMesh({0, 0, 0}, glm::dvec3(1.0 - wall));
         for (const TriangleMesh& mesh : {joined({outer, inner}), joined({reversed(inner), outer})}) {
-            const Result<Winding> winding = windOutwards(mesh);
-            ASSERT_TRUE(winding);
-            const MeshQuery query = queryOf(winding->mesh);
+            const MeshQuery query = queryOf(required(windOutwards(mesh)).mesh);
             EXPECT_FALSE(query.inside({0.1F, 0.2F, 0.3F}));
             EXPECT_TRUE(query.inside({static_cast<float>(1.0 - 0.5 * wall), 0.2F, 0.3F}));
         }
@@ -198,9 +186,7 @@ TEST(Winding, OfThousandsOfSurfacesWithinEachOther) {
         const TriangleMesh box = makeBoxMesh({0, 0, 0}, glm::dvec3(1.0 - 0.9 * i / kShells));
         shells.push_back(i % 3 == 0 ? reversed(box) : box);
     }
-    const Result<Winding> winding = windOutwards(joined(shells));
-    ASSERT_TRUE(winding);
-    const MeshQuery query = queryOf(winding->mesh);
+    const MeshQuery query = queryOf(required(windOutwards(joined(shells))).mesh);
     for (int i = 0; i < kShells; i += 37) {  // between a shell and the next
         const auto x = static_cast<float>(1.0 - 0.9 * (i + 0.5) / kShells);
         EXPECT_EQ(query.inside({x, 0.03F, -0.02F}), i % 2 == 0) << i;
@@ -214,9 +200,7 @@ TEST(Winding, OfThousandsOfCopiesStaysOutwards) {
     for (int i = 0; i < 2001; ++i) {
         triangles.insert(triangles.end(), box.triangles.begin(), box.triangles.end());
     }
-    const Result<Winding> winding = windOutwards(finished(box.positions, triangles));
-    ASSERT_TRUE(winding);
-    EXPECT_EQ(winding->turned, 0U);
+    EXPECT_EQ(required(windOutwards(finished(box.positions, triangles))).turned, 0U);
 }
 
 TEST(Winding, OneSidedStripsBakeTheSameField) {
@@ -258,28 +242,24 @@ TEST(MeshRepair, AWrapIsASolidThatHoldsTheMesh) {
     open.triangles.resize(open.triangles.size() - 2);
     const TriangleMesh soup = joined({withRandomFlips(open, 3), unitBox({6.5, 0.5, 0.1})});
     for (const double alpha : {0.1, 0.05}) {
-        const Result<TriangleMesh> wrap = wrapMesh(soup, alpha);
-        ASSERT_TRUE(wrap) << wrap.error().message;
-        const MeshHealth health = inspectMesh(*wrap);
+        const TriangleMesh wrap = required(wrapMesh(soup, alpha));
+        const MeshHealth health = inspectMesh(wrap);
         EXPECT_TRUE(health.isSolid()) << faultsText(health);
-        EXPECT_EQ(wrap->name, soup.name);
-        const MeshQuery query = queryOf(*wrap);
+        EXPECT_EQ(wrap.name, soup.name);
+        const MeshQuery query = queryOf(wrap);
         for (const glm::vec3& p : soup.positions) {
             EXPECT_TRUE(query.inside(p));
         }
         const MeshQuery source = queryOf(soup);
         const double offset = alpha / 30.0 * static_cast<double>(soup.bounds.longestSide());
-        for (const glm::vec3& p : wrap->positions) {
+        for (const glm::vec3& p : wrap.positions) {
             EXPECT_NEAR(source.closest(p).distance, offset, 0.01 * offset);
         }
-        const Result<TriangleMesh> again = wrapMesh(soup, alpha);
-        ASSERT_TRUE(again);
-        EXPECT_TRUE(again->positions == wrap->positions && again->triangles == wrap->triangles);
+        const TriangleMesh again = required(wrapMesh(soup, alpha));
+        EXPECT_TRUE(again.positions == wrap.positions && again.triangles == wrap.triangles);
     }
     for (const double alpha : {0.0, -1.0, 1.0, std::nan("")}) {
-        const Result<TriangleMesh> wrap = wrapMesh(soup, alpha);
-        ASSERT_FALSE(wrap);
-        EXPECT_EQ(wrap.error().code, ErrorCode::kUsage);
+        expectError(wrapMesh(soup, alpha), ErrorCode::kUsage);
     }
 }
 

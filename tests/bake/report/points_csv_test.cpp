@@ -3,16 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/results.h"
+
 namespace relief {
 namespace {
 
 TEST(PointsCsv, ReadsWhatPeopleWrite) {
-    const Result<std::vector<glm::vec3>> points = parsePoints(
-        "\xef\xbb\xbf# a comment\r\nx,y,z\r\n1,2,3\r\n\n  -1.5 ,\t+2e-3, .5 \n# more\n0,0,-0", "in.csv");
-    ASSERT_TRUE(points) << points.error().message;
-    ASSERT_EQ(points->size(), 3U);
-    EXPECT_EQ((*points)[0], glm::vec3(1, 2, 3));
-    EXPECT_EQ((*points)[1], glm::vec3(-1.5F, 2e-3F, 0.5F));
+    const std::vector<glm::vec3> points = required(parsePoints(
+        "\xef\xbb\xbf# a comment\r\nx,y,z\r\n1,2,3\r\n\n  -1.5 ,\t+2e-3, .5 \n# more\n0,0,-0", "in.csv"));
+    ASSERT_EQ(points.size(), 3U);
+    EXPECT_EQ(points[0], glm::vec3(1, 2, 3));
+    EXPECT_EQ(points[1], glm::vec3(-1.5F, 2e-3F, 0.5F));
     EXPECT_TRUE(parsePoints("", "in.csv")->empty());
     EXPECT_TRUE(parsePoints("x,y,z\n", "in.csv")->empty());
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
 #include "bake/measure/truth.h"

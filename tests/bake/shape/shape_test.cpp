@@ -111,20 +111,34 @@ void expectShell(const TriangleMesh& sheet, const ShapedMesh& shape, const AtBor
     EXPECT_GT(outside, 10'000);
 }
 
+struct ShellCount {
+    int near = 0;
+    int hollow = 0;  ///< near, and outside
+    int filled = 0;  ///< far, and inside
+};
+
+/// Of points as near to the surface as `near`, or as far from it as `far`, in a shell of 0.1 about it.
+ShellCount countAtShell(const TriangleMesh& mesh, double near, double far, double y_most = 9.0) {
+    const MeshQuery sheet = queryOf(mesh);
+    const MeshQuery shell = queryOf(shaped(mesh, ShapeAs::kShell, 0.1).mesh);
+    EXPECT_TRUE(shell.watertight());
+    ShellCount count;
+    for (const glm::vec3& p : pointsIn(mesh.bounds, 20'000)) {
+        const double distance = sheet.closest(p).distance;
+        const bool is_near = distance < near && std::abs(double{p.y}) <= y_most;
+        count.near += is_near ? 1 : 0;
+        count.hollow += is_near && !shell.inside(p) ? 1 : 0;
+        count.filled += distance > far && shell.inside(p) ? 1 : 0;
+    }
+    return count;
+}
+
 Collider plannedBake(const ShapedMesh& shape, std::uint64_t budget) {
-    const Result<Plan> plan = planViews(queryOf(shape.mesh), {budget, {}});
-    EXPECT_TRUE(plan) << plan.error().message;
-    BakeOptions options;
-    options.maps = specsOf(*plan);
-    Result<Baked> baked = bake(shape.mesh, options);
-    EXPECT_TRUE(baked) << baked.error().message;
-    return std::move(baked->collider);
+    return bakeMaps(shape.mesh, specsOf(required(planViews(queryOf(shape.mesh), {budget, {}}))));
 }
 
 double wrongPercent(const ShapedMesh& shape, const Collider& collider) {
-    AccuracyOptions options;
-    options.samples = 20'000;
-    return measureNear(sampleNear(queryOf(shape.mesh), options), fieldOf(collider)).total();
+    return measureNear(sampleNear(queryOf(shape.mesh), {.samples = 20'000}), fieldOf(collider)).total();
 }
 
 /// Flies straight on from `from`, in steps of this length from a random start. \return whether it was stopped.
@@ -369,43 +383,24 @@ TEST(Shape, AShellIsAllThatIsNearItsSheetWhateverItsWinding) {
 /// a hollow body.
 TEST(Shape, AShellThickerThanItsPartHasNoHollowCore) {
     const TriangleMesh rod = makeBoxMesh(glm::dvec3(0.0), {0.5, 0.02, 0.02});
+    const std::vector<glm::dvec2> bar = {{0.0, -0.5}, {0.3, -0.4}, {0.3, -0.3}, {0.02, -0.2},
+                                         {0.02, 0.2}, {0.3, 0.3},  {0.3, 0.4},  {0.0, 0.5}};
+    const std::vector<glm::dvec2> flange = {{0.0, -0.5}, {0.4, -0.3}, {0.4, -0.02}, {0.7, -0.02},
+                                            {0.7, 0.02}, {0.4, 0.02}, {0.4, 0.3},   {0.0, 0.5}};
     const std::vector<TriangleMesh> meshes = {
         rod,
         turned(rod, {0.3, 1.0, 0.2}, 33.0),
         makeTurned({{0.02, -0.5}, {0.02, 0.5}}),
         makeTurned({{0.0, -0.5}, {0.5, -0.5}, {0.5, 0.0}, {0.02, 0.0}, {0.02, 0.5}, {0.0, 0.5}}),
         makeTurned({{0.0, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {0.02, 0.5}, {0.02, 0.1}, {0.0, 0.1}}),
-        makeTurned({{0.0, -0.5},
-                    {0.3, -0.4},
-                    {0.3, -0.3},
-                    {0.02, -0.2},
-                    {0.02, 0.2},
-                    {0.3, 0.3},
-                    {0.3, 0.4},
-                    {0.0, 0.5}}),
-        makeTurned({{0.0, -0.5},
-                    {0.4, -0.3},
-                    {0.4, -0.02},
-                    {0.7, -0.02},
-                    {0.7, 0.02},
-                    {0.4, 0.02},
-                    {0.4, 0.3},
-                    {0.0, 0.5}})};
+        makeTurned(bar),
+        makeTurned(flange)};
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         SCOPED_TRACE(i);
-        const MeshQuery sheet = queryOf(meshes[i]);
-        const MeshQuery shell = queryOf(shaped(meshes[i], ShapeAs::kShell, 0.1).mesh);
-        EXPECT_TRUE(shell.watertight());
-        int hollow = 0;
-        int filled = 0;
-        for (const glm::vec3& p : pointsIn(meshes[i].bounds, 20'000)) {
-            const double distance = sheet.closest(p).distance;
-            const bool beyond = i == 2 && std::abs(p.y) > 0.49F;  // the straw's flat ends
-            hollow += distance < 0.045 && !beyond && !shell.inside(p) ? 1 : 0;
-            filled += distance > 0.09 && shell.inside(p) ? 1 : 0;
-        }
-        EXPECT_EQ(hollow, 0);
-        EXPECT_EQ(filled, 0);
+        const double flat_ends = i == 2 ? 0.49 : 9.0;  // of the straw
+        const ShellCount count = countAtShell(meshes[i], 0.045, 0.09, flat_ends);
+        EXPECT_EQ(count.hollow, 0);
+        EXPECT_EQ(count.filled, 0);
     }
     EXPECT_LT(queryOf(shaped(rod, ShapeAs::kShell, 0.1).mesh).signedDistance(glm::vec3(0.0F)), -0.06);
 }
@@ -433,20 +428,9 @@ TEST(Shape, AShellOfASharpWedgeIsAsThickAsAsked) {
         makeTurned({{0.0, 0.0}, {0.15, 0.0}, {0.005, 1.0}, {0.0, 1.0}}, 12)};
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         SCOPED_TRACE(i);
-        const MeshQuery sheet = queryOf(meshes[i]);
-        const MeshQuery shell = queryOf(shaped(meshes[i], ShapeAs::kShell, 0.1).mesh);
-        EXPECT_TRUE(shell.watertight());
-        int near = 0;
-        int hollow = 0;
-        int filled = 0;
-        for (const glm::vec3& p : pointsIn(meshes[i].bounds, 20'000)) {
-            const double distance = sheet.closest(p).distance;
-            near += distance < 0.04 ? 1 : 0;
-            hollow += distance < 0.04 && !shell.inside(p) ? 1 : 0;
-            filled += distance > 0.11 && shell.inside(p) ? 1 : 0;
-        }
-        EXPECT_LT(hollow, 0.05 * near) << near;
-        EXPECT_EQ(filled, 0);
+        const ShellCount count = countAtShell(meshes[i], 0.04, 0.11);
+        EXPECT_LT(count.hollow, 0.05 * count.near) << count.near;
+        EXPECT_EQ(count.filled, 0);
     }
 }
 

@@ -38,15 +38,10 @@ TriangleMesh plates() {
 
 DepthMap gapMap(const TriangleMesh& mesh, const std::string& spec, const IsKnown& is_known) {
     const MeshQuery query = queryOf(mesh);
-    const Result<MapSpec> parsed = parseMapSpec(spec);
-    EXPECT_TRUE(parsed) << parsed.error().message;
-    const Result<View> view = makeView(*parsed, mesh);
-    EXPECT_TRUE(view);
-    FittedMapOptions options;
-    options.reach = 0.05;
+    const View view = required(makeView(required(parseMapSpec(spec)), mesh));
     std::uint64_t covered = 0;
-    DepthMap map =
-        bakeGapMap(query, TriangleNormals(mesh), *view, options, is_known, covered, [](std::uint32_t) {});
+    DepthMap map = bakeGapMap(query, TriangleNormals(mesh), view, {.reach = 0.05}, is_known, covered,
+                              [](std::uint32_t) {});
     EXPECT_GT(covered, 0U);
     EXPECT_TRUE(validateFrame(map));
     return map;
@@ -66,11 +61,10 @@ TEST(GapMap, KnowsHowFarTheEndsOfTheLongestGapAre) {
     MersenneRandom random(3);
     for (int i = 0; i < 5000; ++i) {
         const glm::vec3 p(glm::dvec3(0.0, 0.0, 1.625) + glm::dvec3(0.93, 0.93, 1.615) * inCube(random));
-        const std::optional<Vote> said = vote(map, p);
-        ASSERT_TRUE(said);
+        const Vote said = vote(map, p).value();
         const float expected = std::min(p.z - 1.0F, 2.5F - p.z);
-        EXPECT_NEAR(said->distance, expected, 2e-4F) << p.z;
-        EXPECT_NEAR(said->normal.z, p.z < 1.75F ? 1.0F : -1.0F, 1e-4F);
+        EXPECT_NEAR(said.distance, expected, 2e-4F) << p.z;
+        EXPECT_NEAR(said.normal.z, p.z < 1.75F ? 1.0F : -1.0F, 1e-4F);
     }
     EXPECT_FALSE(vote(map, {1.5F, 0.0F, 1.7F}));  // beside the plates
     EXPECT_FALSE(vote(map, {0.0F, 0.0F, 4.0F}));  // behind them
@@ -205,18 +199,14 @@ TEST(GapMap, APlannedBakeLooksBetweenShelves) {
     }
     const MeshQuery query = unionOf(joined(boards));
     const auto wrongOf = [&](bool gaps) {
-        ViewOptions options;
-        options.gaps = gaps;
-        const Result<ViewChoice> views = chooseViews(query, options);
-        EXPECT_TRUE(views);
-        const Result<PlannedBake> made = bakePlanned(query, *views, 200'000, {});
-        EXPECT_TRUE(made) << made.error().message;
-        EXPECT_LE(made->baked.collider.gpuBytes(), 200'000U);
-        EXPECT_EQ(made->plan.bytes, made->baked.collider.gpuBytes());
-        const std::vector<DepthMap>& maps = made->baked.collider.maps;
+        const ViewChoice views = required(chooseViews(query, {.gaps = gaps}));
+        const PlannedBake made = required(bakePlanned(query, views, 200'000, {}));
+        EXPECT_LE(made.baked.collider.gpuBytes(), 200'000U);
+        EXPECT_EQ(made.plan.bytes, made.baked.collider.gpuBytes());
+        const std::vector<DepthMap>& maps = made.baked.collider.maps;
         EXPECT_EQ(std::ranges::any_of(maps, [](const DepthMap& map) { return map.compare == Compare::kGap; }),
                   gaps);
-        return measureNear(sampleNear(query, {.samples = 30'000, .seed = 8}), fieldOf(made->baked.collider))
+        return measureNear(sampleNear(query, {.samples = 30'000, .seed = 8}), fieldOf(made.baked.collider))
             .total();
     };
     EXPECT_LT(wrongOf(true), 0.2 * wrongOf(false));

@@ -66,12 +66,11 @@ Points grid(int side, const auto& height) {
 }
 
 void expectHighest(const Points& points) {
-    const std::optional<glm::dvec2> slope = highestBelow(points);
-    ASSERT_TRUE(slope);
+    const glm::dvec2 slope = highestBelow(points).value();
     const double extent =
         1.0 +
         std::abs(std::ranges::max_element(points, {}, [](const glm::dvec3& p) { return std::abs(p.z); })->z);
-    EXPECT_NEAR(heightBelow(points, slope->x, slope->y), highestOfAll(points), 1e-7 * extent);
+    EXPECT_NEAR(heightBelow(points, slope.x, slope.y), highestOfAll(points), 1e-7 * extent);
 }
 
 TEST(HighestBelow, IsTheBestOfAllPlanesThroughThreePoints) {

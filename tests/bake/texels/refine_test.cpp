@@ -3,8 +3,6 @@
 // never saw.
 #include "bake/texels/refine.h"
 
-#include <glm/geometric.hpp>
-
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/surface_sampler.h"
 #include "bake/pipeline/bake.h"
@@ -15,25 +13,15 @@ namespace relief::test {
 namespace {
 
 WrongShare wrongNear(const MeshQuery& query, const Collider& collider) {
-    AccuracyOptions options;
-    options.samples = 120'000;
-    options.seed = 99;
-    return measureNear(sampleNear(query, options), fieldOf(collider));
+    return measureNear(sampleNear(query, {.samples = 120'000, .seed = 99}), fieldOf(collider));
 }
 
 Collider bakePlanned(const TriangleMesh& mesh, const MeshQuery& query, Quality quality, Prefer prefer) {
     PlanOptions plan_options;
     plan_options.budget_bytes = 65536;
     plan_options.views.prefer = prefer;
-    const Result<Plan> plan = planViews(query, plan_options);
-    EXPECT_TRUE(plan);
-    BakeOptions options;
-    options.quality = quality;
-    options.prefer = prefer;
-    options.maps = specsOf(*plan);
-    Result<Baked> baked = bake(mesh, options);
-    EXPECT_TRUE(baked);
-    return baked ? std::move(baked->collider) : Collider{};
+    const Plan plan = required(planViews(query, plan_options));
+    return bakeMaps(mesh, specsOf(plan), quality, prefer);
 }
 
 std::vector<TriangleMesh> shapes() {
@@ -58,9 +46,7 @@ TEST(Refine, MakesFewerMistakesAmongPointsItNeverSaw) {
 /// The rest of the points is asked only where a part of them had something to mend.
 TEST(Refine, GoesOnWhereSomethingWasMended) {
     const auto refined = [](Collider collider, const MeshQuery& query, double worth_mending) {
-        RefineOptions options;
-        options.worth_mending = worth_mending;
-        refineTexels(collider, query, options);
+        refineTexels(collider, query, {.worth_mending = worth_mending});
         return collider.maps[0].texels;
     };
     const double as_usual = RefineOptions().worth_mending;

@@ -16,9 +16,7 @@ namespace relief::test {
 namespace {
 
 View viewOf(const TriangleMesh& mesh, const std::string& text) {
-    const Result<View> view = makeView(*completeSpec(*parseMapSpec(text), mesh, 64), mesh);
-    EXPECT_TRUE(view);
-    return *view;
+    return required(makeView(*completeSpec(*parseMapSpec(text), mesh, 64), mesh));
 }
 
 struct Scanned {
@@ -27,13 +25,12 @@ struct Scanned {
 };
 
 Scanned scan(const TriangleMesh& mesh, const View& view) {
-    const Result<RayScene> scene = RayScene::build(mesh);
-    EXPECT_TRUE(scene);
+    const RayScene scene = required(RayScene::build(mesh));
     Scanned hits;
     hits.near.resize(std::size_t{view.width} * view.height);
     hits.far.resize(hits.near.size());
     // In stripes, as big maps are.
-    const ScanConverter converter(*scene, view);
+    const ScanConverter converter(scene, view);
     for (std::uint32_t y = 0; y < view.height; y += 7) {
         const std::uint32_t end = std::min(y + 7, view.height);
         const std::size_t first = std::size_t{y} * view.width;
@@ -151,15 +148,14 @@ TEST(ScanConverter, MeetsWhatWholeNumbersSay) {
 TEST(ScanConverter, MeetsWhatRaysMeet) {
     for (const TriangleMesh& mesh : {makeTorusMesh(1.0, 0.4, 90, 50), makeIcosphere({0.3, -0.2, 5.0}, 2.0, 4),
                                      makeBoxMesh({1, 2, 3}, {0.5, 2.0, 0.01}, rotation({1, 2, 3}, 40.0))}) {
-        const Result<RayScene> scene = RayScene::build(mesh);
-        ASSERT_TRUE(scene);
+        const RayScene scene = required(RayScene::build(mesh));
         for (const char* spec :
              {"front-back:dir=+z,size=150", "front-back:dir=1/2/-3,size=97x201",
               "front-back:dir=-y,up=1/0/2,size=33", "front-back:dir=-1/-1/-1,size=200x30"}) {
             const View view = viewOf(mesh, spec);
             const Scanned hits = scan(mesh, view);
-            RayProbe near(*scene, view, RayEnd::kNear);
-            RayProbe far(*scene, view, RayEnd::kFar);
+            RayProbe near(scene, view, RayEnd::kNear);
+            RayProbe far(scene, view, RayEnd::kFar);
             std::uint64_t met = 0;
             std::uint64_t others = 0;
             for (std::uint32_t y = 0; y < view.height; ++y) {
@@ -221,8 +217,7 @@ TEST(ScanConverter, ThroughAnEdgeOfTwoSolidsARayStaysWhereItStarted) {
         grid.set({1, 0, 0}, !starts_inside);
         grid.set({0, 1, 0}, !starts_inside);
         const TriangleMesh mesh = grid.mesh();
-        const Result<RayScene> scene = RayScene::build(mesh);
-        ASSERT_TRUE(scene);
+        const RayScene scene = required(RayScene::build(mesh));
 
         // The volume begins and ends in the middle of the columns on its way; the middle column of texels looks at the edge.
         const View part = viewOf(mesh, "front-back:dir=1/1/0,up=+z,size=33,box=0.25/0.25/0/1.75/1.75/1");
@@ -240,9 +235,9 @@ TEST(ScanConverter, ThroughAnEdgeOfTwoSolidsARayStaysWhereItStarted) {
         // A cube whose centre is on the first column's side. The same edge, of which the ray knows two of the six faces.
         View cube = viewOf(mesh, "cube:size=6,compare=less,box=-2/-1.5/-1.5/2/2.5/2.5");
         cube.centre_on_surface = true;
-        ASSERT_TRUE(mayStartInside(*scene, cube, RayEnd::kNear));
+        ASSERT_TRUE(mayStartInside(scene, cube, RayEnd::kNear));
         std::vector<Hit> face(36);
-        ScanConverter(*scene, cube).scan({0, 0, 6}, face, {});
+        ScanConverter(scene, cube).scan({0, 0, 6}, face, {});
         for (const std::uint32_t x : {2U, 3U}) {
             const Hit& hit = face[std::size_t{1} * 6 + x];  // y grows downwards: the direction (1, 1/2, ±1/6)
             ASSERT_FALSE(hit.empty());

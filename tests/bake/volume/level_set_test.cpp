@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/volume/level_set.h"
 
-#include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetMeasure.h>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/world/coarse_collider.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/geometric.hpp>
 
 #include "bake/director/director.h"
@@ -27,19 +25,15 @@ TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
             BakeRequest request;
             request.budget = budget;
             request.no_check = true;
-            const Result<BakeResult> fine = bake(request, {}, mesh);
-            ASSERT_TRUE(fine) << fine.error().message;
-            ASSERT_TRUE(hasCoarse(fine->baked.collider));
-            const FineCollider of = FineCollider::of(fine->baked.collider);
+            const BakeResult fine = required(bake(request, {}, mesh));
+            ASSERT_TRUE(hasCoarse(fine.baked.collider));
+            const FineCollider of = FineCollider::of(fine.baked.collider);
             const auto by_mesh = [&](const BakeRequest& other) { return bake(other, {}, mesh); };
-            const Result<Collider> coarse = bakeCoarse(request, of, by_mesh);
-            ASSERT_TRUE(coarse) << coarse.error().message;
-            EXPECT_LE(16 * coarse->gpuBytes(), fine->baked.collider.gpuBytes());
-            EXPECT_TRUE(contains(insideBox(*coarse).value(), insideBox(fine->baked.collider).value()));
-            EXPECT_EQ(coarse->bounds, fine->baked.collider.bounds);
-            const Result<Collider> again = bakeCoarse(request, of, by_mesh);
-            ASSERT_TRUE(again);
-            EXPECT_EQ(*again, *coarse);
+            const Collider coarse = required(bakeCoarse(request, of, by_mesh));
+            EXPECT_LE(16 * coarse.gpuBytes(), fine.baked.collider.gpuBytes());
+            EXPECT_TRUE(contains(insideBox(coarse).value(), insideBox(fine.baked.collider).value()));
+            EXPECT_EQ(coarse.bounds, fine.baked.collider.bounds);
+            EXPECT_EQ(required(bakeCoarse(request, of, by_mesh)), coarse);
             // Some nine thousand bytes leave slivers of a ball that no patch holds, up to a fiftieth of its radius thick.
             int known = 0;
             int wrong = 0;
@@ -48,7 +42,7 @@ TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
                 const double away = glm::distance(p, center) - radius;
                 if (std::abs(away) > 0.01 * radius) {
                     ++known;
-                    const bool right = evaluate(*coarse, glm::vec3(p)).inside() == (away < 0.0);
+                    const bool right = evaluate(coarse, glm::vec3(p)).inside() == (away < 0.0);
                     wrong += right ? 0 : 1;
                     ASSERT_TRUE(right || std::abs(away) < 0.02 * radius) << away / radius;
                 }

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "bake/recipe/recipe_jobs.h"
 #include "bake/world/world_bake.h"
+#include "bake/world/world_check.h"
 #include "formats/base/file_io.h"
 #include "tests/bake/meshes.h"
 #include "tests/temporary_folder.h"
@@ -57,9 +59,19 @@ class LevelBakes : public testing::Test {
         request_.bake.mesh = (folder_.path() / "level.obj").string();
         request_.folder = folder_.path() / into;
         std::filesystem::create_directories(request_.folder);
-        Result<WorldBakeResult> result = bakeWorld(request_);
-        EXPECT_TRUE(result) << result.error().message;
-        return std::move(*result);
+        return required(bakeWorld(request_));
+    }
+
+    [[nodiscard]] WorldField load(const char* from, WorldDetail detail = WorldDetail::kFine) const {
+        return WorldField(required(loadWorld(folder_.path() / from / kWorldFileName, {}, detail)));
+    }
+
+    /// Against the level.
+    [[nodiscard]] WorldAccuracy check(const WorldField& field, std::uint64_t samples) const {
+        WorldCheckRequest request;
+        request.check.mesh = (folder_.path() / "level.obj").string();
+        request.check.samples = samples;
+        return required(checkWorld(request, field));
     }
 
     [[nodiscard]] Files filesOf(const char* folder) const {

@@ -2,7 +2,6 @@
 // Worlds measured against their levels, of which a thin part is lost.
 #include "bake/world/world_check.h"
 
-#include "bake/recipe/recipe_jobs.h"
 #include "bake/world/world_check_report.h"
 #include "bake/world/world_report.h"
 #include "tests/bake/world/level_bakes.h"
@@ -26,18 +25,12 @@ TEST_F(WorldCheck, AdvisesNoBudgetWhereFloatsAreCoarse) {
     folder_.write("level.obj", far);
     request_.bake.budget = 60'000;
     const WorldBakeResult baked = bake("w");
-    Result<LoadedWorld> loaded = loadWorld(folder_.path() / "w" / kWorldFileName, {});
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    const WorldField field(std::move(*loaded));
-    WorldCheckRequest request;
-    request.check.mesh = (folder_.path() / "level.obj").string();
-    request.check.samples = 10'000;
-    const Result<WorldAccuracy> accuracy = checkWorld(request, field);
-    ASSERT_TRUE(accuracy) << accuracy.error().message;
-    EXPECT_GT(accuracy->all.total(), 5.0);
-    EXPECT_EQ(accuracy->places.front().cause, WorldCause::kFloats);
+    const WorldField field = load("w");
+    const WorldAccuracy accuracy = check(field, 10'000);
+    EXPECT_GT(accuracy.all.total(), 5.0);
+    EXPECT_EQ(accuracy.places.front().cause, WorldCause::kFloats);
     const std::string& warning = baked.colliders.front().warnings.back();
-    for (const std::string& text : {worldCheckText(field, "w", &*accuracy), warning}) {
+    for (const std::string& text : {worldCheckText(field, "w", &accuracy), warning}) {
         EXPECT_EQ(text.find("--budget"), std::string::npos) << text;
         EXPECT_NE(text.find("origin"), std::string::npos) << text;
     }
@@ -45,7 +38,7 @@ TEST_F(WorldCheck, AdvisesNoBudgetWhereFloatsAreCoarse) {
 
 TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
     // 20 posts of 0.5 m on a slab of 20 m, which most points near the mesh are far from.
-    const auto check = [&](double half, std::uint64_t budget) {
+    const auto accuracyOf = [&](double half, std::uint64_t budget) {
         std::vector<TriangleMesh> house = {makeBoxMesh({0, 0, 0}, {10, 0.25, 10})};
         for (int i = 0; i < 20; ++i) {
             house.push_back(makeBoxMesh({0.9 * i - 9.0, 0.45, 0.2 * i - 2.0}, {half, 0.25, half}));
@@ -53,17 +46,11 @@ TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
         write({{"house", joined(house)}});
         request_.bake.budget = budget;
         static_cast<void>(bake("w"));
-        Result<LoadedWorld> loaded = loadWorld(folder_.path() / "w" / kWorldFileName, {});
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        WorldCheckRequest request;
-        request.check.mesh = (folder_.path() / "level.obj").string();
-        request.check.samples = 10'000;
-        Result<WorldAccuracy> accuracy = checkWorld(request, WorldField(std::move(*loaded)));
-        EXPECT_TRUE(accuracy) << accuracy.error().message;
-        EXPECT_LT(accuracy->all.total(), 1.0);
-        return std::move(*accuracy);
+        WorldAccuracy accuracy = check(load("w"), 10'000);
+        EXPECT_LT(accuracy.all.total(), 1.0);
+        return accuracy;
     };
-    const WorldAccuracy coarse = check(0.0025, 24'000);
+    const WorldAccuracy coarse = accuracyOf(0.0025, 24'000);
     ASSERT_EQ(coarse.lost.size(), 1U);
     EXPECT_EQ(coarse.lost[0].mesh, "house");
     EXPECT_GT(coarse.lost[0].lost, 10U) << coarse.lost[0].text;
@@ -72,7 +59,7 @@ TEST_F(WorldCheck, NamesMeshesThatLoseThinParts) {
     EXPECT_EQ(verdict.grade, "poor");
     EXPECT_NE(verdict.text.find("but 1 mesh lost parts"), std::string::npos) << verdict.text;
     EXPECT_TRUE(coarse.passes({}));
-    const WorldAccuracy fine = check(0.04, 300'000);
+    const WorldAccuracy fine = accuracyOf(0.04, 300'000);
     EXPECT_TRUE(fine.lost.empty()) << fine.lost[0].text;
     EXPECT_TRUE(fine.passes(1.0F));
 }
@@ -90,18 +77,12 @@ TEST_F(WorldCheck, CountsSmallLostPartsOfAllMeshes) {
     EXPECT_GT(baked.colliders[0].ignored.lost, 15U);  // of 16 points each
     EXPECT_NE(worldBakeText(baked, "w", 1.0, false).find(" of 21 parts, at most 0.01 long, are not"),
               std::string::npos);
-    Result<LoadedWorld> loaded = loadWorld(folder_.path() / "w" / kWorldFileName, {});
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    WorldCheckRequest request;
-    request.check.mesh = (folder_.path() / "level.obj").string();
-    request.check.samples = 2000;
-    const WorldField field(std::move(*loaded));
-    const Result<WorldAccuracy> accuracy = checkWorld(request, field);
-    ASSERT_TRUE(accuracy) << accuracy.error().message;
-    EXPECT_TRUE(accuracy->lost.empty());
-    EXPECT_GT(accuracy->ignored.lost, 15U);
-    EXPECT_EQ(verdictOf(*accuracy, "").grade, "good");
-    EXPECT_NE(worldCheckText(field, "w", &*accuracy).find(" of 21 parts, at most 0.01 long, are not"),
+    const WorldField field = load("w");
+    const WorldAccuracy accuracy = check(field, 2000);
+    EXPECT_TRUE(accuracy.lost.empty());
+    EXPECT_GT(accuracy.ignored.lost, 15U);
+    EXPECT_EQ(verdictOf(accuracy, "").grade, "good");
+    EXPECT_NE(worldCheckText(field, "w", &accuracy).find(" of 21 parts, at most 0.01 long, are not"),
               std::string::npos);
 }
 

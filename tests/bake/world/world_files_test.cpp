@@ -2,8 +2,6 @@
 // Values written into a world.json by hand are there after the next bake.
 #include "bake/world/world_files.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <functional>
 #include <span>
@@ -96,9 +94,7 @@ TEST_F(WrittenByHand, ResponsesOfMaterialsStayByName) {
 TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
     fs::create_directories(worldFile().parent_path());
     const auto replace = [&](World& world) {
-        const auto replaced = replaceWorld(worldFile().parent_path(), world, {}, "level");
-        EXPECT_TRUE(replaced) << replaced.error().message;
-        return replaced->warnings;
+        return required(replaceWorld(worldFile().parent_path(), world, {}, "level")).warnings;
     };
     World world = placed({"door", "gate", "gate", "floor"});
     EXPECT_TRUE(replace(world).empty());
@@ -207,16 +203,15 @@ TEST_F(WrittenByHand, ResponsesGoWithTheBodyThatIsMeant) {
             }
         });
         world = placed(one.nodes);
-        const auto replaced = replaceWorld(worldFile().parent_path(), world, {}, "level");
-        ASSERT_TRUE(replaced) << replaced.error().message;
+        const auto replaced = required(replaceWorld(worldFile().parent_path(), world, {}, "level"));
         std::vector<float> friction;
         for (const WorldBody& body : world.bodies) {
             friction.push_back(body.friction);
         }
         EXPECT_EQ(friction, one.friction);
-        ASSERT_EQ(replaced->warnings.size(), one.gone.empty() ? 0U : 1U);
-        EXPECT_TRUE(one.gone.empty() || replaced->warnings[0].find(one.gone) != std::string::npos)
-            << replaced->warnings[0];
+        ASSERT_EQ(replaced.warnings.size(), one.gone.empty() ? 0U : 1U);
+        EXPECT_TRUE(one.gone.empty() || replaced.warnings[0].find(one.gone) != std::string::npos)
+            << replaced.warnings[0];
     }
 }
 

@@ -3,14 +3,9 @@
 #include "bake/world/world_tiles.h"
 #include "bake/world/coarse_collider.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <map>
 #include <random>
 
-#include "bake/recipe/recipe_jobs.h"
-#include "bake/world/world_check.h"
 #include "tests/bake/world/level_bakes.h"
 
 namespace relief::test {
@@ -51,17 +46,6 @@ class WorldTiles : public LevelBakes {
         Files files = LevelBakes::filesOf(folder);
         std::erase_if(files, [](const auto& file) { return file.first.front() == '.'; });
         return files;
-    }
-    [[nodiscard]] WorldField load(const char* from, WorldDetail detail = WorldDetail::kFine) const {
-        Result<LoadedWorld> loaded = loadWorld(folder_.path() / from / kWorldFileName, {}, detail);
-        EXPECT_TRUE(loaded) << loaded.error().message;
-        return WorldField(std::move(*loaded));
-    }
-    [[nodiscard]] Result<WorldAccuracy> check(const WorldField& field) const {
-        WorldCheckRequest request;
-        request.check.mesh = (folder_.path() / "level.obj").string();
-        request.check.samples = 20'000;
-        return checkWorld(request, field);
     }
     static std::vector<std::string> namesOf(const WorldBakeResult& result, WorldColliderState state) {
         std::vector<std::string> names;
@@ -167,25 +151,20 @@ TEST_F(WorldTiles, HillsAreInTheirPlaceWithTheirMaterialsAndWithinTheirBytes) {
 TEST_F(WorldTiles, TilesAreOneMeshToChecksAndMoves) {
     static_cast<void>(bake("w"));
     const WorldField field = load("w");
-    const Result<WorldAccuracy> accuracy = check(field);
-    ASSERT_TRUE(accuracy) << accuracy.error().message;
-    EXPECT_TRUE(accuracy->warnings.empty());
-    ASSERT_EQ(accuracy->bodies.size(), 2U);
-    EXPECT_LT(accuracy->all.total(), 0.5);
-    EXPECT_EQ(accuracy->bodies[0].tiles, field.world().bodies.size() - 1);
-    EXPECT_EQ(accuracy->bodies[1].tiles, 1U);
+    const WorldAccuracy accuracy = check(field, 20'000);
+    EXPECT_TRUE(accuracy.warnings.empty());
+    ASSERT_EQ(accuracy.bodies.size(), 2U);
+    EXPECT_LT(accuracy.all.total(), 0.5);
+    EXPECT_EQ(accuracy.bodies[0].tiles, field.world().bodies.size() - 1);
+    EXPECT_EQ(accuracy.bodies[1].tiles, 1U);
     // Without one of the tiles, what was in it is missing.
     LoadedWorld broken = field.loaded();
     broken.world.bodies.erase(broken.world.bodies.begin() + 2);
-    const Result<WorldAccuracy> less = check(WorldField(std::move(broken)));
-    ASSERT_TRUE(less) << less.error().message;
-    EXPECT_GT(less->bodies[0].wrong.false_outside, 2.0);
+    EXPECT_GT(check(WorldField(std::move(broken)), 20'000).bodies[0].wrong.false_outside, 2.0);
     // And a tile elsewhere is no part of its node any more.
     LoadedWorld moved = field.loaded();
     moved.world.bodies[2].position.y += 5.0F;
-    const Result<WorldAccuracy> other = check(WorldField(std::move(moved)));
-    ASSERT_TRUE(other) << other.error().message;
-    EXPECT_EQ(other->warnings.size(), 1U);
+    EXPECT_EQ(check(WorldField(std::move(moved)), 20'000).warnings.size(), 1U);
     // A node moves by all its bodies.
     LoadedWorld hills = field.loaded();
     ASSERT_EQ(findBodies(hills.world, "box").size(), 1U);
@@ -230,9 +209,8 @@ TEST_F(WorldTiles, OnlyWhatHasChangedIsBakedToTheSameBytesWithAnyNumberOfThreads
     EXPECT_TRUE(filesOf("one") == before);
     // A cache that is made up costs a bake.
     const fs::path cache = folder_.path() / "w" / kBakeCacheName;
-    const auto bytes = readFile(cache);
-    ASSERT_TRUE(bytes);
-    const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const std::vector<std::byte> bytes = required(readFile(cache));
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     for (const char* tiles : {"", "../0-0-0", "0-0-0,0-0-0"}) {
         std::string made = text;
         for (std::size_t at = 0; (at = made.find("--tiles=", at)) != std::string::npos; at += 8) {
