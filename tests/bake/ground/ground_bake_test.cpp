@@ -166,6 +166,10 @@ TEST_F(GroundBakes, TilesWithoutGroundAreLeftOutAndNoneAtAllIsAnError) {
     }
 }
 
+void expectHas(const std::string& text, std::string_view words) {
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+}
+
 /// Settings that are not those of the file are named, as far as they can be known.
 TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
     const auto warned = [&](const std::string& settings) {
@@ -195,10 +199,8 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
     write("h.raw", 17, 17,
           [](double x, double z) { return x == 9 && z == 4 ? double{kHole} : hills(x, z) + 25.0; });
     const std::string hole = warned("low=-20,high=44");
-    EXPECT_NE(hole.find("h.raw: its lowest sample, 0, lies"), std::string::npos) << hole;
-    EXPECT_NE(hole.find(" far below all others; if it stands for no data, give --heights hole=0\n"),
-              std::string::npos)
-        << hole;
+    expectHas(hole, "h.raw: its lowest sample, 0, lies");
+    expectHas(hole, " far below all others; if it stands for no data, give --heights hole=0\n");
     EXPECT_EQ(warned("low=-20,high=44,hole=0"), "");
     // -1 of int16, or a hole of uint16, beside heights of 0 to 2.
     const auto sample = [](double value) { return kLow + value * (kHigh - kLow) / 65535.0; };
@@ -226,10 +228,9 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
         return sample(x == 9 && z == 4 ? 65535.0 : x == 10 && z == 4 ? 65000.0 : 3000.0 + x + z);
     });
     const std::string several = warned("spacing=1000,low=0,high=65535");
-    EXPECT_NE(several.find("its highest samples, 65000 to 65535, lie far above all others; if they stand for "
-                           "no data, save them as one value and give it as --heights hole\n"),
-              std::string::npos)
-        << several;
+    expectHas(several,
+              "its highest samples, 65000 to 65535, lie far above all others; if they stand for "
+              "no data, save them as one value and give it as --heights hole\n");
 }
 
 /// A square along whose diagonal the ground rises by 66° has no bound, though each of its sides rises by 58°.
@@ -242,16 +243,15 @@ TEST_F(GroundBakes, SteepSquaresAreCountedByTheirRiseAndHaveNoBound) {
         return (result.warnings.empty() ? "" : result.warnings.front()) + "\n" + groundText(result, "g", 0.0);
     };
     const std::string all = report(1.6, 0.0);
-    EXPECT_NE(all.find("64 squares are steep: they rise by more than 2.9 of their side, 64 degrees along a "
-                       "diagonal and 71 along a row; "),
-              std::string::npos)
-        << all;
-    EXPECT_NE(all.find("samples, steep everywhere; "), std::string::npos) << all;
+    expectHas(all,
+              "64 squares are steep: they rise by more than 2.9 of their side, 64 degrees along a "
+              "diagonal and 71 along a row; ");
+    expectHas(all, "samples, steep everywhere; ");
     EXPECT_EQ(all.find(" mm"), std::string::npos) << all;
     const std::string some = report(1.6, 4.0);
-    EXPECT_NE(some.find("16 squares are steep"), std::string::npos) << some;
-    EXPECT_NE(some.find(" mm along y except at steep squares; "), std::string::npos) << some;
-    EXPECT_NE(report(1.4, 0.0).find(" mm along y; "), std::string::npos);
+    expectHas(some, "16 squares are steep");
+    expectHas(some, " mm along y except at steep squares; ");
+    expectHas(report(1.4, 0.0), " mm along y; ");
 }
 
 }  // namespace

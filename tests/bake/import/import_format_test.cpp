@@ -81,8 +81,7 @@ TEST(ImportFormat, WhatIsNoMeshIsRefused) {
 }
 
 TEST(ImportFormat, BlendFilesAreOftenPacked) {
-    const std::string packed = model("BLEND/BlenderDefault_250_Compressed.blend");
-    EXPECT_EQ(imported("a.blend", packed).triangles.size(), 12U);
+    EXPECT_EQ(imported("a.blend", model("BLEND/BlenderDefault_250_Compressed.blend")).triangles.size(), 12U);
 }
 
 TEST(ImportFormat, TextMayBeginWithAByteOrderMark) {

@@ -69,8 +69,7 @@ TEST(MeshQuery, AHintChangesNoAnswer) {
 }
 
 TEST(MeshQuery, RaysAndSegmentsMeetABox) {
-    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1});
-    const MeshQuery query = queryOf(mesh);
+    const MeshQuery query = queryOf(makeBoxMesh({0, 0, 0}, {1, 1, 1}));
     EXPECT_NEAR(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, -2.0}).value().along, 2.0, 1e-6);
     EXPECT_FALSE(query.firstHit({0.1, 0.2, 5.0}, {0.0, 0.0, 2.0}));
     EXPECT_FALSE(query.segmentIsFree({0.1, 0.2, 5.0}, {0.1, 0.2, 0.0}));
@@ -290,8 +289,8 @@ TEST(Accuracy, SeedsGiveOtherPointsAndPrefixesStay) {
 
 TEST(Accuracy, SurfacePointsFollowTheArea) {
     // Of a box of 4 × 1 × 1 the two small faces have a ninth of the area.
-    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {2, 0.5, 0.5});
-    const TruthSamples samples = sampleTruth(queryOf(mesh), withSamples(kSamples));
+    const TruthSamples samples =
+        sampleTruth(queryOf(makeBoxMesh({0, 0, 0}, {2, 0.5, 0.5})), withSamples(kSamples));
     std::size_t small = 0;
     for (const SurfacePoint& point : samples.surface) {
         small += std::abs(point.normal.x) > 0.5F ? 1 : 0;

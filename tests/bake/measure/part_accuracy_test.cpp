@@ -224,8 +224,7 @@ TEST(PartAccuracy, TheSmallestOfTooManyPartsAreCounted) {
 TEST(PartAccuracy, WhatLiesInsideOtherPartsIsHidden) {
     const TriangleMesh outer = makeBoxMesh(glm::dvec3(0.0), glm::dvec3(1.0));
     const TriangleMesh sheet = moved(makePlane(0.1F, 2), [](const glm::dvec3& p) { return 0.5 * p; });
-    const ShapedMesh shape = shaped(joined({outer, sheet}));
-    const PartsAccuracy found = measured(shape, fieldOfBoxes({outer.bounds}));
+    const PartsAccuracy found = measured(shaped(joined({outer, sheet})), fieldOfBoxes({outer.bounds}));
     EXPECT_EQ(found.countOf(PartVerdict::kHeld), 1U);
     EXPECT_EQ(found.countOf(PartVerdict::kHidden), 1U);
 }

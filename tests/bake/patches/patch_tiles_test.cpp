@@ -164,8 +164,7 @@ TEST(PatchTiles, ASphereInEightIsRoundAtSeamsToo) {
 }
 
 TEST(PatchTiles, KeepToTheirLimits) {
-    const TriangleMesh mesh = makeHills(60);
-    const DepthMap whole = bakePatches(queryOf(mesh), {.bytes = 200'000})->map;
+    const DepthMap whole = bakePatches(queryOf(makeHills(60)), {.bytes = 200'000})->map;
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 200'000}).size(), 1U);
     EXPECT_EQ(cutIntoTiles(whole, {.bytes = 20'000, .most = 4}).size(), 4U);
     // Roots beyond a tile's own are bytes, too.

@@ -56,8 +56,7 @@ TEST(SliceFigure, DrawsWhateverTheFieldIs) {
     collider.maps = {collider.maps[1]};
     EXPECT_TRUE(drawSlice(*evaluateSlice(collider, {.axis = 0, .at = 50.0F, .size = 20}), {"", ""}));
     for (const float scale : {1e-14F, 1e14F}) {
-        const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, glm::dvec3(scale));
-        const Collider scaled = bakeSpecs(mesh, {"cube"}, 8);
+        const Collider scaled = bakeSpecs(makeBoxMesh({0, 0, 0}, glm::dvec3(scale)), {"cube"}, 8);
         EXPECT_TRUE(
             drawSlice(*evaluateSlice(scaled, {.axis = 2, .at = {}, .size = 20}), {"\xf0\x9f\x90\x87", "m"}));
     }

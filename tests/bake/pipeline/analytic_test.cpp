@@ -295,8 +295,7 @@ TEST(BakeScale, TinyHugeAndFarMeshesBake) {
         }
     }
     // 1000 times its size from the origin: floats still tell its faces apart.
-    const TriangleMesh far_mesh = makeBoxMesh({1000, -2000, 500}, kBoxHalf);
-    const DepthMap map = bakeMap(far_mesh, "float:dir=-x");
+    const DepthMap map = bakeMap(makeBoxMesh({1000, -2000, 500}, kBoxHalf), "float:dir=-x");
     EXPECT_TRUE(map.encloses);
     EXPECT_NEAR(vote(map, {1000, -2000, 500})->distance, -1.0, 2e-3);
 }

@@ -126,8 +126,8 @@ TEST(FittedMap, ATiltedFaceIsFoundToAQuantumEverywhere) {
     // One face of a turned box, seen obliquely: away from the edges the plane is the face itself, but for the
     // normal's index (at most 0.65°, over half a texel) and the depth's quantum, both on the free side.
     const glm::dmat3 axes = rotation({0, 1, 0}, 25.0);
-    const TriangleMesh mesh = makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes);
-    const Collider collider = bakeSpecs(mesh, {"front-back:dir=-z,size=66x66,depth=unorm16,decode=plane"});
+    const Collider collider = bakeSpecs(makeBoxMesh({0, 0, 0}, {1, 1, 1}, axes),
+                                        {"front-back:dir=-z,size=66x66,depth=unorm16,decode=plane"});
     const glm::dvec3 normal = axes * glm::dvec3(0, 0, 1);
     const double texel = 2.0 * 1.33 / 64.0;
     const double bound = texel * 0.0114 + 4.0 / 65534.0;
@@ -261,8 +261,7 @@ TEST(ViewPlanner, MakesAThirdOfTheMistakesOfThePapersMaps) {
 }
 
 TEST(ViewPlanner, LooksIntoACavity) {
-    const TriangleMesh mesh = makeJar();
-    const PlannedBake made = madeOf(mesh);
+    const PlannedBake made = madeOf(makeJar());
     const auto within =
         std::count_if(made.plan.maps.begin(), made.plan.maps.end(), [](const PlannedMap& map) {
             return map.spec.compare.has_value();  // a cube, or gaps

@@ -85,8 +85,7 @@ TEST(SealedVoids, AreInsideAndEndNoLine) {
 }
 
 TEST(SealedVoid, IsBakedFull) {
-    const ShapedMesh shape = shaped(makeRooms());
-    const MeshQuery query = queryOf(shape.mesh);
+    const MeshQuery query = queryOf(shaped(makeRooms()).mesh);
     const DepthMap map = bakePatches(query, {.bytes = 200'000})->map;
     for (const glm::vec3& p : pointsIn(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)).bounds, 20'000)) {
         ASSERT_LT(vote(map, p)->distance, 0.0F);
@@ -108,8 +107,7 @@ TEST(SealedVoid, HasNoWindowAndStaysHollowOnRequest) {
 TEST(SealedVoid, IsNoHollowOfASolid) {
     const TriangleMesh hollow = joined({makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.4)),
                                         reversed(makeBoxMesh(glm::dvec3(0.0), glm::dvec3(0.3)))});
-    TriangleMesh sheet = makePanel(1, 1.2);
-    EXPECT_FALSE(isFull(joined({hollow, sheet})));
+    EXPECT_FALSE(isFull(joined({hollow, makePanel(1, 1.2)})));
 }
 
 }  // namespace

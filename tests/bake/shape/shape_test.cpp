@@ -495,8 +495,7 @@ TEST(Shape, WhatIsNoNearCopyStays) {
         EXPECT_TRUE(shape.mesh->warnings.empty());
     }
     // A hollow stays one.
-    const ShapedMesh hollow = shaped(joined({ball, reversed(scaled(ball, 0.99))}));
-    EXPECT_FALSE(queryOf(hollow.mesh).inside(glm::dvec3(0.0)));
+    EXPECT_FALSE(queryOf(shaped(joined({ball, reversed(scaled(ball, 0.99))})).mesh).inside(glm::dvec3(0.0)));
     // Many parts of one size, near each other, are found apart.
     std::vector<TriangleMesh> many;
     for (int i = 0; i < 50; ++i) {

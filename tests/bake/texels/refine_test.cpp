@@ -20,8 +20,7 @@ Collider bakePlanned(const TriangleMesh& mesh, const MeshQuery& query, Quality q
     PlanOptions plan_options;
     plan_options.budget_bytes = 65536;
     plan_options.views.prefer = prefer;
-    const Plan plan = required(planViews(query, plan_options));
-    return bakeMaps(mesh, specsOf(plan), quality, prefer);
+    return bakeMaps(mesh, specsOf(required(planViews(query, plan_options))), quality, prefer);
 }
 
 std::vector<TriangleMesh> shapes() {

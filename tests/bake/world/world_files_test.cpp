@@ -61,13 +61,26 @@ Bodies frictionOf(const World& world) {
     return bodies;
 }
 
-/// A world as a bake makes it, of one collider, with a body for each node.
-World placed(const std::vector<std::string>& nodes) {
+/// The x of a node's place, and the side of its mesh's box.
+struct Node {
+    std::string name;
+    float x = 0.0F;
+    float side = 1.0F;
+};
+/// A world as a bake makes it, with a body and a collider for each node.
+World placed(const std::vector<Node>& nodes) {
     World world;
-    world.colliders.push_back(
-        {{"a.relief", std::string(32, '0'), 1}, "a", {glm::vec3(0.0F), glm::vec3(1.0F)}, {}});
-    for (const std::string& node : nodes) {
-        world.bodies.emplace_back().node = node;
+    for (const Node& node : nodes) {
+        const auto number = static_cast<std::uint32_t>(world.colliders.size());
+        world.colliders.push_back({{"m" + std::to_string(number) + ".relief", std::string(32, '0'), 1},
+                                   "m",
+                                   {glm::vec3(0.0F), glm::vec3(node.side)},
+                                   {}});
+        WorldBody& body = world.bodies.emplace_back();
+        body.collider = number;
+        body.node = node.name;
+        body.position.x = node.x;
+        body.rotation = {0.1F, 0.2F, 0.3F, 0.9273618F};  // of length 1, but for rounding
     }
     return world;
 }
@@ -96,7 +109,7 @@ TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
     const auto replace = [&](World& world) {
         return required(replaceWorld(worldFile().parent_path(), world, {}, "level")).warnings;
     };
-    World world = placed({"door", "gate", "gate", "floor"});
+    World world = placed({{"door"}, {"gate"}, {"gate"}, {"floor"}});
     EXPECT_TRUE(replace(world).empty());
     edit([](World& edited) {
         for (std::size_t i = 0; i < 4; ++i) {
@@ -105,14 +118,14 @@ TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
         edited.bodies[3].restitution = 0.5F;
     });
     // One after the other, wherever they are now.
-    world = placed({"roof", "floor", "gate", "gate", "door"});
+    world = placed({{"roof"}, {"floor"}, {"gate"}, {"gate"}, {"door"}});
     EXPECT_TRUE(replace(world).empty());
     EXPECT_EQ(frictionOf(world),
               (Bodies{{"roof", 0.0F}, {"floor", 0.75F}, {"gate", 0.25F}, {"gate", 0.5F}, {"door", 0.0F}}));
     EXPECT_EQ(world.bodies[1].restitution, 0.5F);
     EXPECT_EQ(frictionOf(*loadWorldFile(worldFile())), frictionOf(world));
     // Of three gates nobody knows which are those two; a node that never had a response is not missed.
-    world = placed({"gate", "gate", "gate"});
+    world = placed({{"gate"}, {"gate"}, {"gate"}});
     const std::vector<std::string> warnings = replace(world);
     EXPECT_EQ(frictionOf(world), (Bodies{{"gate", 0.0F}, {"gate", 0.0F}, {"gate", 0.0F}}));
     EXPECT_EQ(warnings,
@@ -124,32 +137,9 @@ TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
             body.friction = 0.125F;
         }
     });
-    world = placed({"gate", "gate"});
+    world = placed({{"gate"}, {"gate"}});
     EXPECT_TRUE(replace(world).empty());
     EXPECT_EQ(frictionOf(world), (Bodies{{"gate", 0.125F}, {"gate", 0.125F}}));
-}
-
-/// As placed(), with the x of each place, and the side of each mesh's box.
-struct Node {
-    std::string name;
-    float x;
-    float side;
-};
-World placed(const std::vector<Node>& nodes) {
-    World world;
-    for (const Node& node : nodes) {
-        const auto number = static_cast<std::uint32_t>(world.colliders.size());
-        world.colliders.push_back({{"m" + std::to_string(number) + ".relief", std::string(32, '0'), 1},
-                                   "m",
-                                   {glm::vec3(0.0F), glm::vec3(node.side)},
-                                   {}});
-        WorldBody& body = world.bodies.emplace_back();
-        body.collider = number;
-        body.node = node.name;
-        body.position.x = node.x;
-        body.rotation = {0.1F, 0.2F, 0.3F, 0.9273618F};  // of length 1, but for rounding
-    }
-    return world;
 }
 
 // Each list of nodes is baked over the first, whose frictions were written by hand.
