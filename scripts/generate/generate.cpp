@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // relief-generate ROOT [--check]: writes the files and parts of files that are derived from fields(), or names the stale ones.
 // relief-generate --schemas FOLDER: writes the JSON Schemas.
+// relief-generate --dictionaries FOLDER: writes the dictionaries of fuzz targets.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -45,10 +46,11 @@ Result<std::string> withPart(const GeneratedText& generated, const std::string& 
     return file.substr(0, begin) + generated.text + file.substr(end);
 }
 
-Result<int> writeSchemas(const fs::path& folder) {
+/// Writes the built texts with this extension.
+Result<int> writeBuilt(const fs::path& folder, std::string_view extension) {
     fs::create_directories(folder);
     for (const GeneratedText& generated : all()) {
-        if (generated.built) {
+        if (generated.built && generated.path.ends_with(extension)) {
             RELIEF_TRY(writeFile(folder / generated.path, std::as_bytes(std::span(generated.text))));
         }
     }
@@ -85,13 +87,16 @@ Result<int> generate(const fs::path& root, bool check) {
 int main(int argc, char** argv) {
     const bool check = argc == 3 && std::string_view(argv[2]) == "--check";
     const bool schemas = argc == 3 && std::string_view(argv[1]) == "--schemas";
-    if (argc != 2 && !check && !schemas) {
-        std::fputs("usage: relief-generate ROOT [--check]\n       relief-generate --schemas FOLDER\n",
+    const bool dictionaries = argc == 3 && std::string_view(argv[1]) == "--dictionaries";
+    if (argc != 2 && !check && !schemas && !dictionaries) {
+        std::fputs("usage: relief-generate ROOT [--check]\n"
+                   "       relief-generate --schemas|--dictionaries FOLDER\n",
                    stderr);
         return 1;
     }
-    const relief::Result<int> stale =
-        schemas ? relief::writeSchemas(argv[2]) : relief::generate(argv[1], check);
+    const relief::Result<int> stale = schemas        ? relief::writeBuilt(argv[2], ".json")
+                                      : dictionaries ? relief::writeBuilt(argv[2], ".dict")
+                                                     : relief::generate(argv[1], check);
     if (!stale) {
         std::fprintf(stderr, "relief-generate: %s\n", stale.error().message.c_str());
         return 4;

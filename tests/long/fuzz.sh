@@ -14,7 +14,8 @@ if [ ${#targets[@]} -eq 0 ]; then
         targets+=("${name#fuzz_}")
     done
 fi
-bin=$(scripts/build.sh fuzz "${targets[@]/#/relief_fuzz_}")
+bin=$(scripts/build.sh fuzz "${targets[@]/#/relief_fuzz_}" relief-generate)
+"$bin/relief-generate" --dictionaries out/fuzz/dictionaries # keys and words of scenes and recipes
 
 failed=0
 for target in "${targets[@]}"; do
@@ -23,7 +24,8 @@ for target in "${targets[@]}"; do
     timeout=10
     [ "$target" != bake ] || timeout=60 # it draws some hundred thousand points, under sanitizers
     options=(-max_total_time="$seconds" -timeout="$timeout" -rss_limit_mb=2048 -print_final_stats=1 -artifact_prefix="$found/")
-    [ ! -f "tests/fuzz/$target.dict" ] || options+=(-dict="tests/fuzz/$target.dict")
+    cat {tests/fuzz,out/fuzz/dictionaries}/"$target".dict >"$found/dict" 2>/dev/null || true
+    [ ! -s "$found/dict" ] || options+=(-dict="$found/dict")
     status=0
     ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
         "$bin/relief_fuzz_$target" "${options[@]}" "$found/corpus" "tests/fuzz/corpus/$target" 2>"$found/log" || status=$?
