@@ -92,18 +92,6 @@ expect 0 "$relief" bake "$bunny" -o b2.relief --plan b.toml -q
 cmp b.relief b2.relief || die "the found plan's file bakes other bytes"
 bake_fails 7 'max-error' -o old.relief --max-error 0.001 --budget 40kB --quality fast -q --plan-out old.toml
 
-# Only one option may choose the maps.
-while read -r pattern options; do
-    # shellcheck disable=SC2086
-    bake_fails 1 "$pattern" -o old.relief $options
-done <<'O'
-budget --map float --budget 1MB
-plan --plan views.toml --paper
-max-error --plan views.toml --max-error 1
-resolution --resolution 64
-plan-out --paper --plan-out p.toml
-decode --decode projected
-layout --layout views --paper
-max-maps --max-maps 3
-budget --budget 5B
-O
+# Options that exclude each other; unit tests show the others.
+bake_fails 1 budget -o old.relief --map float --budget 1MB
+bake_fails 1 budget -o old.relief --budget 5B

@@ -160,27 +160,20 @@ expect 6 "$relief" bake --recipe in/late.toml -o out
 grep -q 'levels/yard/world.json: .*--time-limit' stderr || die "the limit is not named: $(cat stderr)"
 baked out | diff first - || die "a level that is late changes something"
 
-# Errors in the recipe have their place; links that lead out are neither read nor written.
+# Errors in the recipe have their place; links that lead out are neither read nor written. Unit tests show those of caches.
 fails() { # PATTERN LINE…: of a recipe
     printf '%s\n' 'version = 1' '[[asset]]' "${@:2}" >in/wrong.toml
     expect_error 3 "wrong\.toml:$1" "$relief" bake --recipe in/wrong.toml -o linked
-    [ "$(cat secret.obj secret.relief)" = "$secret" ] || die "a file elsewhere was written"
+    [ "$(cat secret.relief)" = precious ] || die "a file elsewhere was written"
 }
-tetrahedron secret.obj 9
 echo precious >secret.relief
-secret=$(cat secret.obj secret.relief)
 mkdir -p linked/w
 yard=('mesh = "levels/yard.gltf"' 'output = "w/world.json"' 'budget = "200kB"' 'compress = 1')
 fails '7:7: --map' "${yard[@]}" 'map = "cube:size=16"'
-fails "9:10: .*w/rock.relief" "${yard[@]}" '[[asset]]' 'mesh = "rock.obj"' 'output = "w/rock.relief"'
 name=$(cd yard && ls box-*.relief | head -n 1)
 ln -s ../../secret.relief "linked/w/$name"
 fails "4:10: .*$name" "${yard[@]}"
-rm "linked/w/$name"
-ln -s ../../secret.relief linked/w/.relief-cache.json
-expect 0 "$relief" bake --recipe in/wrong.toml -o linked -q
-[ "$(cat secret.relief)" = precious ] && [ ! -L linked/w/.relief-cache.json ] || die "the link of a cache was followed"
-diff -r -x .relief-cache.json yard linked/w || die "another level beside a link"
+tetrahedron secret.obj 9
 ln -s ../../secret.obj in/parts/secret.obj
 fails "3:8: .*secret.obj" 'mesh = "parts/"' 'output = "w/world.json"'
 rm in/parts/secret.obj
