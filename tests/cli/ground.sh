@@ -92,9 +92,6 @@ bad() { # CODE PATTERN FILE SETTINGS
     [ ! -e bad.relief ] || die "a failed bake writes"
 }
 bad 1 "spacing" hills.png spacin=1
-bad 1 "high" hills.png low=0
-heights colour.png 8 rgb
-bad 5 "colour.png" colour.png low=0,high=1
 head -c 3000 hills.png >cut.png
 bad 3 "cut.png" cut.png low=0,high=1
 expect_error 3 "cut.png" "$relief" check ground.relief --mesh cut.png

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills, step65 (at sample 65) or rgb; by the name of FILE a PNG or raw samples.
+"""Writes height maps: heights.py FILE SIDE [KIND] with KIND hills or step65 (at sample 65); by the name of FILE a PNG or raw samples.
 
 heights.py --below DUMP.ply HIGH MOST: fails if one of more than 3,000 particles lies MOST below such hills at 1 m, whose sample
 65535 is HIGH.
@@ -45,9 +45,8 @@ def main(file, side, kind='hills'):
             for row in rows:
                 out.write(struct.pack(f'<{side}H', *row))
             return
-        colour = kind == 'rgb'
-        lines = b''.join(b'\0' + struct.pack(f'>{side}H', *row) * (3 if colour else 1) for row in rows)
-        header = struct.pack('>IIBBBBB', side, side, 16, 2 if colour else 0, 0, 0, 0)
+        lines = b''.join(b'\0' + struct.pack(f'>{side}H', *row) for row in rows)
+        header = struct.pack('>IIBBBBB', side, side, 16, 0, 0, 0, 0)
         out.write(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', header) + chunk(b'IDAT', zlib.compress(lines)) + chunk(b'IEND', b''))
 
 
