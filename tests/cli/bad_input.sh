@@ -40,20 +40,9 @@ expect_error 2 'good\.obj' "$relief_sim" good.relief --steps 1 --frames good.obj
 expect_error 2 /dev/full "$relief_sim" good.relief --steps 1 --dump /dev/full
 
 # Options.
-while read -r code pattern options; do
-    # shellcheck disable=SC2086
-    bake_fails "$code" "$pattern" good.obj -o old.relief $options
-done <<'O'
-1 resolution --paper --resolution 0
-6 16384 --paper --resolution 16385
-6 16384 --map fixed8:size=20000
-1 fixed8 --map fixd8
-1 compare --map fixed8:comare=less
-1 decode --map fixed8 --decode plain
-1 resolution --resolutoin 16
-1 thickness --thickness -1
-1 holes --holes fill
-O
+bake_fails 6 16384 good.obj -o old.relief --map fixed8:size=20000
+bake_fails 1 resolution good.obj -o old.relief --resolutoin 16
+bake_fails 1 holes good.obj -o old.relief --holes fill
 expect_error 1 bake "$relief" bkae good.obj
 expect_error 1 '' "$relief"
 expect_error 1 'png|exr' "$relief" slice good.relief --axis x --at 0 -o out.bmp

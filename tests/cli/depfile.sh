@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Ninja, Make and CMake read the depfiles: a second build does nothing, and a change of any file that a mesh refers to
-# bakes it again.
+# Ninja and Make read the depfiles: a second build does nothing, and a change of any file that a mesh refers to bakes it again.
+# cmake_package.sh shows CMake.
 . "$(dirname "$0")/lib.sh"
 
 # The mesh is a glTF tetrahedron with a buffer file, in a folder whose name needs every escape.
@@ -79,23 +79,3 @@ M
 sed -i "s/b#c/b\\\\#c/" Makefile
 sed -i "s/^\(\t.*\)b\\\\#c/\1b#c/" Makefile
 follows make "Nothing to be done for 'all'"
-
-# CMake's own reading of depfiles, by its Ninja generator, in a folder below the source's.
-cat >CMakeLists.txt <<C
-cmake_minimum_required(VERSION 3.25)
-project(Test LANGUAGES NONE)
-add_custom_command(OUTPUT rock.relief
-    COMMAND $relief bake \${CMAKE_SOURCE_DIR}/rocks/r1.obj -o \${CMAKE_BINARY_DIR}/rock.relief
-            --map cube:size=16 --depfile \${CMAKE_BINARY_DIR}/rock.d -q
-    DEPENDS rocks/r1.obj DEPFILE rock.d VERBATIM)
-add_custom_target(rock ALL DEPENDS rock.relief)
-C
-cmake -G Ninja -S . -B cmake_build >log || die "CMake: $(cat log)"
-cmake --build cmake_build >log || die "CMake: $(cat log)"
-[ -f cmake_build/rock.relief ] || die "CMake baked nothing"
-cmake --build cmake_build >log
-grep -q 'no work to do' log || die "CMake bakes again: $(cat log)"
-sleep 0.05
-touch rocks/r.mtl
-cmake --build cmake_build >log
-! grep -q 'no work to do' log || die "CMake does not see the material library"
