@@ -5,7 +5,6 @@
 // a ball behind it is hidden.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdirSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
@@ -25,9 +24,6 @@ test("particles and three's meshes hide each other", { timeout: 60_000 }, async 
     await page.waitForFunction("!document.getElementById('note').textContent.startsWith('Loading')", undefined,
                                { timeout: 30_000 });
     assert.match(await page.textContent("#note"), /Drag/);
-    const shot = async (name) => process.env.RELIEF_SHOTS &&
-        (mkdirSync(process.env.RELIEF_SHOTS, { recursive: true }),
-         page.screenshot({ path: path.join(process.env.RELIEF_SHOTS, `${name}.png`) }));
     const answer = await page.evaluate(() => {
         const { THREE, renderer, camera, controls, scene, box, side, system, draw } = window.sample;
         const gl = renderer.getContext();
@@ -70,7 +66,6 @@ test("particles and three's meshes hide each other", { timeout: 60_000 }, async 
         return { falling, births: births.length, accepted, before: red(before), inside: red(inside), behind: red(behind),
                  error: gl.getError() };
     });
-    await shot("three_depth");
     t.diagnostic(JSON.stringify(answer));
     assert.ok(answer.falling > 5000, `${answer.falling} fall`);
     assert.equal(answer.accepted, answer.births);

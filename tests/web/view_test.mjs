@@ -8,9 +8,9 @@ import test from "node:test";
 import { bunny, run, scratch } from "./lib/native.mjs";
 import { dataOf, openFile, scenePage, viewer, withData } from "./lib/view.mjs";
 
-function bake(folder, budget = "60kB") {
+function bake(folder) {
     const file = path.join(folder, "bunny.relief");
-    run("relief", "bake", bunny, "-q", "-o", file, "--layout", "views", "--budget", budget);
+    run("relief", "bake", bunny, "-q", "-o", file, "--layout", "views", "--budget", "60kB");
     return file;
 }
 
@@ -70,33 +70,17 @@ test("each feature of the page shows", { timeout: 300_000 }, async (t) => {
     assert.deepEqual(said, []);
 });
 
-test("patches look as planned maps do, and show their cells", { timeout: 300_000 }, async (t) => {
+test("patches show their cells", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const patches = path.join(folder, "patches.relief");
     run("relief", "bake", bunny, "-q", "-o", patches, "--map", "patches:bytes=200kB");
     run("relief", "view", patches, "--mesh", bunny, "-q", "--samples", "5000", "-o", path.join(folder, "made.html"));
-    const open = await viewer(t);
-    const shown = async (file) => {
-        const { page, said } = await open(file, { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
-        await page.evaluate(() => {
-            reliefView.panel.setShow("surface");
-            reliefView.look.floor = null;
-            reliefView.panel.frame();
-        });
-        return { page, said, pixels: await page.evaluate("[...reliefView.pixelsNow().data]") };
-    };
-    run("relief", "view", bake(folder, "200kB"));
-    const planned = await shown(path.join(folder, "bunny.html"));
-    const { page, said, pixels } = await shown(path.join(folder, "made.html"));
-    let [body, unlike] = [0, 0];
-    for (let i = 0; i < pixels.length; i += 4) {
-        const difference = [0, 1, 2].reduce((sum, k) => sum + Math.abs(pixels[i + k] - planned.pixels[i + k]), 0);
-        body += pixels[i] > 70; // the background is darker
-        unlike += difference > 90;
-    }
-    t.diagnostic(`${body} pixels of the body, ${unlike} unlike those of planned maps`);
-    assert.ok(body > 20_000 && unlike < 0.04 * body, `${unlike} of ${body} pixels`);
-
+    const { page, said } = await openFile(t, path.join(folder, "made.html"), { viewport: { width: 760, height: 400 }, colorScheme: "dark" });
+    await page.evaluate(() => {
+        reliefView.panel.setShow("surface");
+        reliefView.look.floor = null;
+        reliefView.panel.frame();
+    });
     await page.evaluate(kChange);
     const change = async (least, action) => {
         await page.evaluate(action);
@@ -125,7 +109,7 @@ test("patches look as planned maps do, and show their cells", { timeout: 300_000
     });
     assert.ok(colors >= 3, `${colors} colours`);
     assert.equal(await page.locator("#message p").textContent(), "");
-    assert.deepEqual([...said, ...planned.said], []);
+    assert.deepEqual(said, []);
 });
 
 test("particles meet the body and begin anew; nothing leaves a small window", { timeout: 300_000 }, async (t) => {
