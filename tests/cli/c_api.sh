@@ -16,13 +16,7 @@ echo '#include <relief.h>
 int main() { return relief_api_version() >= RELIEF_API_VERSION ? 0 : 1; }' >in_cpp.cpp
 g++ -std=c++11 -Wall -Wextra -Werror in_cpp.cpp -o in_cpp "${flags[@]}" || die "does not compile as C++"
 
-python3 - <<'P'
-import random
-random.seed(9)
-with open('points.csv', 'w') as out:
-    for _ in range(10_000):
-        out.write(','.join('%.6f' % random.uniform(-1.1, 1.1) for _ in range(3)) + '\n')
-P
+random_points points.csv
 "$relief" bake "$bunny" -q -o bunny.relief --budget 200kB
 export LD_LIBRARY_PATH
 LD_LIBRARY_PATH=$(dirname "$library")

@@ -71,6 +71,30 @@ box() {
     } >"$1"
 }
 
+# unfold FILE: a COLLADA document whose nodes each stand for two of the next: 2⁴⁰ in all, which the importer begins to unfold.
+unfold() {
+    python3 - "$1" <<'P'
+import sys
+nodes = ''.join(f'<node id="n{i}"><instance_node url="#n{i + 1}"/><instance_node url="#n{i + 1}"/></node>' for i in range(40))
+open(sys.argv[1], 'w').write(
+    '<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>'
+    f'<library_nodes>{nodes}<node id="n40"/></library_nodes><library_visual_scenes><visual_scene id="s"><node>'
+    '<instance_node url="#n0"/></node></visual_scene></library_visual_scenes>'
+    '<scene><instance_visual_scene url="#s"/></scene></COLLADA>')
+P
+}
+
+# random_points FILE: 10,000 points in and about the bunny.
+random_points() {
+    python3 - "$1" <<'P'
+import random, sys
+random.seed(7)
+with open(sys.argv[1], 'w') as out:
+    for _ in range(10_000):
+        out.write(','.join('%.6f' % random.uniform(-1.1, 1.1) for _ in range(3)) + '\n')
+P
+}
+
 # json FILE EXPRESSION: evaluates a Python expression over the document `d`; must be true.
 json() {
     python3 - "$1" "$2" <<'P' || die "not true of $1: $2"

@@ -10,13 +10,7 @@ sed -n 's/^ *\(cc -std.*\)/\1/p' "$sample/README.md" | while read -r command; do
     sh -c "$command -Wall -Wextra -Wpedantic -Werror" || die "it does not compile as its page says: $command"
 done
 
-python3 - <<'P'
-import random
-random.seed(7)
-with open('points.csv', 'w') as out:
-    for _ in range(10_000):
-        out.write(','.join('%.6f' % random.uniform(-1.1, 1.1) for _ in range(3)) + '\n')
-P
+random_points points.csv
 
 while read -r specs; do
     rm -rf body.relief gpu
