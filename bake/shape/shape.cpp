@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -526,17 +527,24 @@ class Shaper {
             return least >= static_cast<float>(kBodyExtent) * most &&
                    (bounds[a].contains(bounds[b].center()) || bounds[b].contains(bounds[a].center()));
         };
-        std::vector<std::size_t> holed;
-        for (std::size_t i = 0; i < open_.size(); ++i) {
-            if (mayBeHoled(open_[i])) {
-                holed.push_back(i);
+        // Boxes that meet along x, in turn from the lowest: a file may have thousands of open parts that do not face.
+        std::vector<std::size_t> order(open_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(bounds[i].min.x, i); });
+        std::vector<bool> may_be_wall(open_.size(), false);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            const std::size_t a = order[i];
+            for (std::size_t k = i + 1; k < order.size() && bounds[order[k]].min.x <= bounds[a].max.x; ++k) {
+                const std::size_t b = order[k];
+                if ((mayBeHoled(open_[a]) || mayBeHoled(open_[b])) && mayBeWall(a, b)) {
+                    may_be_wall[a] = may_be_wall[b] = true;
+                }
             }
         }
         std::vector<std::size_t> parts;
         std::vector<OpenShell> shells;
         for (std::size_t i = 0; i < open_.size(); ++i) {
-            if (open_[i].as != ShapeAs::kAuto || open_[i].role.kind == Kind::kTerrain ||
-                std::ranges::none_of(holed, [&](std::size_t other) { return mayBeWall(i, other); })) {
+            if (open_[i].as != ShapeAs::kAuto || open_[i].role.kind == Kind::kTerrain || !may_be_wall[i]) {
                 continue;
             }
             Result<TriangleMesh> mesh = finishMesh(meshOf(open_[i].sheet, mesh_.name));
