@@ -59,7 +59,7 @@ GeneratedTexts bakeTexts() {
         {"bake/cli/README.md", "check-options", optionTable(check)},
         {init, "bake-arguments", pythonArguments(bake, "         ")},
         {init, "check-arguments", pythonArguments(check, "          ")},
-        {.path = "recipe.dict", .text = recipeDictionary(), .built = true},
+        {.path = "recipe.dict", .part = {}, .text = recipeDictionary(), .built = true},
         schemaFile("bake", "relief bake --json", "A bake.", BakeJson{}),
         schemaFile("check", "relief check --mesh --json", "A collider measured against its mesh.",
                    MeshCheckReport{}),

@@ -58,7 +58,7 @@ GeneratedTexts sceneReference() {
                    {"title", "A scene of relief-sim"}};
     schema.update(fileSchema(fields));
     texts.push_back({"runtime/scene/scene.schema.json", "", jsonText(schema)});
-    texts.push_back({.path = "scene.dict", .text = fuzzDictionary(fields), .built = true});
+    texts.push_back({.path = "scene.dict", .part = {}, .text = fuzzDictionary(fields), .built = true});
     return texts;
 }
 
