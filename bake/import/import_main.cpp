@@ -98,7 +98,7 @@ int sendRows(std::span<const std::byte> image) {
     const ImageSize size{(*rows)->columns(), (*rows)->rows(), (*rows)->most()};
     int code = writeAll(kImportResultFd, std::as_bytes(std::span(&good, 1)));
     code = code != 0 ? code : writeAll(kImportResultFd, std::as_bytes(std::span(&size, 1)));
-    std::vector<float> row(1 + size.columns);  // whose first one, 0, has the bytes of `good`
+    std::vector<float> row(1 + size.columns);  // the first value, 0, has the bytes of `good`
     for (std::uint64_t i = 0; i < size.rows && code == 0; ++i) {
         if (const Result<void> read = (*rows)->next(std::span(row).subspan(1)); !read) {
             return sendError(read.error());

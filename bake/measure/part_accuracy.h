@@ -33,7 +33,7 @@ enum class PartVerdict : std::uint8_t {
     kCoarse,  ///< up to kPartLost
     kLost,
     kHidden,  ///< inside other parts, where nothing collides
-    kMinor,   ///< lost, but nobody notices: does not lower the grade
+    kMinor,   ///< lost, but too small to lower the grade
     kRest,    ///< beyond parts_max; not measured
 };
 template <>

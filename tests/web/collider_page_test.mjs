@@ -58,7 +58,7 @@ function compare({ half, step }) {
         const d = [0, 1, 2].map((k) => x * V[4 * k] + y * V[4 * k + 1] - V[4 * k + 2]);
         return { d, hit: half ? hitBox(d) : hitBall(d) };
     };
-    // As body_shaders.js has it.
+    // As in body_shaders.js.
     const shade = (n, d) => {
         const to_eye = unit(d.map((v) => -v));
         const lit = Math.max(dot(n, key), 0);

@@ -160,7 +160,7 @@ TEST(PartAccuracy, ARodOfALatticeCountsByItsLength) {
 }
 
 TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
-    // A plate of 0.4 beside a cube of 10 is too thick: by 0.01 nobody notices, by 0.1 one does.
+    // A plate of 0.4 beside a cube of 10 is too thick: 0.01 is too little to notice, 0.1 is not.
     const TriangleMesh cube = makeBoxMesh({0, 0, 0}, glm::dvec3(5.0));
     const TriangleMesh plate = makeBoxMesh({0, 8, 0}, {0.2, 0.01, 0.2});
     const ShapedMesh shape = shaped(joined({cube, plate}));
