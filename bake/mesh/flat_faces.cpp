@@ -14,16 +14,11 @@ namespace relief {
 namespace {
 
 constexpr double kFlat = 1e-4;
-/// Of the mesh's longest side: meshes of unit size are often written with six decimals.
+/// The rounding of coordinates, relative to the mesh's longest side: six decimals are usual at unit size.
 constexpr double kRounding = 1e-6;
 
 /// Radians; slivers may be turned by any angle.
 constexpr double kTurnMost = 0.01;
-
-/// How far rounding may turn the normal of a triangle, radians.
-double turnByRounding(double rounding, double longest_edge, const glm::dvec3& doubled_area) {
-    return 2.0 * rounding * longest_edge / length(doubled_area);
-}
 
 double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto [a, b, c] = cornersOf(mesh, triangle);
@@ -38,8 +33,9 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
     const double rounding = std::max(kRounding * double{mesh.bounds.longestSide()},
                                      double{std::numeric_limits<float>::epsilon()} *
                                          double{std::max({farthest.x, farthest.y, farthest.z})});
-    const auto turnOf = [&](std::uint32_t triangle) {
-        return turnByRounding(rounding, longestEdge(mesh, triangle), planeOf(mesh, triangle).normal);
+    // The angle by which rounding may turn a triangle's normal, whose length is twice its area.
+    const auto turnOf = [&](std::uint32_t triangle, const glm::dvec3& normal) {
+        return 2.0 * rounding * longestEdge(mesh, triangle) / length(normal);
     };
     const TriangleNeighbours neighbours = neighboursOf(edgesOf(mesh).uses);
     std::vector<FlatFace> faces(count);
@@ -50,7 +46,7 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
             continue;
         }
         const glm::dvec3 normal = planeOf(mesh, first).normal;
-        const double turn = turnOf(first);
+        const double turn = turnOf(first, normal);
         FlatFace whole;
         face.assign(1, first);
         seen[first] = true;
@@ -66,7 +62,7 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
                 const double both = length(normal) * length(other);
                 if (dot(normal, other) > 0.0 &&
                     length(cross(normal, other)) <
-                        std::max(kFlat, std::min(turn + turnOf(next), kTurnMost)) * both) {
+                        std::max(kFlat, std::min(turn + turnOf(next, other), kTurnMost)) * both) {
                     seen[next] = true;
                     face.push_back(next);
                 }

@@ -357,7 +357,7 @@ std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatF
             return std::nullopt;
         }
     }
-    DepthGain gain{.node = &leaf, .to = DepthPlanes::kOne, .bytes = kOneBytes, .face = true};
+    DepthGain gain{.node = &leaf, .to = DepthPlanes::kOne, .bytes = kOneBytes};
     gain.records[0] = PatchRecord::flat(leaf.inside(), glm::vec3(plane.normal),
                                         static_cast<float>(roots_per_cell * plane.offset));
     gain.volume = kFaceWorth * std::min(turn, kFaceTurnMost) * cell.size * cell.size * cell.size;

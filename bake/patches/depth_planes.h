@@ -28,7 +28,6 @@ struct DepthGain {
     std::array<PatchRecord, 2> records{};  ///< PatchNode::depth
     double bytes = 0.0;                    ///< more than `from` takes
     double volume = 0.0;                   ///< misclassified volume that weighs as much, object units cubed
-    bool face = false;                     ///< only for the normal beside a flat face
 
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
@@ -49,8 +48,7 @@ class DepthPlaneChoice {
     /// Bytes of all planes found that gain more than `byte` per byte.
     /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
-    /// Sets PatchNode::planes and PatchNode::depth of those with the largest gain per byte, in at most `bytes` bytes. Those that are
-    /// only for a normal come last.
+    /// Sets PatchNode::planes and PatchNode::depth of those with the largest gain per byte, in at most `bytes` bytes.
     void take(double bytes) const;
 
   private:
@@ -62,7 +60,7 @@ class DepthPlaneChoice {
     const MeshQuery& query_;
     std::span<const FlatFace> faces_;
     std::map<const PatchNode*, Known> known_;  // by the cell that is split, or the root
-    std::vector<DepthGain> gains_;             // in the order in which they are taken
+    std::vector<DepthGain> gains_;             // sorted by gain per byte
 };
 
 }  // namespace relief
