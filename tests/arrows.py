@@ -112,7 +112,7 @@ LICENCE = re.compile(r'(?://|#|/\*|<!--) SPDX-License-Identifier: Apache-2\.0(?:
 
 
 def licence_faults(source):
-    """Every source file has its licence alone on one of the first two lines."""
+    """Every source file has an SPDX line of its own among its first two lines."""
     faults, files = [], 0
     for path in sorted(p for top in TREES for p in (source / top).rglob('*')):
         if (path.suffix in SOURCES or path.name == 'CMakeLists.txt') and path.is_file() and 'node_modules' not in path.parts:

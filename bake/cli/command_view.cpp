@@ -75,7 +75,7 @@ Result<fs::path> findPlayer() {
                 "collider");
 }
 
-/// Where pages have their data, and the format of the data: a player that another release built may have another one.
+/// The place for data in a page, and the format of that data. The player of another release may expect another format.
 struct DataPlace {
     std::string text;
     std::uint64_t format;

@@ -82,7 +82,7 @@ TEST(Container, AnimationsComeBackAndNeedVersion15) {
     expectError(writeContainer(collider, {}), ErrorCode::kLimit);
 }
 
-// Of where payloads lie, the reader refuses any other layout: see Crafted.
+// The reader refuses any other layout of payloads: see Crafted.
 TEST(Container, VersionsAreTheLowestThatHoldIt) {
     for (const int level : {0, 19}) {
         Collider collider = oneMapOfEveryFormat();

@@ -109,7 +109,7 @@ void addAnswer(std::ostream& text, const Collider& collider, const glm::vec3& p)
     text << '\n';
 }
 
-/// What a collider says of 64 points in and about its bounds: of some in words, of all as a hash.
+/// The samples of a collider at 64 points in and about its bounds: some as text, all as a hash.
 void addAnswers(std::ostream& text, const Collider& collider) {
     const Bounds& bounds = collider.bounds;
     std::ostringstream all;

@@ -290,8 +290,8 @@ class Accuracy:
     """The same of parts that are too small to lower the grade."""
     grade: str
     """ "good", "fair" or "poor", as `relief check` grades: the worse of the whole's and the parts'. A lost part is poor. Coarse
-    parts are fair if they and ignored ones together miss more than 1 % of the points near the surface. Ignored parts alone do not
-    count."""
+    parts lower it to "fair" if they and the ignored parts together miss more than 1 % of the points near the surface. Without
+    coarse parts, ignored ones do not count."""
     places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 

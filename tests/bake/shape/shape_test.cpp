@@ -117,7 +117,7 @@ struct ShellCount {
     int filled = 0;  ///< far, and inside
 };
 
-/// Of points as near to the surface as `near`, or as far from it as `far`, in a shell of 0.1 about it.
+/// Counts points nearer to the sheet than `near`, or farther than `far`, by their side of a shell of thickness 0.1.
 ShellCount countAtShell(const TriangleMesh& mesh, double near, double far, double y_most = 9.0) {
     const MeshQuery sheet = queryOf(mesh);
     const MeshQuery shell = queryOf(shaped(mesh, ShapeAs::kShell, 0.1).mesh);

@@ -275,7 +275,7 @@ class Stage {
         EXPECT_TRUE(writeFile(world_path_, std::as_bytes(std::span(text))));
     }
 
-    /// What an argument of this type points to: another type in relief.h does not compile.
+    /// The object to pass for an argument of type T. A new type in relief.h does not compile without an entry here.
     template <class T>
     T pointer(T /*type*/) {
         using Thing = std::remove_const_t<std::remove_pointer_t<T>>;
