@@ -11,7 +11,7 @@ import sys
 
 # What ours is held against, at as many bytes: bake/measure/README.md.
 RIVALS = {"volume": "dense", "unreal": "Unreal's", "bricks": "exact bricks", "fitted": "fitted bricks"}
-METHODS = {**RIVALS, "paper": "paper", "views": "views", "ours": "ours"}
+METHODS = {**RIVALS, "paper": "paper", "ours": "ours"}
 BUDGETS = (250_000, 1_000_000, 4_000_000)
 # The wrong points that we allow ourselves for those of a rival, by budget.
 AIMS = {"volume": (0.2, 0.2, 0.2), "bricks": (0.45, 0.45, 0.5), "fitted": (0.7, 0.7, 0.75)}
@@ -42,7 +42,7 @@ def contests(report, ours="ours"):
         return contest[method]["accuracy"]["near"]["wrong_percent"]
 
     for contest in found.values():
-        for of, by in [("paper", "volume"), ("views", "volume"), ("ours", "views"), *(("ours", rival) for rival in RIVALS)]:
+        for of, by in [("paper", "volume"), *(("ours", rival) for rival in RIVALS)]:
             if of in contest and by in contest:
                 contest[f"{of}/{by}"] = wrong_ratio(wrong(contest, of), wrong(contest, by), samples)
     return list(found.values())
@@ -122,9 +122,8 @@ def summary(found, budget):
     texts, missed = zip(*(against(rival, found, budget) for rival in RIVALS))
     missed = [target for of in missed for target in of]
     texts = list(texts)
-    for of, by in [("paper", "volume"), ("views", "volume"), ("ours", "views")]:
-        mean = geometric_mean([contest[f"{of}/{by}"] for contest in found if f"{of}/{by}" in contest])
-        texts += [f"{METHODS[of]} / {METHODS[by]} {mean:.3g}"] if mean is not None else []
+    mean = geometric_mean([contest["paper/volume"] for contest in found if "paper/volume" in contest])
+    texts += [f"paper / dense {mean:.3g}"] if mean is not None else []
     times = {contest["mesh"]: contest["ours"]["build_seconds"] for contest in found
              if contest.get("ours", {}).get("build_seconds") is not None}
     if times:

@@ -37,9 +37,7 @@ SIX_MAPS = [word for way in ("-x", "-y", "-z")
             for word in ("--map", f"front-back:dir={way},depth=half,decode=projected")]
 LEAST_MAP = ["--map", "front-back:dir=-x,size=8,decode=projected"]
 PAPER_MAPS = ["--map", "front-back:dir=-z,size=512,depth=half,decode=projected", "--map", "cube:size=512,decode=projected"]
-# What is planned for a mesh, by default and by request.
-PATCHES = ["--budget", "1MB", "--layout", "patches"]
-VIEWS = ["--budget", "1MB", "--layout", "views"]
+PATCHES = ["--budget", "1MB"]
 PROMISES = {("picture", "all"): "at most 1.2 on a GPU"}
 
 
@@ -201,17 +199,15 @@ def print_report(tools):
     print(f"bake of six maps / of eight texels squared         {bake / least:.2f}   ({1000 * bake:.1f} / {1000 * least:.1f} ms)")
 
     # The particle step among each against the paper's collider, one front-back map and one cube.
-    runs = {"patches": [], "views": [], "paper": []}
-    for name, maps in (("patches", PATCHES), ("views", VIEWS), ("paper", PAPER_MAPS)):
+    runs = {"patches": [], "paper": []}
+    for name, maps in (("patches", PATCHES), ("paper", PAPER_MAPS)):
         seconds(tools.bake(name, maps))
     for _ in range(5):  # in turns, so that all meet the same other work on the machine
         for name, taken in runs.items():
             taken.append(tools.step(name, "--only", "collider")[1]["collider"]["ms"])
     paper = statistics.median(runs["paper"])
-    for name, promise in (("patches", ""), ("views", "at most 2 on llvmpipe, 1 on a GPU; ")):
-        taken = statistics.median(runs[name])
-        label = f"step among {name} / the paper's maps"
-        print(f"{label:50s} {taken / paper:.2f}   ({promise}{taken:.2f} / {paper:.2f} ms)")
+    taken = statistics.median(runs["patches"])
+    print(f"step among patches / the paper's maps              {taken / paper:.2f}   ({taken:.2f} / {paper:.2f} ms)")
 
     collider = f"{tools.folder}/patches.relief"
     print_tables(tools.bench("step", collider))

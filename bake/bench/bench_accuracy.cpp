@@ -16,12 +16,12 @@
 #include "bake/director/director.h"
 #include "bake/import/mesh_import.h"
 #include "bake/measure/accuracy.h"
-#include "bake/plan/view.h"
 #include "bake/repair/winding.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/check_report.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape.h"
+#include "bake/views/view.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
@@ -42,7 +42,7 @@ struct AccuracyEntry {
     std::string what;    ///< lattice or maps
     std::size_t maps = 0;
     std::uint64_t bytes = 0;
-    std::optional<double> build_seconds;  ///< of maps: acceleration structure, plan, rays and fit
+    std::optional<double> build_seconds;  ///< of maps: acceleration structure, rays and fit
     Json accuracy;                        ///< of jsonFieldAccuracy or jsonColliderAccuracy
 };
 
@@ -110,11 +110,10 @@ Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
     return bake(mesh, options);
 }
 
-/// As `relief bake --budget --layout`.
-Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes, Layout layout) {
+/// As `relief bake --budget`.
+Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes) {
     BakeRequest request;
     request.budget = bytes;
-    request.layout = layout;
     return bakeSolid(request, mesh);
 }
 
@@ -219,9 +218,7 @@ AccuracyEntry measureMaps(const Truth& truth, const std::string& method, const C
 Result<AccuracyEntry> bakeAndMeasure(const Truth& truth, const std::string& method, std::uint64_t budget) {
     const Stopwatch watch;
     const PreparedMesh& mesh = truth.query.prepared();
-    const Layout layout = method == "views" ? Layout::kViews : Layout::kPatches;
-    const Baked baked =
-        RELIEF_TRY(method == "paper" ? bakePaper(mesh, budget) : bakeOurs(mesh, budget, layout));
+    const Baked baked = RELIEF_TRY(method == "paper" ? bakePaper(mesh, budget) : bakeOurs(mesh, budget));
     const double seconds = watch.seconds();
     AccuracyEntry entry = measureMaps(truth, method, baked.collider);
     entry.build_seconds = seconds;
@@ -246,7 +243,7 @@ struct Arguments {
     std::vector<std::string> budgets = {"0.25MB", "1MB", "4MB"};
     std::uint32_t samples = AccuracyOptions{}.samples;
     std::uint64_t seed = AccuracyOptions{}.seed;
-    std::vector<std::string> methods = {"volume", "unreal", "bricks", "fitted", "paper", "views", "ours"};
+    std::vector<std::string> methods = {"volume", "unreal", "bricks", "fitted", "paper", "ours"};
     std::string collider;
     std::string atlas;
 };
@@ -315,7 +312,7 @@ Result<void> measureBudget(const PreparedMesh& imported, const Arguments& argume
             entry = RELIEF_TRY(loadAndMeasure(truth, arguments.collider));
         } else if (method == "volume") {
             entry = measureVolume(query, samples, budget, wanted);
-        } else if (method != "paper" && method != "views" && method != "ours") {
+        } else if (method != "paper" && method != "ours") {
             entry = measureBricks(query, samples, method, budget, wanted);
         } else {
             entry = RELIEF_TRY(bakeAndMeasure(truth, method, budget));
@@ -385,9 +382,9 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1U, 100'000'000U));
     app.add_option("--seed", arguments.seed, "Of the points; default 1");
     app.add_option("--methods", arguments.methods,
-                   "volume, unreal, bricks, fitted, paper, views or ours; default: all")
+                   "volume, unreal, bricks, fitted, paper or ours; default: all")
         ->delimiter(',')
-        ->check(CLI::IsMember({"volume", "unreal", "bricks", "fitted", "paper", "views", "ours"}));
+        ->check(CLI::IsMember({"volume", "unreal", "bricks", "fitted", "paper", "ours"}));
     app.add_option(
         "--collider", arguments.collider,
         "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");

@@ -84,7 +84,6 @@ void showNotices(BakeResult& result, std::size_t file_size) {
 Result<void> writeOutputs(const BakeCommand& command, const BakeResult& result,
                           std::span<const std::byte> bytes) {
     RELIEF_TRY(writeFile(command.output, bytes));
-    RELIEF_TRY(writePlanOut(result));
     if (command.outputs.depfile.empty()) {
         return {};
     }
@@ -132,12 +131,10 @@ void addBake(CLI::App& app, Action& action) {
     auto command = std::make_shared<BakeCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "bake",
-        "Bakes a mesh into a collider\n\nWithout --map, --paper or --plan, a tree of small depth maps is "
-        "planned, or with --layout views\ndirections, places and sizes of large ones, for --budget bytes or "
-        "for --max-error.",
+        "Bakes a mesh into a collider\n\nWithout --map and --paper it makes patches, small depth maps in an "
+        "octree,\nfor --budget bytes, --texel or --max-error.",
         "relief bake bunny.obj\n"
-        "relief bake bunny.obj -o bunny.relief --budget 256kB --plan-out plan.toml\n"
-        "relief bake bunny.obj -o bunny.relief --plan plan.toml\n"
+        "relief bake bunny.obj -o bunny.relief --budget 256kB\n"
         "relief bake bunny.obj -o bunny.relief --max-error 1%\n"
         "relief bake rock.glb -o rock.relief --map cube:size=256 --map fixed8:dir=-y,size=512x256\n"
         "relief bake hall.fbx -o hall.relief --map cube:center=0/2/0,compare=less --json\n"

@@ -33,12 +33,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kShardsMax = 1'000'000;
-constexpr std::string_view kPlan = "--plan=";
 constexpr std::string_view kClips = "--clips=";
 constexpr std::string_view kHeights = "--heights=";
 
 /// Options of a bake that a run of a recipe has its own place for: they are no keys.
-constexpr std::array<std::string_view, 4> kOfTheRun = {"threads", "plan_out", "json", "depfile"};
+constexpr std::array<std::string_view, 3> kOfTheRun = {"threads", "json", "depfile"};
 
 std::string keyOf(const FieldWords& field) {
     return optionName(field.name).substr(2);
@@ -61,9 +60,6 @@ Result<void> checkOptions(const RecipeCall& call) {
         if (names.empty()) {
             return fail(ErrorCode::kUsage,
                         option.name + " and --recipe are two ways to name meshes; leave one out");
-        }
-        if (names[0] == "plan-out") {
-            return fail(ErrorCode::kUsage, "--plan-out is for one mesh; leave it out beside --recipe");
         }
         if (std::ranges::find(keys, names[0], &RecipeKey::name) != keys.end()) {
             return fail(ErrorCode::kUsage, "--" + names[0] + " does nothing beside --recipe; write " +
@@ -287,20 +283,12 @@ std::optional<std::string> assetKeyOf(const RecipeJob& job, const std::string& t
             }
             addFiles(clips->rest, folder, *files);
         }
-        if (files && argument.starts_with(kPlan)) {
-            const fs::path plan = argument.substr(kPlan.size());
-            const std::optional<std::string> hash = hashOfFile(plan);
-            if (!hash) {
-                return std::nullopt;
-            }
-            files->push_back({nameInRecipe(plan, folder), *hash});
-        }
     }
     return files ? std::optional(assetKey(tool, job.options, std::move(*files))) : std::nullopt;
 }
 
-/// Gives keys to the assets of a dry run. Reads their meshes as far as other files belong to them; an asset whose mesh or
-/// plan cannot be read gets none.
+/// Gives keys to the assets of a dry run. Reads their meshes as far as other files belong to them; an asset whose mesh
+/// cannot be read gets none.
 Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
     const std::string tool = RELIEF_TRY(toolIdentity());
     const fs::path folder = recipeFolder(run.recipe);
@@ -351,7 +339,6 @@ Result<void> preflightBake(const BakeRequest& request, const std::string& output
         return fail(ErrorCode::kUsage, "--depfile needs files, and not standard output; name them");
     }
     RELIEF_TRY(files.reads(request.mesh));
-    RELIEF_TRY(files.reads(request.plan));
     for (const std::string& clips : request.clips) {
         RELIEF_TRY(files.reads(clips));
     }
@@ -359,7 +346,6 @@ Result<void> preflightBake(const BakeRequest& request, const std::string& output
         RELIEF_TRY(files.writes("-", "--json"));
     }
     RELIEF_TRY(files.writes(output, "-o"));
-    RELIEF_TRY(files.writes(request.plan_out, "--plan-out"));
     return files.writes(outputs.depfile, "--depfile");
 }
 

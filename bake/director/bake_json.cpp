@@ -18,13 +18,13 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
         }
         visit_setting("mesh", request.mesh, {"Mesh as given"});
         visit_setting("output", report.output, {"--output as given"});
-        visit_setting("plan_file", nonEmpty(request.plan), {"--plan; null without it"});
         visit_setting("maps", maps, {"Baked maps, as --map takes them"});
         visit_setting("resolution",
                       onlyIf(source == MapSource::kMaps || source == MapSource::kPaper, options.resolution),
                       {"--resolution; null where it has no effect", "texels"});
-        visit_setting("budget", result.plan ? result.plan->budget : std::nullopt,
-                      {"Budget of the plan; null without a plan, or of --texel alone", "bytes of texels"});
+        visit_setting("budget", result.patches ? result.patches->budget : std::nullopt,
+                      {"Budget of the patches; null of named maps, and of --texel without --budget",
+                       "bytes of texels"});
         visit_setting("texel", request.texel,
                       {"--texel; null without it", "object units", {0.0, 1e15, false}});
         visit_setting("quality", options.quality, {"--quality"});
@@ -36,10 +36,10 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
         visit_setting("clips", request.clips, {"--clips, in their order"});
     };
     visit("settings", group(settings), {"Effective options"});
-    visit("plan", result.plan, {"Plan of the maps; null if they were given"});
+    visit("patches", result.patches, {"Patches for a budget, a texel or an error; null of named maps"});
     visit("shape", madeShapes(result.shape), {"Treatment of the parts of the mesh; null with --holes keep"});
     visit("wrong_percent", result.wrong ? std::optional(result.wrong->total()) : std::nullopt,
-          {"Share of 4000 points near the surface that are on the wrong side; null without a plan or with "
+          {"Share of 4000 points near the surface that are on the wrong side; null of named maps and with "
            "--no-check",
            "%", kPercentRange});
     visit("verdict", result.verdict(), {"Summary; null unless the bake measured itself"});
@@ -62,13 +62,11 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
             visit_time(name, value, {help, "ms", kFromZero});
         };
         ms("import", all.import_ms, "Import of the mesh");
-        ms("plan", all.plan_ms, "Planning");
         ms("search", all.search_ms, "Search for the least budget");
         ms("build", stages.build_ms, "Acceleration structure");
         ms("trace", stages.trace_ms, "Rays");
         ms("encode", stages.encode_ms, "Texels");
         ms("fit", stages.fit_ms, "Planes and patches");
-        ms("refine", stages.refine_ms, "Refinement of texels by the other maps");
         ms("check", all.check_ms, "Measuring the result");
         ms("write", all.write_ms, "Writing");
         ms("total", all.total_ms, "The whole bake");

@@ -6,15 +6,16 @@
 #include <string_view>
 
 #include "bake/heights/heights_spec.h"
-#include "bake/plan/map_spec.h"
+#include "bake/views/map_spec.h"
 #include "formats/base/text.h"
 
 namespace relief {
 namespace {
 
-/// The runtime draws the maps of an animated mesh anew in the same directions (runtime/collider/live_collider.h).
-constexpr std::array<const char*, 3> kAnimatedMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
-                                                      "front-back:dir=-z,up=+y"};
+/// Of --holes keep and of --animated, whose maps the runtime draws anew in the same directions
+/// (runtime/collider/live_collider.h).
+constexpr std::array<const char*, 3> kAxisMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
+                                                  "front-back:dir=-z,up=+y"};
 constexpr std::uint32_t kAnimatedResolution = 256;
 
 /// \return the option that chooses the maps. Errors: kUsage: there are two.
@@ -24,14 +25,13 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
         bool given;
         MapSource source;
     };
-    const std::array<Chooser, 4> choosers = {
+    const std::array<Chooser, 3> choosers = {
         {{"--map", !request.map.empty(), MapSource::kMaps},
          {"--paper", request.paper, MapSource::kPaper},
-         {"--plan", !request.plan.empty(), MapSource::kPlanFile},
          {request.budget  ? "--budget"
           : request.texel ? "--texel"
                           : "--max-error",
-          request.budget || request.texel || request.max_error, MapSource::kPlanner}}};
+          request.budget || request.texel || request.max_error, MapSource::kPatches}}};
     const Chooser* chosen = nullptr;
     for (const Chooser& chooser : choosers) {
         if (!chooser.given) {
@@ -43,7 +43,7 @@ Result<MapSource> sourceOf(const BakeRequest& request) {
         }
         chosen = &chooser;
     }
-    return chosen == nullptr ? MapSource::kPlanner : chosen->source;
+    return chosen == nullptr ? MapSource::kPatches : chosen->source;
 }
 
 /// Options of a mesh beside those of a height map.
@@ -82,32 +82,23 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
     if (!request.clips.empty()) {
         return "--clips does nothing without --animated; add it";
     }
-    if (!request.plan_out.empty() && settings.source != MapSource::kPlanner) {
-        return "--plan-out writes what was planned, but the maps were named; leave it out";
-    }
-    if (request.plan_out == "-") {
-        return "--plan-out cannot be standard output; name a file";
-    }
     if (request.map.empty() && (request.decode || request.depth)) {
         return std::string(request.decode ? "--decode" : "--depth") +
                " does nothing without --map; leave it out";
     }
-    if (request.resolution && settings.source != MapSource::kMaps && settings.source != MapSource::kPaper) {
-        return "--resolution does nothing where maps are planned, each of the size that it needs; leave it "
-               "out, set --budget, or choose --map or --paper";
+    const bool axis_maps = settings.source == MapSource::kPatches && request.holes == Holes::kKeep;
+    if (request.resolution && settings.source == MapSource::kPatches && !axis_maps) {
+        return "--resolution does nothing for patches; leave it out, set --budget, or choose --map or "
+               "--paper";
+    }
+    if (axis_maps && (request.budget || request.texel || request.max_error)) {
+        return std::string(request.budget  ? "--budget"
+                           : request.texel ? "--texel"
+                                           : "--max-error") +
+               " does nothing with --holes keep, whose surfaces have no inside for patches; set --resolution";
     }
     if (request.texel && request.max_error) {
         return "--texel and --max-error are two ways to choose the bytes; leave one out";
-    }
-    if (request.texel && settings.layout == Layout::kViews) {
-        return "--texel is of patches; leave it out, or --layout views and --holes keep";
-    }
-    if (request.layout && settings.source != MapSource::kPlanner) {
-        return "--layout is of what is planned, but the maps were named; leave it out";
-    }
-    if (request.max_maps != kPlannedMapsMax && settings.source == MapSource::kPlanner &&
-        settings.layout == Layout::kPatches) {
-        return "--max-maps does nothing with patches, which are one map; leave it out, or add --layout views";
     }
     // Names need the file's own triangles and separate parts.
     const char* const against = !request.repair.method.empty() ? "--repair, which makes another surface"
@@ -131,9 +122,11 @@ Result<void> readMaps(const BakeRequest& request, BakeSettings& settings) {
         settings.bake.maps.push_back(spec);
     }
     if (request.animated) {
-        settings.source = MapSource::kMaps;
         settings.bake.resolution = kAnimatedResolution;
-        for (const char* const text : kAnimatedMaps) {
+    }
+    if (request.animated || (settings.source == MapSource::kPatches && request.holes == Holes::kKeep)) {
+        settings.source = MapSource::kMaps;
+        for (const char* const text : kAxisMaps) {
             settings.bake.maps.push_back(RELIEF_TRY(parseMapSpec(text, defaults)));
         }
     }
@@ -173,8 +166,6 @@ bool take(std::string_view name, std::string_view value, BakeRequest& request) {
 Result<BakeSettings> settingsOf(const BakeRequest& request) {
     BakeSettings settings;
     settings.source = RELIEF_TRY(sourceOf(request));
-    settings.layout =
-        request.layout.value_or(request.holes == Holes::kKeep ? Layout::kViews : Layout::kPatches);
     settings.shape = RELIEF_TRY(parseShapeOptions(request.as));
     const std::string conflict = conflictOf(request, settings);
     if (!conflict.empty()) {
@@ -187,7 +178,7 @@ Result<BakeSettings> settingsOf(const BakeRequest& request) {
     static_cast<void>(RELIEF_TRY(wrapAlpha(request.repair.method)));
     settings.bake.quality = request.quality.value_or(settings.bake.quality);
     settings.bake.prefer = request.prefer.value_or(settings.bake.prefer);
-    settings.bake.planned_texel = request.texel.value_or(0.0F);
+    settings.bake.texel = request.texel.value_or(0.0F);
     settings.bake.roots_hold = request.roots_hold;
     settings.bake.threads = request.threads.value_or(settings.bake.threads);
     return settings;
@@ -229,47 +220,45 @@ std::string shellWord(const std::string& path) {
 }
 
 void fields(FieldVisitor& visit, BakeRequest& request) {
-    visit("map", request.map,
-          {.help = "A map to bake instead of planned ones, once for each: FORMAT[:key=value,...] with\n"
-                   "FORMAT   float, fixed8, front-back, cube or patches\n"
-                   "bytes    of patches, such as 1MB\n"
-                   "texel    of patches, wanted everywhere, as --texel; they have no other keys\n"
-                   "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
-                   "up       direction that points upwards in the image: as dir\n"
-                   "size     texels, N or WxH (cube: N)\n"
-                   "compare  less or greater: keep the nearest or the farthest surface; of front-back\n"
-                   "         gap: both ends of what lies between solids\n"
-                   "center   a/b/c, where a cube looks from\n"
-                   "depth    of front-back maps: unorm16, or half (the paper's)\n"
-                   "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
-                   "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover",
-           .value = "SPEC",
-           .recorded = true});
+    visit(
+        "map", request.map,
+        {.help = "A map to bake instead of patches for a budget, once for each: FORMAT[:key=value,...] with\n"
+                 "FORMAT   float, fixed8, front-back, cube or patches\n"
+                 "bytes    of patches, such as 1MB\n"
+                 "texel    of patches, wanted everywhere, as --texel; they have no other keys\n"
+                 "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
+                 "up       direction that points upwards in the image: as dir\n"
+                 "size     texels, N or WxH (cube: N)\n"
+                 "compare  less or greater: keep the nearest or the farthest surface; of front-back\n"
+                 "center   a/b/c, where a cube looks from\n"
+                 "depth    of front-back maps: unorm16, or half (the paper's)\n"
+                 "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
+                 "box      tight, or x0/y0/z0/x1/y1/z1: the part of space to cover",
+         .value = "SPEC",
+         .recorded = true});
     visit("decode", request.decode,
           {.help = "For each --map that does not set it: plane, or projected, the paper's",
            .fallback = "plane"});
     visit("depth", request.depth,
           {.help = "For each --map front-back that does not set it: unorm16, or half, the paper's",
            .fallback = "unorm16"});
-    visit(
-        "paper", request.paper,
-        {.help = "Bake the paper's maps instead of planned ones: front-back along -x, -y and -z and a cube, "
-                 "depth=half, decode=projected"});
+    visit("paper", request.paper,
+          {.help = "Bake the paper's maps: front-back along -x, -y and -z and a cube, "
+                   "depth=half, decode=projected"});
     visit("resolution", request.resolution,
-          {.help = "Texels along a side of --map without size, of --paper and of --animated",
+          {.help = "Texels along a side of --map without size, of --paper, --holes keep and --animated",
            .fallback = "512; with --animated, 256",
            .recorded = true});
     visit("budget", request.budget,
-          {.help =
-               "Plan for this many bytes: what all maps together take on the GPU. The file has some hundred "
-               "bytes more, or fewer with --compress. With --max-error: use no more",
+          {.help = "The bytes that patches may take on the GPU. The file has some hundred "
+                   "bytes more, or fewer with --compress. With --max-error: use no more",
            .unit = "bytes",
            .range = {1.0},
            .fallback = "1MB",
            .recorded = true});
     visit(
         "texel", request.texel,
-        {.help = "Plan patches for this texel everywhere, whatever bytes that takes: a cell is split as long "
+        {.help = "Patches of this texel everywhere, whatever bytes that takes: a cell is split as long "
                  "as its patch is off by more than a quarter of it and its side is longer than two of it. "
                  "With --world in the units of the level, at the largest scale of each mesh. With --budget "
                  "that is the most, and what does not fit gets a larger texel, with a warning",
@@ -282,44 +271,32 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
          .recorded = true});
     visit(
         "max_error", request.max_error,
-        {.help = "Plan for the least bytes (32kB to 64MB) that leave at most this share of the points near "
+        {.help = "Patches of the least bytes (32kB to 64MB) that leave at most this share of the points near "
                  "the surface, in percent, on the wrong side; measured as by relief check, on 50000 points. "
                  "Exit with 7, and write nothing, if none do",
          .unit = "%",
          .range = {0.0}});
-    visit(
-        "layout", request.layout,
-        {.help =
-             "What to plan. patches: small depth maps in an octree, by far the fewest mistakes. views: depth "
-             "maps of the whole mesh, to look at and to edit",
-         .fallback = "patches; with --holes keep, views"});
-    visit("max_maps", request.max_maps,
-          {.help = "Plan at most this many views, each of which every step of a simulation looks at",
-           .range = {1.0, double{ContainerLimits{}.maps}}});
-    visit(
-        "plan_out", request.plan_out,
-        {.help = "Also write what was planned, as TOML, to be changed and given to --plan", .value = "FILE"});
-    visit("plan", request.plan, {.help = "Bake the maps of such a file", .value = "FILE"});
     visit("quality", request.quality,
           {.help = "The work on planes (one ray a texel, 16 or 36) and on patches: fast, normal or best",
-           .fallback = "normal; with --plan, the file's",
+           .fallback = "normal",
            .recorded = true});
     visit(
         "prefer", request.prefer,
         {.help = "Where planes and patches must err: inside keeps particles out of walls, outside keeps free "
                  "space free, neither errs least",
-         .fallback = "neither; with --plan, the file's",
+         .fallback = "neither",
          .recorded = true});
     visit("threads", request.threads,
           {.help = "Threads to use. The result is the same. With --recipe: assets at once",
            .range = {1.0, 1024.0},
            .fallback = "all cores",
            .letter = 'j'});
-    visit(
-        "holes", request.holes,
-        {.help = "close: make solids of what --as says; keep: bake the surface as it is", .recorded = true});
-    visit("no_check", request.no_check,
-          {.help = "Do not measure what was planned (a few percent of the time)"});
+    visit("holes", request.holes,
+          {.help = "close: make solids of what --as says; keep: bake the surface as it is, in three "
+                   "front-back maps "
+                   "along the axes, or in those of --map or --paper",
+           .recorded = true});
+    visit("no_check", request.no_check, {.help = "Do not measure the result (a few percent of the time)"});
     fields(visit, request.import);
     fields(visit, request.import_limits);
     fields(visit, request.repair);

@@ -10,10 +10,10 @@
 
 #include "bake/import/import_fields.h"
 #include "bake/pipeline/bake.h"
-#include "bake/plan/prefer.h"
-#include "bake/plan/view_planner.h"
 #include "bake/repair/repair.h"
 #include "bake/shape/shape.h"
+#include "bake/views/map_spec.h"
+#include "bake/views/prefer.h"
 #include "formats/base/result.h"
 #include "formats/container_limits.h"
 #include "formats/fields/text.h"
@@ -39,7 +39,7 @@ inline constexpr std::array<std::string_view, 2> kWordsOf<Decode>{"projected", "
 
 struct BakeRequest {
     std::string mesh;                     ///< a file
-    std::vector<std::string> map;         ///< MapSpecs; empty: planned, unless paper or plan
+    std::vector<std::string> map;         ///< MapSpecs; empty: patches, unless paper, animated or holes
     std::optional<Decode> decode;         ///< of `map`
     std::optional<FrontBackDepth> depth;  ///< of `map`
     bool paper = false;
@@ -47,10 +47,6 @@ struct BakeRequest {
     std::optional<std::uint64_t> budget;
     std::optional<float> texel;  ///< object units
     std::optional<float> max_error;
-    std::optional<Layout> layout;
-    std::uint32_t max_maps = kPlannedMapsMax;
-    std::string plan_out;
-    std::string plan;
     std::optional<Quality> quality;
     std::optional<Prefer> prefer;
     std::optional<unsigned> threads;
@@ -67,18 +63,17 @@ struct BakeRequest {
     std::vector<std::string> clips;   ///< files, beside `mesh`, of `animated`
     std::string heights;              ///< HeightsSpec: `mesh` is a height map; empty: it is a mesh
     std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
-    /// Object units: a box that the roots of planned patches hold beside the mesh. No option; it is not recorded.
+    /// Object units: a box that the roots of patches hold beside the mesh. No option; it is not recorded.
     std::optional<Bounds> roots_hold{};
 };
 
 void fields(FieldVisitor& visit, BakeRequest& request);
 
-enum class MapSource : std::uint8_t { kPlanner, kMaps, kPaper, kPlanFile };
+enum class MapSource : std::uint8_t { kPatches, kMaps, kPaper };
 
 /// A request, read and found consistent.
 struct BakeSettings {
-    MapSource source = MapSource::kPlanner;
-    Layout layout = Layout::kPatches;
+    MapSource source = MapSource::kPatches;
     BakeOptions bake;
     ShapeOptions shape;  ///< without a thickness: it depends on the mesh
 };

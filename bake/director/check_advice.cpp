@@ -36,25 +36,27 @@ class Advisor {
     Advisor(const MeshCheck& run, const std::string& mesh_file, const std::string& output)
         : run_(run),
           output_(output),
-          planned_(run.recorded.request),
+          patches_(run.recorded.request),
           has_patches_(std::ranges::any_of(
               run.collider.maps, [](const DepthMap& map) { return map.format == MapFormat::kPatches; })),
-          plans_patches_(planned_.holes == Holes::kClose) {
+          closes_(patches_.holes == Holes::kClose) {
         const TruthSamples& truth = run.judged().samples;
         truth_.options = truth.options;
         truth_.options.samples = std::min(truth_.options.samples, kTrialSamplesMax);
         truth_.longest_side = truth.longest_side;
         truth_.near.assign(truth.near.begin(), truth.near.begin() + truth_.options.samples);
-        planned_.mesh = mesh_file;
-        planned_.map.clear();
-        planned_.texel.reset();
-        planned_.budget = roundBudget(run.collider.gpuBytes());
+        patches_.mesh = mesh_file;
+        patches_.map.clear();
+        patches_.texel.reset();
+        patches_.holes = Holes::kClose;
+        patches_.resolution.reset();
+        patches_.budget = roundBudget(run.collider.gpuBytes());
         // A default thickness follows the budget of the next bake.
-        if (planned_.thickness && planned_.thickness->by_part) {
-            planned_.thickness.reset();
+        if (patches_.thickness && patches_.thickness->by_part) {
+            patches_.thickness.reset();
         }
-        if (planned_.voids == VoidsAs::kFull) {
-            planned_.voids.reset();  // the default
+        if (patches_.voids == VoidsAs::kFull) {
+            patches_.voids.reset();  // the default
         }
     }
 
@@ -62,12 +64,11 @@ class Advisor {
         const bool sheet = any({WrongCause::kSheet});
         const bool open = any({WrongCause::kOpen});
         // They mend most of what other maps do wrong, and cost each step no more.
-        if (!has_patches_ && plans_patches_ && !run_.places.empty()) {
-            tryBudget(*planned_.budget, "patches of as many bytes");
+        if (!has_patches_ && closes_ && !run_.places.empty()) {
+            tryBudget(*patches_.budget, "patches of as many bytes");
         }
-        if (any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryBudget(roundBudget(2 * run_.collider.gpuBytes()),
-                      plans_patches_ ? "patches of twice the bytes" : "planned maps of twice the bytes");
+        if (closes_ && any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
+            tryBudget(roundBudget(2 * run_.collider.gpuBytes()), "patches of twice the bytes");
         }
         if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();
@@ -75,14 +76,13 @@ class Advisor {
         // Nothing is out of sight of patches.
         if (!has_patches_ && any({WrongCause::kSilhouette, WrongCause::kUnseen})) {
             tryCubes();
-            tryMoreMaps();
         }
         if ((open || sheet) && !repaired()) {
             trySolid();
             if (std::none_of(advice_.begin(), advice_.end(), [](const Advice& advice) {
                     return advice.helps && *advice.wrong_percent <= kGoodPercent;
                 })) {
-                BakeRequest wrapped = planned_;
+                BakeRequest wrapped = patches_;
                 wrapped.repair.method = "wrap";
                 advice_.push_back({commandLine(wrapped, output_), "a closed surface wrapped round the mesh",
                                    std::nullopt, "wrapping takes up to a minute", false});
@@ -103,7 +103,7 @@ class Advisor {
         const double untried = 200.0;
         return !advice.wrong_percent ? untried : *advice.wrong_percent + (advice.helps ? 0.0 : 2.0 * untried);
     }
-    [[nodiscard]] bool repaired() const { return !planned_.repair.method.empty(); }
+    [[nodiscard]] bool repaired() const { return !patches_.repair.method.empty(); }
 
     /// The reason why a bake is not tried; empty: it is.
     [[nodiscard]] std::string tooMuch(std::uint64_t bytes) const {
@@ -145,21 +145,11 @@ class Advisor {
     }
 
     void tryBudget(std::uint64_t budget, const char* about) {
-        BakeRequest request = planned_;
+        BakeRequest request = patches_;
         request.budget = budget;
         attempt(request, about, budget, !(run_.shape.default_thickness > 0.0) || repaired());
     }
 
-    /// More maps than a plan has by default, where there are as many.
-    void tryMoreMaps() {
-        if (run_.collider.maps.size() != kPlannedMapsMax) {
-            return;
-        }
-        BakeRequest request = planned_;
-        request.layout = Layout::kViews;
-        request.max_maps = 2 * kPlannedMapsMax;
-        attempt(request, "more maps of as many bytes, which make each step slower", *request.budget, true);
-    }
     /// A cube in the free space before a place, as far as its size and no wall reach. nullopt: there is none.
     [[nodiscard]] std::optional<MapSpec> cubeAt(const WorstPlace& place) const {
         const double side = truth_.longest_side;
@@ -196,8 +186,9 @@ class Advisor {
 
     /// The maps that there are, and a cube at each place that they do not see.
     void tryCubes() {
-        BakeRequest request = planned_;
+        BakeRequest request = patches_;
         request.budget.reset();
+        request.holes = run_.recorded.request.holes;
         request.map = run_.recorded.request.map;
         std::uint64_t bytes = run_.collider.gpuBytes();
         for (const WorstPlace& place : run_.places) {
@@ -217,16 +208,14 @@ class Advisor {
 
     /// A bake without --holes keep.
     void trySolid() {
-        if (planned_.holes == Holes::kKeep) {
-            BakeRequest request = planned_;
-            request.holes = Holes::kClose;
-            attempt(request, "holes closed, and sheets made shells", *request.budget, false);
+        if (!closes_) {
+            attempt(patches_, "holes closed, and sheets made shells", *patches_.budget, false);
         }
     }
 
     void tryThicker() {
         if (!repaired()) {
-            BakeRequest request = planned_;
+            BakeRequest request = patches_;
             request.thickness = Thickness{double{rounded(2.0 * run_.shape.thickness)}, false};
             attempt(request, "sheets twice as thick", *request.budget, false);
         }
@@ -234,9 +223,9 @@ class Advisor {
 
     const MeshCheck& run_;
     const std::string& output_;
-    BakeRequest planned_;  // the recorded bake, planned anew for as many bytes
+    BakeRequest patches_;  // the recorded bake as patches of as many bytes, its holes closed
     bool has_patches_;
-    bool plans_patches_;  // unless told otherwise
+    bool closes_;         // the recorded bake, its holes
     TruthSamples truth_;  // near the surface alone, and fewer
     std::vector<Advice> advice_;
 };

@@ -12,22 +12,19 @@
 #include "bake/import/mesh_import.h"
 #include "bake/measure/self_check.h"
 #include "bake/pipeline/budget_search.h"
-#include "bake/plan/plan_file.h"
 #include "bake/report/parts_report.h"
 #include "bake/report/report_text.h"
 #include "formats/animation/mesh_pose.h"
 #include "formats/base/file_io.h"
-#include "formats/base/hash.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
+#include "formats/patch_tree.h"
 
 namespace relief {
 namespace {
 
 /// From so many nodes on, a source may be a level.
 constexpr std::size_t kLevelNodes = 100;
-/// Above this share that one more map would have served, the warning suggests more maps.
-constexpr double kMoreMapsHelp = 0.005;
 
 template <class... Arguments>
 void tell(const std::function<void(Arguments...)>& function, Arguments... arguments) {
@@ -36,30 +33,21 @@ void tell(const std::function<void(Arguments...)>& function, Arguments... argume
     }
 }
 
-/// The order in which maps are chosen and baked, shared by a whole bake and by bakeSolid().
+/// The ways to the maps, shared by a whole bake and by bakeSolid().
 class MapMaker {
   public:
     MapMaker(const BakeRequest& request, const BakeSettings& settings, const BakeWatcher& watcher)
         : request_(request), settings_(settings), watcher_(watcher) {}
 
-    /// Chooses the views, and bakes them for the budget.
-    Result<Baked> forBudget(const MeshQuery& query, PlanReport& report, double* plan_ms = nullptr) const {
-        const Stopwatch watch;
-        const std::optional<ViewChoice> views =
-            RELIEF_TRY(viewsFor(query, settings_.layout, settings_.bake.prefer, request_.max_maps));
-        if (plan_ms != nullptr) {
-            *plan_ms += watch.ms();
-        }
+    /// Patches for --budget and --texel.
+    Result<Baked> forBudget(const MeshQuery& query, PatchesReport& report) const {
         report.budget = request_.texel ? request_.budget : request_.budget.value_or(kBudgetDefault);
-        PlannedBake planned =
-            RELIEF_TRY(bakePlanned(query, views, report.budget.value_or(0), begin("baking the maps")));
-        report.plan = std::move(planned.plan);
-        return std::move(planned.baked);
+        return bakePatchesWithin(query, report.budget.value_or(0), begin("baking the maps"));
     }
 
     /// The least budget that keeps --max-error.
     /// \param truth  of the mesh whose points count: as it came, if it was repaired.
-    Result<Baked> forError(const MeshQuery& query, const MeshQuery& truth, PlanReport& report) const {
+    Result<Baked> forError(const MeshQuery& query, const MeshQuery& truth, PatchesReport& report) const {
         tell(watcher_.begin, "searching for the least budget");
         BudgetSearchOptions options;
         options.max_error_percent = double{*request_.max_error};
@@ -72,12 +60,12 @@ class MapMaker {
         options.budget_max = request_.budget.value_or(options.budget_max);
         options.bake = settings_.bake;
         options.bake.progress = [this](double) { tell(watcher_.checkpoint); };
-        options.layout = settings_.layout;
-        options.max_maps = request_.max_maps;
         options.tried = watcher_.tried;
         BudgetSearchResult found = RELIEF_TRY(bakeForError(query, truth, options));
-        report = PlanReport{std::move(found.plan), found.chosen.budget, options.max_error_percent,
-                            found.chosen.wrong_percent, std::move(found.tries)};
+        report.budget = found.chosen.budget;
+        report.max_error = options.max_error_percent;
+        report.wrong_percent = found.chosen.wrong_percent;
+        report.tries = std::move(found.tries);
         return std::move(found.baked);
     }
 
@@ -129,7 +117,7 @@ class Director {
     Result<BakeResult> run(std::optional<TriangleMesh> mesh, const SolidMesh* solid = nullptr) {
         tell(watcher_.begin, "reading its options");
         RELIEF_TRY(readOptions(mesh));
-        // Planning and measuring keep to --threads too.
+        // Measuring keeps to --threads too.
         std::optional<tbb::global_control> control;
         if (request().threads) {
             control.emplace(tbb::global_control::max_allowed_parallelism, *request().threads);
@@ -177,31 +165,6 @@ class Director {
         if (given && given->marks.empty() && !result_.settings.shape.named.empty()) {
             return fail(ErrorCode::kUsage,
                         "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
-        }
-        return readPlan();
-    }
-
-    /// The maps of --plan, and its quality, preference and thickness where the request has none.
-    Result<void> readPlan() {
-        if (request().plan.empty()) {
-            return {};
-        }
-        // Before it is read: should it change meanwhile, the hash is that of neither, or of the older one.
-        const auto bytes = readFile(request().plan);
-        plan_hash_ = bytes ? xxh3_128Hex(*bytes) : "";
-        const PlanFile plan = RELIEF_TRY(loadPlan(request().plan));
-        BakeOptions& options = result_.settings.bake;
-        options.quality = request().quality.value_or(plan.quality);
-        options.prefer = request().prefer.value_or(plan.prefer);
-        options.planned_budget = plan.budget;
-        if (!request().thickness && plan.thickness > 0.0) {
-            request().thickness = Thickness{plan.thickness, true};
-        }
-        for (const PlanFileMap& map : plan.maps) {
-            options.maps.push_back(map.spec);
-            if (map.spec.texel > 0.0F) {
-                request().texel = map.spec.texel;  // of which shells are made
-            }
         }
         return {};
     }
@@ -312,39 +275,31 @@ class Director {
             }
             result_.inputs.push_back({mesh.dependencies[i], mesh.dependency_hashes[i]});
         }
-        if (!request().plan.empty()) {
-            result_.inputs.push_back({request().plan, plan_hash_});
-        }
         return {};
     }
 
-    /// Chooses the maps, and bakes them.
     Result<Baked> makeMaps() {
         const PreparedMesh& mesh = result_.mesh.mesh;
         const MapMaker maker(request(), result_.settings, watcher_);
-        if (result_.settings.source != MapSource::kPlanner) {
-            Result<Baked> baked = maker.named(mesh);
-            if (!baked && result_.settings.source == MapSource::kPlanFile) {
-                // Faults that no single map shows: too many texels, a volume that floats cannot hold, maps that see nothing.
-                const ErrorCode code = baked.error().code;
-                return fail(code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : code,
-                            quotedPath(request().plan) + ": " + baked.error().message);
-            }
-            return baked;
+        if (result_.settings.source != MapSource::kPatches) {
+            return maker.named(mesh);
         }
         const Stopwatch watch;
-        tell(watcher_.begin, "planning the maps");
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        PlanReport report;
-        BakeTimes& times = result_.times;
-        times.plan_ms = request().max_error ? 0.0 : watch.ms();
+        const double tree_ms = watch.ms();
+        PatchesReport report;
+        report.wanted_texel = request().texel;
         const auto search = [&]() -> Result<Baked> {
             const MeshQuery truth = imported_ ? RELIEF_TRY(MeshQuery::build(*imported_)) : query;
             return maker.forError(query, truth, report);
         };
-        Result<Baked> baked = request().max_error ? search() : maker.forBudget(query, report, &times.plan_ms);
-        times.search_ms = request().max_error ? watch.ms() : 0.0;
-        result_.plan = std::move(report);
+        Baked baked = RELIEF_TRY(request().max_error ? search() : maker.forBudget(query, report));
+        result_.times.search_ms = request().max_error ? watch.ms() : 0.0;
+        const DepthMap& tree = baked.collider.maps.front();
+        baked.report.build_ms += request().max_error ? 0.0 : tree_ms;
+        report.bytes = baked.collider.gpuBytes();
+        report.texel = patchSpacing(tree.texels) * double{tree.object_per_map.x};
+        result_.patches = std::move(report);
         return baked;
     }
 
@@ -391,9 +346,9 @@ class Director {
         return {};
     }
 
-    /// A planned bake measures itself; explicitly chosen maps may be wrong on purpose.
+    /// Patches are measured; named maps may be wrong on purpose.
     Result<void> measure() {
-        if (!result_.plan || request().no_check) {
+        if (!result_.patches || request().no_check) {
             return {};
         }
         const Stopwatch watch;
@@ -419,21 +374,13 @@ class Director {
 
     /// Options that may help a bake that is wrong in many places.
     [[nodiscard]] std::string cure() {
-        const Plan& plan = result_.plan->plan;
         const std::uint64_t budget = request().budget.value_or(kBudgetDefault);
-        std::string more = request().texel && !request().budget
-                               ? "--texel " + shortest(0.5F * *request().texel)
-                               : "--budget " + std::to_string(4 * budget / 1000) + "kB";
-        if (plan.maps.size() >= request().max_maps && plan.next_gain > kMoreMapsHelp) {
-            more += " --max-maps " + std::to_string(2 * plan.maps.size());
-        }
+        const std::string more = request().texel && !request().budget
+                                     ? "--texel " + shortest(0.5F * *request().texel)
+                                     : "--budget " + std::to_string(4 * budget / 1000) + "kB";
         if (result_.shape.sheets > 0 && result_.shape.as == ShapeAs::kAuto) {
             return "try " + more + ", or a larger --thickness for its sheets (now " +
                    shortNumber(result_.shape.thickness) + ")";
-        }
-        if (plan.unseen_percent > 5.0) {
-            return shortNumber(plan.unseen_percent) + " % of the surface is seen by no map; try " + more +
-                   ", --as shell if it is walls, or --repair wrap=0.01 if its insides do not matter";
         }
         return "try " + more;
     }
@@ -494,7 +441,6 @@ class Director {
 
     const BakeWatcher& watcher_;
     BakeResult result_;
-    std::string plan_hash_;
     std::size_t nodes_ = 0;                 // of the source, that show something
     std::optional<PreparedMesh> imported_;  // as it came, where --max-error looks back at it after a repair
 };
@@ -508,11 +454,8 @@ std::optional<Verdict> BakeResult::verdict() const {
 }
 
 BakeSummary BakeResult::summary(bool verbose) const {
-    return {*mesh.mesh,  baked,
-            plan,        times,
-            mesh.report, shape,
-            verdict(),   unused_vertices,
-            verbose,     animated ? &*animated : nullptr};
+    return {*mesh.mesh, baked,     patches,         times,   mesh.report,
+            shape,      verdict(), unused_vertices, verbose, animated ? &*animated : nullptr};
 }
 
 int BakeResult::threads() const {
@@ -537,23 +480,6 @@ Result<MistakeCurve> planMistakes(const BakeRequest& request, const SolidMesh& s
     return planMistakes(solid.mesh.mesh, settings.bake, bytes);
 }
 
-Result<void> writePlanOut(const BakeResult& result) {
-    if (result.request.plan_out.empty()) {
-        return {};
-    }
-    const PlanReport& plan = *result.plan;
-    PlanFile file;
-    file.quality = result.settings.bake.quality;
-    file.prefer = result.settings.bake.prefer;
-    file.budget = plan.budget.value_or(0);
-    file.thickness = result.shape.default_thickness;
-    for (std::size_t i = 0; i < plan.plan.maps.size(); ++i) {
-        file.maps.push_back({result.baked.report.maps[i].spec, plan.plan.maps[i].reason});
-    }
-    const std::string text = planText(file);
-    return writeFile(result.request.plan_out, std::as_bytes(std::span(text)));
-}
-
 Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh) {
     if (request.holes == Holes::kKeep || request.animated) {
         return ShapedMesh{mesh, {}, surfacePartsOf(mesh)};
@@ -575,11 +501,11 @@ Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid) {
     const BakeSettings settings = RELIEF_TRY(settingsOf(request));
     const BakeWatcher watcher;
     const MapMaker maker(request, settings, watcher);
-    if (settings.source != MapSource::kPlanner) {
+    if (settings.source != MapSource::kPatches) {
         return maker.named(solid);
     }
     const MeshQuery query = RELIEF_TRY(MeshQuery::build(solid));
-    PlanReport report;
+    PatchesReport report;
     return maker.forBudget(query, report);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bake from the request to the collider: import, repair, solid, plan, maps, measurement and warnings. The command line,
+// A bake from the request to the collider: import, repair, solid, maps, measurement and warnings. The command line,
 // Python, recipes, advice and benchmarks call this.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace relief {
 
 /// Follows a bake. Each function may be empty, and may throw: what it throws comes out of bake(), and ends it.
 struct BakeWatcher {
-    std::function<void(const char* stage)> begin;  ///< "planning the maps"
+    std::function<void(const char* stage)> begin;  ///< "baking the maps"
     std::function<void(double share)> progress;    ///< of the stage, in [0, 1]; any thread calls it
     std::function<void()> checkpoint;              ///< within a stage without shares; any thread calls it
     std::function<void(const BudgetTry&)> tried;   ///< of a search for the least budget
@@ -32,7 +32,7 @@ struct BakeWatcher {
 
 /// The collider, and what the stages found out.
 struct BakeResult {
-    BakeRequest request;                ///< with the choices of a plan file
+    BakeRequest request;
     BakeSettings settings;              ///< in effect
     std::uint64_t unused_vertices = 0;  ///< of the mesh file; repair discards this count
     RepairedMesh mesh;                  ///< the solid that was baked
@@ -40,11 +40,11 @@ struct BakeResult {
     SurfaceParts parts;
     std::shared_ptr<MaterialSource> materials;  ///< null: none are kept
     Baked baked;
-    std::optional<PlanReport> plan;
-    std::optional<WrongShare> wrong;             ///< near the surface; of a planned bake
-    std::optional<PartsAccuracy> part_accuracy;  ///< of a planned bake of several parts
+    std::optional<PatchesReport> patches;
+    std::optional<WrongShare> wrong;             ///< near the surface; not of named maps
+    std::optional<PartsAccuracy> part_accuracy;  ///< of several parts; not of named maps
     std::vector<std::string> notices;            ///< one line each; ready to be shown
-    std::vector<InputFile> inputs;               ///< the mesh, the files that it refers to, the plan
+    std::vector<InputFile> inputs;               ///< the mesh, the files that it refers to
     BakeTimes times;
     std::optional<AnimatedMesh> animated;  ///< of the collider, with --animated
 
@@ -58,8 +58,7 @@ struct BakeResult {
 
 /// Writes nothing. Warnings are in baked.report.
 /// \param mesh  as finishMesh leaves it: instead of a file.
-/// Errors: those of settingsOf, loadPlan, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePlanned
-/// and bake; kUsage: an option that needs the mesh's file.
+/// Errors: those of settingsOf, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePatchesWithin and bake; kUsage: an option that needs the mesh's file.
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
                                       std::optional<TriangleMesh> mesh = {});
 
@@ -87,14 +86,11 @@ struct SolidMesh {
 [[nodiscard]] Result<MistakeCurve> planMistakes(const BakeRequest& request, const SolidMesh& solid,
                                                 std::uint64_t bytes);
 
-/// Writes --plan-out, if there is one. Errors: kIo.
-[[nodiscard]] Result<void> writePlanOut(const BakeResult& result);
-
 /// The solid of a mesh that has been wound outwards: the mesh itself with --holes keep.
 /// Errors: those of parseShapeOptions and shapeMesh.
 [[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
 
-/// The maps of a solid, by its names or planned for its budget (not for an error). Errors: as bake.
+/// The maps of a solid, by their names, or patches for its budget (not for an error). Errors: as bake.
 [[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
 
 }  // namespace relief

@@ -45,16 +45,6 @@ Sight::Lines Sight::linesTo(const glm::dvec3& p, const glm::dvec3& in_map) const
     const auto add = [&](const glm::dvec3& line, bool parallel) {
         lines.line[lines.count++] = {p + line, parallel};
     };
-    if (map_.compare == Compare::kGap) {
-        const Texel texel =
-            decodeTexel(map_.format, map_.texelAt(0, static_cast<std::uint32_t>(in_map.x * map_.width),
-                                                  static_cast<std::uint32_t>(in_map.y * map_.height)));
-        if (texel.front && texel.back) {
-            const double middle = 0.5 * (double{texel.front->depth} + double{texel.back->depth});
-            add((middle - in_map.z) * to_object_[2], true);
-        }
-        return lines;
-    }
     if (map_.projection() == Projection::kCube) {
         const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
         // From the centre, or from the face of the volume behind p.
@@ -87,8 +77,7 @@ bool Sight::sees(const SurfacePoint& point) const {
         const auto& [start, parallel] = lines.line[i];
         const glm::dvec3 sight = start - p;
         const double cosine = glm::dot(sight, normal) / glm::length(sight);
-        const bool stands = map_.decode == Decode::kPlane && map_.compare != Compare::kGap &&
-                            std::abs(cosine) < double{kStandingCosine};
+        const bool stands = map_.decode == Decode::kPlane && std::abs(cosine) < double{kStandingCosine};
         if ((cosine > 0.0 || stands) && query_.segmentIsFree(p, start)) {
             return true;
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visibility of a surface to the maps of a collider or of a plan.
+// The visibility of a surface to the maps of a collider.
 #pragma once
 
 #include <array>
@@ -20,8 +20,7 @@ namespace relief {
 /// artists' meshes.
 inline constexpr double kWallStep = 1e-3;
 
-/// The lines of sight of one map, independent of its texels, but for maps of gaps, which look both ways from the middle of
-/// the gap.
+/// The lines of sight of one map, independent of its texels.
 class Sight {
   public:
     /// \param map, query  borrowed.
@@ -29,7 +28,7 @@ class Sight {
 
     /// The map can hold the surface there: an end that it keeps has, within the volume, a free line of sight to the front of
     /// the surface, kSurfaceStep above it. A wall along the line of sight (of a cosine below kStandingCosine) fits the planes
-    /// of Decode::kPlane, but not of gaps, and is seen if the line is free kSurfaceStep or kWallStep above it.
+    /// of Decode::kPlane, and is seen if the line is free kSurfaceStep or kWallStep above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
     /// The start of a free line of sight to a point in object space. nullopt: none, and even the finest texels would not have
@@ -57,7 +56,7 @@ class Sight {
     double side_ = 0.0;
 };
 
-/// All maps of a collider, or of a plan.
+/// All maps of a collider.
 class Sights {
   public:
     /// \param maps, query  borrowed.

@@ -472,45 +472,6 @@ bool MeshQuery::isFree(const glm::dvec3& origin, const glm::dvec3& direction, fl
     return ray.tfar >= 0.0F;
 }
 
-std::vector<LineGap> MeshQuery::gapsAlong(const glm::dvec3& origin, const glm::dvec3& direction) const {
-    std::vector<LineHit> hits;
-    hitsAlong(origin, direction, hits);
-    struct Place {
-        double along;
-        Crossing crossing;
-        std::uint32_t triangle;
-        auto operator<=>(const Place&) const = default;
-    };
-    std::vector<Place> places;
-    for (const LineHit& hit : hits) {
-        places.push_back({hit.at, crossingOf(hit, direction), hit.triangle});
-    }
-    std::ranges::sort(places);
-    const double tie = 1e-7 * mesh().bounds.longestSide() / length(direction);
-    std::vector<LineGap> gaps;
-    BodyCounter counter;
-    const bool winds = shells_ || !bodies_.empty();
-    bool odd = false;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const Place& here = places[i];
-        // Two triangles of one body that are crossed to the same side at one place share an edge.
-        bool again = false;
-        for (std::size_t j = i; j > 0 && here.along - places[j - 1].along <= tie && !again; --j) {
-            again = places[j - 1].crossing == here.crossing;
-        }
-        if (!again && winds) {
-            counter.cross(here.crossing.body, here.crossing.side);
-        }
-        odd = odd != !again;
-        const bool free = winds ? !counter.inside() : !odd;
-        if (free && i + 1 < places.size() && places[i + 1].along - here.along > tie &&
-            !inVoid(origin + 0.5 * (here.along + places[i + 1].along) * direction)) {
-            gaps.push_back({here.along, places[i + 1].along, here.triangle, places[i + 1].triangle});
-        }
-    }
-    return gaps;
-}
-
 std::optional<FirstHit> MeshQuery::firstHit(const glm::dvec3& origin, const glm::dvec3& direction) const {
     RTCRayHit query =
         rayHit(tree_->toLocal(origin), direction * tree_->scale, std::numeric_limits<float>::infinity());

@@ -29,17 +29,6 @@ struct FirstHit {
     std::uint32_t triangle = 0;
 };
 
-/// A free interval of a line between two surfaces.
-struct LineGap {
-    double begin = 0.0;  ///< in units of the line's direction
-    double end = 0.0;
-    std::uint32_t first = 0;  ///< the triangle at `begin`
-    std::uint32_t last = 0;   ///< and at `end`
-
-    [[nodiscard]] double length() const { return end - begin; }
-    [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
-};
-
 /// An interval of a line, in units of its direction.
 struct LineSpan {
     double begin = 0.0;
@@ -56,18 +45,6 @@ struct LineHit {
 
     friend auto operator<=>(const LineHit&, const LineHit&) = default;
 };
-
-/// Of `parts` equal parts of a gap, those whose middle has not is_known(position).
-template <class IsKnown>
-[[nodiscard]] int unknownParts(const LineGap& gap, const glm::dvec3& origin, const glm::dvec3& direction,
-                               int parts, const IsKnown& is_known) {
-    int unknown = 0;
-    for (int i = 0; i < parts; ++i) {
-        const double at = gap.begin + (i + 0.5) / parts * gap.length();
-        unknown += is_known(origin + at * direction) ? 0 : 1;
-    }
-    return unknown;
-}
 
 /// The bodies of a mesh that a path is in.
 struct BodyCounter {
@@ -147,10 +124,6 @@ class MeshQuery {
 
     [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
                                                    const glm::dvec3& direction) const;
-
-    /// The free intervals of a line but the two unbounded ones, in order. A line through an edge may miss some or yield false
-    /// ones: check the middle of those that matter by inside().
-    [[nodiscard]] std::vector<LineGap> gapsAlong(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
     [[nodiscard]] const EmbreeMesh& tree() const { return *tree_; }
 

@@ -20,7 +20,6 @@ struct PreparedMesh::State {
     std::optional<bool> several_shells;
     std::optional<double> orientation;
     std::optional<AreaTable> areas;
-    std::optional<VertexBlocks> vertex_blocks;  // positions never change
     std::optional<EmbreeMesh> tree;
     std::vector<std::uint32_t> bodies;
     Voids voids;
@@ -93,11 +92,6 @@ double PreparedMesh::orientation() const {
 
 const AreaTable& PreparedMesh::areas() const {
     return state_->areas ? *state_->areas : state_->areas.emplace(state_->mesh);
-}
-
-const VertexBlocks& PreparedMesh::vertexBlocks() const {
-    return state_->vertex_blocks ? *state_->vertex_blocks
-                                 : state_->vertex_blocks.emplace(state_->mesh.positions);
 }
 
 Result<const EmbreeMesh*> PreparedMesh::tree() const {

@@ -8,7 +8,6 @@
 #include "bake/mesh/area_table.h"
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_edges.h"
-#include "bake/mesh/vertex_blocks.h"
 #include "bake/mesh/voids.h"
 #include "formats/base/result.h"
 
@@ -40,8 +39,6 @@ class PreparedMesh {
     /// the area vectors of the triangles sum to zero; the sign is that of the enclosed volume.
     [[nodiscard]] double orientation() const;
     [[nodiscard]] const AreaTable& areas() const;
-    /// Of the positions. Lives as long as a copy of this handle.
-    [[nodiscard]] const VertexBlocks& vertexBlocks() const;
     /// Lives as long as a copy of this handle. Errors: those of EmbreeMesh::build.
     [[nodiscard]] Result<const EmbreeMesh*> tree() const;
 

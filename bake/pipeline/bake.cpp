@@ -18,14 +18,11 @@
 #include "bake/measure/accuracy.h"
 #include "bake/measure/patch_cells.h"
 #include "bake/mesh/mesh_query.h"
-#include "bake/mesh/ray_cost.h"
 #include "bake/patches/patch_planner.h"
-#include "bake/plan/view.h"
 #include "bake/texels/encode.h"
 #include "bake/texels/fitted_map.h"
-#include "bake/texels/gap_map.h"
-#include "bake/texels/refine.h"
 #include "bake/texels/scan_convert.h"
+#include "bake/views/view.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"
@@ -43,9 +40,6 @@ constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
 
 /// Triangles, times maps, that are begun at the same time.
 constexpr std::size_t kTrianglesAtOnce = std::size_t{1} << 21;
-
-/// So many views look for the mesh's extents sooner among boxes of vertices, these being made first.
-constexpr std::size_t kManyViews = 3;
 
 /// In units of the longest side.
 constexpr double kOnSurface = 1e-5;
@@ -82,10 +76,9 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     }
     std::vector<Job> jobs;
     std::uint64_t bytes = 0;
-    const VertexBlocks* const blocks = specs.size() >= kManyViews ? &mesh.vertexBlocks() : nullptr;
     for (const MapSpec& spec : specs) {
         const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
-        const View view = RELIEF_TRY(makeView(complete, *mesh, blocks));
+        const View view = RELIEF_TRY(makeView(complete, *mesh));
         jobs.push_back({complete, view, spec.compare.has_value()});
         RELIEF_TRY(examineCentre(mesh, jobs.back()));
         bytes += jobs.back().texels() * texelSize(view.format);
@@ -98,8 +91,7 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     return jobs;
 }
 
-std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options,
-                                             const Collider& collider) {
+std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options) {
     std::vector<RecordedOption> recorded;
     bool fitted = false;
     for (const Job& job : jobs) {
@@ -112,8 +104,8 @@ std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const
             recorded.push_back({"prefer", std::string(wordOf(options.prefer))});
         }
     }
-    if (options.planned_budget > 0 && collider.gpuBytes() <= options.planned_budget) {
-        recorded.push_back({"budget", std::to_string(options.planned_budget)});
+    if (options.budget > 0) {
+        recorded.push_back({"budget", std::to_string(options.budget)});
     }
     return recorded;
 }
@@ -142,9 +134,7 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
 }
 
-/// What a mistake costs where there are shells: a few points in a row called outside, and a particle is through.
-constexpr double kShellFalseOutside = 8.0;
-/// Of a tree of patches, the cost of the mistake that --prefer is against.
+/// Cost of the mistake that --prefer is against, of patches.
 constexpr double kPreferredCost = 8.0;
 
 FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
@@ -158,30 +148,6 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
     options.cautious = bake.prefer == Prefer::kInside;
     options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
-    return options;
-}
-
-RefineOptions refineOptions(const TriangleMesh& mesh, const BakeOptions& bake) {
-    RefineOptions options;
-    if (mesh.shell_thickness > 0.0) {
-        options.false_outside = kShellFalseOutside;
-    }
-    switch (bake.prefer) {
-        case Prefer::kNeither:
-            break;
-        case Prefer::kInside:
-            options.false_outside = 8.0;
-            break;
-        case Prefer::kOutside:
-            options.false_inside = 2.0;
-            options.false_outside = 1.0;
-            break;
-    }
-    if (bake.quality == Quality::kBest) {
-        options.sweeps = 2;
-        options.points_per_texel = 12.0;
-        options.worth_mending = options.worth_all = 0.0;
-    }
     return options;
 }
 
@@ -289,18 +255,15 @@ class Bake {
         jobs_ = RELIEF_TRY(planJobs(mesh_, options_));
         for (const Job& job : jobs_) {
             texels_ += job.texels();
-            const Kind kind = kindOf(job);
-            has_planes_ = has_planes_ || kind == Kind::kPlanes || kind == Kind::kGaps;
         }
         RELIEF_TRY(makeMaps());
         RELIEF_TRY(checkCovered());
-        RELIEF_TRY(refine());
         warnAbout(mesh_, jobs_, baked_.report);
         baked_.collider.bounds = mesh_->bounds;
         baked_.collider.unit = mesh_->unit;
         baked_.collider.provenance = {storedMeshName(mesh_->name), mesh_->content_hash,
                                       mesh_->sourceTriangles(), "relief " RELIEF_VERSION,
-                                      effectiveOptions(jobs_, options_, baked_.collider)};
+                                      effectiveOptions(jobs_, options_)};
         return std::move(baked_);
     }
 
@@ -334,8 +297,7 @@ class Bake {
                 RELIEF_TRY(bakeTree(*job++));
                 continue;
             }
-            // A map of gaps looks at all before it.
-            const std::ptrdiff_t most = kind == Kind::kGaps ? 1 : std::min(atOnce(), jobs_.end() - job);
+            const std::ptrdiff_t most = std::min(atOnce(), jobs_.end() - job);
             const auto end = std::find_if(job, job + most, [&](const Job& j) { return kindOf(j) != kind; });
             const std::span<const Job> jobs(job, end);
             job = end;
@@ -351,21 +313,16 @@ class Bake {
             if (!unit_normals) {
                 unit_normals.emplace(*mesh_);
             }
-            if (kind == Kind::kPlanes) {
-                fitMaps(*scene, *unit_normals, jobs);
-            } else {
-                bakeGaps(*scene, *unit_normals, jobs.front());
-            }
+            fitMaps(*scene, *unit_normals, jobs);
         }
         return {};
     }
 
-    enum class Kind : std::uint8_t { kSurfaces, kPlanes, kGaps, kPatches };
+    enum class Kind : std::uint8_t { kSurfaces, kPlanes, kPatches };
     static Kind kindOf(const Job& job) {
         return job.spec.format == MapFormat::kPatches ? Kind::kPatches
-               : job.spec.decode != Decode::kPlane    ? Kind::kSurfaces
-               : job.view.compare == Compare::kGap    ? Kind::kGaps
-                                                      : Kind::kPlanes;
+               : job.spec.decode == Decode::kPlane    ? Kind::kPlanes
+                                                      : Kind::kSurfaces;
     }
 
     /// Maps that are begun at the same time, at most: each takes about eighty bytes a triangle meanwhile.
@@ -410,23 +367,6 @@ class Bake {
         }
     }
 
-    /// Of gaps that the maps baked so far see little of.
-    void bakeGaps(const MeshQuery& query, const TriangleNormals& normals, const Job& job) {
-        const IsKnown is_known = [&](const glm::vec3& p) {
-            return std::ranges::any_of(baked_.collider.maps, [&](const DepthMap& map) {
-                const std::optional<Vote> said = vote(map, p);
-                return said && said->distance >= 0.0F;
-            });
-        };
-        MapReport report{job.spec, 0, job.texels()};
-        FittedMapOptions options = fitOptions(*mesh_, job.view, options_);
-        options.samples =
-            std::max(1U, static_cast<std::uint32_t>(std::sqrt(affordableRays(*mesh_)) * options.samples));
-        DepthMap map =
-            bakeGapMap(query, normals, job.view, options, is_known, report.covered, rowsDone(job.view));
-        add(std::move(map), std::move(report));
-    }
-
     Result<void> bakeTree(const Job& job) {
         const TimeAdder watch(baked_.report.fit_ms);
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
@@ -455,7 +395,7 @@ class Bake {
         if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
             return fail(ErrorCode::kFailure,
                         mesh_->name + ": no map sees a surface of the mesh" +
-                            (options_.planned_budget > 0
+                            (options_.budget > 0
                                  ? ", whose parts are smaller than a texel of " +
                                        shortest(static_cast<float>(finestTexel())) + " in a box of " +
                                        shortest(mesh_->bounds.longestSide()) +
@@ -479,26 +419,12 @@ class Bake {
         return finest;
     }
 
-    Result<void> refine() {
-        const bool wanted = options_.quality != Quality::kFast || options_.prefer != Prefer::kNeither;
-        // Texels are refined where they decide; a tree decides everywhere.
-        const bool has_tree =
-            std::ranges::any_of(jobs_, [](const Job& job) { return kindOf(job) == Kind::kPatches; });
-        if (has_planes_ && wanted && !has_tree) {
-            const TimeAdder watch(baked_.report.refine_ms);
-            const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
-            refineTexels(baked_.collider, query, refineOptions(*mesh_, options_));
-        }
-        return {};
-    }
-
     const PreparedMesh& mesh_;
     const BakeOptions& options_;
     std::vector<Job> jobs_;
     std::uint64_t texels_ = 0;  // of all jobs
     std::mutex finish_;
     std::uint64_t done_ = 0;
-    bool has_planes_ = false;
     Baked baked_;
 };
 

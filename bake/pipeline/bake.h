@@ -10,8 +10,8 @@
 
 #include "bake/mesh/prepared_mesh.h"
 #include "bake/patches/patch_planner.h"
-#include "bake/plan/map_spec.h"
-#include "bake/plan/prefer.h"
+#include "bake/views/map_spec.h"
+#include "bake/views/prefer.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
@@ -22,11 +22,8 @@ struct BakeOptions {
     std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    /// Bytes that the maps were planned for, to be recorded; 0: they were not. Maps that take more on the GPU are others
-    /// than were planned, and it is not recorded.
-    std::uint64_t planned_budget = 0;
-    /// Of planned patches, object units: MapSpec::texel; 0: by the budget.
-    float planned_texel = 0.0F;
+    std::uint64_t budget = 0;  ///< of patches, bytes, to be recorded; 0: none
+    float texel = 0.0F;        ///< of patches for a budget, object units: MapSpec::texel; 0: by the budget
     std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
     unsigned threads = 0;                ///< 0: all cores. Never changes the result.
     /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1]. It may throw:
@@ -45,7 +42,6 @@ struct BakeReport {
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
     double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane, and patches
-    double refine_ms = 0.0;  ///< texels of those maps chosen anew, knowing the other maps
     std::vector<MapReport> maps;
     std::vector<std::string> warnings;  ///< what is probably not meant; one line each
 };
@@ -69,7 +65,7 @@ struct Baked {
     return 2.0 * wrongByFloats(mesh) > wrong_percent;
 }
 
-/// The mistakes of planned patches against their bytes (planMistakes).
+/// The mistakes of patches against their bytes (planMistakes).
 /// \param bytes  of the largest tree, kPatchBytesMin to kPatchBytesMax.
 /// Errors: kFailure (Embree).
 [[nodiscard]] Result<MistakeCurve> planMistakes(const PreparedMesh& mesh, const BakeOptions& options,

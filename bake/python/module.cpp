@@ -281,11 +281,9 @@ py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
     }
     FileGuard files;
     need(files.reads(request.mesh));
-    need(files.reads(request.plan));
     for (const std::string& clips : request.clips) {
         need(files.reads(clips));
     }
-    need(files.writes(request.plan_out, "--plan-out"));
     request.repair.examine = false;
     const std::optional<float> seconds = request.time_limit;
     const BakeResult baked = need(interruptible<BakeResult>(
@@ -298,7 +296,6 @@ py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
             watcher.files = &files;
             BakeResult result = RELIEF_TRY(relief::bake(request, watcher, std::move(mesh)));
             checkpoint();
-            RELIEF_TRY(writePlanOut(result));
             return result;
         },
         seconds));

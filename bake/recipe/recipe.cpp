@@ -21,14 +21,10 @@ constexpr std::int64_t kRecipeVersion = 1;
 constexpr std::size_t kTextMax = 4096;  // bytes of a value
 constexpr std::array<std::string_view, 3> kTopKeys = {"version", "defaults", "asset"};
 /// Options that choose the maps: an asset with one of them takes none from the defaults.
-constexpr std::array<std::string_view, 9> kMapChoice = {"map",       "paper",  "plan",  "budget",    "texel",
-                                                        "max-error", "decode", "depth", "resolution"};
+constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "budget", "texel",
+                                                        "max-error", "decode", "depth",  "resolution"};
 /// The first of kMapChoice choose, the others refine the choice.
-constexpr std::size_t kChoosers = 6;
-/// The first of them name the maps, which leaves nothing to plan.
-constexpr std::size_t kNamers = 3;
-/// Options about what is planned: an asset that names its maps takes none from the defaults.
-constexpr std::array<std::string_view, 2> kPlanning = {"layout", "max-maps"};
+constexpr std::size_t kChoosers = 5;
 
 /// What an asset with a height map of its own takes from the defaults: all else is for meshes.
 constexpr std::array<std::string_view, 2> kOfHeights = {"compress", "time-limit"};
@@ -162,11 +158,9 @@ void merge(RecipeAsset& asset, const RecipeAsset& defaults) {
     };
     // A budget for one mesh is none for a level.
     const bool chooses = has_one_of(kChoosers) || asset.isWorld();
-    const bool names_maps = has_one_of(kNamers);
     const bool is_ground = asset.options.contains("heights");
     for (const auto& [name, value] : defaults.options) {
-        if (!(chooses && is_one_of(kMapChoice, name)) && !(names_maps && is_one_of(kPlanning, name)) &&
-            !(is_ground && !is_one_of(kOfHeights, name))) {
+        if (!(chooses && is_one_of(kMapChoice, name)) && !(is_ground && !is_one_of(kOfHeights, name))) {
             asset.options.emplace(name, value);  // the asset's own stays
         }
     }

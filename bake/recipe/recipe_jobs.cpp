@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Options whose value is a file to be read.
-constexpr std::array<std::string_view, 2> kFileOptions = {"plan", "clips"};
+/// The option whose values are files to be read.
+constexpr const char* kFileOption = "clips";
 
 tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
                          ErrorCode code = ErrorCode::kInvalidInput) {
@@ -60,11 +60,7 @@ class Expander {
     Result<void> add(const RecipeAsset& asset) {
         std::vector<std::string> meshes = RELIEF_TRY(meshesOf(asset));
         RecipeOptions opened = asset.options;
-        for (const std::string_view name : kFileOptions) {
-            const auto found = opened.find(std::string(name));
-            if (found == opened.end()) {
-                continue;
-            }
+        if (const auto found = opened.find(kFileOption); found != opened.end()) {
             for (std::string& value : found->second.values) {
                 const Result<fs::path> path = resolveInside(folder_, value, "recipe");
                 if (!path) {

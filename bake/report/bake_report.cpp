@@ -74,24 +74,14 @@ std::string careText(const RepairReport& care, bool verbose) {
     return text;
 }
 
-std::string planLine(const PlanReport& report, const std::string& unit) {
-    const Plan& plan = report.plan;
-    const bool patches = plan.maps.front().spec.format == MapFormat::kPatches;
-    const float wanted = plan.maps.front().spec.texel;
-    std::string line =
-        "planned for " +
-        (wanted > 0.0F ? "a texel of " + shortNumber(double{wanted}) + " " + unitText(unit) : "") +
-        (wanted > 0.0F && report.budget ? " and at most " : "") +
-        (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + ", where the " +
-        (patches ? "patches" : "maps") + " take " + bytesText(plan.bytes);
-    if (patches) {
-        line += ": heights at least " + shortNumber(plan.texel) + " " + unitText(unit) + " apart";
-    } else {
-        line += ": texels of " + shortNumber(plan.texel) + " " + unitText(unit) + "; " +
-                shortNumber(plan.unseen_percent) +
-                " % of the surface is seen by no map; one more map would have served " +
-                shortNumber(100.0 * plan.next_gain) + " % more";
-    }
+std::string patchesLine(const PatchesReport& report, const std::string& unit) {
+    const std::optional<float>& wanted = report.wanted_texel;
+    std::string line = "patches for " +
+                       (wanted ? "a texel of " + shortNumber(double{*wanted}) + " " + unitText(unit) : "") +
+                       (wanted && report.budget ? " and at most " : "") +
+                       (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + " take " +
+                       bytesText(report.bytes) + ": heights at least " + shortNumber(report.texel) + " " +
+                       unitText(unit) + " apart";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
                 " % of the points near the surface are on the wrong side, found by " +
@@ -109,8 +99,7 @@ std::string stagesText(const BakeReport& report) {
     const std::pair<const char*, double> stages[] = {{"ray tree", report.build_ms},
                                                      {"rays", report.trace_ms},
                                                      {"texels", report.encode_ms},
-                                                     {"fitting", report.fit_ms},
-                                                     {"refining", report.refine_ms}};
+                                                     {"fitting", report.fit_ms}};
     std::string text;
     for (const auto& [stage, ms] : stages) {
         text += ms > 0.0 ? (text.empty() ? "" : ", ") + msText(stage, ms) : "";
@@ -162,11 +151,11 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
     if (summary.animated != nullptr) {
         text += animationText(*summary.animated);
     }
-    if (summary.plan) {
-        text += planLine(*summary.plan, summary.mesh.unit);
+    if (summary.patches) {
+        text += patchesLine(*summary.patches, summary.mesh.unit);
     }
-    std::vector<std::vector<std::string>> rows = {{"map", "format", "projection", "keeps", "size>", "bytes>",
-                                                   "covered>", summary.plan ? "why" : "spec"}};
+    std::vector<std::vector<std::string>> rows = {
+        {"map", "format", "projection", "keeps", "size>", "bytes>", "covered>", "spec"}};
     for (std::size_t i = 0; i < baked.collider.maps.size(); ++i) {
         const DepthMap& map = baked.collider.maps[i];
         const MapReport& report = baked.report.maps[i];
@@ -174,15 +163,14 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
             {std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map), sizeText(map),
              bytesText(gpuBytes(map)),
              map.format == MapFormat::kPatches ? "-" : shareText(BakedMapReport{.baked = report}.coverage()),
-             summary.plan ? summary.plan->plan.maps[i].reason : toString(report.spec)});
+             toString(report.spec)});
     }
     text += table(rows);
     const BakeTimes& times = summary.times;
     const bool searched = times.search_ms > 0.0;
     text += std::to_string(std::llround(times.total_ms)) + " ms: " + msText("import", times.import_ms) +
-            ", " + msText(searched ? "search" : "plan", searched ? times.search_ms : times.plan_ms) + ", " +
-            (searched ? "its last bake: " : "") + stagesText(baked.report) + (searched ? "; " : ", ") +
-            msText("writing", times.write_ms) + "\n";
+            ", " + (searched ? msText("search", times.search_ms) + ", its last bake: " : "") +
+            stagesText(baked.report) + (searched ? "; " : ", ") + msText("writing", times.write_ms) + "\n";
     text += summary.verdict ? summary.verdict->text + "\n" : "";
     return text + (output == "-" ? "standard output" : quotedPath(output)) + ": " + bytesText(file_size) +
            "\n";
@@ -193,22 +181,10 @@ void fields(FieldVisitor& visit, const BakedMapReport& report) {
     visit("coverage", report.coverage(), {"Share of the texels that hold a surface", {}, kShareRange});
 }
 
-void fields(FieldVisitor& visit, const PlannedMap& map) {
-    visit("reason", map.reason, {"Reason for the map"});
-    visit("serves", map.serves, {"Share of the plan's aim that the map adds"});
-}
-
-void fields(FieldVisitor& visit, const PlanReport& report) {
-    const Plan& plan = report.plan;
-    visit("budget", report.budget, {"Budget of the plan; null of --texel alone", "bytes of texels"});
-    visit("bytes", plan.bytes, {"Size of the plan", "bytes of texels"});
-    visit("texel", plan.texel,
-          {"Side of a texel; of patches, the least distance of two heights", "object units", kFromZero});
-    visit("unseen_percent", plan.unseen_percent,
-          {"Share of the surface that no map sees", "%", kPercentRange});
-    visit("next_map_serves", plan.next_gain,
-          {"Share of the points that one more map would have served", {}, kShareRange});
-    visit("maps", plan.maps, {"One for each map"});
+void fields(FieldVisitor& visit, const PatchesReport& report) {
+    visit("budget", report.budget, {"Budget; null of --texel without --budget", "bytes of texels"});
+    visit("bytes", report.bytes, {"Size of the patches", "bytes of texels"});
+    visit("texel", report.texel, {"Least distance of two heights", "object units", kFromZero});
     const auto search = [&](FieldVisitor& visit_search) {
         visit_search("max_error_percent", static_cast<float>(report.max_error.value_or(0.0)),
                      {"--max-error", "%", kFromZero});

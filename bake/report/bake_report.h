@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of `relief bake`: the maps, the reasons for them, and the time it took.
+// The report of `relief bake`: the maps and the time they took.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,6 @@
 
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/budget_search.h"
-#include "bake/plan/view_planner.h"
 #include "bake/recipe/depfile.h"
 #include "bake/repair/repair.h"
 #include "bake/report/collider_report.h"
@@ -19,17 +18,18 @@ namespace relief {
 
 struct BakeTimes {
     double import_ms = 0.0;
-    double plan_ms = 0.0;    ///< views, and the tree that they are chosen by
-    double search_ms = 0.0;  ///< of --max-error: all its plans, bakes and measurements
-    double check_ms = 0.0;   ///< of a planned bake that measures itself
+    double search_ms = 0.0;  ///< of --max-error: all its bakes and measurements
+    double check_ms = 0.0;   ///< of a bake that measures itself
     double write_ms = 0.0;
     double total_ms = 0.0;
 };
 
-/// The choice of the maps, if none were named.
-struct PlanReport {
-    Plan plan;
-    std::optional<std::uint64_t> budget;  ///< bytes; not of --texel alone
+/// Patches for a budget, a texel or an error.
+struct PatchesReport {
+    std::optional<std::uint64_t> budget;  ///< bytes; not of --texel without --budget
+    std::uint64_t bytes = 0;              ///< on the GPU
+    double texel = 0.0;                   ///< object units: least distance of two heights
+    std::optional<float> wanted_texel;    ///< --texel, object units
     std::optional<double> max_error;      ///< percent; of --max-error, as are the next two
     double wrong_percent = 0.0;           ///< measured
     std::vector<BudgetTry> tries;
@@ -38,7 +38,7 @@ struct PlanReport {
 struct BakeSummary {
     const TriangleMesh& mesh;
     const Baked& baked;
-    const std::optional<PlanReport>& plan;
+    const std::optional<PatchesReport>& patches;
     const BakeTimes& times;
     const RepairReport& care;
     const ShapeReport& shape;
@@ -71,9 +71,7 @@ struct BakedMapReport {
 void fields(FieldVisitor& visit, const BakedMapReport& report);
 void fields(FieldVisitor& visit, const ColliderReport<BakedMapReport>& report);
 
-void fields(FieldVisitor& visit, const PlannedMap& map);
-
-void fields(FieldVisitor& visit, const PlanReport& report);
+void fields(FieldVisitor& visit, const PatchesReport& report);
 
 void fields(FieldVisitor& visit, const RepairReport& care);
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "bake/measure/patch_cells.h"
-#include "bake/plan/view_planner.h"
+#include "bake/pipeline/budget_search.h"
 #include "formats/base/text.h"
 
 namespace relief {
@@ -89,7 +89,7 @@ std::uint64_t roundBudget(std::uint64_t bytes) {
     while (bytes / unit >= 100) {
         unit *= 10;
     }
-    return std::max((bytes + unit - 1) / unit * unit, kPlanBudgetMin);
+    return std::max((bytes + unit - 1) / unit * unit, kBudgetMin);
 }
 
 std::string projectionText(const DepthMap& map) {

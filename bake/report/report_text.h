@@ -31,7 +31,7 @@ namespace relief {
 [[nodiscard]] std::string positionText(const glm::vec3& p);
 /// "12.3 MB", "640 B": powers of 1000.
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
-/// The next number of bytes with two digits, at least kPlanBudgetMin, for --budget.
+/// The next number of bytes with two digits, at least kBudgetMin, for --budget.
 [[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
 /// "orthographic" or "cube"; "per patch" of patches, each of which has an axis of its own.
 [[nodiscard]] std::string projectionText(const DepthMap& map);

@@ -93,22 +93,10 @@ DeepSolid::Reach DeepSolid::reachOf(const glm::dvec3& normal, double offset) {
     return reach;
 }
 
-LineSpan DeepSolid::depthsOf(const glm::dvec3& normal, double offset) {
-    const Reach reach = reachOf(normal, offset);
-    const bool up_to = reach.up_to > kAllDepths.begin;
-    const bool from = reach.from < kAllDepths.end;
-    if (up_to == from) {
-        return up_to ? kAllDepths : LineSpan{};
-    }
-    return up_to ? LineSpan{kAllDepths.begin, reach.up_to} : LineSpan{reach.from, kAllDepths.end};
-}
-
-bool DeepSolid::cutBy(const glm::dvec3& normal, double offset, const LineSpan& within) {
+bool DeepSolid::cutBy(const glm::dvec3& normal, double offset) {
     const Reach reach = reachOf(normal, offset);
     const auto isCut = [&](const LineSpan& span) {
-        const double begin = std::max(span.begin, within.begin);
-        const double end = std::min(span.end, within.end);
-        return begin < end && (begin < reach.up_to || end > reach.from);
+        return span.begin < reach.up_to || span.end > reach.from;
     };
     while (std::ranges::any_of(spans_, isCut)) {
         if (asked_ == kLines) {

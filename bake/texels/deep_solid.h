@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deep solid: points around which the texel's whole cross-section is solid, and which no plane may cut.
 //
-// The sample points that planes are chosen by lie near the surface (refine.h). A steep plane reaches far deeper, and so does
-// one moved for its gain near one layer of several, without any sample to show it. So a few lines along the texel are
-// intersected instead. A ball about a point deeper than the texel's diagonal holds the cross-section of the texel there:
+// The rays of a footprint end at the surface. A steep plane reaches far deeper without any ray to show it. So a few lines
+// along the texel are intersected. A ball about a point deeper than the texel's diagonal holds the cross-section of the texel there:
 //
 //     |‾‾|‾‾‾‾‾‾|‾‾|      where one of the lines is outside for some way before and behind P's depth, P is not deep and may
 //     |  |  .P  |  |      be cut for the sake of the points near the surface
@@ -37,16 +36,11 @@ class DeepSolid {
     /// The half-space n·(P − O) ≥ offset, with O at depth 0 of the texel's centre ray, may hold a point of the texel deeper in
     /// the solid than the texel's diagonal there. False positives are rare, false negatives impossible but for open meshes,
     /// whose lines do not balance.
-    /// \param within  limits the depths, for gaps: beyond the texel's other plane nothing is outside.
-    [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset, const LineSpan& within = kAllDepths);
-
-    /// The depths at which such a half-space holds a point of the texel.
-    [[nodiscard]] LineSpan depthsOf(const glm::dvec3& normal, double offset);
-
-    static constexpr LineSpan kAllDepths = {-std::numeric_limits<double>::infinity(),
-                                            std::numeric_limits<double>::infinity()};
+    [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset);
 
   private:
+    static constexpr LineSpan kAllDepths = {-std::numeric_limits<double>::infinity(),
+                                            std::numeric_limits<double>::infinity()};
     static constexpr std::size_t kLines = 5;
     static constexpr std::size_t kCorners = 4;
 

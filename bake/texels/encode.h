@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "bake/mesh/mesh.h"
-#include "bake/plan/view.h"
 #include "bake/texels/ray_scene.h"
 #include "bake/texels/scan_convert.h"
+#include "bake/views/view.h"
 #include "formats/depth_map.h"
 
 namespace relief {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "bake/plan/view.h"
 #include "bake/texels/plane_fit.h"
+#include "bake/views/view.h"
 #include "formats/depth_map.h"
 #include "formats/texel.h"
 

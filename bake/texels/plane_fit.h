@@ -20,8 +20,8 @@
 #include <optional>
 #include <span>
 
-#include "bake/plan/view.h"
 #include "bake/texels/deep_solid.h"
+#include "bake/views/view.h"
 #include "formats/normal_index.h"
 #include "formats/texel.h"
 

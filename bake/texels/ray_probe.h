@@ -8,9 +8,9 @@
 
 #include "bake/mesh/embree_mesh.h"
 #include "bake/mesh/triangle_plane.h"
-#include "bake/plan/view.h"
 #include "bake/texels/ray_scene.h"
 #include "bake/texels/seen_plane.h"
+#include "bake/views/view.h"
 
 namespace relief {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bake/mesh/mesh_query.h"
-#include "bake/plan/view.h"
+#include "bake/views/view.h"
 #include "formats/base/result.h"
 
 namespace relief {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "bake/mesh/loops.h"
-#include "bake/plan/view.h"
 #include "bake/texels/ray_scene.h"
 #include "bake/texels/seen_plane.h"
+#include "bake/views/view.h"
 
 namespace relief {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "bake/mesh/mesh.h"
-#include "bake/plan/view.h"
+#include "bake/views/view.h"
 
 namespace relief {
 

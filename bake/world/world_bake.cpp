@@ -143,7 +143,6 @@ class WorldBaker {
 
     Result<void> describeMeshes() {
         tool_ = RELIEF_TRY(toolIdentity());
-        by_patches_ = RELIEF_TRY(settingsOf(request_.bake)).layout == Layout::kPatches;
         meshes_.resize(level_.meshes.size());
         parts_.resize(level_.meshes.size());
         solids_.resize(level_.meshes.size());
@@ -179,7 +178,7 @@ class WorldBaker {
         }
         result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
         std::vector<BudgetShare> shares;
-        if (by_patches_ && !request_.bake.texel) {
+        if (!request_.bake.texel) {
             tell(watcher_.begin, "sharing the budget");
             shares.resize(meshes_.size());
             for (const LevelBody& body : level_.bodies) {
@@ -256,7 +255,7 @@ class WorldBaker {
             WorldColliderResult& collider = meshes_[i];
             BakeRequest& request = requests_[i];
             if (collider.budget) {
-                request.budget = by_patches_ ? bytesBeforeCut(*collider.budget, tiles_) : *collider.budget;
+                request.budget = bytesBeforeCut(*collider.budget, tiles_);
             }
             if (request.texel) {
                 request.texel = static_cast<float>(double{*request.texel} / collider.largest_scale);
@@ -586,7 +585,6 @@ class WorldBaker {
     std::vector<std::string> names_;  // of --as
     Level level_;                     // whose stale meshes are moved away
     std::string tool_;
-    bool by_patches_ = true;
     PatchTileOptions tiles_;
     std::vector<WorldColliderResult> meshes_;              // what the colliders of each have in common
     std::vector<std::vector<WorldColliderResult>> parts_;  // those colliders; none yet of a stale mesh
@@ -597,7 +595,7 @@ class WorldBaker {
     std::vector<FileName> names_of_files_;  // of the meshes
     std::vector<BakeRequest> requests_;     // of the meshes
     std::vector<std::vector<InputFile>> inputs_;
-    std::vector<std::optional<SolidMesh>> solids_;  // of meshes that were planned
+    std::vector<std::optional<SolidMesh>> solids_;  // of meshes whose share was measured
     std::atomic<std::uint64_t> kept_triangles_ = 0;
     std::vector<BakeCacheEntry> entries_;  // the same, without outputs
     std::vector<std::size_t> stale_;       // meshes

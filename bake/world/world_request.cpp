@@ -9,16 +9,15 @@
 namespace relief {
 
 Result<void> checkWorldRequest(const BakeRequest& request) {
-    const std::array<std::pair<const char*, bool>, 9> of_one = {{
+    const std::array<std::pair<const char*, bool>, 8> of_one = {{
         {"--map", !request.map.empty()},
         {"--paper", request.paper},
         {"--resolution", request.resolution.has_value()},
         {"--decode", request.decode.has_value()},
         {"--depth", request.depth.has_value()},
-        {"--plan", !request.plan.empty()},
-        {"--plan-out", !request.plan_out.empty()},
         {"--max-error", request.max_error.has_value()},
         {"--animated", request.animated},
+        {"--holes keep", request.holes == Holes::kKeep},
     }};
     for (const auto& [option, given] : of_one) {
         if (given) {

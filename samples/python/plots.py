@@ -36,9 +36,9 @@ figure.colorbar(picture, label="distance, mesh units", extend="both")
 figure.savefig("slice.png", dpi=120)
 
 # %% Depth maps of the whole mesh. Those of patches lie in no image
-views = relief.bake(mesh, budget=500_000, layout="views").maps
-figure, axes = plt.subplots(1, max(len(views), 1), figsize=(3.2 * max(len(views), 1), 3.6), layout="constrained", squeeze=False)
-for one, axis in zip(views, axes[0]):
+views = relief.bake(mesh, maps=["front-back:dir=-x", "front-back:dir=-y", "front-back:dir=-z"]).maps
+figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.6), layout="constrained")
+for one, axis in zip(views, axes):
     axis.imshow(one.depth[0], origin="lower", cmap="viridis")
     axis.set(title=f"map {one.index}: {one.format}\n{one.width} x {one.height}", xticks=[], yticks=[])
 figure.suptitle("Depth of the near surface")

@@ -58,7 +58,7 @@ RECIPE = """version = 1
 [[asset]]
 mesh = "box.obj"
 output = "baked/{stem}.relief"
-plan = "plan.toml"
+budget = "20kB"
 """
 SCENES = {
     "scene.toml": ["scene.toml", "box.relief", "live.obj", "points.csv", "flow.raw", "atlas.png"],
@@ -79,8 +79,7 @@ def make_inputs(cases, folder):
     (folder / "drawn.toml").write_text(DRAWN)
     (folder / "pictured.toml").write_text(PICTURED)
     (folder / "recipe.toml").write_text(RECIPE)
-    made = cases.run("relief", "bake", "box.obj", "-o", "box.relief", "--budget", "20kB", "--no-check", "--plan-out",
-                     "plan.toml", "-q", cwd=folder)
+    made = cases.run("relief", "bake", "box.obj", "-o", "box.relief", "--budget", "20kB", "--no-check", "-q", cwd=folder)
     assert made.returncode == 0, made.stderr
 
 
@@ -165,10 +164,7 @@ def relief_case(arena, random):
     bake = ["relief", "bake", "box.obj", "-q"]
     refused = [
         lambda: bake + ["-o", lead("box.obj", "box.mtl"), "--map", "cube:size=8"],
-        lambda: bake + ["-o", lead("plan.toml", "box.obj", "box.mtl"), "--plan", "plan.toml"],
-        lambda: bake + ["-o", fresh(".relief"), "--plan-out", lead("box.obj", "box.mtl"), "--budget", "9kB"],
-        lambda: bake + ["-o", fresh(".relief"), "--depfile", lead("box.obj", "plan.toml", "box.mtl"), "--plan",
-                        "plan.toml"],
+        lambda: bake + ["-o", fresh(".relief"), "--depfile", lead("box.obj", "box.mtl"), "--budget", "9kB"],
         lambda: (lambda one: bake + ["-o", one, "--depfile", lead(one), "--map", "cube:size=8"])(fresh("")),
         lambda: ["relief", "view", "box.relief", "--mesh", "box.obj", "-o", lead("box.relief", "box.obj", "box.mtl")],
         lambda: bake + ["-o", "-", "--json", "--map", "cube:size=8"],
@@ -180,9 +176,9 @@ def relief_case(arena, random):
         lambda: ["relief", "export", "box.relief", "--mesh", lead("box.relief"), "--voxels", "16"],
         lambda: ["relief", "export", "box.relief", "--gpu", gpu_folder()],
         lambda: recipe() + [random.choice(["--stamp", "--depfile"]),
-                            lead("recipe.toml", "box.obj", "plan.toml", "box.mtl", ".relief-cache.json",
+                            lead("recipe.toml", "box.obj", "box.mtl", ".relief-cache.json",
                                  "baked/box.relief")],
-        lambda: recipe() + ["--events", lead("recipe.toml", "box.obj", "plan.toml", "box.mtl", ".relief-cache.json",
+        lambda: recipe() + ["--events", lead("recipe.toml", "box.obj", "box.mtl", ".relief-cache.json",
                                              "baked/box.relief")],
     ]
 

@@ -46,8 +46,8 @@ P
 "$relief" bake "$bunny" -o few.relief --budget 20kB -q
 promises "$bunny" few.relief '--budget 40kB'
 json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["about"] for a in d["advice"]] == ["patches of twice the bytes"]'
-"$relief" bake "$bunny" -o views.relief --layout views --budget 100kB -q
-promises "$bunny" views.relief 'patches of as many bytes'
+"$relief" bake "$bunny" -o maps.relief --holes keep --resolution 64 -q
+promises "$bunny" maps.relief 'patches of as many bytes'
 json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'
 
 # A cavity that no map sees, a ball in a box: a cube at each place helps.
@@ -76,7 +76,7 @@ json before.json 'all(abs(math.dist(p["position"], (0.2, 0, 0)) - 0.5) < 0.06 fo
 
 # An open mesh that was to stay open: a solid helps. The collider of a repaired mesh is measured against the repair, and against
 # the original.
-tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/mushroom.off data/meshes/joint.off
+tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz data/meshes/mushroom.off
 mv data/meshes/mushroom.off "a mesh's.off"
 "$relief" bake "a mesh's.off" -o m.relief --budget 100kB --holes keep -q 2>/dev/null
 promises "a mesh's.off" m.relief 'bake'
@@ -86,11 +86,6 @@ json before.json 'd["verdict"]["grade"] == "poor" and d["worst_places"][0]["caus
 json wrapped.json 'd["repaired"]["repair"] == "wrap=0.05" and d["repaired"]["triangles"] != d["mesh"]["triangles"]'
 json wrapped.json 'd["verdict"]["wrong_percent"] == d["repaired"]["accuracy"]["near"]["wrong_percent"] < 3'
 json wrapped.json 'd["accuracy"]["near"]["wrong_percent"] > d["verdict"]["wrong_percent"] + 1'
-
-# Bake and check agree on how much of the surface no map sees, walls along the lines of sight included.
-"$relief" bake data/meshes/joint.off -o seen.relief --budget 250kB --json >plan.json
-"$relief" check seen.relief --mesh data/meshes/joint.off --samples 20000 --json >seen.json
-json seen.json "abs(d['accuracy']['unseen_area_percent'] - json.load(open('plan.json'))['plan']['unseen_percent']) < 0.5"
 
 # --max-error: the report is printed, and the exit code is that of a difference.
 expect 7 "$relief" check b.relief --mesh "$bunny" --samples 5000 --max-error 0.01 --json

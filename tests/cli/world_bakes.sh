@@ -43,7 +43,3 @@ expect 0 "$relief" bake level.gltf --world by_texel --texel 0.0005 --budget 60kB
 json stdout "d['gpu_bytes'] <= 60000"
 grep -q 'warning: box: its texel is ' stderr || die "not named: $(cat stderr)"
 expect_error 1 "two ways" "$relief" bake level.gltf -o v.relief --texel 0.1 --max-error 1
-# A plan of it makes the same shells and patches.
-expect 0 "$relief" bake level.gltf -o t.relief --texel 0.05 --as shell --plan-out t.toml -q
-expect 0 "$relief" bake level.gltf -o u.relief --plan t.toml --as shell -q
-cmp t.relief u.relief || die "a plan by texel makes something else"

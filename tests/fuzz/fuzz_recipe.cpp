@@ -15,7 +15,7 @@ using relief::RecipeKey;
 
 using Kind = relief::FieldKind;
 const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},         {"paper", Kind::kFlag},
-                                      {"strict", Kind::kFlag},      {"plan", Kind::kValue},
+                                      {"strict", Kind::kFlag},      {"clips", Kind::kList},
                                       {"budget", Kind::kValue},     {"max-error", Kind::kValue},
                                       {"resolution", Kind::kValue}, {"decode", Kind::kValue},
                                       {"prefer", Kind::kValue},     {"compress", Kind::kValue}};

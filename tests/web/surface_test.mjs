@@ -108,13 +108,13 @@ test("every sheet and strut of a collider is drawn, and nothing else", { timeout
     writeFileSync(at("gap.obj"), obj(gap, 25));
     writeFileSync(at("square.obj"), square);
     const cases = {
-        "plates, planned": ["plates.obj", "--layout", "views", "--budget", "200kB", "--as", "solid"],
+        "plates, planes": ["plates.obj", "--map", "front-back:dir=-x", "--map", "front-back:dir=-y", "--resolution", "128", "--as", "solid"],
         "plates, the paper's": ["plates.obj", "--paper", "--resolution", "256"],
-        "struts, planned": ["struts.obj", "--layout", "views", "--budget", "400kB", "--as", "solid"],
-        "an open sheet": ["square.obj", "--layout", "views", "--budget", "60kB", "--thickness", "0.003"],
+        "struts, planes": ["struts.obj", "--map", "front-back:dir=-z", "--map", "front-back:dir=1/2/3", "--resolution", "192", "--as", "solid"],
+        "an open sheet": ["square.obj", "--map", "front-back:dir=-y", "--resolution", "64", "--thickness", "0.003"],
         "bunny, cubes": [bunny, "--map", "cube:size=96"],
-        "a thin plate, pairs": ["plate.obj", "--layout", "patches", "--budget", "60kB", "--as", "solid"],
-        "a narrow gap, pairs": ["gap.obj", "--layout", "patches", "--budget", "100kB", "--as", "solid"],
+        "a thin plate, pairs": ["plate.obj", "--budget", "60kB", "--as", "solid"],
+        "a narrow gap, pairs": ["gap.obj", "--budget", "100kB", "--as", "solid"],
         "plates, patches": ["plates.obj", "--map", "patches:bytes=200kB", "--as", "solid"],
         "struts, patches": ["struts.obj", "--map", "patches:bytes=400kB", "--as", "solid"],
         "an open sheet, patches": ["square.obj", "--map", "patches:bytes=60kB", "--thickness", "0.02"],

@@ -10,7 +10,7 @@ import { dataOf, openFile, scenePage, viewer, withData } from "./lib/view.mjs";
 
 function bake(folder) {
     const file = path.join(folder, "bunny.relief");
-    run("relief", "bake", bunny, "-q", "-o", file, "--layout", "views", "--budget", "60kB");
+    run("relief", "bake", bunny, "-q", "-o", file, "--holes", "keep", "--resolution", "64");
     return file;
 }
 

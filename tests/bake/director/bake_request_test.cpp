@@ -58,7 +58,6 @@ TEST(BakeRequest, EveryFieldReadsTheWordsThatItIsWrittenAs) {
 TEST(BakeRequest, WrongValuesNameTheOptionAndTheCure) {
     for (const auto& [name, word, begin] :
          {std::tuple{"budget", "much", "--budget is 'much' but must be a number of bytes"},
-          std::tuple{"max_maps", "0", "--max-maps is '0' but must be"},
           std::tuple{"max_error", "-1", "--max-error is '-1' but must be a share in percent, such as 1.5"},
           std::tuple{"quality", "bset", "--quality is 'bset' but must be one of fast, normal, best"},
           std::tuple{"depth", "x", "--depth is 'x' but must be unorm16 or half"},
@@ -98,10 +97,12 @@ TEST(BakeRequest, RulesAcrossFieldsAreOneFunction) {
     };
     EXPECT_EQ(fault({{"budget", "1MB"}, {"max_error", "1"}}), "");
     EXPECT_TRUE(fault({{"map", "cube"}, {"paper", "true"}}).starts_with("--map and --paper are two ways"));
-    EXPECT_TRUE(fault({{"plan", "p.toml"}, {"max_error", "1"}}).starts_with("--plan and --max-error are"));
+    EXPECT_TRUE(fault({{"paper", "true"}, {"max_error", "1"}}).starts_with("--paper and --max-error are"));
     EXPECT_TRUE(fault({{"decode", "plane"}}).starts_with("--decode does nothing without --map"));
     EXPECT_TRUE(fault({{"resolution", "64"}}).starts_with("--resolution does nothing"));
-    EXPECT_TRUE(fault({{"paper", "true"}, {"plan_out", "x"}}).starts_with("--plan-out writes"));
+    EXPECT_EQ(fault({{"holes", "keep"}, {"resolution", "64"}}), "");
+    EXPECT_TRUE(
+        fault({{"holes", "keep"}, {"budget", "1MB"}}).starts_with("--budget does nothing with --holes"));
     EXPECT_TRUE(fault({{"as", "a=shell"}, {"holes", "keep"}}).starts_with("--as NAME=KIND does nothing"));
     EXPECT_TRUE(fault({{"repair", "magic"}}).starts_with("--repair is 'magic'"));
     EXPECT_EQ(fault({{"animated", "true"}, {"clips", "walk.glb"}, {"resolution", "64"}, {"up", "+z"}}), "");
@@ -137,7 +138,7 @@ TEST(RecordedBake, IsOneCommandToAShell) {
     for (const char* options : {"--unit $(reboot)", "--prefer ;reboot",  "`reboot` x",
                                 "--unit mm;reboot", "--up '+z",          "--map cube:size=6|reboot",
                                 "--unit \"mm\"",    "x > file",          "--unit a\tb\\",
-                                "--unit ~/x",       "--unit \xff",       "--plan-out x",
+                                "--unit ~/x",       "--unit \xff",       "--time-limit 5",
                                 "--threads 7",      "--from the=future", "--map cube:size=many",
                                 "--repair magic",   "--as wall",         "--as a%0Ab=shell",
                                 "--as a%zz=shell",  "--thickness -1",    "--quality"}) {
@@ -288,12 +289,12 @@ MeshCheck checkOf(const BakeResult& baked, const TriangleMesh& mesh) {
 TEST(Director, BakesAMeshInMemory) {
     BakeRequest request;
     request.budget = 60'000;
-    const BakeResult planned = required(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
-    EXPECT_LE(planned.baked.collider.gpuBytes(), 60'000U);
-    EXPECT_TRUE(planned.plan && planned.wrong && planned.wrong->total() < 5.0);
-    EXPECT_LT(checkOf(planned, makeBoxMesh({0, 0, 0}, {1, 1, 1})).wrongPercent(), 5.0);
+    const BakeResult made = required(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
+    EXPECT_LE(made.baked.collider.gpuBytes(), 60'000U);
+    EXPECT_TRUE(made.patches && made.wrong && made.wrong->total() < 5.0);
+    EXPECT_LT(checkOf(made, makeBoxMesh({0, 0, 0}, {1, 1, 1})).wrongPercent(), 5.0);
     // bakeSolid() makes the same maps of a mesh that needs nothing before.
-    EXPECT_EQ(required(bakeSolid(request, planned.mesh.mesh)).collider.maps, planned.baked.collider.maps);
+    EXPECT_EQ(required(bakeSolid(request, made.mesh.mesh)).collider.maps, made.baked.collider.maps);
     request.import.unit = "mm";
     EXPECT_FALSE(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
 }

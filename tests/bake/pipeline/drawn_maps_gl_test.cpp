@@ -13,8 +13,8 @@
 
 #include "bake/import/mesh_import.h"
 #include "bake/pipeline/bake.h"
-#include "bake/plan/view.h"
 #include "bake/repair/hole_caps.h"
+#include "bake/views/view.h"
 #include "formats/plane.h"
 #include "runtime/depth_maps/gpu_mesh.h"
 #include "runtime/gl/gl_context.h"

@@ -33,18 +33,17 @@ def mesh(tmp_path_factory):
     return path
 
 
-# Each with the words of the command line that mean the same; every option is in one. A planned bake of 60 kB is small and quick.
-PLANNED = {"budget": "60kB", "no_check": True}
+# Each with the words of the command line that mean the same; every option is in one. A bake of 60 kB is small and quick.
+PATCHES = {"budget": "60kB", "no_check": True}
 WAYS = [
     (dict(budget=np.int64(60_000), quality="fast", threads=1), ["--budget", "60kB", "--quality", "fast", "--threads", "1"]),
     (dict(budget=6e4, texel=0.001), ["--budget", "60kB", "--texel", "0.001"]),
-    (dict(budget="60kB", layout="views", max_maps=3), ["--budget", "60kB", "--layout", "views", "--max-maps", "3"]),
-    (dict(PLANNED, prefer="inside", as_="shell", thickness=0.1),
+    (dict(PATCHES, prefer="inside", as_="shell", thickness=0.1),
      ["--budget", "60kB", "--prefer", "inside", "--as", "shell", "--thickness", "0.1"]),
-    (dict(PLANNED, as_=["sheet=terrain", "box=solid"]), ["--budget", "60kB", "--as", "sheet=terrain", "--as", "box=solid"]),
-    (dict(PLANNED, holes="keep"), ["--budget", "60kB", "--holes", "keep"]),
-    (dict(PLANNED, repair="wrap=0.1", strict=True), ["--budget", "60kB", "--repair", "wrap=0.1", "--strict"]),
-    (dict(PLANNED, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, time_limit=500),
+    (dict(PATCHES, as_=["sheet=terrain", "box=solid"]), ["--budget", "60kB", "--as", "sheet=terrain", "--as", "box=solid"]),
+    (dict(holes="keep", resolution=32), ["--holes", "keep", "--resolution", "32"]),
+    (dict(PATCHES, repair="wrap=0.1", strict=True), ["--budget", "60kB", "--repair", "wrap=0.1", "--strict"]),
+    (dict(PATCHES, unit="mm", up="+z", import_memory="1GB", import_time=9, max_triangles=100, time_limit=500),
      ["--budget", "60kB", "--unit", "mm", "--up", "+z", "--import-memory", "1GB", "--import-time", "9", "--max-triangles", "100",
       "--time-limit", "500"]),
     (dict(max_error="20%", budget="1MB"), ["--max-error", "20", "--budget", "1MB"]),
@@ -64,10 +63,10 @@ def by_themselves():
         option = "--" + name.replace("_", "-")
         values = re.search(rf"{option} ([^ \[]+\|[^ \[]+)", said)
         if name not in (*tried, "animated") and kind == "flag":
-            yield {**PLANNED, name: True}, ["--budget", "60kB", option]
+            yield {**PATCHES, name: True}, ["--budget", "60kB", option]
         elif name not in tried and values:
             last = values[1].split("|")[-1]
-            yield {**PLANNED, name: last}, ["--budget", "60kB", option, last]
+            yield {**PATCHES, name: last}, ["--budget", "60kB", option, last]
 
 
 def tool(*words):
@@ -98,7 +97,7 @@ def test_no_option_of_the_tool_is_missing():
     assert others < said
     assert {"map" if name == "maps" else name.rstrip("_").replace("_", "-") for name in has} == said - others
     used = set().union(*(arguments for arguments, _ in WAYS))
-    assert has - used == {"plan", "plan_out", "heights", "animated", "clips"}  # the next tests'
+    assert has - used == {"heights", "animated", "clips"}  # the next tests'
 
 
 def test_height_maps_are_ground(mesh, tmp_path):
@@ -114,22 +113,6 @@ def test_height_maps_are_ground(mesh, tmp_path):
         relief.bake(mesh, heights=words + ",width=7")
     with pytest.raises(relief.UsageError, match="read from a file"):
         relief.bake(np.eye(3), np.array([[0, 1, 2]]), heights=words)
-
-
-def test_plans_are_written_and_read(mesh, tmp_path):
-    assert tool("bake", mesh, "-q", "-o", tmp_path / "a.relief", "--budget", "60kB", "--plan-out",
-                tmp_path / "tool.toml").returncode == 0
-    planned = relief.bake(mesh, budget="60kB", plan_out=tmp_path / "own.toml", no_check=True)
-    assert (tmp_path / "own.toml").read_bytes() == (tmp_path / "tool.toml").read_bytes()
-    assert tool("bake", mesh, "-q", "-o", tmp_path / "b.relief", "--plan", tmp_path / "own.toml").returncode == 0
-    assert planned.to_bytes() == (tmp_path / "a.relief").read_bytes()
-    assert relief.bake(mesh, plan=tmp_path / "own.toml").to_bytes() == (tmp_path / "b.relief").read_bytes()
-    with pytest.raises(relief.InputError, match="none.toml|own.toml"):
-        (tmp_path / "own.toml").write_text("maps = 1")
-        relief.bake(mesh, plan=tmp_path / "own.toml")
-    with pytest.raises(relief.UsageError, match="is the input"):
-        relief.bake(mesh, budget="60kB", plan_out=mesh)
-    assert mesh.read_text() == SCENE
 
 
 def test_arrays_are_baked_as_their_file_is(mesh):
@@ -187,7 +170,7 @@ def test_checks_refuse_other_meshes(mesh, tmp_path):
 
 
 WRONG = [dict(budget="much"), dict(budget=-1), dict(budget=0.5), dict(budget=float("nan")), dict(budget=10**40), dict(budget=1e300),
-         dict(budget="--paper"), dict(quality="worst"), dict(prefer=""), dict(repair=""), dict(max_maps=0),
+         dict(budget="--paper"), dict(quality="worst"), dict(prefer=""), dict(repair=""),
          dict(maps="cube", paper=True), dict(thickness=float("inf")), dict(max_error=-1), dict(unit="ell")]
 
 

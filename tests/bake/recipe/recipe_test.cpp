@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 
 const std::vector<RecipeKey>& keys() {
     using Kind = FieldKind;
-    static const std::vector<RecipeKey> kKeys = {
-        {"map", Kind::kList},        {"paper", Kind::kFlag},     {"plan", Kind::kValue},
-        {"budget", Kind::kValue},    {"decode", Kind::kValue},   {"prefer", Kind::kValue},
-        {"max-error", Kind::kValue}, {"compress", Kind::kValue}, {"layout", Kind::kValue},
-        {"max-maps", Kind::kValue},  {"heights", Kind::kValue},  {"texel", Kind::kValue}};
+    static const std::vector<RecipeKey> kKeys = {{"map", Kind::kList},        {"paper", Kind::kFlag},
+                                                 {"clips", Kind::kList},      {"budget", Kind::kValue},
+                                                 {"decode", Kind::kValue},    {"prefer", Kind::kValue},
+                                                 {"max-error", Kind::kValue}, {"compress", Kind::kValue},
+                                                 {"heights", Kind::kValue},   {"texel", Kind::kValue}};
     return kKeys;
 }
 
@@ -59,7 +59,7 @@ TEST(Recipe, MergesDefaultsKeyByKey) {
 TEST(Recipe, DefaultsThatDoNotGoWithAnAssetAreNoneOfIt) {
     const std::string defaults = "[defaults]\noutput = '{stem}.relief'\n";
     const std::vector<std::pair<std::string, std::vector<std::pair<bool, Arguments>>>> recipes = {
-        // Otherwise an asset could not have planned maps beside defaults that name maps, nor the other way round.
+        // Otherwise an asset could not have patches beside defaults that name maps, nor the other way round.
         {defaults + "map = ['cube:size=8', 'float:size=8']\ndecode = 'projected'\ncompress = 1\n"
                     "[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '1MB'\n"
                     "[[asset]]\nmesh = 'c'\npaper = true\n[[asset]]\nmesh = 'd'\npaper = false\n",
@@ -67,16 +67,6 @@ TEST(Recipe, DefaultsThatDoNotGoWithAnAssetAreNoneOfIt) {
           {false, {"--budget=1MB", "--compress=1"}},
           {false, {"--compress=1", "--paper"}},
           {false, {"--compress=1"}}}},
-        // Otherwise a recipe that plans views could not name the maps of one asset.
-        {defaults + "layout = 'views'\nmax-maps = 4\nbudget = '1MB'\n"
-                    "[[asset]]\nmesh = 'a'\nbudget = '2MB'\n[[asset]]\nmesh = 'b'\nlayout = 'patches'\n"
-                    "[[asset]]\nmesh = 'c'\nmap = 'cube:size=8'\n[[asset]]\nmesh = 'd'\npaper = true\n"
-                    "[[asset]]\nmesh = 'e'\nplan = 'e.toml'\n",
-         {{false, {"--budget=2MB", "--layout=views", "--max-maps=4"}},
-          {false, {"--budget=1MB", "--layout=patches", "--max-maps=4"}},
-          {false, {"--map=cube:size=8"}},
-          {false, {"--paper"}},
-          {false, {"--plan=e.toml"}}}},
         // Otherwise defaults for meshes would shrink a level to the bytes of one, or be a mistake beside a height map.
         {"[defaults]\noutput = '{stem}/world.json'\nmax-error = 1\nmap = 'float'\n"
          "prefer = 'inside'\ncompress = 3\n[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '4MB'\n"
@@ -188,18 +178,19 @@ class RecipeJobsTest : public testing::Test {
 };
 
 TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
-    const RecipeJobs found =
-        required(jobs("[defaults]\noutput = 'baked/{dir}/{stem}.relief'\n"
-                      "[[asset]]\nmesh = ['hill.off', '**/*.obj']\nexclude = '**/b.*'\n"
-                      "[[asset]]\nmesh = 'rocks/b.obj'\noutput = './x//{name}.relief'\nplan = 'hill.off'\n"));
+    const RecipeJobs found = required(
+        jobs("[defaults]\noutput = 'baked/{dir}/{stem}.relief'\n"
+             "[[asset]]\nmesh = ['hill.off', '**/*.obj']\nexclude = '**/b.*'\n"
+             "[[asset]]\nmesh = 'rocks/b.obj'\noutput = './x//{name}.relief'\nclips = 'hill.off'\n"));
     EXPECT_EQ(outputs(found),
               (std::vector<std::string>{"hill.off>baked/hill.relief", "rocks/a.obj>baked/rocks/a.relief",
                                         "rocks/deep/a.obj>baked/rocks/deep/a.relief",
                                         "rocks/b.obj>x/b.obj.relief"}));
     EXPECT_EQ(found.jobs[0].mesh_path, folder_ / "hill.off");
     EXPECT_EQ(found.jobs[0].output_path, folder_ / "baked/hill.relief");
-    EXPECT_EQ(found.jobs[3].arguments, std::vector<std::string>{"--plan=" + (folder_ / "hill.off").string()});
-    EXPECT_EQ(found.jobs[3].options, std::vector<std::string>{"--plan=hill.off"});
+    EXPECT_EQ(found.jobs[3].arguments,
+              std::vector<std::string>{"--clips=" + (folder_ / "hill.off").string()});
+    EXPECT_EQ(found.jobs[3].options, std::vector<std::string>{"--clips=hill.off"});
     EXPECT_EQ(found.folders.size(), 3U) << "the folder, rocks and rocks/deep";
     const auto elsewhere = jobs("[[asset]]\nmesh = 'hill.off'\noutput = '{stem}.relief'\n", folder_ / "out");
     EXPECT_EQ(required(elsewhere).jobs[0].output_path, folder_ / "out/hill.relief");
@@ -279,8 +270,8 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
     fails(output("{sten}.relief"), "{sten}");
     fails(output("{stem.relief"), "known are");
     fails(output("stem}.relief"), "} without {");
-    fails(output("hill.relief") + "plan = '../p.toml'\n",
-          "plan '../p.toml' leads out of the recipe's folder");
+    fails(output("hill.relief") + "clips = '../p.glb'\n",
+          "clips '../p.glb' leads out of the recipe's folder");
 }
 
 TEST_F(RecipeJobsTest, FilesOfOtherKindsAreNotReplaced) {

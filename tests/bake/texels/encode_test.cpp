@@ -3,8 +3,8 @@
 #include "bake/texels/encode.h"
 
 #include "bake/mesh/triangle_plane.h"
-#include "bake/plan/view.h"
 #include "bake/texels/scan_convert.h"
+#include "bake/views/view.h"
 #include "tests/bake/meshes.h"
 
 namespace relief::test {

@@ -58,8 +58,8 @@ TEST(CoarseCollider, SmallOnesAndOtherMapsHaveNone) {
     BakeRequest request;
     request.budget = 60'000;
     EXPECT_FALSE(hasCoarse(bake(request, {}, mesh).value().baked.collider));
-    request.budget = 400'000;
-    request.layout = Layout::kViews;
+    request.budget.reset();
+    request.map = {"front-back:dir=-x,size=256"};
     EXPECT_FALSE(hasCoarse(bake(request, {}, mesh).value().baked.collider));
 }
 
