@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <optional>
 
 #include "bake/director/director.h"
@@ -21,10 +18,6 @@ constexpr std::uint64_t kTrialBytesMax = 2'500'000;
 constexpr std::uint32_t kTrialSamplesMax = 50'000;
 /// At most this share of the wrong points is left by an option that helps.
 constexpr double kHelps = 0.9;
-/// A cube at a place looks this far from the surface at most, in units of the longest side.
-constexpr double kCubeReach = 0.1;
-constexpr std::uint32_t kCubeSizeMin = 8;
-constexpr std::uint32_t kCubeSizeMax = 64;
 
 /// With four digits, so that commands stay short.
 float rounded(double value) {
@@ -72,10 +65,6 @@ class Advisor {
         }
         if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();
-        }
-        // Nothing is out of sight of patches.
-        if (!has_patches_ && any({WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryCubes();
         }
         if ((open || sheet) && !repaired()) {
             trySolid();
@@ -148,62 +137,6 @@ class Advisor {
         BakeRequest request = patches_;
         request.budget = budget;
         attempt(request, about, budget, !(run_.shape.default_thickness > 0.0) || repaired());
-    }
-
-    /// A cube in the free space before a place, as far as its size and no wall reach. nullopt: there is none.
-    [[nodiscard]] std::optional<MapSpec> cubeAt(const WorstPlace& place) const {
-        const double side = truth_.longest_side;
-        const ClosestPoint closest = run_.query->closest(place.position);
-        const glm::dvec3 offset = glm::dvec3(place.position) - closest.point;
-        const double distance = glm::length(offset);
-        if (!(distance > 0.0)) {
-            return std::nullopt;
-        }
-        // The place may lie in the solid: the free space is on the other side of the surface then.
-        const glm::dvec3 away = (run_.query->inside(place.position) ? -1.0 : 1.0) / distance * offset;
-        const glm::dvec3 at = closest.point + std::max(distance, 1e-3 * side) * away;
-        const std::optional<FirstHit> hit = run_.query->firstHit(at, away);
-        const double reach = std::min(
-            {hit ? hit->along : kCubeReach * side, kCubeReach * side, std::max(place.size(), 0.01 * side)});
-        const glm::dvec3 center = at + 0.5 * reach * away;
-        const glm::dvec3 half = 1.1 * glm::max(glm::abs(glm::dvec3(place.box.min) - center),
-                                               glm::abs(glm::dvec3(place.box.max) - center)) +
-                                1e-3 * side;
-        MapSpec spec;
-        spec.format = MapFormat::kCube8;
-        spec.compare = Compare::kLess;
-        spec.box = Bounds{};
-        for (int i = 0; i < 3; ++i) {
-            spec.box->min[i] = rounded(center[i] - half[i]);
-            spec.box->max[i] = rounded(center[i] + half[i]);
-        }
-        const double wanted = std::min(place.texel > 0.0 ? place.texel : side, 0.005 * side);
-        const double size = 2.0 * std::max({half.x, half.y, half.z}) / wanted;
-        spec.width = spec.height = static_cast<std::uint32_t>(
-            std::clamp(std::ceil(size), double{kCubeSizeMin}, double{kCubeSizeMax}));
-        return spec;
-    }
-
-    /// The maps that there are, and a cube at each place that they do not see.
-    void tryCubes() {
-        BakeRequest request = patches_;
-        request.budget.reset();
-        request.holes = run_.recorded.request.holes;
-        request.map = run_.recorded.request.map;
-        std::uint64_t bytes = run_.collider.gpuBytes();
-        for (const WorstPlace& place : run_.places) {
-            if (place.cause != WrongCause::kUnseen && place.cause != WrongCause::kSilhouette) {
-                continue;
-            }
-            if (const std::optional<MapSpec> cube = cubeAt(place)) {
-                request.map.push_back(toString(*cube));
-                bytes += std::uint64_t{24} * cube->width * cube->width;
-            }
-        }
-        const std::size_t recorded = run_.recorded.request.map.size();
-        if (recorded > 0 && request.map.size() > recorded) {
-            attempt(request, "the same maps, and a cube at each place that they do not see", bytes, true);
-        }
     }
 
     /// A bake without --holes keep.

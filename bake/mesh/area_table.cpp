@@ -14,16 +14,8 @@ AreaTable::AreaTable(const TriangleMesh& mesh) {
     }
 }
 
-std::uint32_t AreaTable::triangleAt(double share, std::uint32_t from) const {
-    const double area = share * up_to_.back();
-    const auto last = up_to_.end() - 1;
-    auto begin = up_to_.begin() + from;
-    std::ptrdiff_t step = from == 0 ? last - begin : 1;
-    while (last - begin > step && begin[step] <= area) {
-        begin += step;
-        step *= 2;
-    }
-    const auto found = std::upper_bound(begin, begin + std::min(step, last - begin), area);
+std::uint32_t AreaTable::triangleAt(double share) const {
+    const auto found = std::upper_bound(up_to_.begin(), up_to_.end() - 1, share * up_to_.back());
     return static_cast<std::uint32_t>(found - up_to_.begin());
 }
 

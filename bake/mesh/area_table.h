@@ -15,8 +15,7 @@ class AreaTable {
   public:
     explicit AreaTable(const TriangleMesh& mesh);
     /// \param share  in [0, 1]: of the area before the wanted point.
-    /// \param from   the result for a lower share, where the search starts: fast for shares that grow slowly.
-    [[nodiscard]] std::uint32_t triangleAt(double share, std::uint32_t from = 0) const;
+    [[nodiscard]] std::uint32_t triangleAt(double share) const;
 
   private:
     std::vector<double> up_to_;  // twice the area, up to and including each triangle

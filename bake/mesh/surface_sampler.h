@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random points on and near a mesh, with the same bits everywhere.
+// Random points on a mesh, with the same bits everywhere.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include "bake/mesh/area_table.h"
 #include "bake/mesh/mersenne.h"
 #include "bake/mesh/mesh.h"
-#include "bake/mesh/mesh_query.h"
 
 namespace relief {
 
@@ -66,18 +65,5 @@ struct SurfaceDraw {
 /// \param at  in [0, 1]: as AreaTable::triangleAt has it; stratify over it.
 [[nodiscard]] SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, double at,
                                         MersenneRandom& random);
-
-/// A point near the surface and its side.
-struct LabelledPoint {
-    glm::vec3 position{0.0F};
-    glm::vec3 normal{0.0F};  ///< of the nearby surface, outwards
-    bool inside = false;
-};
-
-/// Points at normally distributed offsets along the surface's normal; the same for any number of threads. On a mesh that is
-/// open or whose winding cannot be trusted, every point takes rays, ten times as long; `count` is then divided by 4.
-/// \param sigma  standard deviation, object units
-[[nodiscard]] std::vector<LabelledPoint> drawNearSurface(const MeshQuery& query, std::size_t count,
-                                                         double sigma, std::uint64_t seed);
 
 }  // namespace relief

@@ -149,11 +149,6 @@ std::vector<std::size_t> findBodies(const World& world, std::string_view node) {
     return found;
 }
 
-bool looksLikeWorld(std::string_view bytes) {
-    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && bytes[first] == '{';
-}
-
 std::string worldText(const World& world) {
     const auto line = [](const char* name, FieldRef value) {
         const std::string json = jsonLineOf(value);

@@ -92,9 +92,6 @@ void fields(FieldVisitor& visit, World& world);
 /// as one; those of all nodes that share the name. Empty: there is none.
 [[nodiscard]] std::vector<std::size_t> findBodies(const World& world, std::string_view node);
 
-/// Whether bytes begin as a world does, and as no container: with a brace, after any white space.
-[[nodiscard]] bool looksLikeWorld(std::string_view bytes);
-
 /// A line for each collider and each body. The same world is the same text.
 [[nodiscard]] std::string worldText(const World& world);
 

@@ -13,7 +13,7 @@ namespace relief {
 
 namespace {
 
-constexpr Collision kSnow{.restitution = 0.0F, .friction = 1.0F};
+constexpr ParticleType kSnow{.restitution = 0.0F, .friction = 1.0F};
 
 /// Half as large, in every other corner of the box.
 std::vector<Pose> fourPoses(const BenchScene& scene) {
@@ -75,7 +75,7 @@ Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scen
 Result<void> setRadius(ParticleSystem& particles, const BenchScene& scene) {
     ParticleType type = benchParticleType();
     type.radius = 0.005F * scene.side;
-    return particles.setTypes({&type, 1});
+    return particles.setType(type);
 }
 
 /// A swirl on 32³ nodes.
@@ -183,7 +183,7 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, cons
     BenchSystem system;
     system.particles = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(system.particles->setForces(scene.forces));
-    RELIEF_TRY(system.particles->setCollision(kSnow));
+    RELIEF_TRY(system.particles->setType(kSnow));
     if (variant.solids != Solids::kNone) {
         system.textures = std::make_unique<ColliderTextures>(RELIEF_TRY(makeTextures(scene, variant)));
         RELIEF_TRY(system.particles->setCollider(system.textures.get()));

@@ -40,7 +40,7 @@ Result<void> apply(const relief_particles_options& options, ParticleSystem& syst
     type.radius = options.radius;
     type.restitution = options.restitution;
     type.friction = options.friction;
-    RELIEF_TRY(system.setTypes(std::span(&type, 1)));
+    RELIEF_TRY(system.setType(type));
     RELIEF_TRY(system.setForces({vec(options.gravity), vec(options.wind), options.drag, 0.0F}));
     return system.setGround(options.has_ground != 0 ? std::optional(options.ground_height) : std::nullopt);
 }

@@ -179,16 +179,6 @@ Result<void> ParticleSystem::setGround(std::optional<float> height) {
     return {};
 }
 
-Result<void> ParticleSystem::setCollision(const Collision& collision) {
-    ParticleType type;
-    type.restitution = collision.restitution;
-    type.friction = collision.friction;
-    type.friction_threshold = collision.friction_threshold;
-    RELIEF_TRY(checkTypes({&type, 1}));
-    types_.assign(types_.size(), type);
-    return {};
-}
-
 Result<void> ParticleSystem::setTypes(std::span<const ParticleType> types) {
     if (types.empty() || types.size() > kParticleTypesMax) {
         return fail(ErrorCode::kUsage, std::to_string(types.size()) + " types of particles; choose 1 to " +

@@ -40,13 +40,6 @@
 
 namespace relief {
 
-/// The collision of a particle system with a single type of particles (paper, section 3.3.2).
-struct Collision {
-    float restitution = 0.0F;  ///< as those of ParticleType
-    float friction = 0.0F;
-    float friction_threshold = 0.0F;
-};
-
 /// The integration of velocities; both are of first order, and alike but for rounding.
 enum class Integrator : std::uint8_t {
     kEuler,  ///< semi-implicit: v' = v + dt a, P' = P + dt v'
@@ -113,14 +106,12 @@ class ParticleSystem {
     [[nodiscard]] Result<void> setCollider(const ColliderTextures* collider);
     /// Errors: kUsage (a number that is not finite, a drag or viscosity below 0); the forces then stay as they were.
     [[nodiscard]] Result<void> setForces(const Forces& forces);
-    /// One type of particles, without radius, that bounces.
-    /// Errors: kUsage (restitution or friction outside 0…1, a threshold that is below 0 or not finite).
-    [[nodiscard]] Result<void> setCollision(const Collision& collision);
     /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
     /// the step where their number changes, or the first gets a radius or collides with less than all.
     /// Errors: kUsage (none or more than kParticleTypesMax; a number that is not finite, a mass below kParticleMassMin, a
     /// negative radius, a share outside 0…1, unknown bits), kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setTypes(std::span<const ParticleType> types);
+    [[nodiscard]] Result<void> setType(const ParticleType& type) { return setTypes({&type, 1}); }
     /// Above 0 a step tests its way in pieces no longer than this, world units, and never ends inside what it
     /// did not begin in: nothing crosses a body at rest that is thicker than this. What moves farther than
     /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the paper.

@@ -39,10 +39,7 @@ Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
     RELIEF_TRY(particles.setForces({*scene.forces.gravity, scene.forces.wind,
                                     scene.air.viscosity ? 0.0F : scene.forces.drag,
                                     scene.air.viscosity.value_or(0.0F)}));
-    RELIEF_TRY(particles.setCollision(scene.collision));
-    if (!scene.types.empty()) {
-        RELIEF_TRY(particles.setTypes(particleTypes(scene)));
-    }
+    RELIEF_TRY(particles.setTypes(particleTypes(scene)));
     RELIEF_TRY(particles.setSweep(scene.collision.sweep.value_or(0.0F)));
     RELIEF_TRY(particles.setAir(scene.air));
     return particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);

@@ -244,6 +244,12 @@ std::optional<FieldFault> check(Scene& scene, const GivenFields& given) {
 }
 
 std::vector<ParticleType> particleTypes(const Scene& scene) {
+    if (scene.types.empty()) {
+        const SceneCollision& of = scene.collision;
+        return {{.restitution = of.restitution,
+                 .friction = of.friction,
+                 .friction_threshold = of.friction_threshold}};
+    }
     std::vector<ParticleType> types(scene.types.begin(), scene.types.end());
     for (ParticleType& type : types) {
         // Bits of absent bodies do not matter: leaving nothing out is worth a faster step.

@@ -50,8 +50,10 @@ struct SceneForces {
 void fields(FieldVisitor& visit, SceneForces& forces);
 [[nodiscard]] std::optional<FieldFault> check(SceneForces& forces, const GivenFields& given);
 
-struct SceneCollision : Collision {
-    SceneCollision() : Collision{0.0F, 1.0F, 0.0F} {}
+struct SceneCollision {
+    float restitution = 0.0F;  ///< these three as in ParticleType
+    float friction = 1.0F;
+    float friction_threshold = 0.0F;
     std::optional<float> sweep;  ///< as ParticleSystem::setSweep; fitSweep() chooses it
 };
 
@@ -196,7 +198,7 @@ struct Scene {
 void fields(FieldVisitor& visit, Scene& scene);
 [[nodiscard]] std::optional<FieldFault> check(Scene& scene, const GivenFields& given);
 
-/// The types as a particle system, and their looks as a renderer takes them.
+/// The types as a particle system, without any the one that [collision] describes, and their looks as a renderer takes them.
 [[nodiscard]] std::vector<ParticleType> particleTypes(const Scene& scene);
 [[nodiscard]] std::vector<ParticleLook> particleLooks(const Scene& scene);
 

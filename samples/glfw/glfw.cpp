@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     const float size = body.bounds.longestSide();
     const glm::vec3 center = body.bounds.center();
     need(snow.setForces({.gravity = {0.0F, -0.3F * size, 0.0F}, .drag = 2.5F}));
-    need(snow.setCollision({.restitution = 0.0F, .friction = 1.0F}));
+    need(snow.setType({.friction = 1.0F}));
     relief::EmitterSettings sky;
     sky.box_min = center + glm::vec3(-size, size, -size);
     sky.box_max = center + glm::vec3(size, 1.2F * size, size);

@@ -18,7 +18,7 @@ for part in BAKE TESTS BENCHMARKS; do
 done
 
 # Optional parts name their package and their option. CMake finds no header in /usr/include that is not given.
-configure vdb -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DCMAKE_IGNORE_PATH=/usr/include \
+configure vdb -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DRELIEF_BUILD_OPENVDB=ON -DCMAKE_IGNORE_PATH=/usr/include \
     -DTOMLPLUSPLUS_INCLUDE_DIR=/usr/include -DPNG_PNG_INCLUDE_DIR=/usr/include -DZLIB_INCLUDE_DIR=/usr/include && die "no OpenVDB is needed"
 says 'OpenVDB is not found: install libopenvdb-dev, or configure with -DRELIEF_BUILD_OPENVDB=OFF'
 configure tests -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DRELIEF_BUILD_TESTS=ON -DRELIEF_BUILD_OPENVDB=OFF \

@@ -71,8 +71,6 @@ TEST_P(ArgumentsGlTest, NumbersThatAreNone) {
         EXPECT_TRUE(refused(particles_->setForces({.viscosity = wrong})));
         EXPECT_TRUE(refused(particles_->setGround(wrong)));
         EXPECT_TRUE(refused(particles_->setSweep(wrong)));
-        EXPECT_TRUE(refused(particles_->setCollision({.restitution = wrong})));
-        EXPECT_TRUE(refused(particles_->setCollision({.friction_threshold = wrong})));
         EXPECT_TRUE(refused(particles_->step(wrong)));
         for (float ParticleType::*const member :
              {&ParticleType::gravity, &ParticleType::mass, &ParticleType::radius, &ParticleType::restitution,

@@ -295,7 +295,7 @@ TEST_P(CollisionGlTest, AMovingWallPushes) {
             SCOPED_TRACE(nameOf(integrator, sweep) + " " + std::to_string(restitution));
             make({.capacity = 4, .integrator = integrator});
             collideWith(ColliderBody{&box, {}});
-            EXPECT_TRUE(particles_->setCollision({restitution, 0.0F, 0.0F}));
+            EXPECT_TRUE(particles_->setType({.restitution = restitution}));
             ASSERT_TRUE(particles_->setSweep(sweep));
             spawnOne(birth);
             for (int i = 1; i <= steps; ++i) {
@@ -382,7 +382,7 @@ TEST_P(CollisionGlTest, ASweptBounceKeepsTheVelocity) {
         SCOPED_TRACE(nameOf(integrator));
         make({.capacity = 4, .integrator = integrator});
         EXPECT_TRUE(particles_->setGround(0.0F));
-        EXPECT_TRUE(particles_->setCollision({1.0F, 0.0F, 0.0F}));
+        EXPECT_TRUE(particles_->setType({.restitution = 1.0F}));
         ASSERT_TRUE(particles_->setSweep(0.005F));
         spawnOne({{0.0F, 0.43F, 0.0F}, {0.5F, -6.0F, 0.0F}, 100.0F, 0});  // 0.1 a step: 20 pieces
         step(8);

@@ -230,7 +230,7 @@ TEST_P(ParticleSystemGlTest, SnowRestsExactlyOnASphereAndNotInIt) {
     make({.capacity = kFlakes});
     collideWith(analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), kSize));
     EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {0.7F, 0.0F, 0.2F}, 2.0F}));
-    EXPECT_TRUE(particles_->setCollision({0.0F, 1.0F, 0.0F}));
+    EXPECT_TRUE(particles_->setType({.friction = 1.0F}));
     EXPECT_TRUE(particles_->setGround(-0.5F));
     Pcg32 random(3);
     spawnMany(kFlakes, [&](std::uint32_t) {
@@ -270,7 +270,7 @@ TEST_P(ParticleSystemGlTest, CaughtParticlesLeave) {
         make({.capacity = 3000});
         collideWith(ball);
         EXPECT_TRUE(particles_->setForces({{0.0F, gravity ? -9.81F : 0.0F, 0.0F}, {}, 0.0F}));
-        EXPECT_TRUE(particles_->setCollision({0.5F, 0.2F, 0.0F}));
+        EXPECT_TRUE(particles_->setType({.restitution = 0.5F, .friction = 0.2F}));
         Pcg32 random(9);
         std::vector<Birth> births;
         while (births.size() < 3000) {

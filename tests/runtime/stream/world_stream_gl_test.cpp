@@ -345,7 +345,7 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
         ParticleSystem particles = required(ParticleSystem::create({.capacity = 512}));
         ASSERT_TRUE(particles.setCollider(&stream_->textures()));
         ASSERT_TRUE(particles.setForces({.gravity = {0.0F, -9.81F, 0.0F}}));
-        ASSERT_TRUE(particles.setCollision({.restitution = 0.0F, .friction = 1.0F}));
+        ASSERT_TRUE(particles.setType({.friction = 1.0F}));
         Pcg32 random(6);
         std::vector<Birth> births;
         for (int i = 0; i < 512; ++i) {
