@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief export: every map as OpenEXR; or what a program of one's own uploads.
+// relief export: maps and views of patches as OpenEXR; or what a program of one's own uploads.
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
+#include <iterator>
 #include <span>
 #include <string_view>
 
 #include "bake/cli/command.h"
 #include "bake/picture/map_image.h"
+#include "bake/picture/view_image.h"
 #include "bake/volume/level_set.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
@@ -31,8 +35,10 @@ struct ExportCommand {
     std::string vdb;
     std::string mesh;
     std::optional<std::uint32_t> voxels;
+    std::optional<std::uint32_t> resolution;
 };
 
+constexpr std::uint32_t kResolution = 512;
 constexpr int kFormat = 1;
 constexpr const char* kBlock = "block.bin";
 constexpr const char* kGlsl = "collider.glsl";
@@ -93,26 +99,45 @@ Result<void> exportForGpu(const Collider& collider, const std::filesystem::path&
     return writeFile(folder / kSizes, bytesOf(jsonText(all)));
 }
 
-/// The names of what exportMaps() writes.
-std::vector<std::string> mapFileNames(const Collider& collider) {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < collider.maps.size(); ++i) {
-        for (std::uint32_t face = 0; face < collider.maps[i].faceCount(); ++face) {
-            names.push_back(mapImageName(collider.maps[i], i, face));
-        }
-    }
-    return names;
+bool isPatches(const DepthMap& map) {
+    return map.format == MapFormat::kPatches;
 }
 
-Result<void> exportMaps(const Collider& collider, const std::filesystem::path& folder) {
+bool hasPatches(const Collider& collider) {
+    return std::ranges::any_of(collider.maps, isPatches);
+}
+
+/// An image of -o.
+struct NamedImage {
+    std::string name;
+    std::function<Result<ExrImage>()> draw;
+};
+
+/// One for each face of a map, and the six views if any map is of patches. \param collider  must outlive them.
+std::vector<NamedImage> imagesOf(const Collider& collider, std::uint32_t resolution) {
+    std::vector<NamedImage> images;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
         const DepthMap& map = collider.maps[i];
-        for (std::uint32_t face = 0; face < map.faceCount(); ++face) {
-            const std::filesystem::path path = folder / mapImageName(map, i, face);
-            const std::vector<std::byte> bytes = RELIEF_TRY(encodeExr(mapImage(map, face, collider.unit)));
-            RELIEF_TRY(writeFile(path, bytes));
-            spdlog::debug("wrote {}", quotedPath(path));
+        const std::uint32_t faces = isPatches(map) ? 0 : map.faceCount();
+        for (std::uint32_t face = 0; face < faces; ++face) {
+            images.push_back({mapImageName(map, i, face),
+                              [&map, face, &collider] { return mapImage(map, face, collider.unit); }});
         }
+    }
+    const int views = hasPatches(collider) ? 6 : 0;
+    for (int view = 0; view < views; ++view) {
+        images.push_back({viewImageName(view),
+                          [&collider, view, resolution] { return viewImage(collider, view, resolution); }});
+    }
+    return images;
+}
+
+Result<void> exportImages(const std::vector<NamedImage>& images, const std::filesystem::path& folder) {
+    for (const NamedImage& image : images) {
+        const ExrImage drawn = RELIEF_TRY(image.draw());
+        const std::vector<std::byte> bytes = RELIEF_TRY(encodeExr(drawn));
+        RELIEF_TRY(writeFile(folder / image.name, bytes));
+        spdlog::debug("wrote {}", quotedPath(folder / image.name));
     }
     return {};
 }
@@ -134,6 +159,9 @@ Result<void> checkTogether(const ExportCommand& command) {
     }
     if (command.voxels && !grids) {
         return fail(ErrorCode::kUsage, "--voxels does nothing without --vdb or --mesh; add one of them");
+    }
+    if (command.resolution && command.output.empty()) {
+        return fail(ErrorCode::kUsage, "--resolution does nothing without -o; add it");
     }
     return {};
 }
@@ -175,17 +203,25 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
         RELIEF_TRY(checkVdb());
     }
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
-    const std::vector<std::string> maps = mapFileNames(collider);
+    if (command.resolution && !hasPatches(collider)) {
+        return fail(
+            ErrorCode::kUsage,
+            shownInput(command.file) +
+                " has no patches, and the images of its maps have their sizes; leave out --resolution");
+    }
+    const std::vector<NamedImage> images = imagesOf(collider, command.resolution.value_or(kResolution));
     const std::vector<std::string> gpu = gpuFileNames(collider);
     if (!command.output.empty()) {
-        RELIEF_TRY(prepareFolder(command.output, maps, "-o", files));
+        std::vector<std::string> names;
+        std::ranges::transform(images, std::back_inserter(names), &NamedImage::name);
+        RELIEF_TRY(prepareFolder(command.output, names, "-o", files));
     }
     if (!command.gpu.empty()) {
         RELIEF_TRY(prepareFolder(command.gpu, gpu, "--gpu", files));
     }
     if (!command.output.empty()) {
-        RELIEF_TRY(exportMaps(collider, command.output));
-        spdlog::info("wrote {} images into {}", maps.size(),
+        RELIEF_TRY(exportImages(images, command.output));
+        spdlog::info("wrote {} images into {}", images.size(),
                      quotedPath(std::filesystem::path(command.output)));
     }
     if (!command.gpu.empty()) {
@@ -201,21 +237,27 @@ void addExport(CLI::App& app, Action& action) {
     auto command = std::make_shared<ExportCommand>();
     CLI::App& verb = addVerb(
         app, command->common, "export",
-        "Writes the maps as pictures, the field as a level set, the surface as a mesh\n\n-o: every map as "
-        "OpenEXR. Files are map0_front-back.exr, and map3_cube_+x.exr to "
-        "map3_cube_-z.exr for the "
-        "six faces\nof a cube. Channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z of "
-        "front-back maps;\nZ is in object units from the near plane or the cube's centre, +inf where "
-        "there is no surface.\nOf a map of patches the texels themselves, as whole numbers in the channels "
-        "low and high:\nmap0_patches.exr.\nWith --gpu it writes what a program without "
-        "Relief uploads: raw textures, the uniform block, GLSL, and\nthe sizes of all as JSON "
-        "(runtime/collider/LAYOUT.md).\nWith --vdb it writes signed distances as a level set of OpenVDB, "
-        "and with --mesh the surface of that as PLY",
-        "relief export bunny.relief -o maps/\nrelief export bunny.relief --gpu engine/bunny/\n"
-        "relief export bunny.relief --vdb bunny.vdb --voxels 256\nrelief export bunny.relief --mesh "
-        "bunny.ply");
+        "Writes the maps as pictures, the field as a level set, the surface as a mesh\n\n"
+        "-o writes OpenEXR images. Maps: map0_front-back.exr, and map3_cube_+x.exr to map3_cube_-z.exr for\n"
+        "the faces of a cube, with the channels Z and N.X N.Y N.Z, and ZBack and NBack.X NBack.Y NBack.Z\n"
+        "of front-back maps. Z is in object units from the near plane or the cube's centre.\n"
+        "Patches: six orthographic views of the collider, view_+x.exr to view_-z.exr, named by their\n"
+        "direction, with the channels depth.front and depth.back of the first and the last surface, in\n"
+        "object units from the near face of the bounds, and normal.X normal.Y normal.Z of the first one.\n"
+        "Z and depth are +inf where there is no surface.\n"
+        "--gpu writes what a program without Relief uploads: raw textures, the uniform block, GLSL, and the\n"
+        "sizes of all as JSON (runtime/collider/LAYOUT.md).\n"
+        "--vdb writes signed distances as a level set of OpenVDB, and --mesh the surface of that as PLY",
+        "relief export bunny.relief -o maps/ --resolution 1024\n"
+        "relief export bunny.relief --gpu engine/bunny/\n"
+        "relief export bunny.relief --vdb bunny.vdb --voxels 256\n"
+        "relief export bunny.relief --mesh bunny.ply");
     addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
     addOption(verb, "-o,--output", command->output, "The folder; made if it is missing")->valueText("DIR");
+    addOption(verb, "--resolution", command->resolution,
+              "Texels along the longer side of each view of -o; default 512")
+        ->valueText("N")
+        ->transform(wholeNumber(kViewSizeMin, kViewSizeMax));
     addOption(verb, "--gpu", command->gpu, "The folder for textures, block and GLSL; made if it is missing")
         ->valueText("DIR");
     addOption(verb, "--vdb", command->vdb, "The level set, \"surface\"; - for standard output")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief slice: the field on a plane, as a figure.
+// relief slice: the field on a plane, as a figure or as its distances.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -61,9 +61,10 @@ void warnOutside(const SliceCommand& command, const Collider& collider) {
 }
 
 Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
-    const std::filesystem::path extension = std::filesystem::path(command.output).extension();
-    if (lowerCase(extension.string()) != ".png" && command.output != "-") {
-        return fail(ErrorCode::kUsage, "--output " + quotedPath(command.output) + " must end in .png");
+    const std::string extension = lowerCase(std::filesystem::path(command.output).extension().string());
+    if (extension != ".png" && extension != ".exr" && command.output != "-") {
+        return fail(ErrorCode::kUsage,
+                    "--output " + quotedPath(command.output) + " must end in .png or .exr");
     }
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.writes(command.output, "-o"));
@@ -71,7 +72,8 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
     warnOutside(command, collider);
     const Slice slice = RELIEF_TRY(evaluateSlice(collider, optionsOf(command)));
     const std::vector<std::byte> bytes =
-        RELIEF_TRY(drawSlice(slice, {inputName(command.file), collider.unit}));
+        RELIEF_TRY(extension == ".exr" ? encodeExr(distanceImage(slice, collider))
+                                       : drawSlice(slice, {inputName(command.file), collider.unit}));
     return writeFile(command.output, bytes);
 }
 
@@ -79,10 +81,14 @@ Result<void> runSlice(const SliceCommand& command, FileGuard& files) {
 
 void addSlice(CLI::App& app, Action& action) {
     auto command = std::make_shared<SliceCommand>();
-    CLI::App& verb =
-        addVerb(app, command->common, "slice", "Draws the field on a plane: the distance in false colours",
-                "relief slice bunny.relief --axis z --at center -o slice.png\n"
-                "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.png");
+    CLI::App& verb = addVerb(
+        app, command->common, "slice",
+        "Draws the field on a plane: the distance in false colours, or as numbers\n\n"
+        "OUT.png is a figure. OUT.exr holds the same signed distances, in object units, as 32-bit floats in\n"
+        "the channel distance: negative inside, +inf outside if no distance is known, NaN if no map votes.\n"
+        "The axes to the right and upwards are z and y across x, x and z across y, x and y across z",
+        "relief slice bunny.relief --axis z --at center -o slice.png\n"
+        "relief slice bunny.relief --axis y --at 0.1 --size 1024 -o slice.exr");
     addOption(verb, "FILE", command->file, "The collider; - for standard input")->typeName("")->required();
     addWords(verb, "--axis", command->axis, WordsFor<Axis>{{"x", Axis::kX}, {"y", Axis::kY}, {"z", Axis::kZ}},
              "The plane is across this axis; default z");
@@ -92,8 +98,8 @@ void addSlice(CLI::App& app, Action& action) {
     addOption(verb, "--size", command->size, "Samples along the longer side; default 512")
         ->valueText("N")
         ->transform(wholeNumber());
-    addOption(verb, "-o,--output", command->output, "The PNG; - for standard output")
-        ->valueText("OUT.png")
+    addOption(verb, "-o,--output", command->output, "The image: .png or .exr; - for standard output, as PNG")
+        ->valueText("OUT")
         ->required();
     addMemoryOption(verb, command->limits);
     onVerb(verb, [command, &action] {

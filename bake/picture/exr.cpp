@@ -11,7 +11,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <exception>
-#include <type_traits>
+#include <glm/matrix.hpp>
 
 namespace relief {
 namespace {
@@ -25,16 +25,6 @@ Imath::M44f rowVectorMatrix(const glm::dmat4& m) {
         }
     }
     return out;
-}
-
-/// Adds a channel. OpenEXR's interface takes non-const memory for reading and writing alike; it only reads here.
-template <class Value>
-void insert(const ExrImage& image, const ExrImage::ChannelOf<Value>& channel, Imf::Header& header,
-            Imf::FrameBuffer& frame_buffer) {
-    const Imf::PixelType type = std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT;
-    header.channels().insert(channel.name, Imf::Channel(type));
-    auto* base = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
-    frame_buffer.insert(channel.name, Imf::Slice(type, base, sizeof(Value), sizeof(Value) * image.width));
 }
 
 std::vector<std::byte> encode(const ExrImage& image) {
@@ -52,11 +42,12 @@ std::vector<std::byte> encode(const ExrImage& image) {
         header.insert(name, Imf::StringAttribute(text));
     }
     Imf::FrameBuffer frame_buffer;
-    for (const auto& channel : image.channels) {
-        insert(image, channel, header, frame_buffer);
-    }
-    for (const auto& channel : image.words) {
-        insert(image, channel, header, frame_buffer);
+    for (const ExrImage::Channel& channel : image.channels) {
+        header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+        // OpenEXR's interface takes non-const memory for reading and writing alike; it only reads here.
+        auto* base = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
+        frame_buffer.insert(channel.name,
+                            Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * image.width));
     }
     Imf::StdOSStream stream;
     {
@@ -70,6 +61,14 @@ std::vector<std::byte> encode(const ExrImage& image) {
 }
 
 }  // namespace
+
+void ExrImage::setOrthographicCamera(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& z,
+                                     const glm::dvec3& scale) {
+    const glm::dvec4 one(0.0, 0.0, 0.0, 1.0);
+    world_to_camera =
+        glm::transpose(glm::dmat4(scale.x * (x - 0.5 * one), scale.y * (y - 0.5 * one), scale.z * z, one));
+    world_to_ndc = glm::transpose(glm::dmat4(x, one - y, z, one));
+}
 
 Result<std::vector<std::byte>> encodeExr(const ExrImage& image) {
     try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of floats and of words as OpenEXR files, written; bake/import reads those of heights. The only users of OpenEXR.
+// Images of floats as OpenEXR files, written; bake/import reads those of heights. The only users of OpenEXR.
 #pragma once
 
 #include <cstddef>
@@ -15,23 +15,27 @@
 namespace relief {
 
 struct ExrImage {
-    template <class Value>
-    struct ChannelOf {
+    struct Channel {
         std::string name;           ///< "Z", "N.X", …
-        std::vector<Value> values;  ///< width · height, row by row from the image's top
+        std::vector<float> values;  ///< width · height, row by row from the image's top
     };
-    using Channel = ChannelOf<float>;
     std::uint32_t width = 0;  ///< pixels
     std::uint32_t height = 0;
     std::vector<Channel> channels;
-    std::vector<ChannelOf<std::uint32_t>> words;                  ///< channels of whole numbers
     std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes: name and text
     /// For column vectors, as in glm: camera = world_to_camera · (p, 1). Written transposed, as in OpenEXR.
     std::optional<glm::dmat4> world_to_camera;
     std::optional<glm::dmat4> world_to_ndc;
+
+    /// Camera space of OpenEXR and RenderMan: left-handed, x right, y up, z into the picture, object units. NDC has (0, 0) and
+    /// (1, 1) at the picture's upper left and lower right corners.
+    /// \param x, y, z  rows that carry object space to [0, 1] across the picture, upwards, and from near to far.
+    /// \param scale     object units for one unit of each.
+    void setOrthographicCamera(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& z,
+                               const glm::dvec3& scale);
 };
 
-/// A ZIP-compressed scanline file of channels of 32 bits, without a date. Errors: kFailure with OpenEXR's message, kLimit
+/// A ZIP-compressed scanline file of 32-bit floats, without a date. Errors: kFailure with OpenEXR's message, kLimit
 /// (out of memory).
 [[nodiscard]] Result<std::vector<std::byte>> encodeExr(const ExrImage& image);
 

@@ -5,13 +5,11 @@
 #include <limits>
 
 #include "bake/mesh/cube_faces.h"
-#include "formats/base/text.h"
-#include "formats/patch_tree.h"
+#include "bake/picture/axis_grid.h"
 
 namespace relief {
 namespace {
 
-constexpr const char* kFaceNames[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
 /// The near plane of a cube face's perspective, in units of the volume.
 constexpr double kNearPlane = 1.0 / 1024.0;
 
@@ -21,18 +19,6 @@ glm::dvec4 row(const Affine& affine, int i) {
 
 glm::dmat4 fromRows(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& z, const glm::dvec4& w) {
     return glm::transpose(glm::dmat4(x, y, z, w));
-}
-
-/// Camera space of OpenEXR and RenderMan: left-handed, x right, y up, z into the picture, object units. NDC has (0, 0) and
-/// (1, 1) at the picture's upper left and lower right corners.
-void setOrthographicCamera(const DepthMap& map, ExrImage& image) {
-    const glm::dvec4 x = row(map.object_to_map, 0);
-    const glm::dvec4 y = row(map.object_to_map, 1);
-    const glm::dvec4 z = row(map.object_to_map, 2);
-    const glm::dvec4 one(0.0, 0.0, 0.0, 1.0);
-    const glm::dvec3 scale = map.object_per_map;
-    image.world_to_camera = fromRows(scale.x * (x - 0.5 * one), scale.y * (y - 0.5 * one), scale.z * z, one);
-    image.world_to_ndc = fromRows(x, one - y, z, one);
 }
 
 /// The axes of a face as rows that act on map coordinates.
@@ -62,55 +48,14 @@ float objectPerDepth(const DepthMap& map, std::uint32_t face, std::uint32_t x, s
     return glm::length(map.object_per_map * direction);
 }
 
-/// The numbers of T's rows, one after the other.
-std::string placeText(const Affine& object_to_map) {
-    std::string text;
-    for (const glm::vec4& row : object_to_map.row) {
-        for (int i = 0; i < 4; ++i) {
-            text += (text.empty() ? "" : " ") + shortest(row[i]);
-        }
-    }
-    return text;
-}
-
-/// The texels of a tree, which no view orders: their words, from the top left on.
-ExrImage patchesImage(const DepthMap& map, const std::string& unit) {
-    ExrImage image;
-    image.width = map.width;
-    image.height = map.height;
-    image.words = {{"low", {}}, {"high", {}}};
-    const std::uint32_t texels = map.width * map.height;
-    for (std::uint32_t i = 0; i < texels; ++i) {
-        const PatchRecord texel = patchTexel(map.texels, i);
-        image.words[0].values.push_back(texel.low);
-        image.words[1].values.push_back(texel.high);
-    }
-    const auto [roots, levels] = patchTreeSize(map.texels);
-    image.attributes = {
-        {"relief.format", mapFormatName(map.format)},
-        {"relief.projection", projectionName(map.projection())},
-        {"relief.unit", unit},
-        {"relief.roots",
-         std::to_string(roots.x) + " " + std::to_string(roots.y) + " " + std::to_string(roots.z)},
-        {"relief.levels", std::to_string(levels)},
-        {"relief.object_to_map", placeText(map.object_to_map)},
-        {"relief.texels", "low and high of a texel, see Patches in formats/README.md"},
-        {"relief.rows", "texel i is in column i mod width and row i / width, from the top"},
-    };
-    return image;
-}
-
 }  // namespace
 
 std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t face) {
     const std::string base = "map" + std::to_string(index) + "_" + mapFormatName(map.format);
-    return map.faceCount() == 1 ? base + ".exr" : base + "_" + kFaceNames[face] + ".exr";
+    return map.faceCount() == 1 ? base + ".exr" : base + "_" + kDirectionNames[face] + ".exr";
 }
 
 ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit) {
-    if (map.projection() == Projection::kLocal) {
-        return patchesImage(map, unit);
-    }
     const bool cube = map.projection() == Projection::kCube;
     const bool two_sided = keepsTwo(map.compare);
     ExrImage image;
@@ -145,7 +90,8 @@ ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& un
     if (cube) {
         setFaceCamera(map, face, image);
     } else {
-        setOrthographicCamera(map, image);
+        image.setOrthographicCamera(row(map.object_to_map, 0), row(map.object_to_map, 1),
+                                    row(map.object_to_map, 2), map.object_per_map);
     }
     image.attributes = {
         {"relief.format", mapFormatName(map.format)},
@@ -158,7 +104,7 @@ ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& un
         {"relief.rows", cube ? "top row: t = 0 of OpenGL's cube face" : "top row: the highest y of the map"},
     };
     if (cube) {
-        image.attributes.emplace_back("relief.face", kFaceNames[face]);
+        image.attributes.emplace_back("relief.face", kDirectionNames[face]);
     }
     return image;
 }

@@ -5,8 +5,7 @@
 // NBack.X NBack.Y NBack.Z. Z is in object units along the ray, from the near plane of an orthographic map or the centre of a
 // cube; +inf, with a zero normal, without a surface. The top row of an orthographic image is the highest y of the map, that
 // of a cube's face is t = 0, as in OpenGL and KTX2. String attributes repeat this, with format, projection, compare and face.
-//
-// A map of patches has the channels low and high, its texels as they are, and its place and the size of its tree as attributes.
+// Patches have no view of their own; view_image.h draws them.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +19,7 @@ namespace relief {
 /// "map0_front-back.exr", "map3_cube_+x.exr"
 [[nodiscard]] std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t face);
 
-/// \param face  < map.faceCount()
+/// \param map   not of patches. \param face  < map.faceCount()
 /// \param unit  of lengths, for an attribute; "" if not known.
 [[nodiscard]] ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit);
 

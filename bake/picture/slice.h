@@ -4,12 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bake/picture/axis_grid.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 
@@ -24,19 +23,14 @@ struct SliceOptions {
 };
 
 /// Samples on a regular grid that covers the bounds and a tenth of their longer side around them.
-struct Slice {
-    int axis = 2;
-    /// The axes that run to the right and upwards: (z, y) across x, (x, z) across y, (x, y) across z.
-    int right = 0;
-    int up = 1;
-    float at = 0.0F;          ///< object units
-    std::uint32_t width = 0;  ///< samples
-    std::uint32_t height = 0;
-    glm::dvec2 corner{0.0};  ///< lower left corner of the area, half a sample before the first sample
-    double spacing = 1.0;    ///< object units between samples
-    std::vector<FieldSample> samples;  ///< row by row from the lowest
+/// The axes run to the right and upwards: (z, y) across x, (x, z) across y, (x, y) across z.
+struct Slice : AxisGrid {
+    float at = 0.0F;                     ///< object units
+    std::vector<FieldSample> samples{};  ///< row by row from the lowest
 
-    [[nodiscard]] glm::vec3 point(std::uint32_t x, std::uint32_t y) const;
+    [[nodiscard]] glm::vec3 point(std::uint32_t x, std::uint32_t y) const {
+        return AxisGrid::point(x, y, at);
+    }
     [[nodiscard]] const FieldSample& sample(std::uint32_t x, std::uint32_t y) const {
         return samples[std::size_t{y} * width + x];
     }
@@ -53,6 +47,10 @@ struct SliceFigureOptions {
 /// A PNG: the signed distance in false colours, the surface, a colour bar and a legend. The same slice gives the same
 /// bytes. Errors: kFailure with Cairo's message.
 [[nodiscard]] Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options);
+
+/// The signed distances in the channel "distance": +inf where only the side is known (outside), NaN where no map votes. Axes
+/// and extent are the figure's.
+[[nodiscard]] ExrImage distanceImage(const Slice& slice, const Collider& collider);
 
 [[nodiscard]] constexpr char axisName(int axis) {
     return "xyz"[axis];

@@ -131,7 +131,7 @@ class Figure {
 }  // namespace
 
 Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options) {
-    const std::string title = options.name + " \xe2\x80\x94 plane " + axisName(slice.axis) + " = " +
+    const std::string title = options.name + " \xe2\x80\x94 plane " + axisName(slice.axis()) + " = " +
                               shortest(slice.at) + (options.unit.empty() ? "" : " " + options.unit);
     return Figure(slice, options).draw(title);
 }

@@ -192,7 +192,7 @@ def relief_case(arena, random):
         return folder_with(random.choice(["gpu.json", "block.bin", "collider.glsl"]))
 
     def maps_folder():
-        return folder_with("map0_patches.exr")
+        return folder_with(random.choice(["view_+x.exr", "view_-z.exr"]))
 
     def recipe():
         (arena.folder / "baked").mkdir()

@@ -45,7 +45,7 @@ bake_fails 1 resolution good.obj -o old.relief --resolutoin 16
 bake_fails 1 holes good.obj -o old.relief --holes fill
 expect_error 1 bake "$relief" bkae good.obj
 expect_error 1 '' "$relief"
-expect_error 1 'png|exr' "$relief" slice good.relief --axis x --at 0 -o out.bmp
+expect_error 1 'png or .exr' "$relief" slice good.relief --axis x --at 0 -o out.bmp
 expect_error 1 axis "$relief" slice good.relief --axis w --at 0 -o out.png
 expect_error 1 steps "$relief_sim" good.relief --steps -1
 expect_error 6 99999 "$relief_sim" good.relief --steps 1 --frames frames --size 99999x99999

@@ -53,7 +53,7 @@ grep -q 'warning: two.obj: --as garden=auto' stderr || die "no warning: $(cat st
 
 # A name that changes nothing changes no texel; without one, not even a byte.
 bakes two.obj '1, 0, 1, 0' --as tub=auto --as garden=solid
-"$relief" export plain.relief -o plain -q && "$relief" export out.relief -o same -q
+"$relief" export plain.relief --gpu plain -q && "$relief" export out.relief --gpu same -q
 diff -r plain same || die "names that state what is so anyway change the texels"
 bakes two.obj '1, 0, 1, 0' --as auto
 cmp plain.relief out.relief || die "--as auto is not the default"

@@ -14,15 +14,35 @@ for word in 'Z,' ZBack N.X N.Y N.Z worldToCamera worldToNDC; do
     grep -q "$word" header || die "$front_back lacks $word: $(cat header)"
 done
 
-# A map of patches has no view: its words are exported, beside the images of other maps.
+# A collider of patches is shown by six views, beside the images of other maps.
 "$relief" bake "$bunny" -o p.relief --map patches:bytes=20kB --map cube:size=16 -q
 "$relief" info p.relief | grep -qE 'patches +per patch +- +[1-9][0-9]+ patches +[0-9.]+ kB' || die "info does not say how many patches there are: $("$relief" info p.relief)"
 "$relief" export p.relief -o patches
-[ "$(find patches -name '*.exr' | wc -l)" -eq 7 ] || die "a tree and six faces, not $(ls patches)"
-exrheader patches/map0_patches.exr >header
-for word in 'low, 32-bit unsigned' 'high, 32-bit unsigned' relief.roots relief.object_to_map; do
-    grep -q "$word" header || die "map0_patches.exr lacks $word: $(cat header)"
+[ "$(find patches -name 'view_[+-][xyz].exr' | wc -l)" -eq 6 ] && [ "$(find patches -type f | wc -l)" -eq 12 ] || die "six views and six faces, not $(ls patches)"
+exrheader patches/view_+x.exr >header
+for word in 'depth.front, 32-bit floating' 'depth.back, 32-bit floating' normal.Z worldToNDC relief.unit relief.bounds_min '511)'; do
+    grep -q "$word" header || die "view_+x.exr lacks $word: $(cat header)"
 done
+"$relief" export p.relief -o small --resolution 40
+exrheader small/view_-y.exr | matches '(39 ' || die "40 texels along the longer side: $(exrheader small/view_-y.exr)"
+"$relief" export - -o again --resolution 40 <p.relief
+diff -r small again || die "two exports differ"
+expect_error 1 'resolution does nothing without -o' "$relief" export p.relief --gpu gpu --resolution 40
+expect_error 1 'no patches.*leave out --resolution' "$relief" export b.relief -o none --resolution 40
+expect_error 1 '--resolution' "$relief" export p.relief -o none --resolution 5000
+[ ! -e none ] || die "a refused export made a folder"
+ln -s ../p.relief small/view_+z.exr.link && mv small/view_+z.exr.link small/view_+z.exr
+expect_error 1 'view_.z.exr' "$relief" export p.relief -o small
+
+# Distances as numbers, by the extension of the output.
+"$relief" slice p.relief --axis y --size 200 -o d.EXR
+exrheader d.EXR >header
+for word in 'distance, 32-bit floating' 'relief.plane .*"y = ' worldToNDC '(199 '; do
+    grep -q -- "$word" header || die "d.EXR lacks $word: $(cat header)"
+done
+expect_error 1 'out.jpg. must end in .png or .exr' "$relief" slice p.relief -o out.jpg
+cp p.relief p.exr
+expect_error 1 'output' "$relief" slice p.exr -o p.exr
 
 # An exported shader states its licence, is ASCII, and has no constant that it does not use.
 "$relief" export b.relief --gpu gpu

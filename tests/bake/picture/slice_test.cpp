@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/picture/slice.h"
 
+#include <cmath>
+
 #include "tests/bake/meshes.h"
+#include "tests/bake/picture/exr_file.h"
 
 namespace relief::test {
 namespace {
@@ -40,6 +43,43 @@ TEST(Slice, HoldsTheFieldOfItsPoints) {
         }
     }
     EXPECT_EQ(evaluateSlice(collider, {.axis = 2, .at = {}, .size = 16})->at, 0.0F);
+}
+
+// Read back by OpenEXR's own reader; the camera in the header finds the pixel of each point.
+TEST(Slice, HoldsItsDistancesAsExr) {
+    Collider collider = sampleCollider();
+    for (int axis = 0; axis < 3; ++axis) {
+        const Slice slice = required(evaluateSlice(collider, {.axis = axis, .at = 0.125F, .size = 60}));
+        ExrFile file(distanceImage(slice, collider));
+        ASSERT_EQ(file.width, slice.width);
+        ASSERT_EQ(file.height, slice.height);
+        EXPECT_EQ(file.text("relief.plane"), std::string(1, axisName(axis)) + " = 0.125");
+        const std::vector<float> distance = file.channel("distance");
+        int inside = 0;
+        int far = 0;
+        int none = 0;
+        for (std::uint32_t y = 0; y < slice.height; ++y) {
+            for (std::uint32_t x = 0; x < slice.width; ++x) {
+                const glm::vec3 at = file.project(slice.point(x, y));
+                ASSERT_NEAR(at.x, static_cast<float>(x) + 0.5F, 1e-3);
+                ASSERT_NEAR(at.y, static_cast<float>(slice.height - 1 - y) + 0.5F, 1e-3);
+                ASSERT_NEAR(at.z, 0.0F, 1e-6);
+                const FieldSample sample = evaluate(collider, slice.point(x, y));
+                const float value = distance[std::size_t{slice.height - 1 - y} * slice.width + x];
+                const bool known = sample.map >= 0 && sample.distance < kFarOutside;
+                ASSERT_EQ(known, value == sample.distance);
+                inside += sample.inside() && value < 0.0F ? 1 : 0;
+                far += !known && sample.map >= 0 && value > 0.0F && std::isinf(value) ? 1 : 0;
+                none += sample.map < 0 && std::isnan(value) ? 1 : 0;
+            }
+        }
+        EXPECT_GT(inside, 50);
+        EXPECT_GT(far, 50);
+        EXPECT_EQ(none, 0);
+    }
+    collider.maps = {collider.maps[1]};  // of one half
+    const Slice slice = required(evaluateSlice(collider, {.axis = 2, .at = {}, .size = 20}));
+    EXPECT_TRUE(std::isnan(ExrFile(distanceImage(slice, collider)).channel("distance").front()));
 }
 
 TEST(Slice, RefusesSizes) {
