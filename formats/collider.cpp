@@ -8,7 +8,6 @@
 
 #include "formats/base/text.h"
 #include "formats/patch_tree.h"
-#include "formats/row_spans.h"
 
 namespace relief {
 namespace {
@@ -31,26 +30,6 @@ Bounds volumeBox(const DepthMap& map) {
     return box;
 }
 
-/// The %XX of a name in a recorded text; empty: malformed.
-std::string decoded(std::string_view word) {
-    std::string text;
-    for (std::size_t i = 0; i < word.size(); ++i) {
-        if (word[i] != '%') {
-            text += word[i];
-            continue;
-        }
-        constexpr std::string_view kHex = "0123456789ABCDEF";
-        const std::size_t high = i + 2 < word.size() ? kHex.find(word[i + 1]) : std::string_view::npos;
-        const std::size_t low = i + 2 < word.size() ? kHex.find(word[i + 2]) : std::string_view::npos;
-        if (high == std::string_view::npos || low == std::string_view::npos) {
-            return {};
-        }
-        text += static_cast<char>(16 * high + low);
-        i += 2;
-    }
-    return cleanUtf8(text) == text ? text : "";
-}
-
 }  // namespace
 
 void Bounds::add(const glm::vec3& p) {
@@ -71,17 +50,6 @@ std::string RecordedOption::text() const {
     return optionName(name) + (value == "true" ? "" : " " + shellQuoted(value));
 }
 
-std::vector<RecordedOption> readRecordedOptions(std::string_view text) {
-    std::vector<RecordedOption> options;
-    for (std::string_view word = takeWord(text); !word.empty(); word = takeWord(text)) {
-        std::string name(word.starts_with("--") ? word.substr(2) : word);
-        std::replace(name.begin(), name.end(), '-', '_');
-        const std::string_view value = takeWord(text);
-        options.push_back({name, name == "as" ? decoded(value) : std::string(value)});
-    }
-    return options;
-}
-
 std::string Provenance::optionsText() const {
     std::string text;
     for (const RecordedOption& option : options) {
@@ -94,14 +62,6 @@ std::uint64_t Collider::texelBytes() const {
     std::uint64_t bytes = 0;
     for (const DepthMap& map : maps) {
         bytes += map.texelBytes();
-    }
-    return bytes;
-}
-
-std::uint64_t Collider::gpuBytes() const {
-    std::uint64_t bytes = 0;
-    for (const DepthMap& map : maps) {
-        bytes += relief::gpuBytes(map);
     }
     return bytes;
 }

@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "formats/depth_map.h"
@@ -40,8 +39,6 @@ struct RecordedOption {
     [[nodiscard]] std::string text() const;
     friend bool operator==(const RecordedOption&, const RecordedOption&) = default;
 };
-/// Options as containers before version 1.3 have them, in one text; any text.
-[[nodiscard]] std::vector<RecordedOption> readRecordedOptions(std::string_view text);
 
 /// Where a collider comes from. Nothing in it depends on time, machine or folder.
 struct Provenance {
@@ -65,10 +62,9 @@ struct Collider {
     std::vector<std::byte> animation{};
     Materials materials{};  ///< of its surface; empty: it is all the same
 
-    /// Bytes of all maps' texels, in memory.
+    /// Bytes of all maps' texels, in memory and on the GPU.
     [[nodiscard]] std::uint64_t texelBytes() const;
-    /// Bytes that all maps take on the GPU (row_spans.h).
-    [[nodiscard]] std::uint64_t gpuBytes() const;
+    [[nodiscard]] std::uint64_t gpuBytes() const { return texelBytes(); }
     friend bool operator==(const Collider&, const Collider&) = default;
 };
 

@@ -16,7 +16,6 @@
 #include "formats/base/text.h"
 #include "formats/compression.h"
 #include "formats/container_reader.h"
-#include "formats/row_spans.h"
 #include "formats/validate.h"
 
 namespace relief {
@@ -24,17 +23,11 @@ namespace {
 
 constexpr int kZstdLevelMax = 19;
 
-/// A map's payload as it will lie in the file: `packed`, or the map's own texels where that is empty.
+/// A map's payload as the file stores it: `packed`, or the map's own texels if that is empty.
 struct PackedPayload {
     Packing packing = Packing::kNone;
     std::vector<std::byte> packed;
     std::span<const std::byte> stored;
-
-    void take(Packing how, std::vector<std::byte> bytes) {
-        packing = how;
-        packed = std::move(bytes);
-        stored = packed;
-    }
 };
 
 /// Bytes in a zstd frame where that is shorter.
@@ -44,20 +37,10 @@ Result<PackedPayload> packBytes(std::span<const std::byte> raw, int level) {
     if (level > 0 && !raw.empty()) {
         std::vector<std::byte> bytes = RELIEF_TRY(compress(raw, level));
         if (bytes.size() < raw.size()) {
-            packed.take(Packing::kZstd, std::move(bytes));
+            packed.packing = Packing::kZstd;
+            packed.packed = std::move(bytes);
+            packed.stored = packed.packed;
         }
-    }
-    return packed;
-}
-
-Result<PackedPayload> pack(const DepthMap& map, int level) {
-    if (level > 0 || !isFrontBack(map.format)) {
-        return packBytes(map.texels, level);
-    }
-    PackedPayload packed;
-    packed.stored = map.texels;
-    if (std::vector<std::byte> rows = packRows(map); rows.size() < map.texels.size()) {
-        packed.take(Packing::kRows, std::move(rows));
     }
     return packed;
 }
@@ -131,12 +114,11 @@ std::vector<std::byte> writeMetadata(const Collider& collider, std::span<const f
     }
     const flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<fb::Option>>> option_vector =
         options.empty() ? 0 : builder.CreateVector(options);
-    const auto no_text = builder.CreateString("");
     const auto tool_version = builder.CreateString(from.tool_version);
     const auto mesh_hash = builder.CreateString(from.mesh_hash);
     const auto mesh_name = builder.CreateString(from.mesh_name);
-    const auto provenance = fb::CreateProvenance(builder, mesh_name, mesh_hash, from.triangles, tool_version,
-                                                 no_text, option_vector);
+    const auto provenance =
+        fb::CreateProvenance(builder, mesh_name, mesh_hash, from.triangles, tool_version, option_vector);
     const fb::Vec3 bounds_min = toFb(collider.bounds.min);
     const fb::Vec3 bounds_max = toFb(collider.bounds.max);
     const auto unit = builder.CreateString(collider.unit);
@@ -177,7 +159,7 @@ Result<void> checkWritable(const Collider& collider, const ContainerWriteOptions
 Result<std::vector<std::byte>> writeChecked(const Collider& collider, const ContainerWriteOptions& options) {
     std::vector<PackedPayload> packed;
     for (std::size_t i = 0; i < collider.maps.size(); ++i) {
-        Result<PackedPayload> one = pack(collider.maps[i], options.compression_level);
+        Result<PackedPayload> one = packBytes(collider.maps[i].texels, options.compression_level);
         if (!one) {
             return tl::unexpected<Error>(inMap(i, one.error()));
         }
@@ -194,20 +176,6 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
                               xxh3_64(packed[i].stored));
     }
     ContainerHeader header;
-    // The lowest version that holds it.
-    const bool rows = std::any_of(packed.begin(), packed.end(),
-                                  [](const PackedPayload& one) { return one.packing == Packing::kRows; });
-    const bool gaps = std::any_of(collider.maps.begin(), collider.maps.end(),
-                                  [](const DepthMap& map) { return map.compare == Compare::kGap; });
-    const bool patches = std::any_of(collider.maps.begin(), collider.maps.end(),
-                                     [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
-    header.minor = !collider.materials.empty()            ? 6
-                   : !collider.animation.empty()          ? 5
-                   : patches                              ? 4
-                   : !collider.provenance.options.empty() ? 3
-                   : gaps                                 ? 2
-                   : rows                                 ? 1
-                                                          : 0;
     header.metadata_size = writeMetadata(collider, payloads, packed, material_nodes).size();
     std::uint64_t end = header.metadata_offset + header.metadata_size;
     for (fb::Payload& payload : payloads) {

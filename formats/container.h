@@ -16,8 +16,7 @@
 namespace relief {
 
 struct ContainerWriteOptions {
-    /// zstd level of the payloads, 1…19; 0 stores them as they are, but for rows of front-back maps, whose empty ends are
-    /// left out (row_spans.h). A payload that zstd does not shrink is stored as it is, too.
+    /// zstd level of the payloads, 1…19; 0 stores them as they are. A payload that zstd does not shrink is stored as it is, too.
     int compression_level = 0;
 };
 

@@ -8,8 +8,8 @@
 
 namespace relief {
 
-inline constexpr std::uint16_t kContainerMajor = 1;
-inline constexpr std::uint16_t kContainerMinor = 6;
+inline constexpr std::uint16_t kContainerMajor = 2;
+inline constexpr std::uint16_t kContainerMinor = 0;
 
 /// Of texels to their file: accepted by default. Ordinary maps shrink to a third or a fifth.
 inline constexpr std::uint64_t kUnpackedPerStored = 16;
@@ -27,10 +27,9 @@ struct ContainerLimits {
 enum class Packing : std::uint8_t {
     kNone = 0,  ///< as they are
     kZstd = 1,  ///< a zstd frame
-    kRows = 2,  ///< rows without their empty ends (row_spans.h); since version 1.1
 };
 
-[[nodiscard]] const char* packingName(Packing packing);  ///< "none", "zstd" or "rows"
+[[nodiscard]] const char* packingName(Packing packing);  ///< "none" or "zstd"
 
 /// How each payload lies in a file; for `relief info`.
 struct PayloadInfo {

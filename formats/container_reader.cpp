@@ -12,14 +12,12 @@
 #include "collider_generated.h"
 #include "formats/base/hash.h"
 #include "formats/compression.h"
-#include "formats/row_spans.h"
 #include "formats/validate.h"
 
 namespace relief {
 namespace {
 
-/// zstd packs at most a block of 128 KiB into four bytes, and an empty row of kMapSizeMax texels takes four, so a payload
-/// that claims more is a lie.
+/// zstd packs at most a block of 128 KiB into four bytes, so a payload that claims more is invalid.
 constexpr std::uint64_t kZstdRatioMax = 32768;
 constexpr flatbuffers::uoffset_t kMetadataDepthMax = 4;  // collider, map or provenance
 
@@ -68,13 +66,9 @@ std::optional<std::string> texelsBeyond(const ContainerLimits& limits, std::uint
 /// Checks that a payload's sizes go with its frame, which must be valid. Its place is not looked at.
 Result<void> validatePayloadSizes(const StoredMap& map) {
     const PayloadInfo& info = map.payload;
-    if (info.packing > Packing::kRows) {
+    if (info.packing > Packing::kZstd) {
         return invalidInput("its compression " + std::to_string(static_cast<int>(info.packing)) +
                             " is unknown");
-    }
-    if (info.packing == Packing::kRows && !isFrontBack(map.frame.format)) {
-        return invalidInput(std::string("its compression \"rows\" does not go with its format \"") +
-                            mapFormatName(map.frame.format) + "\"");
     }
     if (info.raw_size != map.frame.texelBytes()) {
         return invalidInput("its raw_size is " + std::to_string(info.raw_size) +
@@ -94,15 +88,10 @@ Result<void> validatePayloadSizes(const StoredMap& map) {
     return {};
 }
 
-/// The texels of a payload, whatever its packing: payload.raw_size bytes, once the sizes have been checked.
-Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, const StoredMap& map) {
-    switch (map.payload.packing) {
-        case Packing::kZstd:
-            return decompress(stored, map.payload.raw_size);
-        case Packing::kRows:
-            return unpackRows(stored, map.frame);
-        case Packing::kNone:
-            break;
+/// The texels of a payload: payload.raw_size bytes, once the sizes have been checked.
+Result<std::vector<std::byte>> unpackPayload(std::span<const std::byte> stored, const PayloadInfo& payload) {
+    if (payload.packing == Packing::kZstd) {
+        return decompress(stored, payload.raw_size);
     }
     return std::vector<std::byte>(stored.begin(), stored.end());
 }
@@ -157,14 +146,14 @@ bool isLimit(IssueCode code) {
 }
 
 /// How to come by a file that loads; "" where the message has it.
-std::string cureOf(IssueCode code) {
+std::string cureOf(IssueCode code, std::uint16_t major) {
     switch (code) {
         case IssueCode::kTooShort:
             return "; it is truncated, or no .relief container";
         case IssueCode::kSignature:
             return "; it is no .relief container, or a transfer as text has changed it";
         case IssueCode::kMajorVersion:
-            return "; use a matching Relief";
+            return major < kContainerMajor ? ": bake the mesh again" : "; use a newer Relief";
         default:
             return isLimit(code) ? "" : "; copy the file again, or bake it again";
     }
@@ -178,8 +167,7 @@ std::uint64_t containerSizeMax(const ContainerLimits& limits) {
 }
 
 const char* packingName(Packing packing) {
-    constexpr std::array kNames = {"none", "zstd", "rows"};
-    return kNames.at(static_cast<std::size_t>(packing));
+    return packing == Packing::kZstd ? "zstd" : "none";
 }
 
 void ContainerReader::add(IssueCode code, std::string message, std::optional<std::uint64_t> offset, int map) {
@@ -193,7 +181,7 @@ void ContainerReader::readDescription() {
     }
 }
 
-/// Checks the signature, the checksum and the version, and the fields that version 1 fixes.
+/// Checks the signature, the checksum and the version, and the fields that version 2 fixes.
 /// \return whether the rest of the header can be understood.
 bool ContainerReader::readHeader() {
     if (bytes_.size() < sizeof(header)) {
@@ -216,15 +204,14 @@ bool ContainerReader::readHeader() {
     const ContainerHeader expected;
     if (header.major != expected.major) {
         header_state = PartState::kUnreadable;
-        add(IssueCode::kMajorVersion,
-            "container version " + std::to_string(header.major) + "." + std::to_string(header.minor) +
-                ", this program reads version " + std::to_string(kContainerMajor),
-            12);
+        add(IssueCode::kMajorVersion, "container version " + std::to_string(header.major) + "." +
+                                          std::to_string(header.minor) + ", this program reads version " +
+                                          std::to_string(kContainerMajor));
         return false;
     }
     if (header.header_size != expected.header_size || header.reserved != expected.reserved ||
         header.metadata_offset != expected.metadata_offset) {
-        add(IssueCode::kHeaderField, "header_size, reserved or metadata_offset is not that of version 1", 16);
+        add(IssueCode::kHeaderField, "header_size, reserved or metadata_offset is not that of version 2", 16);
         header.metadata_offset = expected.metadata_offset;
     }
     header_state = issues.empty() ? PartState::kSound : PartState::kDamaged;
@@ -298,9 +285,8 @@ bool ContainerReader::readMetadata() {
     collider.bounds = {fromFb(*metadata.bounds_min()), fromFb(*metadata.bounds_max())};
     collider.unit = metadata.unit()->str();
     const fb::Provenance& from = *metadata.provenance();
-    collider.provenance = {from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(),
-                           from.tool_version()->str(),
-                           readRecordedOptions(from.options_text()->string_view())};
+    collider.provenance = {
+        from.mesh_name()->str(), from.mesh_hash()->str(), from.triangles(), from.tool_version()->str(), {}};
     if (from.options() != nullptr) {
         // Many options may share one text.
         std::uint64_t text_bytes = 0;
@@ -447,7 +433,7 @@ bool ContainerReader::readTexels(std::size_t index) {
     if (!map.intact) {
         add(IssueCode::kPayloadChecksum, "the checksum of its payload is wrong", map.payload.offset, at);
     }
-    Result<std::vector<std::byte>> unpacked = unpackPayload(stored, map);
+    Result<std::vector<std::byte>> unpacked = unpackPayload(stored, map.payload);
     if (!unpacked) {
         add(IssueCode::kPayloadUnpack, unpacked.error().message, map.payload.offset, at);
         return false;
@@ -472,7 +458,7 @@ std::optional<Error> ContainerReader::refusal() const {
     }
     const Error error{errorCodeOf(issues),
                       first->message + (first->offset ? ", at byte " + std::to_string(*first->offset) : "") +
-                          cureOf(first->code)};
+                          cureOf(first->code, header.major)};
     return first->map < 0 ? error : inMap(static_cast<std::size_t>(first->map), error);
 }
 

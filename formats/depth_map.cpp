@@ -61,8 +61,7 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     const auto column = static_cast<std::uint32_t>(x);
     const auto row = static_cast<std::uint32_t>(y);
     const Texel texel = decodeTexel(map.format, map.texelAt(0, column, row));
-    const bool gap = map.compare == Compare::kGap;
-    if ((!texel.front && !texel.back) || (gap && !(texel.front && texel.back))) {
+    if (!texel.front && !texel.back) {
         return map.empty_is_outside ? std::optional(kFarOutsideVote) : std::nullopt;
     }
 
@@ -78,11 +77,6 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
             planes ? planeVote(map, surface, from, ray, map.object_per_map.z) : map.object_per_map.z * ahead;
         return Vote{distance, surface.normal};
     };
-    if (gap) {
-        const Vote front = voteOf(*texel.front, true);
-        const Vote back = voteOf(*texel.back, false);
-        return back.distance < front.distance ? back : front;
-    }
     Vote best;
     const auto add = [&](const Vote& one) { best = replaces(one.distance, best.distance) ? one : best; };
     if (texel.front) {
@@ -159,7 +153,7 @@ const char* projectionName(Projection projection) {
 }
 
 const char* compareName(Compare compare) {
-    constexpr std::array kNames = {"less", "greater", "both", "gap"};
+    constexpr std::array kNames = {"less", "greater", "both"};
     return kNames.at(static_cast<std::size_t>(compare));
 }
 

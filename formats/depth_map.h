@@ -33,22 +33,10 @@ enum class Projection : std::uint8_t { kOrthographic = 0, kCube = 1, kLocal = 2 
 
 [[nodiscard]] const char* projectionName(Projection projection);  ///< "orthographic", "cube" or "local"
 
-/// Which surface along the ray a map keeps: the nearest, the farthest, or both (front-back); or the two at the ends of a
-/// gap between solids, which no outer view may see. Of a gap the front is the surface that closes it, and faces the
-/// viewer, and the back the one that opens it:
-///
-///     viewer  ──▶  ████            ████████
-///                      back  front              outside as soon as either sees P outside: both
-///                  front         back           outside only if both do:              gap
-///
-enum class Compare : std::uint8_t { kLess = 0, kGreater = 1, kBoth = 2, kGap = 3 };
+/// Which surface along the ray a map keeps: the nearest, the farthest, or both (front-back).
+enum class Compare : std::uint8_t { kLess = 0, kGreater = 1, kBoth = 2 };
 
-[[nodiscard]] const char* compareName(Compare compare);  ///< "less", "greater", "both" or "gap"
-
-/// The map keeps two surfaces of a ray: a front and a back.
-[[nodiscard]] constexpr bool keepsTwo(Compare compare) {
-    return compare == Compare::kBoth || compare == Compare::kGap;
-}
+[[nodiscard]] const char* compareName(Compare compare);  ///< "less", "greater" or "both"
 
 /// How a vote is read from a texel: as the distance along the ray to a surface that faces the viewer (the
 /// paper's), or as the distance to the plane through the surface point at the texel's centre. plane.h has
@@ -98,7 +86,7 @@ inline constexpr std::uint32_t kMapSizeMin = 3;  ///< orthographic: one texel in
 
 struct DepthMap {
     MapFormat format = MapFormat::kFixed8;
-    Compare compare = Compare::kLess;  ///< kBoth or kGap if and only if isFrontBack(format); kGap: of planes
+    Compare compare = Compare::kLess;  ///< kBoth if and only if isFrontBack(format)
     Decode decode = Decode::kProjected;
     std::uint32_t width = 0;  ///< texels; a cube's faces are width × width
     std::uint32_t height = 0;
@@ -107,10 +95,10 @@ struct DepthMap {
     /// sides of the volume, the paper's s.
     glm::vec3 object_per_map{1.0F};
     /// The volume holds the whole collider, so that a point outside the volume is outside the collider.
-    /// Otherwise this map abstains there, as one of gaps always does.
+    /// Otherwise this map abstains there.
     bool encloses = true;
     /// Rays start in free space, so that a point on a ray that meets no surface is outside. Otherwise this
-    /// map abstains at an empty texel, as one of gaps always does.
+    /// map abstains at an empty texel.
     bool empty_is_outside = true;
     /// faceCount() · width · height texels, row by row from y = 0, face after face.
     std::vector<std::byte> texels;

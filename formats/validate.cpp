@@ -193,19 +193,15 @@ Result<void> validateFrame(const DepthMap& map) {
     if (static_cast<int>(map.format) >= kMapFormatCount) {
         return invalidInput("its format " + std::to_string(static_cast<int>(map.format)) + " is unknown");
     }
-    if (static_cast<int>(map.compare) > static_cast<int>(Compare::kGap)) {
+    if (static_cast<int>(map.compare) > static_cast<int>(Compare::kBoth)) {
         return invalidInput("its compare " + std::to_string(static_cast<int>(map.compare)) + " is unknown");
     }
-    if (keepsTwo(map.compare) != isFrontBack(map.format)) {
+    if ((map.compare == Compare::kBoth) != isFrontBack(map.format)) {
         return invalidInput(std::string("its compare \"") + compareName(map.compare) +
                             "\" does not go with its format \"" + mapFormatName(map.format) + "\"");
     }
     if (static_cast<int>(map.decode) > static_cast<int>(Decode::kPlane)) {
         return invalidInput("its decode " + std::to_string(static_cast<int>(map.decode)) + " is unknown");
-    }
-    if (map.compare == Compare::kGap &&
-        (map.decode != Decode::kPlane || map.encloses || map.empty_is_outside)) {
-        return invalidInput("a map of gaps has planes, and encloses nothing");
     }
     if (map.format == MapFormat::kPatches && map.decode != Decode::kPlane) {
         return invalidInput("a map of patches decodes planes");

@@ -57,7 +57,7 @@ std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t f
 
 ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit) {
     const bool cube = map.projection() == Projection::kCube;
-    const bool two_sided = keepsTwo(map.compare);
+    const bool two_sided = map.compare == Compare::kBoth;
     ExrImage image;
     image.width = map.width;
     image.height = map.height;

@@ -8,7 +8,6 @@
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "formats/row_spans.h"
 
 namespace relief {
 namespace {
@@ -161,7 +160,7 @@ std::string bakeText(const BakeSummary& summary, const std::string& output, std:
         const MapReport& report = baked.report.maps[i];
         rows.push_back(
             {std::to_string(i), mapFormatName(map.format), projectionText(map), keepsText(map), sizeText(map),
-             bytesText(gpuBytes(map)),
+             bytesText(map.texelBytes()),
              map.format == MapFormat::kPatches ? "-" : shareText(BakedMapReport{.baked = report}.coverage()),
              toString(report.spec)});
     }

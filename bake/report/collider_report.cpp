@@ -62,7 +62,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
           {.help = "Projection of the map", .words = kWords<"orthographic", "cube", "local">});
     visit("compare", compareName(map.compare),
           {.help = "Surface kept along each ray: the nearest, the farthest, both, or the two ends of a gap",
-           .words = kWords<"less", "greater", "both", "gap">});
+           .words = kWords<"less", "greater", "both">});
     visit("width", map.width, {"Width", "texels", kFromOne});
     visit("height", map.height, {"Height", "texels", kFromOne});
     visit("faces", map.faceCount(), {.help = "Images: 6 of a cube", .words = kWords<"1", "6">});
@@ -70,7 +70,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
     visit("stored_bytes", payload.stored_size, {"Size in the file", "bytes"});
     visit("compression", packingName(payload.packing),
           {.help = "Encoding in the file: plain, a zstd frame, or rows without their empty ends",
-           .words = kWords<"none", "zstd", "rows">});
+           .words = kWords<"none", "zstd">});
     visit("offset", payload.offset, {"First byte in the file"});
     visit("object_to_map", rows, {"Rows of the affine map from object space to map space"});
     visit("object_per_map", map.object_per_map,

@@ -71,7 +71,7 @@ struct View {
     }
     [[nodiscard]] std::uint32_t faceCount() const { return projection() == Projection::kCube ? 6 : 1; }
     [[nodiscard]] bool keeps(RayEnd end) const {
-        return keepsTwo(compare) || (compare == Compare::kLess) == (end == RayEnd::kNear);
+        return compare == Compare::kBoth || (compare == Compare::kLess) == (end == RayEnd::kNear);
     }
     [[nodiscard]] bool startsFree(RayEnd end) const { return starts_free[static_cast<std::size_t>(end)]; }
     /// Texels without a surface mean "outside": one of the kept ends saw the whole ray from free space.

@@ -15,9 +15,7 @@ static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
 
 std::int32_t flagsOf(const PlacedMap& placed) {
     const DepthMap& map = *placed.map;
-    return (isFrontBack(map.format) && !placed.live ? kHasRows : 0) |
-           (map.compare == Compare::kGap ? kIsGap : 0) |
-           (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |
+    return (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |
            (map.empty_is_outside ? kEmptyIsOutside : 0) | (map.decode == Decode::kPlane ? kDecodesPlane : 0);
 }
 
@@ -166,7 +164,6 @@ std::string colliderDefines(WorldKind world, std::span<const PlacedMap> maps, co
     defineIf("FRONT_BACK_FIXED",
              [](const DepthMap& map) { return map.format == MapFormat::kFrontBackFixed; });
     defineIf("PATCHES", [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
-    defineIf("GAP", [](const DepthMap& map) { return map.compare == Compare::kGap; });
     defineIf("PLANE", [](const DepthMap& map) { return map.decode == Decode::kPlane; });
     defineIf("PROJECTED", [](const DepthMap& map) { return map.decode == Decode::kProjected; });
     return defines;

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "formats/normal_index.h"
-#include "formats/row_spans.h"
 #include "runtime/collider/collider_block.h"
 #include "runtime/gl/gl_functions.h"
 
@@ -27,40 +26,12 @@ void clampIndices(std::span<std::byte> normal) {
     }
 }
 
-/// The spans of a front-back map's rows, and then their texels.
-std::vector<std::byte> withRows(const DepthMap& map, std::span<const std::byte> texels) {
-    const std::vector<RowSpan> spans = rowSpans(map);
-    const std::size_t size = texelSize(map.format);
-    std::vector<std::byte> bytes;
-    bytes.reserve((spans.size() + static_cast<std::size_t>(texelsOf(spans))) * size);
-    auto next = static_cast<std::uint32_t>(spans.size());
-    for (const RowSpan& span : spans) {
-        // Less than 0 for the first rows of maps that are wider than high: modulo 2^32, as the shader adds.
-        const std::uint32_t origin = next - span.first;
-        const std::array<std::uint16_t, 4> words = {span.first, span.end,
-                                                    static_cast<std::uint16_t>(origin & 0xffffU),
-                                                    static_cast<std::uint16_t>(origin >> 16U)};
-        const auto row = std::as_bytes(std::span(words));
-        bytes.insert(bytes.end(), row.begin(), row.end());
-        next += span.texels();
-    }
-    for (std::size_t y = 0; y < spans.size(); ++y) {
-        const auto row = texels.subspan((y * map.width + spans[y].first) * size, spans[y].texels() * size);
-        bytes.insert(bytes.end(), row.begin(), row.end());
-    }
-    return bytes;
-}
-
 /// The map's texels, changed where that spares every particle a test in the shader. No vote changes:
 ///
 /// - a normal index 255, which reads as 254, is 254;
 /// - in a front-back map of planes, an end that is empty beside one that is not has the other's plane: two
 ///   equal votes are one;
 /// - texels of a float map are as they were.
-///
-/// Of a front-back map they are those of its rows' spans (row_spans.h), one after the other, and before them a texel for
-/// each row from y = 0: first, end, and the low and the high word of what the index of a texel in this answer is less its
-/// x. gpuBytes(map) in all.
 std::vector<std::byte> shaderTexels(const DepthMap& map) {
     std::vector<std::byte> texels = map.texels;
     if (map.format == MapFormat::kFloat32) {  // whose normals are no indices
@@ -77,11 +48,7 @@ std::vector<std::byte> shaderTexels(const DepthMap& map) {
             const auto isEmpty = [&](std::size_t end) {
                 return texel[4 + 2 * end] == std::byte{0} && texel[5 + 2 * end] == std::byte{0};
             };
-            if (map.compare == Compare::kGap) {
-                if (isEmpty(0) || isEmpty(1)) {
-                    std::fill(texel.begin(), texel.end(), std::byte{0});
-                }
-            } else if (map.decode == Decode::kPlane && isEmpty(0) != isEmpty(1)) {
+            if (map.decode == Decode::kPlane && isEmpty(0) != isEmpty(1)) {
                 const std::size_t full = isEmpty(0) ? 1 : 0;
                 for (const std::size_t word : {std::size_t{0}, std::size_t{4}}) {
                     std::memcpy(&texel[word + 2 * (1 - full)], &texel[word + 2 * full], 2);
@@ -89,7 +56,7 @@ std::vector<std::byte> shaderTexels(const DepthMap& map) {
             }
         }
     }
-    return isFrontBack(map.format) ? withRows(map, texels) : texels;
+    return texels;
 }
 
 }  // namespace

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <string>
 
-#include "formats/row_spans.h"
-
 namespace relief {
 namespace {
 
 std::size_t texelCount(const DepthMap& map) {
-    return static_cast<std::size_t>(gpuBytes(map)) / texelSize(map.format);
+    return static_cast<std::size_t>(map.texelBytes()) / texelSize(map.format);
 }
 
 Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max, std::size_t room_texels,

@@ -67,10 +67,8 @@ inline constexpr std::size_t kTexelKinds = 3;
 /// The place of one map.
 struct MapPlace {
     TexelKind kind = kFloatTexels;
-    std::size_t first =
-        0;  ///< index of its texel (0, 0), or of its first row's span (gpu_image.cpp), counted row by
-            ///< row of the texture
-    GLint pitch = 0;        ///< texels from one of its rows to the next; of no use where rows have spans
+    std::size_t first = 0;  ///< index of its texel (0, 0), counted row by row of the texture
+    GLint pitch = 0;        ///< texels from one of its rows to the next
     TexelRectangle texels;  ///< of a live map: where it is drawn to
     TexelRectangle motion;  ///< of a live map: where its motion is drawn to, in the float texture
     std::size_t motion_first = 0;

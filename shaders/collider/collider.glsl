@@ -26,9 +26,8 @@ struct ReliefMap {
     vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
                            // largest product of an orthographic ray and the normal of a plane along it. Of patches the
                            // size of a root, and how many there are along x, y and z
-    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. With
-                           // RELIEF_HAS_ROWS a texel for each row comes first, with the range of the row's texels. Of patches
-                           // texel 0; from root to root along y and z; levels
+    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. Of patches texel 0; from
+                           // root to root along y and z; levels
     ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
                            // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
 };
@@ -125,14 +124,6 @@ bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next 
     return info.y == RELIEF_MAP_FORMAT_FRONT_BACK_HALF || info.y == RELIEF_MAP_FORMAT_FRONT_BACK_FIXED;
 #else
     return true;
-#endif
-}
-
-bool reliefIsGap(ivec4 info) {  // of a front-back map
-#if !defined(RELIEF_HAS_GAP)
-    return false;
-#else
-    return (info.z & RELIEF_IS_GAP) != 0;
 #endif
 }
 
@@ -318,19 +309,6 @@ bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 norm
     return code > 0.0;
 }
 
-// The index of a texel of a front-back map. Where its row has none it is that of another texel: a silhouette leaves the ends
-// of rows empty.
-int reliefFrontBackIndex(ivec4 place, ivec4 info, ivec2 at, out bool exists) {
-    int index = place.x + at.y * place.y + at.x;
-    exists = true;
-    if (reliefHas(info, RELIEF_HAS_ROWS)) {
-        uvec4 row = texelFetch(u_relief_front_back, reliefTexel(place.x + at.y, RELIEF_LOG2_WIDTHS.z), 0);
-        exists = uint(at.x) >= row.r && uint(at.x) < row.g;
-        index = exists ? place.x + int(row.b + (row.a << 16)) + at.x : place.x;
-    }
-    return index;
-}
-
 // A normal as a texel holds it: of all fetched only the deciding one is decoded. A patch has none but by its heights.
 #if defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_PATCHES)
 #define RELIEF_CODE vec3
@@ -373,7 +351,6 @@ float reliefEmpty(ivec4 info) {
 // A point of an orthographic map relative to the ray through its texel's centre.
 struct ReliefSight {
     int texel;    // its index
-    bool exists;  // it is no end of a row that is left out
     float z;      // depth of the point
     bool plane;   // the map decodes planes
     vec3 from;    // as reliefPlane() takes them
@@ -392,12 +369,12 @@ float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
 
 // The votes of a texel of each kind; without meaning where none is found.
 
-// Outside where either surface votes so; of a gap where both do.
+// Outside where either surface votes so.
 ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
     uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.z), 0);
     // In integers, which takes fewer instructions than a conjunction of conditions.
     uint depths = !sight.plane || RELIEF_HALF_EMPTY ? words.b | words.a : words.b;
-    found = (sight.exists ? depths : 0u) != 0u;
+    found = depths != 0u;
     float front = reliefFrontBackDepth(info.y, words.b);
     float back = reliefFrontBackDepth(info.y, words.a);
     if (sight.plane) {
@@ -411,8 +388,8 @@ ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole,
         front = words.b != 0u ? front : RELIEF_FAR_INSIDE;
         back = words.a != 0u ? back : RELIEF_FAR_INSIDE;
     }
-    float distance = reliefIsGap(info) ? min(front, back) : max(front, back);
-    if (whole && !reliefIsGap(info)) {
+    float distance = max(front, back);
+    if (whole) {
         distance = reliefReplaces(back, front) ? back : front;
     }
     return ReliefVote(distance, reliefCode(distance == front ? words.r : words.g));
@@ -453,9 +430,7 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
     bool sees_beyond = encloses && (whole || !reliefHas(info, RELIEF_EMPTY_IS_OUTSIDE));
     if (in_window && (in_depth || sees_beyond)) {
         ivec2 at = ivec2(p.xy);
-        bool exists = true;
-        int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at, exists) : place.x + at.y * place.y + at.x;
-        ReliefSight sight = ReliefSight(texel, exists, p.z, reliefIsPlane(info),
+        ReliefSight sight = ReliefSight(place.x + at.y * place.y + at.x, p.z, reliefIsPlane(info),
                                         reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
                                         reliefMapColumn(i, 2).xyz, reliefObjectPerMap(i).w,
                                         reliefObjectPerMap(i).z);

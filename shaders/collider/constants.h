@@ -12,8 +12,6 @@ enum MapFlag : std::int32_t {
     kEncloses = 2,
     kEmptyIsOutside = 4,
     kDecodesPlane = 8,
-    kHasRows = 16,  ///< front-back: a texel for each row holds the range of its texels
-    kIsGap = 32,    ///< front-back: outside only where both ends vote so
 };
 
 /// The first maps of a collider, which a step evaluates one after another, each by code of its own.

@@ -11,7 +11,7 @@ _ZSTD.ZSTD_compressBound.restype = _ZSTD.ZSTD_compress.restype = ctypes.c_size_t
 
 FIXED8, FRONT_BACK = 1, 4  # of collider.fbs
 LESS, BOTH = 0, 2
-NONE, ZSTD, ROWS = 0, 1, 2
+NONE, ZSTD = 0, 1
 TEXEL = {FIXED8: 4, FRONT_BACK: 8}
 
 
@@ -79,12 +79,11 @@ def _metadata(maps, offsets):
     box = [struct.pack("<3f", -1, -1, -1), struct.pack("<3f", 1, 1, 1)]
     root, at = build.table([(0, box[0], 4), (1, box[1], 4), (2, None, 4), (3, None, 4), (4, None, 4)])
     build.point(0, root)
-    build.bytes[4:8] = b"RLF1"
+    build.bytes[4:8] = b"RLF2"
     build.string(at[2], "m")
-    provenance, of = build.table([(0, None, 4), (1, None, 4), (2, struct.pack("<Q", 12), 8), (3, None, 4),
-                                  (4, None, 4)])
+    provenance, of = build.table([(0, None, 4), (1, None, 4), (2, struct.pack("<Q", 12), 8), (3, None, 4)])
     build.point(at[3], provenance)
-    for field, text in [(0, "a.obj"), (1, "0" * 32), (3, "relief 0.1.0"), (4, "--map")]:
+    for field, text in [(0, "a.obj"), (1, "0" * 32), (3, "relief 0.1.0")]:
         build.string(of[field], text)
     build.align(4)
     build.point(at[4], len(build.bytes))
@@ -125,7 +124,7 @@ def container(maps):
         offsets.append(-(-end // 64) * 64)
         end = offsets[-1] + len(one["stored"])
     metadata = _metadata(maps, offsets)
-    header = b"\xabRELIEF\xbb\r\n\x1a\n" + struct.pack("<HHIIQQQQ", 1, 0, 64, 0, end, 64, size, xxh3(metadata))
+    header = b"\xabRELIEF\xbb\r\n\x1a\n" + struct.pack("<HHIIQQQQ", 2, 0, 64, 0, end, 64, size, xxh3(metadata))
     whole = bytearray(header + struct.pack("<Q", xxh3(header)) + metadata)
     for one, offset in zip(maps, offsets):
         whole += bytes(offset - len(whole)) + one["stored"]

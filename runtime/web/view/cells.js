@@ -107,7 +107,7 @@ export function cellsOf(collider, { min, max }) {
     collider.info.maps.forEach((map, i) => {
         if (map.projection === "local" && map.encloses) {
             markPatches(clear, grid, collider, i);
-        } else if (map.projection === "orthographic" && map.encloses && map.compare !== "gap") {
+        } else if (map.projection === "orthographic" && map.encloses) {
             mark(clear, grid, collider, i);
         }
     });

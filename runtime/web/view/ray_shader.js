@@ -33,7 +33,7 @@ bool surfaces(int i, ivec4 info, ReliefSight sight, out vec2 votes) {
     votes = vec2(RELIEF_FAR_INSIDE);
     if (reliefIsFrontBack(info)) {
         uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.z), 0);
-        found = sight.exists && (words.b != 0u || (words.a != 0u && !sight.plane));
+        found = words.b != 0u || (words.a != 0u && !sight.plane);
         float front = reliefFrontBackDepth(info.y, words.b);
         float back = reliefFrontBackDepth(info.y, words.a);
         if (sight.plane) {
@@ -122,10 +122,9 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     ends = max(ends, t + u_tiny);
     int border = leastOf(ends);
     float t1 = min(min(ends.x, ends.y), min(ends.z, max(far, t + u_tiny)));
-    bool exists = true;
-    int texel = reliefIsFrontBack(info) ? reliefFrontBackIndex(place, info, at, exists) : place.x + at.y * place.y + at.x;
+    int texel = place.x + at.y * place.y + at.x;
     vec3 across = vec3(vec2(at) + 0.5, 0.0);
-    ReliefSight sight = ReliefSight(texel, exists, q.z, reliefIsPlane(info), reliefFromMap(i, q - across),
+    ReliefSight sight = ReliefSight(texel, q.z, reliefIsPlane(info), reliefFromMap(i, q - across),
                                     u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
                                     u_relief_maps[i].object_per_map.z);
     vec2 votes, votes_then;
@@ -140,9 +139,7 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     sight.z = then.z;
     sight.from = reliefFromMap(i, then - across);
     surfaces(i, info, sight, votes_then);
-    bool gap = reliefIsFrontBack(info) && reliefIsGap(info);
-    float way = gap ? -1.0 : 1.0;  // of a gap both surfaces see outside
-    return partAt(bothBelow(t, t1, way * votes, way * votes_then), gap, t, t1, border);
+    return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, border);
 }
 
 // On face f of a cube: s and t times the major axis, and that.

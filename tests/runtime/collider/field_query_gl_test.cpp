@@ -20,13 +20,6 @@
 namespace relief {
 namespace {
 
-/// What validateFrame() asks of a map of gaps.
-void asOneOfGaps(DepthMap& map) {
-    map.decode = Decode::kPlane;
-    map.encloses = false;
-    map.empty_is_outside = false;
-}
-
 struct Kind {
     MapFormat format;
     Compare compare;
@@ -38,7 +31,7 @@ constexpr Kind kKinds[] = {
     {MapFormat::kFixed8, Compare::kLess, 64, 64},        {MapFormat::kFixed8, Compare::kGreater, 5, 90},
     {MapFormat::kFrontBackHalf, Compare::kBoth, 33, 40}, {MapFormat::kCube8, Compare::kLess, 31, 31},
     {MapFormat::kCube8, Compare::kGreater, 40, 40},      {MapFormat::kFrontBackFixed, Compare::kBoth, 40, 33},
-    {MapFormat::kFrontBackHalf, Compare::kGap, 35, 30},  {MapFormat::kFrontBackFixed, Compare::kGap, 30, 35},
+    {MapFormat::kFrontBackHalf, Compare::kBoth, 35, 30}, {MapFormat::kFrontBackFixed, Compare::kBoth, 30, 35},
 };
 
 /// A map of random surfaces in a random, rotated, anisotropic frame round the origin.
@@ -62,9 +55,6 @@ DepthMap randomMap(const Kind& kind, std::mt19937& random) {
     map.decode = unit(random) < 0.5F ? Decode::kPlane : Decode::kProjected;
     map.encloses = unit(random) < 0.5F;
     map.empty_is_outside = unit(random) < 0.5F;
-    if (compare == Compare::kGap) {
-        asOneOfGaps(map);
-    }
     map.object_per_map = {1.0F + unit(random), 1.0F + unit(random), 1.0F + unit(random)};
     const glm::vec3 axes[3] = {x, y, z};
     for (int i = 0; i < 3; ++i) {
@@ -127,9 +117,6 @@ TEST_P(FieldQueryGlTest, EveryFormatCompareAndDecodeAgreesWithTheCpu) {
             SCOPED_TRACE(nameOf(collider.maps[0]));
             collider.maps[0].encloses = (repeat & 1) != 0;
             collider.maps[0].empty_is_outside = (repeat & 2) != 0;
-            if (kind.compare == Compare::kGap) {
-                asOneOfGaps(collider.maps[0]);
-            }
             expectAgreement(collider, randomPoints(8'000, random), 1.0F / 90.0F, 1e-3);
         }
     }
