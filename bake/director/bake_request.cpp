@@ -16,7 +16,7 @@ namespace {
 /// (runtime/collider/live_collider.h).
 constexpr std::array<const char*, 3> kAxisMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
                                                   "front-back:dir=-z,up=+y"};
-constexpr std::uint32_t kAnimatedResolution = 256;
+constexpr std::uint32_t kAxisResolution = 256;
 
 /// \return the option that chooses the maps. Errors: kUsage: there are two.
 Result<MapSource> sourceOf(const BakeRequest& request) {
@@ -121,11 +121,9 @@ Result<void> readMaps(const BakeRequest& request, BakeSettings& settings) {
         const MapSpec spec = RELIEF_TRY(parseMapSpec(text, defaults));
         settings.bake.maps.push_back(spec);
     }
-    if (request.animated) {
-        settings.bake.resolution = kAnimatedResolution;
-    }
     if (request.animated || (settings.source == MapSource::kPatches && request.holes == Holes::kKeep)) {
         settings.source = MapSource::kMaps;
+        settings.bake.resolution = kAxisResolution;
         for (const char* const text : kAxisMaps) {
             settings.bake.maps.push_back(RELIEF_TRY(parseMapSpec(text, defaults)));
         }
@@ -247,7 +245,7 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                    "depth=half, decode=projected"});
     visit("resolution", request.resolution,
           {.help = "Texels along a side of --map without size, of --paper, --holes keep and --animated",
-           .fallback = "512; with --animated, 256",
+           .fallback = "512; with --holes keep and --animated, 256",
            .recorded = true});
     visit("budget", request.budget,
           {.help = "The bytes that patches may take on the GPU. The file has some hundred "

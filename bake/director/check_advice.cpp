@@ -44,6 +44,9 @@ class Advisor {
         patches_.holes = Holes::kClose;
         patches_.resolution.reset();
         patches_.budget = roundBudget(run.collider.gpuBytes());
+        if (!closes_) {
+            patches_.budget = std::min(*patches_.budget, kBudgetDefault);  // maps of --resolution, not of a budget
+        }
         // A default thickness follows the budget of the next bake.
         if (patches_.thickness && patches_.thickness->by_part) {
             patches_.thickness.reset();
