@@ -50,8 +50,9 @@ function(relief_precompile target from)
     endif()
 endfunction()
 
-# relief_unity(TARGET): compiles up to eight sources as one. For targets whose sources all instantiate the same large
-# templates, CLI11's or those of nlohmann's JSON: doing that once takes a third of the time.
+# relief_unity(TARGET): compiles up to eight sources as one, in about half of the time. For folders whose sources include the
+# same headers or instantiate the same large templates (CLI11's, those of nlohmann's JSON). Names in anonymous namespaces must
+# differ between the sources of such a folder, and must not overload functions of GLM.
 function(relief_unity target)
     if(RELIEF_UNITY)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)

@@ -24,7 +24,7 @@ constexpr std::size_t kBatch = 65'536;  ///< points that are measured at once
 constexpr std::size_t kWorst = 10;
 constexpr double kApart = 4.0 * kLeafSquares;  ///< between the worst places along an axis, in squares
 constexpr double kDeep = 0.05;  ///< of its box's longest side, ground goes below its lowest point
-constexpr std::uint32_t kRowsBetweenReports = 256;
+constexpr std::uint32_t kRowsBetweenChecks = 256;
 
 enum class Kind : std::uint8_t { kNear, kSeam, kAnywhere };
 
@@ -226,7 +226,7 @@ class GroundChecker {
             RELIEF_TRY(map_.next(below_));
             visit(row);
             above_.swap(below_);
-            if (row % kRowsBetweenReports == 0) {
+            if (row % kRowsBetweenChecks == 0) {
                 report(from + 0.5 * row / map_.rows());
             }
         }

@@ -18,7 +18,7 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kErrorBytesMax = 4096;
+constexpr std::size_t kImageErrorBytesMax = 4096;
 /// As much as any user may ask for.
 constexpr int kPipeBytes = 1 << 20;
 
@@ -67,10 +67,10 @@ class WorkerRows : public SampleRows {
         if (code == 0) {
             return receive(bytes);
         }
-        std::string text(std::min<std::size_t>(RELIEF_TRY(receiveNumber()), kErrorBytesMax), ' ');
+        std::string text(std::min<std::size_t>(RELIEF_TRY(receiveNumber()), kImageErrorBytesMax), ' ');
         RELIEF_TRY(receive(std::as_writable_bytes(std::span(text))));
         return code <= static_cast<std::uint32_t>(ErrorCode::kDifference)
-                   ? fail(static_cast<ErrorCode>(code), cleanUtf8(text, kErrorBytesMax))
+                   ? fail(static_cast<ErrorCode>(code), cleanUtf8(text, kImageErrorBytesMax))
                    : invalidInput("the importer answers with an error that there is not; save it again");
     }
 

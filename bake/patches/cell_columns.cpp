@@ -19,7 +19,7 @@ namespace {
 /// Of a place between two lines.
 constexpr double kRounding = 1e-9;
 /// Of more triangles the tree tells sooner that none is crossed.
-constexpr std::size_t kManyTriangles = 32;
+constexpr std::size_t kTreeTriangles = 32;
 
 using Polygon = std::array<glm::dvec3, 9>;
 
@@ -69,7 +69,7 @@ class Path {
     }
 
     void go(const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
-        if (triangles_.size() > kManyTriangles &&
+        if (triangles_.size() > kTreeTriangles &&
             query_.segmentIsFree(cell_.low + cell_.size * from, cell_.low + cell_.size * to)) {
             return;
         }

@@ -55,7 +55,7 @@ bool hasPatches(const Collider& collider) {
                                [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
 }
 
-std::string sideText(const PartAccuracy& accuracy) {
+std::string partSideText(const PartAccuracy& accuracy) {
     const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
     return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
 }
@@ -178,7 +178,7 @@ std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, co
     const std::string cure = partCure(part, collider);
     return lengthText(part.size(), collider.unit) + " long at " + positionText(part.bounds.center()) + ": " +
            percentText(accuracy.wrong.total()) + " of the points near it are on the wrong side, " +
-           sideText(accuracy) + (cure.empty() ? "" : "; " + cure);
+           partSideText(accuracy) + (cure.empty() ? "" : "; " + cure);
 }
 
 std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {

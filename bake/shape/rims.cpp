@@ -107,7 +107,7 @@ bool isNear(const Rim& from, const Rim& to, double gap) {
     });
 }
 
-double apart(const Bounds& a, const Bounds& b) {
+double boxGap(const Bounds& a, const Bounds& b) {
     const glm::dvec3 most =
         glm::max(glm::abs(glm::dvec3(a.min - b.min)), glm::abs(glm::dvec3(a.max - b.max)));
     return std::max({most.x, most.y, most.z});
@@ -122,7 +122,7 @@ std::size_t facingRim(const RimmedShell& outer, const std::vector<bool>& taken, 
     for (auto other = std::ranges::lower_bound(outer.rims, from, {}, low);
          other != outer.rims.end() && low(*other) <= from + 2.0 * gap; ++other) {
         const auto index = static_cast<std::size_t>(other - outer.rims.begin());
-        if (const double by = apart(other->bounds, rim.bounds); by <= gap && !taken[index]) {
+        if (const double by = boxGap(other->bounds, rim.bounds); by <= gap && !taken[index]) {
             near.emplace_back(by, index);
         }
     }
@@ -228,7 +228,7 @@ bool nearlyFace(const RimmedShell& outer, const RimmedShell& inner) {
     }
     const Bounds mouth = largest(inner)->bounds;
     return outer.mesh().bounds.contains(inner.mesh().bounds.center()) &&
-           apart(mouth, largest(outer)->bounds) <= kNearRimGap * double{mouth.longestSide()};
+           boxGap(mouth, largest(outer)->bounds) <= kNearRimGap * double{mouth.longestSide()};
 }
 
 }  // namespace

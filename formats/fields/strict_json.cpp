@@ -12,13 +12,13 @@
 namespace relief {
 namespace {
 
-using Json = nlohmann::json;
+using PlainJson = nlohmann::json;
 
-constexpr std::size_t kShownMax = 200;  // bytes of the file or of the parser's message that are shown
+constexpr std::size_t kMessageBytesMax = 200;  // bytes of the file or of the parser's message that are shown
 
 /// Looks through a text before it is parsed: nlohmann's parser takes time by the square of an array's length if a callback
 /// listens to it.
-class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
+class Strictness : public nlohmann::detail::json_sax_acceptor<PlainJson> {
   public:
     explicit Strictness(const JsonLimits& limits) : limits_(limits) {}
 
@@ -26,9 +26,9 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
 
     bool null() { return count(); }
     bool boolean(bool) { return count(); }
-    bool number_integer(Json::number_integer_t) { return count(); }
-    bool number_unsigned(Json::number_unsigned_t) { return count(); }
-    bool number_float(Json::number_float_t, const std::string&) { return count(); }
+    bool number_integer(PlainJson::number_integer_t) { return count(); }
+    bool number_unsigned(PlainJson::number_unsigned_t) { return count(); }
+    bool number_float(PlainJson::number_float_t, const std::string&) { return count(); }
     bool string(std::string&) { return count(); }
     bool start_object(std::size_t) { return begin(); }
     bool start_array(std::size_t) { return begin(); }
@@ -37,7 +37,7 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
     bool key(std::string& name) {
         if (!keys_.back().insert(name).second) {
             refused = {ErrorCode::kInvalidInput,
-                       "its JSON has the key '" + cleanUtf8(name, kShownMax) + "' twice in one object"};
+                       "its JSON has the key '" + cleanUtf8(name, kMessageBytesMax) + "' twice in one object"};
         }
         return !refused;
     }
@@ -70,21 +70,21 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<Json> {
 
 }  // namespace
 
-Result<Json> parseStrictJson(std::string_view text, const JsonLimits& limits) {
+Result<PlainJson> parseStrictJson(std::string_view text, const JsonLimits& limits) {
     if (text.find('\0') != std::string_view::npos) {
         return invalidInput("it is no valid JSON: it holds a byte of 0");
     }
     Strictness strict(limits);
-    Json::sax_parse(text.begin(), text.end(), &strict);
+    PlainJson::sax_parse(text.begin(), text.end(), &strict);
     if (strict.refused) {
         return tl::unexpected<Error>(std::move(*strict.refused));
     }
     try {
-        return Json::parse(text.begin(), text.end());
-    } catch (const Json::exception& error) {  // also a number out of range
+        return PlainJson::parse(text.begin(), text.end());
+    } catch (const PlainJson::exception& error) {  // also a number out of range
         const std::string_view words(error.what());
         return invalidInput("it is no valid JSON: " +
-                            cleanUtf8(words.substr(words.find("] ") + 2), kShownMax));
+                            cleanUtf8(words.substr(words.find("] ") + 2), kMessageBytesMax));
     }
 }
 

@@ -28,9 +28,9 @@ constexpr std::uint32_t kLeastTexels = 16;
 bool holds(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 q = map.object_to_map.apply(p);
     const glm::vec3 rim(1.0F / static_cast<float>(map.width), 1.0F / static_cast<float>(map.height), 0.0F);
-    constexpr float kSlack = 1e-5F;  // a texel's rounding
-    return glm::all(glm::greaterThanEqual(q, rim - kSlack)) &&
-           glm::all(glm::lessThanEqual(q, 1.0F - rim + kSlack));
+    constexpr float kTexelRounding = 1e-5F;
+    return glm::all(glm::greaterThanEqual(q, rim - kTexelRounding)) &&
+           glm::all(glm::lessThanEqual(q, 1.0F - rim + kTexelRounding));
 }
 
 /// As liveFrames() makes them.

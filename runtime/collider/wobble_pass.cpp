@@ -39,7 +39,7 @@ glm::vec3 phasesAt(const Wobble& wobble, double time) {
     return phases;
 }
 
-struct RestVertex {
+struct WobbleVertex {
     glm::vec3 position;
     glm::vec3 normal;
 };
@@ -77,7 +77,7 @@ Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm:
                                            std::to_string(positions.size()) + " and " +
                                            std::to_string(normals.size()));
     }
-    std::vector<RestVertex> rest(positions.size());
+    std::vector<WobbleVertex> rest(positions.size());
     Bounds bounds;
     for (std::size_t i = 0; i < rest.size(); ++i) {
         rest[i] = {positions[i], normals[i]};
@@ -91,12 +91,12 @@ Result<WobblePass> WobblePass::create(const Wobble& wobble, std::span<const glm:
     pass.feedback_ = RELIEF_TRY(VertexFeedback::create("collider/wobble.vert", positions.size(), output));
     pass.rest_ = makeBuffer();
     glBindBuffer(GL_ARRAY_BUFFER, pass.rest_.name());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest.size() * sizeof(RestVertex)), rest.data(),
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(rest.size() * sizeof(WobbleVertex)), rest.data(),
                  GL_STATIC_DRAW);
     for (const auto& [location, offset] :
-         {std::pair(0U, offsetof(RestVertex, position)), {1U, offsetof(RestVertex, normal)}}) {
+         {std::pair(0U, offsetof(WobbleVertex, position)), {1U, offsetof(WobbleVertex, normal)}}) {
         glEnableVertexAttribArray(location);
-        glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(RestVertex),
+        glVertexAttribPointer(location, 3, GL_FLOAT, GL_FALSE, sizeof(WobbleVertex),
                               reinterpret_cast<const void*>(offset));
     }
     RELIEF_TRY(checkAllocated("the vertices of the wobbling mesh", "simplify it"));
