@@ -8,7 +8,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,11 +22,10 @@
 #include "bake/repair/winding.h"
 #include "bake/shape/near_copies.h"
 #include "bake/shape/parts.h"
-#include "bake/shape/rims.h"
 #include "bake/shape/sealed_voids.h"
 #include "bake/shape/sheet.h"
 #include "bake/shape/solid_union.h"
-#include "formats/base/text.h"
+#include "bake/shape/walls.h"
 
 namespace relief {
 namespace {
@@ -59,16 +57,6 @@ constexpr std::size_t kTerrainTriangles = 200;
 constexpr double kTerrainExtent = 0.8;
 /// The ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
-
-/// Before finishMesh.
-TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
-    TriangleMesh mesh;
-    mesh.name = name;
-    mesh.positions = sheet.positions;
-    mesh.triangles = sheet.triangles;
-    mesh.labels = sheet.sources;
-    return mesh;
-}
 
 /// Share of the rays from either side of a sheet that lead out of the mesh; a lower bound once both exceed kSheetSight.
 std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const MeshQuery& query) {
@@ -502,73 +490,24 @@ class Shaper {
                part.as == ShapeAs::kAuto;
     }
 
-    /// A sheet runs against the winding of the file; nullopt if only some of its triangles do.
-    [[nodiscard]] std::optional<bool> turnedSinceImport(const Sheet& sheet) const {
-        std::size_t turned = 0;
-        for (std::size_t i = 0; i < sheet.triangles.size(); ++i) {
-            const glm::uvec3& t = sheet.triangles[i];
-            const glm::dvec3 a = sheet.positions[t.x];
-            const glm::dvec3 normal =
-                cross(glm::dvec3(sheet.positions[t.y]) - a, glm::dvec3(sheet.positions[t.z]) - a);
-            const bool against = dot(normal, planeOf(mesh_, sheet.sources[i]).normal) < 0.0;
-            turned += against != turned_[sheet.sources[i]] ? 1 : 0;
-        }
-        return turned == 0 || turned == sheet.triangles.size() ? std::optional(turned > 0) : std::nullopt;
-    }
-
     /// Adds the walls of joined shells, whose inside is free. \return per part: it is joined to another one.
     Result<std::vector<bool>> addWalls() {
-        std::vector<Bounds> bounds;
+        std::vector<WallCandidate> candidates;
         for (const Open& part : open_) {
-            bounds.push_back(boundsOf(part.sheet.positions));
+            candidates.push_back({&part.sheet, part.as == ShapeAs::kAuto && part.role.kind != Kind::kTerrain,
+                                  mayBeHoled(part)});
         }
-        const auto mayBeWall = [&](std::size_t a, std::size_t b) {
-            const auto [least, most] = std::minmax(bounds[a].longestSide(), bounds[b].longestSide());
-            return least >= static_cast<float>(kBodyExtent) * most &&
-                   (bounds[a].contains(bounds[b].center()) || bounds[b].contains(bounds[a].center()));
-        };
-        // Boxes that meet along x, in turn from the lowest: a file may have thousands of open parts that do not face.
-        std::vector<std::size_t> order(open_.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::sort(order, {}, [&](std::size_t i) { return std::pair(bounds[i].min.x, i); });
-        std::vector<bool> may_be_wall(open_.size(), false);
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const std::size_t a = order[i];
-            for (std::size_t k = i + 1; k < order.size() && bounds[order[k]].min.x <= bounds[a].max.x; ++k) {
-                const std::size_t b = order[k];
-                if ((mayBeHoled(open_[a]) || mayBeHoled(open_[b])) && mayBeWall(a, b)) {
-                    may_be_wall[a] = may_be_wall[b] = true;
-                }
-            }
-        }
-        std::vector<std::size_t> parts;
-        std::vector<OpenShell> shells;
-        for (std::size_t i = 0; i < open_.size(); ++i) {
-            if (open_[i].as != ShapeAs::kAuto || open_[i].role.kind == Kind::kTerrain || !may_be_wall[i]) {
-                continue;
-            }
-            Result<TriangleMesh> mesh = finishMesh(meshOf(open_[i].sheet, mesh_.name));
-            if (mesh) {  // else too small for a mesh
-                parts.push_back(i);
-                shells.push_back({std::move(*mesh), mayBeHoled(open_[i])});
-            }
-        }
+        ShellWalls walls = wallsAmong(candidates, mesh_.name);
+        unjoined_ = std::move(walls.unjoined);
         std::vector<bool> joined(open_.size(), false);
-        ShellWalls walls = joinRims(shells);
-        for (const auto& [outer, inner] : walls.unjoined) {
-            unjoined_.push_back({parts[outer], parts[inner]});
-        }
         for (ShellWall& wall : walls.walls) {
             const TriangleMesh finished = RELIEF_TRY(finishMesh(std::move(wall.mesh)));
             const Closed solid = RELIEF_TRY(close(finished, true));
             if (solid.mesh) {
                 add(solid);
                 ++report_.solids_with_holes;
-                joined[parts[wall.outer]] = joined[parts[wall.inner]] = true;
-                const std::optional<bool> outer = turnedSinceImport(open_[parts[wall.outer]].sheet);
-                const std::optional<bool> inner = turnedSinceImport(open_[parts[wall.inner]].sheet);
-                const bool alike = wall.alike != (outer != inner);
-                report_.unclear_walls += !outer || !inner || alike ? 1 : 0;
+                joined[wall.outer] = joined[wall.inner] = true;
+                report_.unclear_walls += isUnclear(wall, candidates, mesh_, turned_) ? 1 : 0;
             }
         }
         return joined;
@@ -713,40 +652,7 @@ class Shaper {
     ShapeReport report_;
 };
 
-void append(std::string& text, std::uint64_t count, const char* one, const char* many) {
-    if (count > 0) {
-        text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
-    }
-}
-
 }  // namespace
-
-std::vector<std::string> asWords(const ShapeReport& report) {
-    std::vector<std::string> words;
-    if (report.as != ShapeAs::kAuto) {
-        words.emplace_back(wordOf(report.as));
-    }
-    for (const NamedTriangles& named : report.named) {
-        words.push_back(named.shape.name + "=" + std::string(wordOf(named.shape.as)));
-    }
-    return words;
-}
-
-std::optional<Thickness> thicknessOf(const ShapeReport& report) {
-    const bool by_part = report.default_thickness > 0.0;
-    const double length = by_part ? report.default_thickness : report.thickness;
-    return length > 0.0 ? std::optional(Thickness{length, by_part}) : std::nullopt;
-}
-
-std::string ShapeReport::text() const {
-    std::string text;
-    append(text, solids, "solid", "solids");
-    append(text, solids_with_holes, "solid with holes", "solids with holes");
-    append(text, sheets, "sheet", "sheets");
-    append(text, terrains, "terrain", "terrains");
-    append(text, voids, "sealed void, full", "sealed voids, full");
-    return text;
-}
 
 SurfaceParts surfacePartsOf(const PreparedMesh& mesh) {
     SurfacePartsBuilder builder(*mesh);
@@ -758,46 +664,6 @@ SurfaceParts surfacePartsOf(const PreparedMesh& mesh) {
 
 Result<ShapedMesh> shapeMesh(const PreparedMesh& mesh, const ShapeOptions& options) {
     return Shaper(mesh, options).run();
-}
-
-void fields(FieldVisitor& visit, const NamedTriangles& named) {
-    visit("name", named.shape.name,
-          {.help = "Name of a node, mesh, group or material of the file", .pattern = "."});
-    visit("as", named.shape.as, {"How its triangles are treated"});
-    visit("triangles", named.triangles, {"Triangles with this name and no later one"});
-}
-
-void fields(FieldVisitor& visit, const ShapeReport& report) {
-    const auto length = [](double value) { return onlyIf(value > 0.0, static_cast<float>(value)); };
-    constexpr FieldRange kAboveZero{.low = 0.0, .low_included = false};
-    visit("as", report.as, {"KIND of --as, for triangles without a named one"});
-    visit("named", report.named, {"Each --as NAME=KIND, in the order of the options"});
-    visit("solids", report.solids, {"Closed parts"});
-    visit("solids_with_holes", report.solids_with_holes,
-          {"Open parts whose inside is mostly hidden; their holes are closed"});
-    visit("sheets", report.sheets, {"Parts that are visible from both sides; they become shells"});
-    visit("unjoined_shells", report.unjoined_shells,
-          {"Open shells within another one, with mouths that nearly face each other, whose inside is full"});
-    visit("closable_sheets", report.closable_sheets,
-          {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
-           "vessels, or bodies for --as solid"});
-    visit("unclear_walls", report.unclear_walls,
-          {"Walls made of two open shells whose inner one is not wound to face the space within, as a lining "
-           "is: it may be a body in its clothes"});
-    visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
-    visit("voids", report.voids,
-          {"Voids that sheets and solids seal together; they are full, but with --voids hollow"});
-    visit("coincident_triangles", report.coincident_triangles,
-          {"Triangles left out because they coincide with another one"});
-    visit("near_copies", report.near_copies,
-          {"Closed parts left out because they lie within a ten-thousandth of their longest side of a larger "
-           "one"});
-    visit("thickness", length(report.thickness),
-          {"Thickness of the thickest shell; null without shells", "object units", kAboveZero});
-    visit("thickness_least", length(report.thickness_least),
-          {"Thickness of the thinnest shell; null without shells", "object units", kAboveZero});
-    visit("thickness_asked", report.thickness > 0.0 && report.default_thickness == 0.0,
-          {"--thickness was given; otherwise each shell suits the size of its part"});
 }
 
 }  // namespace relief

@@ -616,6 +616,15 @@ class Thickener {
 
 }  // namespace
 
+TriangleMesh meshOf(const Sheet& sheet, const std::string& name) {
+    TriangleMesh mesh;
+    mesh.name = name;
+    mesh.positions = sheet.positions;
+    mesh.triangles = sheet.triangles;
+    mesh.labels = sheet.sources;
+    return mesh;
+}
+
 Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
               std::span<const std::uint32_t> triangles) {
     Sheet sheet;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bake/mesh/mesh_edges.h"
@@ -39,6 +40,9 @@ inline constexpr double kFoldCosine = -0.5;
 /// \param triangles  indices into mesh.triangles; those without area once welded are dropped.
 [[nodiscard]] Sheet sheetOf(const TriangleMesh& mesh, std::span<const std::uint32_t> welded,
                             std::span<const std::uint32_t> triangles);
+
+/// The mesh of a sheet before finishMesh, with its sources as labels.
+[[nodiscard]] TriangleMesh meshOf(const Sheet& sheet, const std::string& name);
 
 /// Positions and triangles of closed, consistently wound surfaces, outwards.
 struct SolidPart {
