@@ -136,7 +136,7 @@ Result<void> runCheck(const CheckCommand& command, const std::string& file, File
     if (command.request.mesh.empty()) {
         return checkFile(file, command.json, command.limits);
     }
-    RELIEF_TRY(preflightPage(file, command.request.mesh, command.html, files));
+    static_cast<void>(RELIEF_TRY(preflightPage(file, command.request.mesh, command.html, files)));
     auto [container, collider] = RELIEF_TRY(readColliderFile(file, command.limits));
     MeshCheck run = RELIEF_TRY(check(command.request, std::move(collider)));
     showCheckWarnings(run);

@@ -312,8 +312,7 @@ Result<void> chooseShown(const Scene& scene, const fs::path& file, Page& page, F
 
 /// \param check  of a world; null: none.
 Result<std::string> scenePage(const std::string& name, const ContainerLimits& limits, const Json& check,
-                              FileGuard& files) {
-    const std::string player = RELIEF_TRY(playerPage(files));
+                              const std::string& player, FileGuard& files) {
     Page page{.name = inputName(name), .check = check};
     const fs::path file = name;
     // The default scene of a world: a string of JSON is one of TOML.
@@ -365,13 +364,14 @@ Result<Json> worldCheckJson(const WorldCheckJson& check) {
 }
 
 Result<std::string> worldPage(const ViewCommand& command, FileGuard& files) {
+    const std::string player = RELIEF_TRY(playerPage(files));
     const WorldField field(RELIEF_TRY(loadWorld(command.file, command.limits)));
     const WorldAccuracy accuracy = RELIEF_TRY(checkWorld({command.check, {}, true}, field));
     for (const std::string& warning : accuracy.warnings) {
         spdlog::warn(warning);
     }
     return makeWorldPage(command.file, command.limits, {inputName(command.file), &field, &accuracy, {}},
-                         files);
+                         player, files);
 }
 
 /// Beside FILE unless -o names another place.
@@ -401,10 +401,10 @@ Result<void> runView(const ViewCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.file));
     RELIEF_TRY(files.reads(command.check.mesh));
     RELIEF_TRY(files.writes(output, "-o"));
-    const std::string html =
-        RELIEF_TRY(measured && namesWorld(command.file) ? worldPage(command, files)
-                   : command.isScene() ? scenePage(command.file, command.limits, nullptr, files)
-                                       : colliderPage(command, files));
+    const std::string html = RELIEF_TRY(measured && namesWorld(command.file) ? worldPage(command, files)
+                                        : command.isScene() ? scenePage(command.file, command.limits, nullptr,
+                                                                        RELIEF_TRY(playerPage(files)), files)
+                                                            : colliderPage(command, files));
     return writeFile(output, std::as_bytes(std::span(html)));
 }
 
@@ -415,27 +415,24 @@ Result<std::string> makeCheckPage(const std::string& name, std::size_t bytes, co
     return checkPage({.name = name, .bytes = bytes}, check, max_error);
 }
 
-Result<void> preflightPage(const std::string& file, const std::string& mesh, const std::string& html,
-                           FileGuard& files) {
+Result<std::string> preflightPage(const std::string& file, const std::string& mesh, const std::string& html,
+                                  FileGuard& files) {
     if (html.empty()) {
-        return {};
+        return "";
     }
     RELIEF_TRY(files.reads(file));
     RELIEF_TRY(files.reads(mesh));
     RELIEF_TRY(files.writes("-", "the report"));
     RELIEF_TRY(files.writes(html, "--html"));
-    if (namesWorld(file)) {
-        static_cast<void>(RELIEF_TRY(playerPage(files)));
-    }
-    return {};
+    return namesWorld(file) ? playerPage(files) : "";
 }
 
 Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,
-                                  const WorldCheckJson& check, FileGuard& files) {
+                                  const WorldCheckJson& check, const std::string& player, FileGuard& files) {
     for (const std::string& named : check.accuracy->dependencies) {
         RELIEF_TRY(files.reads(named));
     }
-    return scenePage(file, limits, RELIEF_TRY(worldCheckJson(check)), files);
+    return scenePage(file, limits, RELIEF_TRY(worldCheckJson(check)), player, files);
 }
 
 OptionRef addMeshOptions(CLI::App& verb, CheckRequest& request) {

@@ -15,9 +15,10 @@
 namespace relief {
 
 /// Before the long work: whether a page can be made, and written. \param html  --html; empty: none
-/// Errors: kUsage, kUnsupported; those of FileGuard.
-[[nodiscard]] Result<void> preflightPage(const std::string& file, const std::string& mesh,
-                                         const std::string& html, FileGuard& files);
+/// \return the player, for the page of a world; else empty.
+/// Errors: kUsage; kUnsupported: no player; kInvalidInput: a player without its one place for data; those of FileGuard.
+[[nodiscard]] Result<std::string> preflightPage(const std::string& file, const std::string& mesh,
+                                                const std::string& html, FileGuard& files);
 
 /// The page of `relief view` around a check that has been made: `relief check --html`.
 /// \param name  of the collider. \param bytes  of its file.
@@ -25,12 +26,11 @@ namespace relief {
 [[nodiscard]] Result<std::string> makeCheckPage(const std::string& name, std::size_t bytes,
                                                 const MeshCheck& check, std::optional<float> max_error);
 
-/// The page of a world, which needs the player that scripts/build.sh web makes. \param file  of the world. \param check  made with
-/// pictures. \param files  gets the player.
-/// Errors: kUnsupported: no player; kInvalidInput: a player without its one place for data; kLimit: more than a page holds; those of
-/// loadAll.
+/// The page of a world. \param file  of the world. \param check  made with pictures. \param player  of preflightPage.
+/// Errors: kLimit: more than a page holds; those of loadAll.
 [[nodiscard]] Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,
-                                                const WorldCheckJson& check, FileGuard& files);
+                                                const WorldCheckJson& check, const std::string& player,
+                                                FileGuard& files);
 
 /// Adds --mesh, and the fields that need it.
 /// \return --mesh

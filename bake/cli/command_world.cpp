@@ -141,9 +141,9 @@ Result<void> runWorldCommand(const std::string& folder_name, const WorldCall& ca
 namespace {
 
 Result<void> writePage(const std::string& file, const WorldCheckCall& call, const WorldField& field,
-                       const WorldAccuracy& accuracy) {
-    const std::string page = RELIEF_TRY(
-        makeWorldPage(file, call.limits, {inputName(file), &field, &accuracy, call.max_error}, call.files));
+                       const WorldAccuracy& accuracy, const std::string& player) {
+    const std::string page = RELIEF_TRY(makeWorldPage(
+        file, call.limits, {inputName(file), &field, &accuracy, call.max_error}, player, call.files));
     return writeFile(call.html, std::as_bytes(std::span(page)));
 }
 
@@ -153,7 +153,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
     if (call.request.detail) {
         return fail(ErrorCode::kUsage, "--detail is for one collider; leave it out for a world");
     }
-    RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
+    const std::string player = RELIEF_TRY(preflightPage(file, call.request.mesh, call.html, call.files));
     const WorldField field(RELIEF_TRY(loadWorld(file, call.limits)));
     RELIEF_TRY(checkCoarse(field.world(), file, call.limits));
     std::optional<WorldAccuracy> accuracy;
@@ -164,7 +164,7 @@ Result<void> runWorldCheck(const std::string& file, const WorldCheckCall& call) 
         }
     }
     if (!call.html.empty()) {
-        RELIEF_TRY(writePage(file, call, field, *accuracy));
+        RELIEF_TRY(writePage(file, call, field, *accuracy, player));
     }
     const std::string name = inputName(file);
     const WorldAccuracy* const measured = accuracy ? &*accuracy : nullptr;

@@ -36,8 +36,9 @@ class Strictness : public nlohmann::detail::json_sax_acceptor<PlainJson> {
     bool end_array() { return end(); }
     bool key(std::string& name) {
         if (!keys_.back().insert(name).second) {
-            refused = {ErrorCode::kInvalidInput,
-                       "its JSON has the key '" + cleanUtf8(name, kMessageBytesMax) + "' twice in one object"};
+            refused = {
+                ErrorCode::kInvalidInput,
+                "its JSON has the key '" + cleanUtf8(name, kMessageBytesMax) + "' twice in one object"};
         }
         return !refused;
     }
