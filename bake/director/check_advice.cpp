@@ -45,7 +45,8 @@ class Advisor {
         patches_.resolution.reset();
         patches_.budget = roundBudget(run.collider.gpuBytes());
         if (!closes_) {
-            patches_.budget = std::min(*patches_.budget, kBudgetDefault);  // maps of --resolution, not of a budget
+            // Its maps follow --resolution, not a budget.
+            patches_.budget = std::min(*patches_.budget, kBudgetDefault);
         }
         // A default thickness follows the budget of the next bake.
         if (patches_.thickness && patches_.thickness->by_part) {

@@ -100,9 +100,7 @@ TEST(Materials, AContainerKeepsThemAndOthersStayAsTheyWere) {
         const std::vector<std::byte> bytes = written(collider, level);
         const Collider read = required(readContainer(bytes));
         EXPECT_EQ(read, collider);
-        const Inspection inspection = required(inspectContainer(bytes));
-        EXPECT_FALSE(inspection.damaged());
-        EXPECT_EQ(inspection.minor, 6);
+        EXPECT_FALSE(required(inspectContainer(bytes)).damaged());
     }
     collider.materials = {};
     EXPECT_EQ(written(collider), without);
