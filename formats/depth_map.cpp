@@ -28,19 +28,10 @@ glm::vec3 fromMap(const DepthMap& map, const glm::vec3& q) {
 }
 
 /// The vote of a plane, in object space.
-/// \param from    P − O, with O where the ray of the texel's centre has depth 0
-/// \param ray     that ray's direction, for a unit of depth
-/// \param length  its length
-float planeVote(const DepthMap& map, const Surface& surface, const glm::vec3& from, const glm::vec3& ray,
-                float length) {
-    const float along = dot(surface.normal, ray);
-    float offset = surface.depth * along;
-    if (std::abs(along) < kStandingCosine * length) {
-        const float depth_max = map.projection() == Projection::kCube ? kCubeDepthMax : 1.0F;
-        const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
-        offset = surface.depth * (range * (2.0F / depth_max)) - range;
-    }
-    return dot(surface.normal, from) - offset;
+/// \param from  P − O, with O where the ray of the texel's centre has depth 0
+/// \param ray   that ray's direction, for a unit of depth
+float planeVote(const Surface& surface, const glm::vec3& from, const glm::vec3& ray) {
+    return dot(surface.normal, from) - surface.depth * dot(surface.normal, ray);
 }
 
 const Vote kFarOutsideVote{kFarOutside, glm::vec3(0.0F)};
@@ -73,8 +64,7 @@ std::optional<Vote> voteOrthographic(const DepthMap& map, const glm::vec3& p) {
     const glm::vec3 ray = planes ? fromMap(map, {0.0F, 0.0F, 1.0F}) : glm::vec3(0.0F);
     const auto voteOf = [&](const Surface& surface, bool keeps_nearest) {
         const float ahead = keeps_nearest ? surface.depth - p.z : p.z - surface.depth;
-        const float distance =
-            planes ? planeVote(map, surface, from, ray, map.object_per_map.z) : map.object_per_map.z * ahead;
+        const float distance = planes ? planeVote(surface, from, ray) : map.object_per_map.z * ahead;
         return Vote{distance, surface.normal};
     };
     Vote best;
@@ -121,8 +111,7 @@ std::optional<Vote> voteCube(const DepthMap& map, const glm::vec3& p) {
         const glm::vec3 center = cubeDirection(
             {at.face, (static_cast<float>(x) + 0.5F) / size, (static_cast<float>(y) + 0.5F) / size});
         const glm::vec3 ray = center / length(center);
-        distance =
-            planeVote(map, surface, fromMap(map, p), fromMap(map, ray), length(map.object_per_map * ray));
+        distance = planeVote(surface, fromMap(map, p), fromMap(map, ray));
     } else {
         const float ahead =
             map.compare == Compare::kGreater ? radius - surface.depth : surface.depth - radius;
@@ -159,14 +148,6 @@ const char* compareName(Compare compare) {
 
 const char* decodeName(Decode decode) {
     return decode == Decode::kProjected ? "projected" : "plane";
-}
-
-float standingRange(Projection projection, const glm::vec3& object_per_map, std::uint32_t width,
-                    std::uint32_t height) {
-    const glm::vec3& s = object_per_map;
-    return projection == Projection::kCube
-               ? 2.0F * (s.x + s.y + s.z) / static_cast<float>(width)
-               : s.x / static_cast<float>(width) + s.y / static_cast<float>(height);
 }
 
 glm::vec3 Affine::apply(const glm::vec3& p) const {

@@ -54,10 +54,9 @@ struct Affine {
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 
-/// A plane whose normal has a smaller |cosine| than this with its texel's ray stands along the ray: they
-/// meet at no useful depth, and the texel stores the plane's distance from the ray instead. So a wall that a
-/// view sees edge-on, and a silhouette, pass through a texel where they are, not along its edges.
-inline constexpr float kStandingCosine = 1.0F / 32.0F;
+/// Writers store no plane whose normal has a smaller |cosine| than this with its texel's ray: plane and ray meet at no useful
+/// depth. The texel of a wall that a view sees edge-on stores a plane that faces the viewer instead.
+inline constexpr float kPlaneCosineMin = 1.0F / 32.0F;
 
 /// Writers of maps draw surfaces that lie up to this share of the depth range outside the volume, and clamp
 /// their depths to it: a surface in a face of the volume is met in spite of rounding.
@@ -66,12 +65,6 @@ inline constexpr double kDepthSlack = 1e-6;
 /// Writers of maps hold a depth between those of the triangle's corners where the |cosine| of its normal with
 /// the ray is no larger than this: its plane is a poor guide outside the triangle.
 inline constexpr double kGrazingCosine = 1e-3;
-
-/// The largest offset of a standing plane, object units, a little more than a texel: depth d of a texel
-/// stands for n·(P − O) = (2·d/d_max − 1) · standingRange, with O where its ray has depth 0.
-/// \param object_per_map, width, height  as a DepthMap has them.
-[[nodiscard]] float standingRange(Projection projection, const glm::vec3& object_per_map, std::uint32_t width,
-                                  std::uint32_t height);
 
 /// The distance of a vote that knows P to be outside but not how far. A finite float, so that shaders need
 /// no infinity; reports print it as "inf".

@@ -40,7 +40,7 @@ double planeDepth(const TexelRay& ray, const glm::dvec3& normal, const glm::dvec
 
 glm::dvec3 turnedToViewer(const glm::dvec3& normal, const glm::dvec3& viewer) {
     // cos(a − e) ≤ cos a + e, so e more than the bound survives a turn by e.
-    constexpr double kCosine = kPlaneGrazingMin + kNormalIndexError;
+    constexpr double kCosine = double{kPlaneCosineMin} + kNormalIndexError;
     const glm::dvec3 n = glm::normalize(normal);
     const glm::dvec3 v = glm::normalize(viewer);
     const double cosine = glm::dot(n, v);

@@ -5,9 +5,8 @@
 //          n   S = origin + depth · direction          f(P) = n·(P − S): positive on the side n points to
 //           \  |
 //     origin ●─┼──▶ direction       A plane (nearly) along the ray tells nothing of depth: f stays small
-//              |\                   however deep P lies. Below |cos(n, direction)| =
-//                                  kStandingCosine a texel holds its distance from the ray
-//                                  instead: the plane stands (depth_map.h).
+//              |\                   however deep P lies. No plane is stored whose |cosine| with the ray
+//                                  is below kPlaneCosineMin (depth_map.h).
 #pragma once
 
 #include <cstdint>
@@ -16,10 +15,6 @@
 #include "formats/depth_map.h"
 
 namespace relief {
-
-/// The smallest |cosine| between the ray of a texel and the normal of a plane, as decoded, that is stored by
-/// its depth: a little more than kStandingCosine, so that no reader's rounding makes it stand.
-inline constexpr double kPlaneGrazingMin = double{kStandingCosine} + 1e-4;
 
 /// The farthest that encodeNormal turns a normal, in radians: 0.65°, rounded up.
 inline constexpr double kNormalIndexError = 0.01135;
@@ -44,7 +39,7 @@ struct TexelRay {
 /// outside of what a texel holds.
 [[nodiscard]] double planeDepth(const TexelRay& ray, const glm::dvec3& normal, const glm::dvec3& point);
 
-/// The unit normal nearest to `normal` whose cosine with `viewer` is at least kPlaneGrazingMin with room for
+/// The unit normal nearest to `normal` whose cosine with `viewer` is at least kPlaneCosineMin with room for
 /// encodeNormal, so that it may be stored: `normal` itself unless that is grazing or turned away. (A plane
 /// that was turned is no longer the surface's tangent: the caller pushes it outwards.)
 /// \param normal, viewer  not zero; viewer is −direction for the nearest surface, +direction for the farthest.

@@ -42,21 +42,19 @@ bool Sight::isInVolume(const glm::dvec3& in_map) const {
 
 Sight::Lines Sight::linesTo(const glm::dvec3& p, const glm::dvec3& in_map) const {
     Lines lines;
-    const auto add = [&](const glm::dvec3& line, bool parallel) {
-        lines.line[lines.count++] = {p + line, parallel};
-    };
+    const auto add = [&](const glm::dvec3& line) { lines.start[lines.count++] = p + line; };
     if (map_.projection() == Projection::kCube) {
         const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
         // From the centre, or from the face of the volume behind p.
         const double share = map_.compare == Compare::kLess ? -1.0 : 1.0 / reach - 1.0;
-        add(to_object_ * (share * in_map), false);
+        add(to_object_ * (share * in_map));
         return lines;
     }
     if (map_.compare != Compare::kGreater) {
-        add(-in_map.z * to_object_[2], true);
+        add(-in_map.z * to_object_[2]);
     }
     if (map_.compare != Compare::kLess) {
-        add((1.0 - in_map.z) * to_object_[2], true);
+        add((1.0 - in_map.z) * to_object_[2]);
     }
     return lines;
 }
@@ -74,15 +72,8 @@ bool Sight::sees(const SurfacePoint& point) const {
     }
     const Lines lines = linesTo(p, in_map);
     for (std::size_t i = 0; i < lines.count; ++i) {
-        const auto& [start, parallel] = lines.line[i];
-        const glm::dvec3 sight = start - p;
-        const double cosine = glm::dot(sight, normal) / glm::length(sight);
-        const bool stands = map_.decode == Decode::kPlane && std::abs(cosine) < double{kStandingCosine};
-        if ((cosine > 0.0 || stands) && query_.segmentIsFree(p, start)) {
-            return true;
-        }
-        const glm::dvec3 above = position + kWallStep * side_ * normal;
-        if (stands && query_.segmentIsFree(above, parallel ? above + sight : start)) {
+        const glm::dvec3& start = lines.start[i];
+        if (glm::dot(start - p, normal) > 0.0 && query_.segmentIsFree(p, start)) {
             return true;
         }
     }
@@ -99,8 +90,8 @@ std::optional<glm::dvec3> Sight::reaches(const glm::dvec3& p) const {
     }
     const Lines lines = linesTo(p, in_map);
     for (std::size_t i = 0; i < lines.count; ++i) {
-        if (query_.segmentIsFree(p, lines.line[i].start)) {
-            return lines.line[i].start;
+        if (query_.segmentIsFree(p, lines.start[i])) {
+            return lines.start[i];
         }
     }
     return std::nullopt;

@@ -16,10 +16,6 @@
 
 namespace relief {
 
-/// Offset for walls along a map's lines of sight, in units of the longest side: more than the roughness of flat walls in
-/// artists' meshes.
-inline constexpr double kWallStep = 1e-3;
-
 /// The lines of sight of one map, independent of its texels.
 class Sight {
   public:
@@ -27,8 +23,7 @@ class Sight {
     Sight(const DepthMap& map, const MeshQuery& query);
 
     /// The map can hold the surface there: an end that it keeps has, within the volume, a free line of sight to the front of
-    /// the surface, kSurfaceStep above it. A wall along the line of sight (of a cosine below kStandingCosine) fits the planes
-    /// of Decode::kPlane, and is seen if the line is free kSurfaceStep or kWallStep above it.
+    /// the surface, kSurfaceStep above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
     /// The start of a free line of sight to a point in object space. nullopt: none, and even the finest texels would not have
@@ -36,12 +31,8 @@ class Sight {
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
   private:
-    struct Line {
-        glm::dvec3 start;  ///< where the map's ray starts, object space
-        bool parallel;     ///< to the lines of nearby points
-    };
     struct Lines {
-        std::array<Line, 2> line;
+        std::array<glm::dvec3, 2> start;  ///< where the map's rays start, object space
         std::size_t count = 0;
     };
     [[nodiscard]] glm::dvec3 inMap(const glm::dvec3& p) const;

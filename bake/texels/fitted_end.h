@@ -38,7 +38,10 @@ struct FittedMapOptions {
     const double unit = view.depthUnit();
     PlaneFitOptions fit;
     fit.u_max = view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0;
-    fit.range = standingRange(view.projection(), view.object_per_map, view.width, view.height);
+    const glm::vec3& s = view.object_per_map;
+    fit.span = view.projection() == Projection::kCube
+                   ? 2.0F * (s.x + s.y + s.z) / static_cast<float>(view.width)
+                   : s.x / static_cast<float>(view.width) + s.y / static_cast<float>(view.height);
     fit.reach = map.reach / unit;
     fit.pixel_cost = map.good_enough / unit;
     fit.refinements = map.refinements;
@@ -66,9 +69,8 @@ class EndView {
         // Exact in double: both have the same 65534 steps.
         constexpr double kCodes = kDepthSteps;
         const double code = plane.code;
-        const double depth = (far_ && !plane.stands ? kCodes - code : code) / kCodes * u_max_;
-        return {format == MapFormat::kFrontBackHalf ? outwardHalf(depth, !far_ && !plane.stands)
-                                                    : static_cast<float>(depth),
+        const double depth = (far_ ? kCodes - code : code) / kCodes * u_max_;
+        return {format == MapFormat::kFrontBackHalf ? outwardHalf(depth, !far_) : static_cast<float>(depth),
                 glm::vec3(plane.normal)};
     }
 

@@ -23,8 +23,6 @@ constexpr double kSteepCosine = 0.35;
 /// Steeper planes cut deep: a surface that rises between the footprint's rays and the rim of the texel would leave a pit in
 /// the solid. The rays around the footprint have to lie behind them too.
 constexpr double kDeepCosine = 0.1;
-/// Cosines between this and kPlaneGrazingMin are not stored, as a reader's rounding could mistake the kind of plane.
-constexpr double kStandingMax = double{kStandingCosine} - 1e-4;
 
 std::uint16_t codeOf(const glm::dvec3& normal) {
     return packNormal(encodeNormal(glm::vec3(normal)));
@@ -217,9 +215,7 @@ class PlaneSearch {
         good_enough_ = options_.pixel_cost * static_cast<double>(rays_.size());
         const glm::dvec3 facing = -centre_.direction / direction_length_;
         if (hits_ == 0) {  // a surface enters the footprint between its rays
-            tryStanding();
-            refine();
-            return best_cost_ < kInfinity ? std::optional(best_) : std::nullopt;
+            return takeFacing(facing, edge_);
         }
         // The mean first: on a smooth surface nothing else is needed.
         const double sum_length = length(sum);
@@ -238,18 +234,8 @@ class PlaneSearch {
         if (best_cost_ > good_enough_) {
             tryCode(codeOf(facing));
         }
-        if (best_cost_ > good_enough_ && !edge_.empty() && hits_ < static_cast<int>(rays_.size())) {
-            tryStanding();
-        }
         refine();
-        if (best_cost_ == kInfinity) {
-            takeFacing(facing);
-            const double depth = best_.code / kDepthCodes * options_.u_max;
-            if (!options_.starts_free && isDeep(best_.normal, depth * dot(best_.normal, centre_.direction))) {
-                return std::nullopt;
-            }
-        }
-        return best_;
+        return best_cost_ < kInfinity ? std::optional(best_) : takeFacing(facing, rays_);
     }
 
   private:
@@ -312,33 +298,27 @@ class PlaneSearch {
         const glm::dvec3 normal(decodedNormals()[code]);
         const double along = dot(normal, centre_.direction);
         const double cosine = along / direction_length_;
-        const bool stands = std::abs(cosine) < kStandingMax;
-        if (std::abs(cosine) < options_.steepest || (!stands && !(cosine <= -kPlaneGrazingMin))) {
+        if (!(cosine <= -double{kPlaneCosineMin})) {
             return;
         }
-        const bool by_points = points_ && along < 0.0;
-        double offset = by_points ? points_->support(normal) : table(normal).support();
+        double offset = points_ ? points_->support(normal) : table(normal).support();
         if (cosine > -kSteepCosine) {
             offset = std::max(offset, supportOf(edge_, normal));
         }
         if (options_.cautious || cosine > -kDeepCosine) {
             offset = std::max(offset, supportOf(around(), normal));
         }
-        if (options_.let_back > 0.0 && !stands) {
+        if (options_.let_back > 0.0) {
             const double spread = offset - lowestOf(rays_, normal);
-            offset -= spread < 0.25 * options_.range ? options_.let_back * spread : 0.0;
+            offset -= spread < 0.25 * options_.span ? options_.let_back * spread : 0.0;
         }
-        const double from_zero = dot(normal, from_zero_);
-        const double scaled =
-            stands ? std::ceil(((offset + from_zero) / options_.range + 1.0) * 0.5 * kDepthCodes)
-                   : std::floor(offset / along / options_.u_max * kDepthCodes);
+        const double scaled = std::floor(offset / along / options_.u_max * kDepthCodes);
         if (!(scaled >= 0.0 && scaled <= kDepthCodes)) {
             return;
         }
-        const double stored = stands ? (2.0 * scaled / kDepthCodes - 1.0) * options_.range - from_zero
-                                     : scaled / kDepthCodes * options_.u_max * along;
-        double cost = by_points ? points_->freeSpaceBehind(stored, along)
-                                : table_->freeSpaceBehind(stored, options_.reach, best_cost_);
+        const double stored = scaled / kDepthCodes * options_.u_max * along;
+        double cost = points_ ? points_->freeSpaceBehind(stored, along)
+                              : table_->freeSpaceBehind(stored, options_.reach, best_cost_);
         if (options_.let_back > 0.0) {
             for (const FootprintRay& ray : rays_) {
                 cost += solidInFront(ray, normal, stored);
@@ -348,12 +328,12 @@ class PlaneSearch {
             return;
         }
         const bool vouched =
-            options_.starts_free && options_.let_back == 0.0 && !stands && -cosine > options_.rays_apart;
+            options_.starts_free && options_.let_back == 0.0 && -cosine > options_.rays_apart;
         if (!vouched && isDeep(normal, stored)) {
             return;
         }
         best_cost_ = cost;
-        best_ = {normal, unpackNormal(code), stands, static_cast<std::uint16_t>(scaled)};
+        best_ = {normal, unpackNormal(code), static_cast<std::uint16_t>(scaled)};
     }
 
     const RayTable& table(const glm::dvec3& normal) {
@@ -401,54 +381,6 @@ class PlaneSearch {
         return offset;
     }
 
-    /// The wall, seen edge-on, between the rays that meet a surface and those that miss it.
-    void tryStanding() {
-        const glm::dvec3 forward = centre_.direction / direction_length_;
-        const auto at = [&](const FootprintRay& ray, double u) {
-            const glm::dvec3 p = ray.origin + u * ray.direction - centre_.origin;
-            return p - dot(p, forward) * forward;
-        };
-        double u = 0.0;
-        for (const FootprintRay& ray : edge_) {
-            u += ray.u / static_cast<double>(edge_.size());
-        }
-        glm::dvec3 met(0.0);
-        glm::dvec3 passed(0.0);
-        for (const FootprintRay& ray : hits_ > 0 ? rays_ : edge_) {
-            if (ray.u >= 0.0) {
-                met += at(ray, u) /
-                       static_cast<double>(hits_ > 0 ? static_cast<std::size_t>(hits_) : edge_.size());
-            }
-        }
-        for (const FootprintRay& ray : rays_) {
-            if (ray.u < 0.0) {
-                passed += at(ray, u) / static_cast<double>(static_cast<int>(rays_.size()) - hits_);
-            }
-        }
-        const glm::dvec3 towards = passed - met;
-        tryAcross(towards);
-        // The direction of the edge, by its two points that are farthest apart.
-        double longest = 0.0;
-        glm::dvec3 along(0.0);
-        for (std::size_t i = 0; i < edge_.size(); ++i) {
-            for (std::size_t j = 0; j < i; ++j) {
-                const glm::dvec3 d = at(edge_[i], u) - at(edge_[j], u);
-                if (dot(d, d) > longest) {
-                    longest = dot(d, d);
-                    along = d;
-                }
-            }
-        }
-        const glm::dvec3 normal = cross(along, forward);
-        tryAcross(dot(normal, towards) < 0.0 ? -normal : normal);
-    }
-
-    void tryAcross(const glm::dvec3& direction) {
-        if (length(direction) > 0.0) {
-            tryCode(codeOf(unit(direction)));
-        }
-    }
-
     /// Length of a ray's solid part in front of the plane.
     [[nodiscard]] double solidInFront(const FootprintRay& ray, const glm::dvec3& normal,
                                       double offset) const {
@@ -460,10 +392,11 @@ class PlaneSearch {
         return std::clamp(at_plane - ray.u, 0.0, options_.reach);
     }
 
-    /// Fallback where every plane leaves the depth range: facing the viewer, at the nearest sample.
-    void takeFacing(const glm::dvec3& facing) {
+    /// Fallback if every plane is too steep or leaves the depth range: facing the viewer, at the nearest sample. nullopt: nothing
+    /// is known.
+    std::optional<FittedPlane> takeFacing(const glm::dvec3& facing, std::span<const FootprintRay> rays) {
         double nearest = kInfinity;
-        for (const FootprintRay& ray : rays_) {
+        for (const FootprintRay& ray : rays) {
             if (ray.u >= 0.0) {
                 const glm::dvec3 offset = ray.origin + ray.u * ray.direction - centre_.origin;
                 nearest = std::min(nearest,
@@ -472,8 +405,13 @@ class PlaneSearch {
         }
         const double scaled = std::floor(std::clamp(nearest / options_.u_max, 0.0, 1.0) * kDepthCodes);
         const std::uint16_t code = codeOf(facing);
-        best_ = {glm::dvec3(decodedNormals()[code]), unpackNormal(code), false,
-                 static_cast<std::uint16_t>(scaled)};
+        const FittedPlane plane{glm::dvec3(decodedNormals()[code]), unpackNormal(code),
+                                static_cast<std::uint16_t>(scaled)};
+        const double depth = plane.code / kDepthCodes * options_.u_max;
+        if (!options_.starts_free && isDeep(plane.normal, depth * dot(plane.normal, centre_.direction))) {
+            return std::nullopt;
+        }
+        return plane;
     }
 
     std::span<const FootprintRay> rays_;

@@ -42,14 +42,12 @@ inline constexpr std::size_t kFootprintRaysMax = 64;
 struct PlaneFitOptions {
     double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
     double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
-    double range = 0.0;       ///< standingRange of the map, object units
+    double span = 0.0;        ///< both sides of a texel together, object units
     double pixel_cost = 0.0;  ///< mean free space per ray, in u, below which a fit is good enough
     bool cautious = false;    ///< all planes respect the rays around the footprint, not only steep ones
-    /// Planes of a smaller |cosine| with the ray are left out; above kStandingCosine none stands.
-    double steepest = 0.0;
-    int refinements = 3;  ///< rounds of search among neighbouring normals; 0: none
+    int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
     /// Moves planes inwards by this share of the spread of the sampled points about them, which trades solid for free
-    /// space; not at steps, whose spread is more than `range`/4.
+    /// space; not at steps, whose spread is more than `span`/4.
     double let_back = 0.0;
     /// The greatest distance of a point of the texel from a ray, in texel diagonals. A plane of a smaller cosine drops by
     /// more than the diagonal between two rays.
@@ -62,9 +60,7 @@ struct PlaneFitOptions {
 struct FittedPlane {
     glm::dvec3 normal{0.0};  ///< unit length, of the free side; as decodeNormal gives it
     NormalIndex index;
-    bool stands = false;  ///< along the ray (depth_map.h, kStandingCosine)
-    /// 16-bit fixed point: the centre ray meets the plane at u = code / 65534 · u_max; a standing plane has the offset
-    /// (2 · code / 65534 − 1) · range from zero_depth.
+    /// 16-bit fixed point: the centre ray meets the plane at u = code / 65534 · u_max.
     std::uint16_t code = 0;
 };
 
@@ -86,7 +82,8 @@ void forNeighbours(NormalIndex from, int step, const Visit& visit) {
 /// \param rays    the footprint: 1 to kFootprintRaysMax.
 /// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either; called for
 ///                the first such plane, at most once. May be null.
-/// \param edge    rays that just meet a surface, beside ones that miss: they support standing planes.
+/// \param edge    rays that just meet a surface, beside ones that miss: they support steep planes, and the plane of a footprint
+///                none of whose rays meets a surface, which faces the viewer.
 /// \param centre  the texel's centre ray, from the viewer: the plane's depth is measured on it.
 /// \param zero_depth  the point of that ray at map depth 0.
 /// \param deep  of the texel: planes not justified by the rays alone may not cut deep solid. May be null.

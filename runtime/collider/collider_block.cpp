@@ -39,9 +39,7 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
     const bool patches = map.projection() == Projection::kLocal;
     const PatchTreeSize tree = patches ? patchTreeSize(map.texels) : PatchTreeSize{};
     const glm::vec3 size = cube || patches ? glm::vec3(1.0F) : glm::vec3(map.width, map.height, 1.0F);
-    const float range = standingRange(map.projection(), map.object_per_map, map.width, map.height);
-    const float last[3] = {range * (2.0F / (cube ? kCubeDepthMax : 1.0F)), static_cast<float>(map.width - 1),
-                           static_cast<float>(map.height - 1)};
+    const float last[3] = {0.0F, static_cast<float>(map.width - 1), static_cast<float>(map.height - 1)};
     for (int i = 0; i < 3; ++i) {
         // The rows are orthogonal and as long as the inverse of object_per_map.
         const glm::vec3 row(map.object_to_map.row[i]);
@@ -50,7 +48,7 @@ BlockMap blockMap(const PlacedMap& placed, const MapPlace& at) {
                                     patches ? 0.0F : last[i]);
     }
     block.object_per_map = patches ? glm::vec4(map.object_per_map.x, glm::vec3(tree.roots))
-                                   : glm::vec4(map.object_per_map, kStandingCosine * map.object_per_map.z);
+                                   : glm::vec4(map.object_per_map, 0.0F);
     const auto width = static_cast<std::int32_t>(map.width);
     const auto height = static_cast<std::int32_t>(map.height);
     const auto first = static_cast<std::int32_t>(at.first);

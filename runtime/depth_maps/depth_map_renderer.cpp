@@ -107,7 +107,6 @@ void DepthMapRenderer::setUniforms(const GpuMesh& mesh, const DepthMap& map) con
     program_.set("u_object", glm::mat3(axis[0] / size.x, axis[1] / size.y, axis[2]));
     program_.set("u_size", glm::vec2(size));
     program_.set("u_ray", scale.z * glm::vec3(glm::normalize(axis[2])));
-    program_.set("u_range", standingRange(Projection::kOrthographic, scale, map.width, map.height));
     program_.set("u_starts_free", map.encloses);
 }
 

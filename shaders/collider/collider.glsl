@@ -15,17 +15,15 @@
 //
 // An orthographic map that keeps the farthest surface, and a cube that keeps the nearest, turn the sign. Those
 // are the paper's projected distances. In a map of planes f = n*(P - S) instead, with S the surface point on
-// the ray through the texel's centre; the normal points outwards, so that no sign turns. A plane along the ray has
-// no such S: its texel holds its distance from the ray.
+// the ray through the texel's centre; the normal points outwards, so that no sign turns.
 
 struct ReliefMap {
     vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
                            // in texels here
-    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: the shift of a
-                           // standing plane by a unit of depth; width - 1; height - 1
-    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube; w: the
-                           // largest product of an orthographic ray and the normal of a plane along it. Of patches the
-                           // size of a root, and how many there are along x, y and z
+    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: 0; width - 1;
+                           // height - 1
+    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube. Of patches the size of a
+                           // root, and how many there are along x, y and z
     ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. Of patches texel 0; from
                            // root to root along y and z; levels
     ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
@@ -267,18 +265,15 @@ vec3 reliefFromMap(int i, vec3 q) {
            (reliefMapColumn(i, 1).xyz * q.y + reliefMapColumn(i, 2).xyz * q.z);
 }
 
-// The vote of a plane: n*(P - S), or n*(P - O) less the stored offset where the plane stands along the ray.
-// along_normal: n times 1 / per_length; from: P - O, with O where the ray of the texel's centre has depth 0; ray: its
-// direction, for a unit of depth; standing: its length times RELIEF_STANDING_COSINE; depth: from 0 to 2 half_depth.
-float reliefPlane(int i, vec3 along_normal, float per_length, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
+// The vote of a plane: n*(P - S). along_normal: n times 1 / per_length; from: P - O, with O where the ray of the texel's centre
+// has depth 0; ray: its direction, for a unit of depth.
+float reliefPlane(vec3 along_normal, float per_length, float depth, vec3 from, vec3 ray) {
     float along = per_length * reliefDot(along_normal, ray);
-    float offset = abs(along) < standing ? reliefMapColumn(i, 0).w * (depth - half_depth) : depth * along;
-    return per_length * reliefDot(along_normal, from) - offset;
+    return per_length * reliefDot(along_normal, from) - depth * along;
 }
 
-float reliefOctahedralPlane(int i, vec3 along_normal, float depth, float half_depth, vec3 from, vec3 ray, float standing) {
-    float per_length = inversesqrt(reliefDot(along_normal, along_normal));
-    return reliefPlane(i, along_normal, per_length, depth, half_depth, from, ray, standing);
+float reliefOctahedralPlane(vec3 along_normal, float depth, vec3 from, vec3 ray) {
+    return reliefPlane(along_normal, inversesqrt(reliefDot(along_normal, along_normal)), depth, from, ray);
 }
 
 // A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
@@ -355,12 +350,11 @@ struct ReliefSight {
     bool plane;   // the map decodes planes
     vec3 from;    // as reliefPlane() takes them
     vec3 ray;
-    float standing;
     float scale;  // z_scale
 };
 
-float reliefSightPlane(int i, vec3 along_normal, float depth, ReliefSight sight) {
-    return reliefOctahedralPlane(i, along_normal, depth, 0.5, sight.from, sight.ray, sight.standing);
+float reliefSightPlane(vec3 along_normal, float depth, ReliefSight sight) {
+    return reliefOctahedralPlane(along_normal, depth, sight.from, sight.ray);
 }
 
 float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
@@ -370,7 +364,7 @@ float reliefSightProjected(ivec4 info, float depth, ReliefSight sight) {
 // The votes of a texel of each kind; without meaning where none is found.
 
 // Outside where either surface votes so.
-ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole, out bool found) {
+ReliefVote reliefVoteFrontBack(ivec4 info, ReliefSight sight, bool whole, out bool found) {
     uvec4 words = texelFetch(u_relief_front_back, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.z), 0);
     // In integers, which takes fewer instructions than a conjunction of conditions.
     uint depths = !sight.plane || RELIEF_HALF_EMPTY ? words.b | words.a : words.b;
@@ -378,8 +372,8 @@ ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole,
     float front = reliefFrontBackDepth(info.y, words.b);
     float back = reliefFrontBackDepth(info.y, words.a);
     if (sight.plane) {
-        front = reliefSightPlane(i, reliefOctahedron(words.r), front, sight);
-        back = reliefSightPlane(i, reliefOctahedron(words.g), back, sight);
+        front = reliefSightPlane(reliefOctahedron(words.r), front, sight);
+        back = reliefSightPlane(reliefOctahedron(words.g), back, sight);
     } else {
         front = sight.scale * (front - sight.z);
         back = sight.scale * (sight.z - back);
@@ -395,26 +389,26 @@ ReliefVote reliefVoteFrontBack(int i, ivec4 info, ReliefSight sight, bool whole,
     return ReliefVote(distance, reliefCode(distance == front ? words.r : words.g));
 }
 
-ReliefVote reliefVoteFixed(int i, ivec4 info, ReliefSight sight, out bool found) {
+ReliefVote reliefVoteFixed(ivec4 info, ReliefSight sight, out bool found) {
     float depth;
     vec2 index;
     found = reliefFixedTexel(sight.texel, 1.0, depth, index);
-    float distance = sight.plane ? reliefSightPlane(i, reliefOctahedron(index), depth, sight)
+    float distance = sight.plane ? reliefSightPlane(reliefOctahedron(index), depth, sight)
                                  : reliefSightProjected(info, depth, sight);
     return ReliefVote(distance, reliefCode(index));
 }
 
 #if defined(RELIEF_HAS_FLOAT)
 // A float map's normals count as they are.
-ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
+ReliefVote reliefVoteFloat(ivec4 info, ReliefSight sight, out bool found) {
     vec4 values = texelFetch(u_relief_float, reliefTexel(sight.texel, RELIEF_LOG2_WIDTHS.x), 0);
     found = values.a >= 0.0;
-    float distance = sight.plane ? reliefPlane(i, values.rgb, 1.0, values.a, 0.5, sight.from, sight.ray, sight.standing)
+    float distance = sight.plane ? reliefPlane(values.rgb, 1.0, values.a, sight.from, sight.ray)
                                  : reliefSightProjected(info, values.a, sight);
     return ReliefVote(distance, values.rgb);
 }
 #else
-ReliefVote reliefVoteFloat(int i, ivec4 info, ReliefSight sight, out bool found) {
+ReliefVote reliefVoteFloat(ivec4 info, ReliefSight sight, out bool found) {
     found = false;
     return ReliefVote(RELIEF_FAR_INSIDE, RELIEF_NO_CODE);
 }
@@ -432,15 +426,14 @@ ReliefVote reliefVoteOrthographic(int i, vec3 p, ivec4 place, ivec4 info, bool w
         ivec2 at = ivec2(p.xy);
         ReliefSight sight = ReliefSight(place.x + at.y * place.y + at.x, p.z, reliefIsPlane(info),
                                         reliefFromMap(i, vec3(p.xy - (vec2(at) + 0.5), p.z)),
-                                        reliefMapColumn(i, 2).xyz, reliefObjectPerMap(i).w,
-                                        reliefObjectPerMap(i).z);
+                                        reliefMapColumn(i, 2).xyz, reliefObjectPerMap(i).z);
         bool found;
         if (reliefIsFrontBack(info)) {
-            vote = reliefVoteFrontBack(i, info, sight, whole, found);
+            vote = reliefVoteFrontBack(info, sight, whole, found);
         } else if (reliefIsFloat(info)) {
-            vote = reliefVoteFloat(i, info, sight, found);
+            vote = reliefVoteFloat(info, sight, found);
         } else {
-            vote = reliefVoteFixed(i, info, sight, found);
+            vote = reliefVoteFixed(info, sight, found);
         }
         if (sees_beyond && !in_depth && !(vote.distance >= 0.0)) {  // nothing of the collider remains there
             vote.distance = RELIEF_FAR_OUTSIDE;
@@ -467,9 +460,7 @@ ReliefVote reliefVoteCube(int i, vec3 p, ivec4 place, ivec4 info) {
         vote.normal = reliefCode(index);
         if (reliefIsPlane(info)) {
             vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / float(place.w), st_face.z)));
-            float standing = RELIEF_STANDING_COSINE * reliefLength(reliefObjectPerMap(i).xyz * ray);
-            vote.distance = reliefOctahedralPlane(i, reliefOctahedron(index), depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, p),
-                                        reliefFromMap(i, ray), standing);
+            vote.distance = reliefOctahedralPlane(reliefOctahedron(index), depth, reliefFromMap(i, p), reliefFromMap(i, ray));
         } else {
             float ahead = (info.z & RELIEF_KEEPS_FARTHEST) != 0 ? radius - depth : depth - radius;
             vote.distance = ahead * reliefLength(reliefObjectPerMap(i).xyz * direction);

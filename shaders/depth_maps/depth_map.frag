@@ -10,7 +10,6 @@ uniform vec4 u_row[3];
 uniform bool u_far;          // the far end: rays run against the depth
 uniform bool u_starts_free;  // otherwise inner sides leave the texel empty
 uniform vec3 u_ray;          // object units for one unit of depth
-uniform float u_range;       // of standing planes, object units
 
 flat in vec4 v_at;
 flat in vec2 v_slope;
@@ -21,7 +20,6 @@ layout(location = 0) out uvec4 o_texel;
 layout(location = 1) out vec4 o_motion_xy;
 layout(location = 2) out vec4 o_motion_z;
 
-const float kStandingMargin = 1e-4;
 const float kSteps = float(RELIEF_DEPTH_STEPS);
 
 float cornerDepth(uint vertex) {
@@ -41,31 +39,13 @@ float insideTriangle(float depth) {
 }
 
 // The plane through the surface point on the centre's ray (bake/texels/plane_fit.cpp with one ray a texel), packed normal and
-// code of depth: pushed towards the viewer to the next code; standing where it is steep; facing the viewer where neither can
-// be stored.
+// code of depth: pushed towards the viewer to the next code, and facing the viewer where the plane is too steep to be stored.
 uvec2 stored(uint normal, float depth) {
     float u = u_far ? 1.0 - depth : depth;  // from where the ray starts
-    vec3 onwards = u_far ? -u_ray : u_ray;
-    float length_ray = length(u_ray);
-    float along = dot(reliefUnpackNormal(normal), onwards);
-    float cosine = along / length_ray;
-    float facing_code = clamp(floor(u * kSteps), 0.0, kSteps);
-    uint facing = 1u + uint(u_far ? kSteps - facing_code : facing_code);
-    if (abs(cosine) < RELIEF_STANDING_COSINE - kStandingMargin) {
-        // A plane that leans away must not cut the surfaces behind the one that the ray meets.
-        float offset = (along > 0.0 ? 1.0 : u) * along;
-        float from_zero = u_far ? -along : 0.0;
-        float code = ceil(((offset + from_zero) / u_range + 1.0) * 0.5 * kSteps);
-        float kept = (2.0 * code / kSteps - 1.0) * u_range - from_zero;
-        float free = along > 0.0 ? min(u, kept / along) : u - max(0.0, kept / along);
-        float facing_free = u - facing_code / kSteps;
-        if (code >= 0.0 && code <= kSteps && free <= max(facing_free, 0.0)) {
-            return uvec2(normal, 1u + uint(code));
-        }
-    } else if (cosine <= -(RELIEF_STANDING_COSINE + kStandingMargin)) {
-        return uvec2(normal, facing);
-    }
-    return uvec2(reliefPackNormal(-onwards / length_ray), facing);
+    vec3 onwards = normalize(u_far ? -u_ray : u_ray);
+    float from_start = clamp(floor(u * kSteps), 0.0, kSteps);
+    bool steep = dot(reliefUnpackNormal(normal), onwards) > -RELIEF_PLANE_COSINE_MIN;
+    return uvec2(steep ? reliefPackNormal(-onwards) : normal, 1u + uint(u_far ? kSteps - from_start : from_start));
 }
 
 void main() {

@@ -137,7 +137,7 @@ class Votes {
         const double bound = std::max(a.bound, b.bound);
         const auto stands = [&](const Hit& hit) {
             return std::abs(glm::dot(storedNormal(map_.format, hit.normal), ray.direction)) <
-                   kPlaneGrazingMin;
+                   double{kPlaneCosineMin};
         };
         if (map_.decode == Decode::kPlane && (stands(front) || stands(back))) {
             return;  // its texel holds another number: see plane_test

@@ -4,7 +4,7 @@ import { add, dot, scale } from "./math.js";
 import { treeOf, visitLeaves } from "./patches.js";
 
 const kCells = 24; // along the longest side
-const kStanding = 0.033; // cosine with a map's rays below which a plane bounds nothing along them
+const kSteep = 0.03; // cosine with a map's rays below which a plane bounds nothing along them; writers store none
 const kMargin = 0.01; // texels
 const kHalf = 0.505; // of a cell, and a little: the shader's cell of a point may be the next one
 
@@ -18,7 +18,7 @@ function depthsInside(texel, { compare, decode, empty_is_outside: empty }, [x, y
             const normal = texel.subarray(at + 1, at + 4);
             faces = dot(normal, ray);
             slope = 0.5 * (Math.abs(dot(normal, x)) + Math.abs(dot(normal, y))) / Math.abs(faces);
-            if (Math.abs(faces) < kStanding * Math.hypot(...ray)) {
+            if (Math.abs(faces) < kSteep * Math.hypot(...ray)) {
                 return;
             }
         }

@@ -28,7 +28,7 @@ struct Stretch {
 };
 
 // The votes of a texel's two surfaces; of a single one the other is inside.
-bool surfaces(int i, ivec4 info, ReliefSight sight, out vec2 votes) {
+bool surfaces(ivec4 info, ReliefSight sight, out vec2 votes) {
     bool found;
     votes = vec2(RELIEF_FAR_INSIDE);
     if (reliefIsFrontBack(info)) {
@@ -37,16 +37,16 @@ bool surfaces(int i, ivec4 info, ReliefSight sight, out vec2 votes) {
         float front = reliefFrontBackDepth(info.y, words.b);
         float back = reliefFrontBackDepth(info.y, words.a);
         if (sight.plane) {
-            votes = vec2(reliefSightPlane(i, reliefOctahedron(words.r), front, sight),
-                         reliefSightPlane(i, reliefOctahedron(words.g), back, sight));
+            votes = vec2(reliefSightPlane(reliefOctahedron(words.r), front, sight),
+                         reliefSightPlane(reliefOctahedron(words.g), back, sight));
         } else {
             votes.x = words.b != 0u ? sight.scale * (front - sight.z) : RELIEF_FAR_INSIDE;
             votes.y = words.a != 0u ? sight.scale * (sight.z - back) : RELIEF_FAR_INSIDE;
         }
     } else if (reliefIsFloat(info)) {
-        votes.x = reliefVoteFloat(i, info, sight, found).distance;
+        votes.x = reliefVoteFloat(info, sight, found).distance;
     } else {
-        votes.x = reliefVoteFixed(i, info, sight, found).distance;
+        votes.x = reliefVoteFixed(info, sight, found).distance;
     }
     return found;
 }
@@ -125,10 +125,9 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     int texel = place.x + at.y * place.y + at.x;
     vec3 across = vec3(vec2(at) + 0.5, 0.0);
     ReliefSight sight = ReliefSight(texel, q.z, reliefIsPlane(info), reliefFromMap(i, q - across),
-                                    u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.w,
-                                    u_relief_maps[i].object_per_map.z);
+                                    u_relief_maps[i].column[2].xyz, u_relief_maps[i].object_per_map.z);
     vec2 votes, votes_then;
-    bool found = surfaces(i, info, sight, votes);
+    bool found = surfaces(info, sight, votes);
     if (!in_depth) {
         return Stretch(found ? 1 : 0, t1, border);
     }
@@ -138,7 +137,7 @@ Stretch aheadOrthographic(int i, vec3 o, vec3 d, float t, float far) {
     vec3 then = o + t1 * d;
     sight.z = then.z;
     sight.from = reliefFromMap(i, then - across);
-    surfaces(i, info, sight, votes_then);
+    surfaces(info, sight, votes_then);
     return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, border);
 }
 
@@ -196,14 +195,12 @@ Stretch aheadCube(int i, vec3 o, vec3 d, float t, float far) {
     }
     if (reliefIsPlane(info)) {
         vec3 ray = reliefUnit(reliefCubeDirection(vec3((vec2(at) + 0.5) / width, st_face.z)));
-        float standing = RELIEF_STANDING_COSINE * reliefLength(u_relief_maps[i].object_per_map.xyz * ray);
         vec3 normal = reliefOctahedron(index);
         vec3 ray_object = reliefFromMap(i, ray);
         vec2 votes = vec2(RELIEF_FAR_INSIDE);
         vec2 votes_then = votes;
-        votes.x = reliefOctahedralPlane(i, normal, depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, q), ray_object, standing);
-        votes_then.x = reliefOctahedralPlane(i, normal, depth, 0.5 * RELIEF_CUBE_DEPTH_MAX, reliefFromMap(i, o + t1 * d), ray_object,
-                                             standing);
+        votes.x = reliefOctahedralPlane(normal, depth, reliefFromMap(i, q), ray_object);
+        votes_then.x = reliefOctahedralPlane(normal, depth, reliefFromMap(i, o + t1 * d), ray_object);
         return partAt(bothBelow(t, t1, votes, votes_then), false, t, t1, -1);
     }
     // A sphere: inside it is inside, or outside where the farthest surface is kept the other way round.

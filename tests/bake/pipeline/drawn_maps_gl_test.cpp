@@ -133,7 +133,7 @@ class DrawnMapsGlTest : public testing::TestWithParam<const char*> {
     std::unique_ptr<GlContext> context_;
 };
 
-/// Texels whose plane is neither steep nor standing: the ray caster moves others behind the rays next to them, which the GPU
+/// Texels whose plane is not steep: the ray caster moves others behind the rays next to them, which the GPU
 /// does not look at.
 bool isFlat(const DepthMap& map, const TexelEnd& at) {
     const glm::dvec3 ray = texelRay(map, 0, at.x, at.y).direction;

@@ -24,8 +24,7 @@ namespace {
 
 constexpr int kPoints = 8000;
 
-/// The cosine between the ray through p and the normal of the surface that decided about p; 1 of planes that stand along
-/// the ray, which lean on more rays.
+/// The cosine between the ray through p and the normal of the surface that decided about p; 1 of projected maps.
 double cosineAt(const DepthMap& map, const FieldSample& sample, const glm::vec3& p) {
     const Affine& rows = map.object_to_map;
     const glm::dvec3 q = rows.apply(p);
@@ -34,7 +33,7 @@ double cosineAt(const DepthMap& map, const FieldSample& sample, const glm::vec3&
                                  : q * glm::dvec3(map.object_per_map);
     const double lengths = length(along) * length(glm::dvec3(sample.normal));
     const double cosine = std::abs(dot(along, glm::dvec3(sample.normal))) / lengths;
-    return map.decode == Decode::kPlane && cosine >= double{kStandingCosine} ? cosine : 1.0;
+    return map.decode == Decode::kPlane ? cosine : 1.0;
 }
 
 /// \param cosine  of one ray a texel: cosineAt; else 1.
