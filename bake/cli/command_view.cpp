@@ -374,6 +374,10 @@ Result<std::string> worldPage(const ViewCommand& command, FileGuard& files) {
                          player, files);
 }
 
+Result<std::string> scenePage(const ViewCommand& command, FileGuard& files) {
+    return scenePage(command.file, command.limits, nullptr, RELIEF_TRY(playerPage(files)), files);
+}
+
 /// Beside FILE unless -o names another place.
 Result<std::string> outputOf(const ViewCommand& command) {
     if (!command.output.empty()) {
@@ -402,9 +406,8 @@ Result<void> runView(const ViewCommand& command, FileGuard& files) {
     RELIEF_TRY(files.reads(command.check.mesh));
     RELIEF_TRY(files.writes(output, "-o"));
     const std::string html = RELIEF_TRY(measured && namesWorld(command.file) ? worldPage(command, files)
-                                        : command.isScene() ? scenePage(command.file, command.limits, nullptr,
-                                                                        RELIEF_TRY(playerPage(files)), files)
-                                                            : colliderPage(command, files));
+                                        : command.isScene()                  ? scenePage(command, files)
+                                                                             : colliderPage(command, files));
     return writeFile(output, std::as_bytes(std::span(html)));
 }
 
