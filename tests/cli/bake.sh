@@ -8,7 +8,7 @@ box box.obj 1 2 3
 expect 0 "$relief" bake box.obj -o box.relief --paper --resolution 64 -q
 [ ! -s stderr ] || die "-q is not quiet"
 expect 0 "$relief" info box.relief --json
-json stdout "[m['format'] for m in d['maps']] == ['front-back'] * 3 + ['cube'] and d['version'] == '1.3'"
+json stdout "[m['format'] for m in d['maps']] == ['front-back'] * 3 + ['cube'] and d['version'] == '2.0'"
 json stdout "d['bounds']['min'] == [-1, -2, -3] and d['bounds']['max'] == [1, 2, 3]"
 json stdout "d['provenance']['mesh_name'] == 'box.obj' and len(d['provenance']['mesh_hash']) == 32 and d['provenance']['triangles'] == 12"
 json stdout "d['maps'][3]['compare'] == 'greater' and d['maps'][3]['width'] == 64"
