@@ -240,8 +240,7 @@ Result<std::string> playerPage(FileGuard& files) {
     const std::size_t at = text.find(place);
     if (at == std::string::npos || text.find(place, at + 1) != std::string::npos) {
         return invalidInput(quotedPath(file) +
-                            " is no player of this release: it does not have its place for data, " + place +
-                            ", once; run scripts/build.sh web again");
+                            " is the page of another release; run scripts/build.sh web again");
     }
     return text;
 }

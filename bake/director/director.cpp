@@ -427,10 +427,9 @@ class Director {
         }
         if (const std::uint64_t walls = result_.shape.unclear_walls; walls > 0) {
             result_.notices.push_back(
-                mesh.name + ": joined two open shells into a wall " +
-                (walls == 1 ? "once" : std::to_string(walls) + " times") +
-                ", although the inner one is not wound as a lining: the space within is "
-                "free; if it is a body in its clothes, bake with --as solid");
+                mesh.name + ": " + countText(walls, "wall") +
+                " made of two open shells whose winding does not tell a lining from a body: the space within "
+                "is free; bake bodies in their clothes with --as solid");
         }
         if (const std::uint64_t sheets = result_.shape.closable_sheets; sheets > 0) {
             result_.notices.push_back(

@@ -82,7 +82,7 @@ class HeightMap {
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
     /// The lone samples of the rows read so far, without holes.
     [[nodiscard]] std::optional<LoneSample> lone() const;
-    /// None of an image.
+    /// Empty for images.
     [[nodiscard]] LikelierFormat likelierFormat() const;
     /// Whether nothing in the file states the format of its samples.
     [[nodiscard]] bool isRaw() const;

@@ -21,9 +21,9 @@ namespace relief {
 
 /// Settings that fit raw samples better than those given.
 struct LikelierFormat {
-    std::optional<SampleType> type = {};  ///< nullopt: as given, as is the next
-    std::optional<ByteOrder> order = {};
-    bool eight_bits = false;  ///< the samples may also be as given: 8 bits times 256
+    std::optional<SampleType> type = {};  ///< nullopt: as given
+    std::optional<ByteOrder> order = {};  ///< nullopt: as given
+    bool eight_bits = false;              ///< the samples may also be as given: 8 bits times 256
 
     [[nodiscard]] bool found() const { return type || order; }
     friend bool operator==(const LikelierFormat&, const LikelierFormat&) = default;

@@ -88,9 +88,9 @@ struct PartsAccuracy {
 
 /// Measures at points near each part's surface in the baked solid: area-weighted, with an isotropic Gaussian offset, which is
 /// less for a part that is thinner and seems to be absent. Truth is the side of the whole mesh, but a shell ends at its
-/// right_thickness. A part that fewer than 256 points call lost is measured again by 256. It is minor if it is shorter than the detail, or if it is
-/// there and kNoticeableExcess of the detail off the surface is right; but missing minor parts are lost if they count together and
-/// the detail is the default. The same for any number of threads.
+/// right_thickness. A part that fewer than 256 points call lost is measured again by 256. It is minor if it is shorter than the
+/// detail, or if it is there and kNoticeableExcess of the detail off the surface is right; but missing minor parts are lost if they
+/// count together and the detail is the default. The same for any number of threads.
 /// \param query  of the solid of `parts`.
 [[nodiscard]] PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts,
                                          const Field& field, const PartOptions& options);

@@ -97,7 +97,7 @@ std::string ignoredText(const IgnoredParts& ignored, const std::string& unit) {
     add(ignored.lost,
         std::to_string(ignored.lost) + of_all + ", at most " + lengthText(ignored.size, unit) + " long,",
         "not represented");
-    add(ignored.thick, std::to_string(ignored.thick) + of_all, "thicker than the mesh");
+    add(ignored.thick, std::to_string(ignored.thick) + of_all, "thicker than in the mesh");
     add(ignored.unmeasured, "the smallest " + countText(ignored.unmeasured, "part"), "not measured");
     return text;
 }
@@ -297,7 +297,8 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
            "near each are wrong, most of them called outside"});
     visit("size", ignored.size, {"Longest side of the largest of them", "object units", kFromZero});
     visit("thick", ignored.thick,
-          {"Parts that are thicker than the mesh, by too little to lower the grade: more than 25 % of the "
+          {"Parts that are thicker than in the mesh, and too small, or too little off, to lower the grade: "
+           "more than 25 % of the "
            "points near each are wrong, most of them called inside"});
     visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
 }

@@ -21,7 +21,7 @@ struct Verdict {
 void fields(FieldVisitor& visit, const Verdict& verdict);
 void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 
-/// "4 of 812 parts, at most 0.003 m long, are not represented; 2 of 812 parts are thicker than the mesh; the smallest 200 parts
+/// "4 of 812 parts, at most 0.003 m long, are not represented; 2 of 812 parts are thicker than in the mesh; the smallest 200 parts
 /// are not measured"; "" if none is ignored.
 [[nodiscard]] std::string ignoredText(const IgnoredParts& ignored, const std::string& unit);
 /// \param but  the reason for a grade below gradeOf(wrong_percent)

@@ -66,8 +66,7 @@ void fields(FieldVisitor& visit, const ShapeReport& report) {
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});
     visit("unclear_walls", report.unclear_walls,
-          {"Walls made of two open shells whose inner one is not wound to face the space within, as a lining "
-           "is: it may be a body in its clothes"});
+          {"Walls made of two open shells whose winding does not tell a lining from a body in its clothes"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
     visit("voids", report.voids,
           {"Voids that sheets and solids seal together; they are full, but with --voids hollow"});

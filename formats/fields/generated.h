@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are derived from fields(). Schemas and dictionaries of fuzz targets are written by the build. What users read in the source tree is checked in:
-// scripts/generate.sh writes it anew, and the test generated.fresh fails if it is stale.
+// Files that are derived from fields(). Schemas and dictionaries of fuzz targets are written by the build. What users read in the
+// source tree is checked in: scripts/generate.sh writes it anew, and the test generated.fresh fails if it is stale.
 #pragma once
 
 #include <string>

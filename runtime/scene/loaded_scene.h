@@ -50,7 +50,7 @@ struct LoadedScene {
     Bounds bounds;                  ///< of what they occupy in the course of time, in the particles' space
     std::vector<Emitter> emitters;  ///< those of the scene, which have given no birth yet
     std::vector<std::string>
-        warnings;  ///< of settings that are valid but probably mistakes, as fitSweep() has them
+        warnings;  ///< of settings that are valid but probably mistakes: those of fitSweep()
 
     [[nodiscard]] SceneMeshes meshes() const { return {scene.colliders, colliders, live, played}; }
 };

@@ -67,7 +67,7 @@ job_release() {
 job nightly 2 repeats
 job_repeats() {
     release
-    programs '*/Gles30*:*Compute*' "$bin"/relief_*_test
+    programs '*/Gles30*:*Compute*:*StepPathGlTest*' "$bin"/relief_*_test
 }
 
 job nightly 5 cli

@@ -287,7 +287,7 @@ class Accuracy:
     lost_parts: int
     """Parts of the mesh of whose points, by the part's own size, more than a quarter are on the wrong side."""
     ignored_parts: int
-    """The same of parts that are too small to lower the grade."""
+    """Parts that are lost or thicker than in the mesh, and too small, or too little off, to lower the grade."""
     grade: str
     """ "good", "fair" or "poor", as `relief check` grades: the worse of the whole's and the parts'. A lost part is poor. Coarse
     parts lower it to "fair" if they and the ignored parts together miss more than 1 % of the points near the surface. Without

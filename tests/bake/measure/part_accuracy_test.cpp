@@ -173,7 +173,7 @@ TEST(PartAccuracy, AnExcessCountsAtTheScaleOfTheAsset) {
         EXPECT_EQ(found.ignored.lost, 0U) << excess;
         const std::string text = verdictOf(0.5, found, "").text;
         EXPECT_EQ(text.find("not represented"), std::string::npos) << text;
-        EXPECT_EQ(text.ends_with("; 1 of 2 parts is thicker than the mesh"), lost == 0) << text;
+        EXPECT_EQ(text.ends_with("; 1 of 2 parts is thicker than in the mesh"), lost == 0) << text;
     }
     // A plate that is absent counts, however thin.
     EXPECT_EQ(measured(shape, fieldOfBoxes({cube.bounds})).countOf(PartVerdict::kLost), 1U);
