@@ -320,6 +320,9 @@ Result<std::string> scenePage(const std::string& name, const ContainerLimits& li
     SceneOverrides overrides;
     overrides.limits = limits;
     const LoadedScene loaded = RELIEF_TRY(loadAll(file, overrides));
+    for (const std::string& warning : loaded.warnings) {
+        spdlog::warn(warning);
+    }
     RELIEF_TRY(checkPictures(loaded.scene, loaded.bounds));
     if (loaded.scene.flow) {
         return fail(ErrorCode::kUnsupported,

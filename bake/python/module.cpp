@@ -424,6 +424,8 @@ class HeadlessSimulation {
                         py::arg("collisions") = column(states, &State::collisions));
     }
 
+    [[nodiscard]] py::list takeWarnings() { return textsOf(simulation_->takeWarnings()); }
+
     /// Those of all steps since the last call; waits for the GPU.
     [[nodiscard]] py::dict takeHits() {
         if (!hits_) {
@@ -562,6 +564,7 @@ PYBIND11_MODULE(_relief, m) {
                       const std::filesystem::path&, bool>())
         .def("step", &HeadlessSimulation::step)
         .def("take_hits", &HeadlessSimulation::takeHits)
+        .def("take_warnings", &HeadlessSimulation::takeWarnings)
         .def("read", &HeadlessSimulation::read)
         .def_property_readonly("materials", &HeadlessSimulation::materials)
         .def_property_readonly("time", &HeadlessSimulation::time)

@@ -170,8 +170,7 @@ Result<PlayerReport> play(const PlayerOptions& options) {
     report.collider_bytes = simulation.textures().bytes();
     RELIEF_TRY(Run(options, simulation, outputs, report).play());
     RELIEF_TRY(outputs.writeEnd(simulation.particles(), report));
-    report.warnings = loaded.warnings;
-    std::ranges::move(simulation.takeWarnings(), std::back_inserter(report.warnings));
+    report.warnings = simulation.takeWarnings();
     if (auto refused = refusedWarning(report.counts, report.scene.particles.capacity)) {
         report.warnings.push_back(std::move(*refused));
     }

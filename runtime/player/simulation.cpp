@@ -2,6 +2,7 @@
 #include "runtime/player/simulation.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <span>
@@ -80,6 +81,14 @@ Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr
     return {};
 }
 
+std::vector<std::string> Simulation::takeWarnings() {
+    std::vector<std::string> taken = std::exchange(warnings_, {});
+    if (stream_) {
+        std::ranges::move(stream_->takeWarnings(), std::back_inserter(taken));
+    }
+    return taken;
+}
+
 Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptions options) {
     Simulation made;
     Watchdog* const watchdog = options.watchdog;
@@ -89,6 +98,7 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
     made.emitters_ = loaded.emitters;
     made.emitter_balls_ = emitterBalls(made.emitters_);
     made.types_ = particleTypes(scene);
+    made.warnings_ = loaded.warnings;
     made.motions_ = emitterMotions(loaded);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty() || c.play; });

@@ -75,10 +75,9 @@ class Simulation {
     [[nodiscard]] const ColliderTextures& textures() const {
         return stream_ ? stream_->textures() : *textures_;
     }
-    /// One line for each collider of a world that is streamed which could not be loaded, since the last call.
-    [[nodiscard]] std::vector<std::string> takeWarnings() {
-        return stream_ ? stream_->takeWarnings() : std::vector<std::string>();
-    }
+    /// Since the last call: those of the scene (LoadedScene::warnings), and one line for each collider of a streamed world that
+    /// could not be loaded.
+    [[nodiscard]] std::vector<std::string> takeWarnings();
     /// Births of emitters and [[spawn]] that were dropped because the particle system had no room.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
     /// Places besides the emitters' where a world that is streamed has full detail, in place of the scene's camera. From the next
@@ -177,7 +176,8 @@ class Simulation {
     std::uint64_t refused_ = 0;
     std::uint64_t steps_ = 0;
     std::vector<ParticleType> types_;
-    std::vector<SceneSpawn> spawns_;  // that the spawners are made of
+    std::vector<std::string> warnings_;  // not taken yet
+    std::vector<SceneSpawn> spawns_;     // that the spawners are made of
     std::vector<Spawner> spawners_;
     std::vector<Birth> spawned_;  // for the next step
     std::vector<EventOptions> event_lists_;

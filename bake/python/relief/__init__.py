@@ -544,6 +544,8 @@ class Simulation:
             seed = _whole(seed, "seed", 0, 2**64 - 1)
         self._open = _relief.Simulation(_path(scene, "scene"), seed, "" if root is None else _path(root, "root"),
                                         bool(hits))
+        for text in self._open.take_warnings():
+            warnings.warn(_in_python(text), ReliefWarning, stacklevel=3)
 
     @property
     def _handle(self) -> "_relief.Simulation":

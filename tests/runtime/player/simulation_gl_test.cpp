@@ -150,6 +150,8 @@ emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], velocity = [0, -20, 0], 
         EXPECT_TRUE(loaded) << loaded.error().message;
         auto made = Simulation::create(*loaded);
         EXPECT_TRUE(made) << made.error().message;
+        EXPECT_EQ(made->takeWarnings().size(), collision.empty() ? 0U : 1U);
+        EXPECT_TRUE(made->takeWarnings().empty());
         for (int step = 0; step < 10; ++step) {
             EXPECT_TRUE(made->step());
         }
