@@ -35,9 +35,9 @@ ExrImage AxisGrid::image(double near, const Collider& collider,
     // A coordinate of object space from 0 to 1 across an extent, in either direction.
     const auto row = [](int along, double low, double extent, bool backwards) {
         const double per_length = (backwards ? -1.0 : 1.0) / extent;
-        glm::dvec4 row(0.0, 0.0, 0.0, -(backwards ? low + extent : low) * per_length);
-        row[along] = per_length;
-        return row;
+        glm::dvec4 of(0.0, 0.0, 0.0, -(backwards ? low + extent : low) * per_length);
+        of[along] = per_length;
+        return of;
     };
     const glm::dvec2 area(spacing * width, spacing * height);
     image.setOrthographicCamera(
