@@ -20,8 +20,8 @@ struct PartOptions {
     std::size_t parts_max = 10'000;      ///< the largest ones are measured
     std::uint64_t seed = 1;
     double sigma_share = 0.005;  ///< as in AccuracyOptions, in units of the part's longest side
-    std::optional<double>
-        detail;          ///< size of the smallest part that counts, object units; else defaultDetail
+    std::optional<double> detail =
+        {};              ///< size of the smallest part that counts, object units; else defaultDetail
     double scale = 1.0;  ///< of the object in its world, for defaultDetail
 };
 

@@ -127,7 +127,7 @@ grep -q "^RLF-1407 error: map 2: .*(byte $offset)$" stdout && grep -q ' 0, 1, 3\
 expect 3 "$relief" check damaged.relief --json
 json stdout 'd["errors"] == 2 and [m["state"] for m in d["maps"]] == ["sound", "sound", "damaged", "sound"]'
 cp b.relief later.relief
-printf '\2' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
+printf '\3' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
 expect 5 "$relief" check later.relief
 
 # Fresh bakes have no issues, not even boxes whose faces lie at the end of their maps.
