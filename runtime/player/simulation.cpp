@@ -2,7 +2,6 @@
 #include "runtime/player/simulation.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <span>
@@ -84,7 +83,9 @@ Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr
 std::vector<std::string> Simulation::takeWarnings() {
     std::vector<std::string> taken = std::exchange(warnings_, {});
     if (stream_) {
-        std::ranges::move(stream_->takeWarnings(), std::back_inserter(taken));
+        for (std::string& line : stream_->takeWarnings()) {
+            taken.push_back(std::move(line));
+        }
     }
     return taken;
 }
