@@ -64,10 +64,8 @@ export class PageCollider {
                 const [x, y, z, depth] = floats.subarray(4 * (first + i), 4 * (first + i) + 4);
                 out.set(depth < 0 ? [] : [depth, x, y, z], 8 * i);
             } else if (format === "front-back") {
-                const row = 4 * (first + Math.floor(i / width));
-                const x = i % width;
-                const at = 4 * (first + ((words[row + 2] + 65536 * words[row + 3] + x) >>> 0));
-                for (let end = 0; end < 2 && x >= words[row] && x < words[row + 1]; ++end) {
+                const at = 4 * (first + i);
+                for (let end = 0; end < 2; ++end) {
                     const code = words[at + 2 + end];
                     put(8 * i + 4 * end, encoding === "half" ? halfDepth(code) : fixedDepth(code, 1), words[at + end] >> 8, words[at + end] & 255);
                 }
