@@ -58,6 +58,11 @@ std::string Provenance::optionsText() const {
     return text;
 }
 
+bool Collider::hasPatches() const {
+    return std::any_of(maps.begin(), maps.end(),
+                       [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
+}
+
 std::uint64_t Collider::texelBytes() const {
     std::uint64_t bytes = 0;
     for (const DepthMap& map : maps) {

@@ -4,6 +4,6 @@
 # and slices, out/samples/bunny_in_the_snow/contact_sheet.png. Needs no GPU.
 cat <<'T'
 Installs packages if any are missing, compiles relief and relief-sim, bakes the Stanford bunny, and lets it snow. That takes
-about 5 minutes on two cores, without the download of packages; half a minute once it is compiled.
+about 4 minutes on two cores, without the download of packages; half a minute once it is compiled.
 T
 RELIEF_QUIET=1 exec "$(dirname "$0")/samples.sh" bunny_in_the_snow

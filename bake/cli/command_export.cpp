@@ -103,10 +103,6 @@ bool isPatches(const DepthMap& map) {
     return map.format == MapFormat::kPatches;
 }
 
-bool hasPatches(const Collider& collider) {
-    return std::ranges::any_of(collider.maps, isPatches);
-}
-
 /// An image of -o.
 struct NamedImage {
     std::string name;
@@ -124,7 +120,7 @@ std::vector<NamedImage> imagesOf(const Collider& collider, std::uint32_t resolut
                               [&map, face, &collider] { return mapImage(map, face, collider.unit); }});
         }
     }
-    const int views = hasPatches(collider) ? 6 : 0;
+    const int views = collider.hasPatches() ? 6 : 0;
     for (int view = 0; view < views; ++view) {
         images.push_back({viewImageName(view),
                           [&collider, view, resolution] { return viewImage(collider, view, resolution); }});
@@ -203,7 +199,7 @@ Result<void> runExport(const ExportCommand& command, FileGuard& files) {
         RELIEF_TRY(checkVdb());
     }
     const Collider collider = RELIEF_TRY(loadCollider(command.file, command.limits));
-    if (command.resolution && !hasPatches(collider)) {
+    if (command.resolution && !collider.hasPatches()) {
         return fail(
             ErrorCode::kUsage,
             shownInput(command.file) +

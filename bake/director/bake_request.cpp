@@ -12,7 +12,7 @@
 namespace relief {
 namespace {
 
-/// Of --holes keep and of --animated, whose maps the runtime draws anew in the same directions
+/// The maps of --holes keep and of --animated. The runtime draws those of a moving mesh in the same directions
 /// (runtime/collider/live_collider.h).
 constexpr std::array<const char*, 3> kAxisMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
                                                   "front-back:dir=-z,up=+y"};

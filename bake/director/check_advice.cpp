@@ -30,8 +30,6 @@ class Advisor {
         : run_(run),
           output_(output),
           patches_(run.recorded.request),
-          has_patches_(std::ranges::any_of(
-              run.collider.maps, [](const DepthMap& map) { return map.format == MapFormat::kPatches; })),
           closes_(patches_.holes == Holes::kClose) {
         const TruthSamples& truth = run.judged().samples;
         truth_.options = truth.options;
@@ -61,7 +59,7 @@ class Advisor {
         const bool sheet = any({WrongCause::kSheet});
         const bool open = any({WrongCause::kOpen});
         // They mend most of what other maps do wrong, and cost each step no more.
-        if (!has_patches_ && closes_ && !run_.places.empty()) {
+        if (!run_.collider.hasPatches() && closes_ && !run_.places.empty()) {
             tryBudget(*patches_.budget, "patches of as many bytes");
         }
         if (closes_ && any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
@@ -161,9 +159,8 @@ class Advisor {
     const MeshCheck& run_;
     const std::string& output_;
     BakeRequest patches_;  // the recorded bake as patches of as many bytes, its holes closed
-    bool has_patches_;
-    bool closes_;         // the recorded bake, its holes
-    TruthSamples truth_;  // near the surface alone, and fewer
+    bool closes_;          // the recorded bake, its holes
+    TruthSamples truth_;   // near the surface alone, and fewer
     std::vector<Advice> advice_;
 };
 

@@ -40,7 +40,7 @@ struct AxisGrid {
     [[nodiscard]] double sign() const { return view % 2 == 0 ? 1.0 : -1.0; }
     /// \param x   sample from the left. \param y  from the bottom. \param at  on the axis, object units.
     [[nodiscard]] glm::vec3 point(std::uint32_t x, std::uint32_t y, float at) const;
-    /// Where images keep that sample.
+    /// The index of that sample in an image, whose first row is the top one.
     [[nodiscard]] std::size_t pixel(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{height - 1 - y} * width + x;
     }

@@ -25,7 +25,7 @@
 #include "bake/views/view.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
-#include "formats/container.h"
+#include "formats/container_limits.h"
 #include "formats/patch_tree.h"
 #include "formats/validate.h"
 

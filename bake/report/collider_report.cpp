@@ -61,7 +61,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
     visit("projection", projectionName(map.projection()),
           {.help = "Projection of the map", .words = kWords<"orthographic", "cube", "local">});
     visit("compare", compareName(map.compare),
-          {.help = "Surface kept along each ray: the nearest, the farthest, both, or the two ends of a gap",
+          {.help = "Surface kept along each ray: the nearest, the farthest, or both",
            .words = kWords<"less", "greater", "both">});
     visit("width", map.width, {"Width", "texels", kFromOne});
     visit("height", map.height, {"Height", "texels", kFromOne});

@@ -50,11 +50,6 @@ double middleExtent(const SurfacePart& part) {
     return extents[1];
 }
 
-bool hasPatches(const Collider& collider) {
-    return std::ranges::any_of(collider.maps,
-                               [](const DepthMap& map) { return map.format == MapFormat::kPatches; });
-}
-
 std::string partSideText(const PartAccuracy& accuracy) {
     const double inside = accuracy.wrong.false_inside / std::max(accuracy.wrong.total(), 1e-9);
     return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
@@ -154,7 +149,7 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
     const double right =
         kTexelsAcross * (part.kind == PartKind::kSheet ? part.right_thickness : middleExtent(part));
     const double needed = std::min(right, 0.5 * texel);
-    const bool patches = hasPatches(collider);
+    const bool patches = collider.hasPatches();
     if (!(needed > 0.0) || (patches && !cure.empty() && texel <= right)) {
         return cure;
     }
