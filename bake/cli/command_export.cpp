@@ -17,10 +17,10 @@
 #include "formats/base/result.h"
 #include "formats/container.h"
 #include "formats/fields/json_value.h"
-#include "runtime/collider/gpu_image.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/gl/gl_object.h"
+#include "runtime/layout/gpu_image.h"
 #include "runtime/vdb/vdb_writer.h"
 
 namespace relief {
@@ -75,7 +75,7 @@ std::vector<std::string> gpuFileNames(const Collider& collider) {
     return names;
 }
 
-/// Writes the files that a program of one's own uploads: runtime/collider/LAYOUT.md.
+/// Writes the files that a program of one's own uploads: runtime/layout/LAYOUT.md.
 Result<void> exportForGpu(const Collider& collider, const std::filesystem::path& folder) {
     const GpuImage image = RELIEF_TRY(gpuImage(collider));
     const std::string core = RELIEF_TRY(shaderText("collider/collider.glsl"));
@@ -242,7 +242,7 @@ void addExport(CLI::App& app, Action& action) {
         "object units from the near face of the bounds, and normal.X normal.Y normal.Z of the first one.\n"
         "Z and depth are +inf where there is no surface.\n"
         "--gpu writes what a program without Relief uploads: raw textures, the uniform block, GLSL, and the\n"
-        "sizes of all as JSON (runtime/collider/LAYOUT.md).\n"
+        "sizes of all as JSON (runtime/layout/LAYOUT.md).\n"
         "--vdb writes signed distances as a level set of OpenVDB, and --mesh the surface of that as PLY",
         "relief export bunny.relief -o maps/ --resolution 1024\n"
         "relief export bunny.relief --gpu engine/bunny/\n"

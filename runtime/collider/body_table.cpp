@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
-#include <glm/common.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/vector_relational.hpp>
+#include <glm/glm.hpp>
 #include <utility>
 
 #include "shaders/collider/constants.h"
@@ -55,11 +53,47 @@ Bounds unionOf(Bounds box, const Bounds& other) {
     return box;
 }
 
+/// The rows that take a point of the world to the body's object space.
+void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
+    const glm::mat3 rotation = glm::mat3_cast(pose.rotation);
+    for (int i = 0; i < 3; ++i) {
+        // Column i of the rotation is the body's axis i in the world.
+        const glm::vec3 row = rotation[i] / pose.scale;
+        rows[i] = glm::vec4(row, -glm::dot(row, pose.position));
+    }
+}
+
+/// The rows that take a point of a body from where it is in one pose to where it is in another.
+void writeMove(const Pose& from, const Pose& to, glm::vec4 (&rows)[3]) {
+    // In double: the two translations nearly cancel.
+    const double scale = double{to.scale} / double{from.scale};
+    const glm::dmat3 turn =
+        scale * glm::mat3_cast(glm::dquat(to.rotation) * glm::conjugate(glm::dquat(from.rotation)));
+    const glm::dvec3 shift = glm::dvec3(to.position) - turn * glm::dvec3(from.position);
+    for (int i = 0; i < 3; ++i) {
+        rows[i] = glm::vec4(glm::dvec4(turn[0][i], turn[1][i], turn[2][i], shift[i]));
+    }
+}
+
+/// A map of patches of a body in this pose: its object space is the world. (Other maps have normals of their own space.)
+BlockMap placedMap(const BlockMap& map, const Pose& pose) {
+    const glm::dmat3 turn = glm::mat3_cast(glm::dquat(pose.rotation));
+    const double scale = pose.scale;
+    BlockMap placed = map;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 row = turn * glm::dvec3(map.row[i]) / scale;
+        placed.row[i] =
+            glm::vec4(glm::dvec4(row, double{map.row[i].w} - glm::dot(row, glm::dvec3(pose.position))));
+        placed.column[i] = glm::vec4(glm::vec3(scale * (turn * glm::dvec3(map.column[i]))), map.column[i].w);
+    }
+    placed.object_per_map.x *= pose.scale;
+    return placed;
+}
+
 }  // namespace
 
-BodyTable::BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, WorldKind kind)
+BodyTable::BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, bool placed)
     : bodies_(std::move(bodies)), moves_(bodies_.size(), 0), settles_(bodies_.size(), 0) {
-    const bool placed = kind == WorldKind::kPlaced;
     first_body_ = kWorldMapTexels * (placed ? bodies_.size() : maps.size());
     words_.resize(first_body_ + kWorldBodyTexels * bodies_.size());
     if (placed) {

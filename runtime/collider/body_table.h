@@ -13,10 +13,19 @@
 
 #include "formats/collider.h"
 #include "runtime/collider/body_grid.h"
-#include "runtime/collider/collider_block.h"
 #include "runtime/collider/pose.h"
+#include "runtime/layout/collider_block.h"
 
 namespace relief {
+
+/// A body in the table: shaders/collider/world.glsl.
+struct BlockBody {
+    std::int32_t maps[4];
+    glm::vec4 response;
+    glm::vec4 row[3];
+    glm::vec4 move[3];
+};
+static_assert(sizeof(BlockBody) == 128);
 
 /// A body and its place in the table.
 struct TableBody {
@@ -33,8 +42,9 @@ struct TableBody {
 class BodyTable {
   public:
     /// \param maps  blockMaps of all; bodies may share some.
-    /// \param kind  not kNone.
-    BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, WorldKind kind);
+    /// \param placed  each body has one map of patches, which is placed in the world, so that a point of the world finds its
+    ///                cell by one transform.
+    BodyTable(std::vector<BlockMap> maps, std::vector<TableBody> bodies, bool placed);
 
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     [[nodiscard]] const TableBody& operator[](std::size_t body) const { return bodies_[body]; }

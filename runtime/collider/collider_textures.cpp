@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "formats/base/finite.h"
-#include "runtime/collider/gpu_image.h"
 #include "runtime/collider/material_table.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/layout/gpu_image.h"
 
 namespace relief {
 namespace {
@@ -39,11 +39,11 @@ Result<void> checkMapCount(std::size_t maps, bool world) {
     return {};
 }
 
-WorldKind worldKind(std::span<const PlacedMap> maps, std::span<const TableBody> bodies) {
-    const bool placed = std::all_of(bodies.begin(), bodies.end(), [&](const TableBody& body) {
+/// Each body has one map of patches, which BodyTable places in the world.
+bool arePlaced(std::span<const PlacedMap> maps, std::span<const TableBody> bodies) {
+    return std::all_of(bodies.begin(), bodies.end(), [&](const TableBody& body) {
         return body.maps == 1 && maps[body.first_map].map->format == MapFormat::kPatches;
     });
-    return bodies.empty() ? WorldKind::kNone : placed ? WorldKind::kPlaced : WorldKind::kAny;
 }
 
 }  // namespace
@@ -156,7 +156,8 @@ Result<void> ColliderTextures::exchange(std::size_t body, const Collider& collid
     if (!patches || of.maps != 1 ||
         !world_->bodies.setMap(of.first_map, blockMap(map, place), insideBox(collider))) {
         return fail(ErrorCode::kUnsupported,
-                    "only maps of patches come and go while they are used; bake them anew, with no --layout");
+                    "only maps of patches come and go while they are used; bake them anew, without --map, "
+                    "--paper and --holes keep");
     }
     ++revision_;
     updateWorld();
@@ -217,8 +218,10 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     result.room_ = layout.room;
     result.room_log2_width_ = layout.textures[kFrontBackTexels].log2Width();
     result.map_count_ = static_cast<int>(maps.size());
-    const WorldKind world_kind = worldKind(maps, bodies);
-    result.defines_ = colliderDefines(world_kind, maps, layout);
+    const bool placed = arePlaced(maps, bodies);
+    result.defines_ = world ? "#define RELIEF_BODIES 1\n#define RELIEF_PLACED " +
+                                  std::to_string(placed ? 1 : 0) + "\n" + mapDefines(maps, layout)
+                            : colliderDefines(maps, layout);
 
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     forgetGlErrors();
@@ -236,7 +239,7 @@ Result<ColliderTextures> ColliderTextures::upload(std::span<const PlacedMap> map
     result.block_ = makeBuffer();
     if (world) {
         result.world_ =
-            std::make_unique<World>(World{BodyTable(blockMaps(maps, layout), std::move(bodies), world_kind),
+            std::make_unique<World>(World{BodyTable(blockMaps(maps, layout), std::move(bodies), placed),
                                           blockHead(maps, layout),
                                           {},
                                           makeBuffer()});

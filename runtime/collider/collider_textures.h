@@ -29,11 +29,11 @@
 #include "formats/base/result.h"
 #include "formats/collider.h"
 #include "runtime/collider/body_table.h"
-#include "runtime/collider/collider_block.h"
-#include "runtime/collider/map_layout.h"
 #include "runtime/collider/material_table.h"
 #include "runtime/collider/pose.h"
 #include "runtime/gl/gl_object.h"
+#include "runtime/layout/collider_block.h"
+#include "runtime/layout/map_layout.h"
 
 namespace relief {
 

@@ -5,7 +5,7 @@
  *     own_engine bunny/ points.csv            x,y,z,f,nx,ny,nz,map of every point, as `relief query --distance plane`
  *     own_engine bunny/ points.csv --fall     where each point comes to lie if it falls for five seconds
  *
- * runtime/collider/LAYOUT.md says what the files hold. */
+ * runtime/layout/LAYOUT.md says what the files hold. */
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>

@@ -71,7 +71,7 @@ f 4 1 5 8
 O
 "$relief" bake box.obj -q -o box.relief --map front-back:dir=-z,size=6x4
 "$relief" export box.relief --gpu box -q
-python3 - "$RELIEF_SOURCE/runtime/collider/LAYOUT.md" <<'P' || die "the example of LAYOUT.md is another"
+python3 - "$RELIEF_SOURCE/runtime/layout/LAYOUT.md" <<'P' || die "the example of LAYOUT.md is another"
 import json, struct, sys
 block = open('box/block.bin', 'rb').read()
 said = json.load(open('box/gpu.json'))

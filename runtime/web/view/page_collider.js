@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The collider of a page that plays nothing: what `relief export --gpu` writes (runtime/collider/LAYOUT.md), and facts. Has the
+// The collider of a page that plays nothing: what `relief export --gpu` writes (runtime/layout/LAYOUT.md), and facts. Has the
 // members of relief-particles' Collider and GpuCollider that the page uses.
 import { damaged, fromBase64 } from "./page_data.js";
 

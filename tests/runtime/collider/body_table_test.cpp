@@ -49,7 +49,7 @@ glm::vec3 through(const glm::vec4 (&rows)[3], const glm::vec3& p) {
 }
 
 TEST(BodyTable, ABodyThatStopsIsAtRestAStepLater) {
-    BodyTable table(oneMap(), row(1'000), WorldKind::kPlaced);
+    BodyTable table(oneMap(), row(1'000), true);
     EXPECT_TRUE(table.isNew());
     static_cast<void>(table.takeChanges());
     std::vector<Pose> poses(3);
@@ -85,7 +85,7 @@ TEST(BodyTable, ABodyThatStopsIsAtRestAStepLater) {
 }
 
 TEST(BodyTable, PlacedMapsAndMovesFollowThePoses) {
-    BodyTable table(oneMap(), row(3), WorldKind::kPlaced);
+    BodyTable table(oneMap(), row(3), true);
     const Pose from{{5.0F, -2.0F, 1.0F}, glm::normalize(glm::quat(1.0F, 0.2F, -0.5F, 0.3F)), 2.0F};
     const Pose to{{4.0F, -1.0F, 1.5F}, glm::normalize(glm::quat(0.3F, 1.0F, 0.1F, 0.0F)), 3.0F};
     const std::vector<Pose> at_first{table[0].pose, from};
@@ -110,7 +110,7 @@ TEST(BodyTable, PlacedMapsAndMovesFollowThePoses) {
 
 TEST(BodyTable, TheTextureIsNoHigherThanWide) {
     for (const std::size_t count : {1U, 7U, 300U, 65'536U}) {
-        const BodyTable table(oneMap(), row(count), WorldKind::kPlaced);
+        const BodyTable table(oneMap(), row(count), true);
         const std::size_t width = std::size_t{1} << table.log2Width();
         EXPECT_EQ(table.words().size() % width, 0U);
         EXPECT_LE(table.words().size() / width, width);

@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "formats/base/result.h"
 #include "formats/depth_map.h"
-#include "runtime/gl/gl_types.h"
 
 namespace relief {
 
@@ -21,10 +21,10 @@ struct PlacedMap {
 
 /// A part of a texture that is drawn to.
 struct TexelRectangle {
-    GLint x = 0;
-    GLint y = 0;
-    GLsizei width = 0;
-    GLsizei height = 0;
+    std::int32_t x = 0;
+    std::int32_t y = 0;
+    std::int32_t width = 0;
+    std::int32_t height = 0;
 };
 
 /// The layout of one texture: texels that follow each other row by row, and below them rectangles. Add everything, call
@@ -32,15 +32,17 @@ struct TexelRectangle {
 class TexelLayout {
   public:
     void addPacked(std::size_t texels) { packed_ += texels; }
-    void addRectangle(GLsizei width, GLsizei height) { rectangles_.push_back({0, 0, width, height}); }
+    void addRectangle(std::int32_t width, std::int32_t height) {
+        rectangles_.push_back({0, 0, width, height});
+    }
     /// Chooses the least power of two as width that holds it all no higher than wide. False where that is
     /// above `side_max`.
-    [[nodiscard]] bool finish(GLint side_max);
+    [[nodiscard]] bool finish(std::int32_t side_max);
 
-    [[nodiscard]] GLint log2Width() const { return log2_width_; }
-    [[nodiscard]] GLint width() const { return GLint{1} << log2_width_; }
-    [[nodiscard]] GLint height() const { return height_; }  ///< 0: nothing in it
-    [[nodiscard]] std::size_t texels() const;               ///< of what was added
+    [[nodiscard]] std::int32_t log2Width() const { return log2_width_; }
+    [[nodiscard]] std::int32_t width() const { return std::int32_t{1} << log2_width_; }
+    [[nodiscard]] std::int32_t height() const { return height_; }  ///< 0: nothing in it
+    [[nodiscard]] std::size_t texels() const;                      ///< of what was added
     /// The i-th that was added.
     [[nodiscard]] const TexelRectangle& rectangle(std::size_t i) const { return rectangles_[i]; }
     /// Of its texel (0, 0), counted row by row.
@@ -50,12 +52,12 @@ class TexelLayout {
 
   private:
     /// On shelves from left to right; the height, or side_max + 1 where it does not fit.
-    GLint place(GLint side_max);
+    std::int32_t place(std::int32_t side_max);
 
     std::size_t packed_ = 0;
     std::vector<TexelRectangle> rectangles_;
-    GLint log2_width_ = 0;
-    GLint height_ = 0;
+    std::int32_t log2_width_ = 0;
+    std::int32_t height_ = 0;
 };
 
 /// The textures: one for each layout of texels, in the order of the block's widths.
@@ -67,10 +69,10 @@ inline constexpr std::size_t kTexelKinds = 3;
 /// The place of one map.
 struct MapPlace {
     TexelKind kind = kFloatTexels;
-    std::size_t first = 0;  ///< index of its texel (0, 0), counted row by row of the texture
-    GLint pitch = 0;        ///< texels from one of its rows to the next
-    TexelRectangle texels;  ///< of a live map: where it is drawn to
-    TexelRectangle motion;  ///< of a live map: where its motion is drawn to, in the float texture
+    std::size_t first = 0;   ///< index of its texel (0, 0), counted row by row of the texture
+    std::int32_t pitch = 0;  ///< texels from one of its rows to the next
+    TexelRectangle texels;   ///< of a live map: where it is drawn to
+    TexelRectangle motion;   ///< of a live map: where its motion is drawn to, in the float texture
     std::size_t motion_first = 0;
 };
 
@@ -84,7 +86,7 @@ struct MapLayout {
     /// \param side_max  of a texture, texels.
     /// \param room_texels  for patches that come later.
     /// Fails with kLimit where a texture would have to be larger.
-    [[nodiscard]] static Result<MapLayout> create(std::span<const PlacedMap> maps, GLint side_max,
+    [[nodiscard]] static Result<MapLayout> create(std::span<const PlacedMap> maps, std::int32_t side_max,
                                                   std::size_t room_texels = 0);
 };
 

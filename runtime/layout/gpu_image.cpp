@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collider/gpu_image.h"
+#include "runtime/layout/gpu_image.h"
 
 #include <algorithm>
 #include <cstring>
 #include <span>
 
 #include "formats/normal_index.h"
-#include "runtime/collider/collider_block.h"
-#include "runtime/gl/gl_functions.h"
+#include "runtime/layout/collider_block.h"
 
 namespace relief {
 namespace {
 
 constexpr std::array<TexelFormat, kTexelKinds> kFormats = {{
-    {"u_relief_float", "GL_RGBA32F", GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
-    {"u_relief_fixed", "GL_RGBA8", GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},
-    {"u_relief_front_back", "GL_RGBA16UI", GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, 8},
+    {"u_relief_float", "GL_RGBA32F", 0x8814, 0x1908, 0x1406, 16},       // GL_RGBA, GL_FLOAT
+    {"u_relief_fixed", "GL_RGBA8", 0x8058, 0x1908, 0x1401, 4},          // GL_RGBA, GL_UNSIGNED_BYTE
+    {"u_relief_front_back", "GL_RGBA16UI", 0x8D76, 0x8D99, 0x1403, 8},  // GL_RGBA_INTEGER, GL_UNSIGNED_SHORT
 }};
 
 constexpr std::byte kLastIndex{2 * kNormalHalfRange};
@@ -99,8 +98,7 @@ Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max) {
         maps.push_back({&map, false});
     }
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, side_max));
-    return GpuImage{mapTextures(maps, layout), colliderBlock(maps, layout),
-                    colliderDefines(WorldKind::kNone, maps, layout)};
+    return GpuImage{mapTextures(maps, layout), colliderBlock(maps, layout), colliderDefines(maps, layout)};
 }
 
 }  // namespace relief

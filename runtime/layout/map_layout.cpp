@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collider/map_layout.h"
+#include "runtime/layout/map_layout.h"
 
 #include <algorithm>
 #include <string>
@@ -11,13 +11,13 @@ std::size_t texelCount(const DepthMap& map) {
     return static_cast<std::size_t>(map.texelBytes()) / texelSize(map.format);
 }
 
-Result<void> reserve(std::span<const PlacedMap> maps, GLint side_max, std::size_t room_texels,
+Result<void> reserve(std::span<const PlacedMap> maps, std::int32_t side_max, std::size_t room_texels,
                      std::array<TexelLayout, kTexelKinds>& textures) {
     for (const auto& [map, live] : maps) {
         TexelLayout& texture = textures[texelKindOf(map->format)];
         if (live) {
-            const auto width = static_cast<GLsizei>(map->width);
-            const auto height = static_cast<GLsizei>(map->height);
+            const auto width = static_cast<std::int32_t>(map->width);
+            const auto height = static_cast<std::int32_t>(map->height);
             texture.addRectangle(width, height);
             textures[kFloatTexels].addRectangle(width, 2 * height);  // how its front moves, and its back
         } else {
@@ -46,7 +46,7 @@ std::size_t TexelLayout::texels() const {
     return sum;
 }
 
-bool TexelLayout::finish(GLint side_max) {
+bool TexelLayout::finish(std::int32_t side_max) {
     for (log2_width_ = 0; width() <= side_max && log2_width_ < 30; ++log2_width_) {
         height_ = place(side_max);
         if (height_ <= width()) {
@@ -56,16 +56,16 @@ bool TexelLayout::finish(GLint side_max) {
     return false;
 }
 
-GLint TexelLayout::place(GLint side_max) {
-    const GLint full = side_max + 1;
+std::int32_t TexelLayout::place(std::int32_t side_max) {
+    const std::int32_t full = side_max + 1;
     const auto row_texels = static_cast<std::size_t>(width());
     const std::size_t rows = (packed_ + row_texels - 1) >> log2_width_;
     if (rows > static_cast<std::size_t>(side_max)) {
         return full;
     }
-    GLint x = 0;
-    auto shelf = static_cast<GLint>(rows);
-    GLint top = shelf;
+    std::int32_t x = 0;
+    auto shelf = static_cast<std::int32_t>(rows);
+    std::int32_t top = shelf;
     for (TexelRectangle& r : rectangles_) {
         if (x + r.width > width()) {
             x = 0;
@@ -97,7 +97,7 @@ TexelKind texelKindOf(MapFormat format) {
     return kFixedTexels;
 }
 
-Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, GLint side_max,
+Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, std::int32_t side_max,
                                     std::size_t room_texels) {
     MapLayout layout;
     auto& textures = layout.textures;
@@ -117,7 +117,7 @@ Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, GLint side_
             place.motion_first = textures[kFloatTexels].index(place.motion);
         } else {
             place.first = packed[place.kind];
-            place.pitch = static_cast<GLint>(map->width);
+            place.pitch = static_cast<std::int32_t>(map->width);
             packed[place.kind] += texelCount(*map);
         }
         layout.places.push_back(place);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/collider/collider_block.h"
+#include "runtime/layout/collider_block.h"
 
 #include <algorithm>
 #include <cstring>
@@ -68,40 +68,6 @@ std::size_t mapsInBlock(std::size_t block_bytes) {
     return (block_bytes - sizeof(glm::ivec4)) / sizeof(BlockMap);
 }
 
-void writeRows(const Pose& pose, glm::vec4 (&rows)[3]) {
-    const glm::mat3 rotation = glm::mat3_cast(pose.rotation);
-    for (int i = 0; i < 3; ++i) {
-        // Column i of the rotation is the body's axis i in the world.
-        const glm::vec3 row = rotation[i] / pose.scale;
-        rows[i] = glm::vec4(row, -glm::dot(row, pose.position));
-    }
-}
-
-void writeMove(const Pose& from, const Pose& to, glm::vec4 (&rows)[3]) {
-    // In double: the two translations nearly cancel.
-    const double scale = double{to.scale} / double{from.scale};
-    const glm::dmat3 turn =
-        scale * glm::mat3_cast(glm::dquat(to.rotation) * glm::conjugate(glm::dquat(from.rotation)));
-    const glm::dvec3 shift = glm::dvec3(to.position) - turn * glm::dvec3(from.position);
-    for (int i = 0; i < 3; ++i) {
-        rows[i] = glm::vec4(glm::dvec4(turn[0][i], turn[1][i], turn[2][i], shift[i]));
-    }
-}
-
-BlockMap placedMap(const BlockMap& map, const Pose& pose) {
-    const glm::dmat3 turn = glm::mat3_cast(glm::dquat(pose.rotation));
-    const double scale = pose.scale;
-    BlockMap placed = map;
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec3 row = turn * glm::dvec3(map.row[i]) / scale;
-        placed.row[i] =
-            glm::vec4(glm::dvec4(row, double{map.row[i].w} - glm::dot(row, glm::dvec3(pose.position))));
-        placed.column[i] = glm::vec4(glm::vec3(scale * (turn * glm::dvec3(map.column[i]))), map.column[i].w);
-    }
-    placed.object_per_map.x *= pose.scale;
-    return placed;
-}
-
 glm::ivec4 blockHead(std::span<const PlacedMap> maps, const MapLayout& layout) {
     return {static_cast<int>(maps.size()), layout.textures[kFloatTexels].log2Width(),
             layout.textures[kFixedTexels].log2Width(), layout.textures[kFrontBackTexels].log2Width()};
@@ -124,25 +90,21 @@ std::vector<std::byte> colliderBlock(std::span<const PlacedMap> maps, const MapL
     return block;
 }
 
-std::string colliderDefines(WorldKind world, std::span<const PlacedMap> maps, const MapLayout& layout) {
+std::string colliderDefines(std::span<const PlacedMap> maps, const MapLayout& layout) {
+    return "#define RELIEF_MAP_CAPACITY " + std::to_string(maps.size()) + "\n#define RELIEF_VOTES " +
+           unrolledVotes(maps) + "\n" + mapDefines(maps, layout);
+}
+
+std::string mapDefines(std::span<const PlacedMap> maps, const MapLayout& layout) {
     std::string defines;
     const auto define = [&](const std::string& name, const std::string& value = {}) {
         defines += "#define RELIEF_" + name + " " + value + "\n";
     };
-    if (world == WorldKind::kNone) {
-        define("MAP_CAPACITY", std::to_string(maps.size()));
-    }
     const auto log2Width = [&](TexelKind kind) { return std::to_string(layout.textures[kind].log2Width()); };
     define("LOG2_WIDTHS", "ivec3(" + log2Width(kFloatTexels) + "," + log2Width(kFixedTexels) + "," +
                               log2Width(kFrontBackTexels) + ")");
     if (std::any_of(maps.begin(), maps.end(), [](const PlacedMap& one) { return one.live; })) {
         define("LIVE", "1");
-    }
-    if (world == WorldKind::kNone) {
-        define("VOTES", unrolledVotes(maps));
-    } else {
-        define("BODIES", "1");
-        define("PLACED", world == WorldKind::kPlaced ? "1" : "0");
     }
     std::int32_t all = ~0;
     for (const PlacedMap& one : maps) {

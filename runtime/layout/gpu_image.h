@@ -11,7 +11,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/collider/map_layout.h"
+#include "runtime/layout/map_layout.h"
 
 namespace relief {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How maps are laid out to be drawn to.
-#include "runtime/collider/map_layout.h"
+#include "runtime/layout/map_layout.h"
 
 #include <gtest/gtest.h>
 
