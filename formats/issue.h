@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/base/field.h"
+#include "formats/base/enum_words.h"
 
 namespace relief {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The materials of a collider: names, responses, and an octree of which surface is of which. README.md beside this file,
-// "Materials", in words; shaders/collider/materials.glsl is materialAt() on the GPU.
+// "Materials", in words; shaders/bodies/materials.glsl is materialAt() on the GPU.
 //
 // The tree is over a cube that holds the collider, not over texels, so that maps of every format share it. A cell is split
 // only where surfaces of different materials are near, and a cell without surface has the material of the nearest:

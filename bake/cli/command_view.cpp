@@ -24,7 +24,7 @@
 #include "formats/base/text.h"
 #include "formats/container.h"
 #include "formats/fields/json_value.h"
-#include "runtime/collider/collider_info.h"
+#include "formats/world/collider_info.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/gl/gl_object.h"

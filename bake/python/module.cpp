@@ -27,7 +27,7 @@
 #include "formats/nearest_surface.h"
 #include "formats/validate.h"
 #include "formats/world/world_field.h"
-#include "runtime/collider/world_bodies.h"
+#include "runtime/bodies/world_bodies.h"
 #include "runtime/gl/gl_context.h"
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"

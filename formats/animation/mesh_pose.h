@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of an animated mesh: by a clip at a time, or by a program. CPU truth of shaders/collider/skin.vert.
+// Poses of an animated mesh: by a clip at a time, or by a program. CPU truth of shaders/live/skin.vert.
 #pragma once
 
 #include <cstddef>

@@ -40,6 +40,7 @@
 #include <variant>
 #include <vector>
 
+#include "formats/base/enum_words.h"
 #include "formats/base/field_type.h"
 
 namespace relief {
@@ -148,28 +149,6 @@ struct FieldGroup {
     bool nullable = false;
     bool present = true;  ///< else it is null
 };
-
-/// The words of an enumeration in the order of its values, which count from 0. Specialized beside the enumeration.
-template <class Enum>
-inline constexpr std::array<std::string_view, 0> kWordsOf{};
-
-template <class Enum>
-concept WithWords = std::is_enum_v<Enum> &&(kWordsOf<Enum>.size() > 0);
-
-template <WithWords Enum>
-[[nodiscard]] constexpr std::string_view wordOf(Enum value) {
-    return kWordsOf<Enum>.at(static_cast<std::size_t>(value));
-}
-
-template <WithWords Enum>
-[[nodiscard]] constexpr std::optional<Enum> fromWord(std::string_view word) {
-    for (std::size_t i = 0; i < kWordsOf<Enum>.size(); ++i) {
-        if (kWordsOf<Enum>[i] == word) {
-            return static_cast<Enum>(i);
-        }
-    }
-    return std::nullopt;
-}
 
 /// Whether T is an instance of the template Form.
 template <template <class...> class Form, class T>

@@ -118,8 +118,4 @@ float airTime(const AirSettings& air, double seconds) {
     return air.curl_noise ? curlTime(*air.curl_noise, seconds) : static_cast<float>(seconds);
 }
 
-float stokesRate(float viscosity, float radius, float mass) {
-    return kSixPi * viscosity * radius / mass;
-}
-
 }  // namespace relief

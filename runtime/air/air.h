@@ -76,9 +76,4 @@ void fields(FieldVisitor& visit, AirSettings& air);
 /// in a double, and not by a particle system's own clock, which is set back now and then.
 [[nodiscard]] float airTime(const AirSettings& air, double seconds);
 
-/// k = 6π · viscosity · radius / mass, 1/s: the rate of Stokes drag, for
-/// v' = (v + dt (a + k air)) / (1 + dt k).
-/// \param mass  > 0
-[[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
-
 }  // namespace relief

@@ -6,7 +6,7 @@
 #include "formats/container.h"
 #include "runtime/bench/bench.h"
 #include "runtime/bench/bench_scene.h"
-#include "runtime/collider/animated_collider.h"
+#include "runtime/live/animated_collider.h"
 
 namespace relief {
 
@@ -25,7 +25,7 @@ Result<Json> benchAnimated(const Bench& bench) {
         body.collider = &animated.frames();
         body.pose = animated.placed({});
         body.live = true;
-        auto textures = RELIEF_TRY(ColliderTextures::create({&body, 1}));
+        auto textures = RELIEF_TRY(WorldTextures::create({&body, 1}));
         const std::uint32_t count = bench.particlesOr(1U << 20, 1U << 18);
         const BenchScene scene = makeBenchScene(animated.frames(), count);
         auto particles = RELIEF_TRY(ParticleSystem::create({.capacity = count, .path = bench.path}));

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 #include "runtime/bench/bench_scene.h"
-#include "runtime/collider/live_collider.h"
-#include "runtime/collider/wobble_pass.h"
 #include "runtime/files/mesh_file.h"
+#include "runtime/live/live_collider.h"
+#include "runtime/live/wobble_pass.h"
 #include "runtime/picture/collider_mesh.h"
 
 namespace relief {
@@ -28,7 +28,7 @@ Result<Json> benchMesh(const Bench& bench) {
     ColliderBody body;
     body.collider = &live.frames();
     body.live = true;
-    auto textures = RELIEF_TRY(ColliderTextures::create({&body, 1}));
+    auto textures = RELIEF_TRY(WorldTextures::create({&body, 1}));
     const std::uint32_t count = bench.particlesOr(1U << 18, 1U << 18);
     const BenchScene scene = makeBenchScene(live.frames(), count);
     auto particles = RELIEF_TRY(ParticleSystem::create({.capacity = count, .path = bench.path}));

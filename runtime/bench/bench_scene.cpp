@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/bench/bench_scene.h"
+#include "runtime/air/particle_air.h"
+#include "runtime/events/event_recorder.h"
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
@@ -48,9 +50,9 @@ std::vector<Pose> crowdPoses(const BenchScene& scene, const BenchVariant& varian
     return poses;
 }
 
-Result<ColliderTextures> makeTextures(const BenchScene& scene, const BenchVariant& variant) {
+Result<WorldTextures> makeTextures(const BenchScene& scene, const BenchVariant& variant) {
     if (variant.solids == Solids::kCollider) {
-        return ColliderTextures::create(scene.collider);
+        return WorldTextures::create(scene.collider);
     }
     const bool crowd = variant.solids == Solids::kCrowd;
     const std::vector<Pose> poses = crowd ? crowdPoses(scene, variant) : fourPoses(scene);
@@ -59,7 +61,7 @@ Result<ColliderTextures> makeTextures(const BenchScene& scene, const BenchVarian
     for (const Pose& pose : poses) {
         bodies.push_back({&copies[bodies.size() % copies.size()], pose, 1.0F, 0.0F});
     }
-    return ColliderTextures::create(bodies);
+    return WorldTextures::create(bodies);
 }
 
 Result<void> setSixteenTypes(ParticleSystem& particles, const BenchScene& /*scene*/) {
@@ -113,16 +115,16 @@ auto airWith(void (*add)(AirSettings&, const BenchScene&)) {
         AirSettings air;
         air.wind = scene.forces.wind;
         add(air, scene);
-        return particles.setAir(air);
+        return setAir(particles, air);
     };
 }
 
 Result<void> setEvents(ParticleSystem& particles, const BenchScene& /*scene*/) {
-    return particles.setEvents(EventOptions{.lasting = true, .deaths = true});
+    return setEvents(particles, EventOptions{.lasting = true, .deaths = true});
 }
 
 /// A tenth of a degree further each step, to and fro, so that every block sees the same poses, all but a degree.
-std::function<void()> turning(ColliderTextures* textures, std::vector<Pose> poses) {
+std::function<void()> turning(WorldTextures* textures, std::vector<Pose> poses) {
     return [textures, poses = std::move(poses), step = 0]() mutable {
         const float degrees = 0.1F * static_cast<float>(++step / 16 % 2 == 0 ? step % 16 : 16 - step % 16);
         for (Pose& pose : poses) {
@@ -185,7 +187,7 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, cons
     RELIEF_TRY(system.particles->setForces(scene.forces));
     RELIEF_TRY(system.particles->setType(kSnow));
     if (variant.solids != Solids::kNone) {
-        system.textures = std::make_unique<ColliderTextures>(RELIEF_TRY(makeTextures(scene, variant)));
+        system.textures = std::make_unique<WorldTextures>(RELIEF_TRY(makeTextures(scene, variant)));
         RELIEF_TRY(system.particles->setCollider(system.textures.get()));
     }
     if (variant.set) {
@@ -198,8 +200,8 @@ Result<BenchSystem> makeBenchSystem(const BenchScene& scene, StepPath path, cons
         system.before_step = turning(system.textures.get(), std::move(poses));
     } else if (variant.each_step == EachStep::kEvents) {
         system.before_step = [particles = system.particles.get()] {
-            particles->requestEvents(0);
-            while (particles->pollEvents()) {
+            requestEvents(*particles, 0);
+            while (pollEvents(*particles)) {
             }
         };
     }

@@ -10,7 +10,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/collider/collider_textures.h"
+#include "runtime/bodies/world_textures.h"
 #include "runtime/particles/particle_system.h"
 
 namespace relief {
@@ -39,7 +39,7 @@ struct BenchScene {
 
 /// A particle system with what it collides with.
 struct BenchSystem {
-    std::unique_ptr<ColliderTextures> textures;  // stays where it is: the particles point at it
+    std::unique_ptr<WorldTextures> textures;  // stays where it is: the particles point at it
     std::unique_ptr<ParticleSystem> particles;
     std::function<void()> before_step;  // may be empty
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "formats/base/text.h"
+#include "runtime/bodies/world_bodies.h"
 #include "runtime/c_api/objects.h"
-#include "runtime/collider/world_bodies.h"
 
 using namespace relief;  // NOLINT: what C sees has C's names
 

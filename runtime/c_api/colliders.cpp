@@ -21,13 +21,13 @@ relief_sample sampleOf(const Sample& from) {
 }
 
 /// The binding of the collider in a program's own shader.
-Result<ColliderTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
-                                            int uniform_block) {
+Result<WorldTextures::Binding> bindingOf(const Call& call, const TexturesObject& textures, int first_unit,
+                                         int uniform_block) {
     const int units = textures.world ? 4 : 3;
     RELIEF_TRY(call.number(first_unit, {0.0, static_cast<double>(textures.units - units)}, {"first_unit"}));
     RELIEF_TRY(
         call.number(uniform_block, {0.0, static_cast<double>(textures.blocks - 1)}, {"uniform_block"}));
-    return ColliderTextures::Binding{first_unit, uniform_block, first_unit + 3};
+    return WorldTextures::Binding{first_unit, uniform_block, first_unit + 3};
 }
 
 }  // namespace
@@ -144,7 +144,7 @@ relief_textures* relief_textures_create(const relief_collider* collider) {
         __func__, [&](const Call& call) -> Result<std::shared_ptr<TexturesObject>> {
             const Collider& field = *RELIEF_TRY(call.object(collider, "collider"));
             RELIEF_TRY(call.context());
-            auto textures = RELIEF_TRY(ColliderTextures::create(field));
+            auto textures = RELIEF_TRY(WorldTextures::create(field));
             return std::make_shared<TexturesObject>(RELIEF_TRY(texturesObject(std::move(textures))));
         });
 }

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "formats/animation/mesh_parts.h"
+#include "runtime/births/collider_surface.h"
+#include "runtime/births/emitter_motion.h"
+#include "runtime/births/emitter_surface.h"
+#include "runtime/bodies/pose_keys.h"
 #include "runtime/c_api/objects.h"
-#include "runtime/collider/collider_surface.h"
-#include "runtime/collider/pose_keys.h"
 
 using namespace relief;  // NOLINT: what C sees has C's names
 
@@ -98,7 +100,7 @@ Result<std::shared_ptr<EmitterObject>> emitterOf(const Call& call, const relief_
                                                  std::shared_ptr<const AnimatedMesh> mesh,
                                                  EmitterSurface surface) {
     EmitterSettings settings = RELIEF_TRY(settingsOf(call, options));
-    settings.surface = std::move(surface);
+    settings.surface = BirthSurfaceValue(std::make_unique<EmitterSurface>(std::move(surface)));
     RELIEF_TRY(ofArgument(call, "options", Emitter::check(settings)));
     return std::make_shared<EmitterObject>(
         EmitterObject{std::move(mesh), Emitter(std::move(settings), options.seed), options.inherit});

@@ -20,7 +20,7 @@ Result<TexturesObject> completed(TexturesObject made) {
 
 }  // namespace
 
-Result<TexturesObject> texturesObject(ColliderTextures textures) {
+Result<TexturesObject> texturesObject(WorldTextures textures) {
     return completed({.own = std::move(textures)});
 }
 

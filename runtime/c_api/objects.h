@@ -11,11 +11,11 @@
 
 #include "formats/base/finite.h"
 #include "formats/world/world_field.h"
+#include "runtime/births/mesh_trail.h"
+#include "runtime/bodies/world_textures.h"
 #include "runtime/c_api/call.h"
 #include "runtime/c_api/relief.h"
-#include "runtime/collider/animated_collider.h"
-#include "runtime/collider/collider_textures.h"
-#include "runtime/particles/mesh_trail.h"
+#include "runtime/live/animated_collider.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/particle_renderer.h"
 #include "runtime/stream/world_stream.h"
@@ -38,7 +38,7 @@ struct AnimatedBody {
 };
 
 struct TexturesObject {
-    std::optional<ColliderTextures> own;       // or those of
+    std::optional<WorldTextures> own;          // or those of
     std::unique_ptr<WorldStream> stream = {};  // a world that is streamed
     std::string glsl = {};
     GLint units = 0;                   // texture units of the context
@@ -53,7 +53,7 @@ struct TexturesObject {
     std::vector<std::string> warnings = {};  // of the stream, not told yet
     std::string warning = {};                // that was told last
 
-    [[nodiscard]] const ColliderTextures& textures() const { return stream ? stream->textures() : *own; }
+    [[nodiscard]] const WorldTextures& textures() const { return stream ? stream->textures() : *own; }
 };
 
 struct ParticlesObject {
@@ -228,7 +228,7 @@ void writeBounds(const char* function, float* min, float* max, const F& boundsOf
 }
 
 /// Textures with all that calls about them need. Needs a current context.
-[[nodiscard]] Result<TexturesObject> texturesObject(ColliderTextures textures);
+[[nodiscard]] Result<TexturesObject> texturesObject(WorldTextures textures);
 [[nodiscard]] Result<TexturesObject> texturesObject(std::unique_ptr<WorldStream> stream);
 
 }  // namespace relief

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "formats/base/text.h"
+#include "runtime/bodies/world_bodies.h"
 #include "runtime/c_api/objects.h"
-#include "runtime/collider/world_bodies.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/picture/collider_view.h"
@@ -58,7 +58,7 @@ Result<TexturesObject> upload(const WorldObject& world) {
         const AnimatedCollider& of = animated[i].collider;
         bodies.push_back({.collider = &of.frames(), .pose = of.placed(world.added[i].pose), .live = true});
     }
-    auto textures = RELIEF_TRY(ColliderTextures::create(bodies));
+    auto textures = RELIEF_TRY(WorldTextures::create(bodies));
     auto made = RELIEF_TRY(texturesObject(std::move(textures)));
     const ColliderView view = worldView(loaded, made.textures());
     Bounds bounds = view.bounds;

@@ -15,24 +15,29 @@
 namespace relief {
 namespace {
 
-/// Replaces every line `//!include NAME` by the file's text, once a file.
+/// Replaces every line `//!include NAME` by the file's text, once a file, and `//!layer NAME` in builds that have that layer.
 Result<std::string> resolveIncludes(std::string_view name, std::vector<std::string>& included) {
     const std::string_view source = shaderSource(name);
     if (source.empty()) {
         return fail(ErrorCode::kFailure, "shader '" + std::string(name) + "' is not embedded in this build");
     }
     constexpr std::string_view kDirective = "//!include ";
+    constexpr std::string_view kLayer = "//!layer ";
     std::string text;
     std::size_t at = 0;
     while (at < source.size()) {
         const std::size_t end = std::min(source.find('\n', at), source.size());
         const std::string_view line = source.substr(at, end - at);
         at = end + 1;
-        if (!line.starts_with(kDirective)) {
+        const bool layer = line.starts_with(kLayer);
+        if (!layer && !line.starts_with(kDirective)) {
             text.append(line).push_back('\n');
             continue;
         }
-        const std::string child(line.substr(kDirective.size()));
+        const std::string child(line.substr((layer ? kLayer : kDirective).size()));
+        if (layer && shaderSource(child).empty()) {
+            continue;
+        }
         if (std::find(included.begin(), included.end(), child) == included.end()) {
             included.push_back(child);
             std::string nested = RELIEF_TRY(resolveIncludes(child, included));

@@ -11,8 +11,6 @@
 namespace relief {
 namespace {
 
-static_assert(sizeof(BlockMap) == kWorldMapTexels * sizeof(glm::uvec4));
-
 std::int32_t flagsOf(const PlacedMap& placed) {
     const DepthMap& map = *placed.map;
     return (map.compare == Compare::kGreater ? kKeepsFarthest : 0) | (map.encloses ? kEncloses : 0) |

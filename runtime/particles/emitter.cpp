@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
+#include <glm/glm.hpp>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -52,7 +52,7 @@ const char* problemOf(const EmitterSettings& s) {
         {points && !s.points.normals.empty() && s.points.normals.size() != count,
          "points must have as many normals as positions, or none"},
         {s.shape == EmitterShape::kDisc && unitVector(s.normal) == glm::vec3(0.0F), "normal must not be 0"},
-        {surface && !(s.surface.area() > 0.0), "surface must have an area"},
+        {surface && !(s.surface && s.surface->area() > 0.0), "surface must have an area"},
         {!box && !points && !surface && !(isFinite(s.center) && rising(s.radius, s.radius)),
          "center and radius must be finite, the radius at least 0"},
         {!(s.start >= 0.0 && s.rate >= 0.0 && s.duration > 0.0 && s.burst_every >= 0.0),
@@ -69,20 +69,6 @@ const char* problemOf(const EmitterSettings& s) {
         {!rising(aim.speed_min, aim.speed_max) || !rising(aim.speed_deviation, aim.speed_deviation),
          "aim's speeds must be finite, at least 0 and in order"},
     });
-}
-
-/// From the space that moves along a trajectory to the space of its poses.
-/// \param moved  how the place moves; `inherit` of it is taken on in the end.
-void carryAlong(std::span<const PoseKey> keys, double time, Birth& birth, glm::vec3& moved) {
-    if (keys.empty()) {
-        return;
-    }
-    const Pose pose = poseAt(keys, time);
-    const Motion motion = motionAt(keys, time);
-    const glm::vec3 arm = pose.scale * (pose.rotation * birth.position);
-    birth.position = pose.position + arm;
-    birth.velocity = pose.rotation * birth.velocity;
-    moved = motion.velocity + glm::cross(motion.turn, arm) + pose.scale * (pose.rotation * moved);
 }
 
 }  // namespace
@@ -161,7 +147,7 @@ std::uint64_t Emitter::emit(double dt, std::uint64_t room, std::vector<Birth>& b
         wholeCount(static_cast<double>(due.bursts - std::min(due.bursts, bursts_)) *
                    static_cast<double>(settings_.burst));
     const std::uint64_t wanted = steady_due + burst_due;
-    const bool nowhere = settings_.shape == EmitterShape::kSurface && !(settings_.surface.area() > 0.0);
+    const bool nowhere = settings_.shape == EmitterShape::kSurface && !(settings_.surface->area() > 0.0);
     const std::uint64_t made = nowhere ? 0 : std::min(wanted, room);
 
     // Births in the order of time. Before burst j come the births by rate up to its moment: a number that
@@ -230,7 +216,7 @@ glm::vec3 Emitter::place(Birth& birth) {
             return s.points.normals.empty() ? glm::vec3(0.0F) : s.points.normals[at];
         }
         case EmitterShape::kSurface: {
-            const EmitterSurface::Place at = s.surface.draw(random_, birth.age);
+            const BirthSurface::Place at = s.surface->draw(random_, birth.age);
             birth.position = at.position;
             place_velocities_.push_back(at.velocity);
             return at.normal;
@@ -269,76 +255,6 @@ glm::vec3 Emitter::aimed(const glm::vec3& normal) {
         }
     } while (speed < 0.0F);
     return speed * direction;
-}
-
-void carry(const EmitterMotion& motion, double time, std::span<Birth> births, std::span<const glm::vec3> own,
-           std::vector<glm::vec3>* velocities) {
-    if (velocities != nullptr) {
-        velocities->assign(births.size(), glm::vec3(0.0F));
-    }
-    if (motion.none() && own.empty()) {
-        return;
-    }
-    for (std::size_t i = 0; i < births.size(); ++i) {
-        Birth& birth = births[i];
-        const double moment = time - static_cast<double>(birth.age);
-        glm::vec3 moved = own.empty() ? glm::vec3(0.0F) : own[i];
-        carryAlong(motion.keys, moment, birth, moved);
-        carryAlong(motion.body, moment, birth, moved);
-        if (velocities != nullptr) {
-            (*velocities)[i] = moved;
-        }
-        // A step of no length at all may make what is no number of a motion.
-        const glm::vec3 velocity = birth.velocity + motion.inherit * moved;
-        birth.velocity = isFinite(velocity) ? velocity : birth.velocity;
-    }
-}
-
-namespace {
-
-/// Carries the births of an emitter from `first` on, and drops what its filter drops, and what is above the room.
-/// \return how many were above it.
-std::uint64_t carryFiltered(const EmitterMotion& motion, double time, const Emitter& emitter,
-                            std::uint64_t room, std::size_t first, std::vector<Birth>& births) {
-    const std::span<Birth> made = std::span(births).subspan(first);
-    std::vector<glm::vec3> velocities;
-    carry(motion, time, made, emitter.placeVelocities(), &velocities);
-    const std::vector<bool> stays = motion.filter(made, velocities, time);
-    std::uint64_t refused = 0;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < made.size(); ++i) {
-        if (!stays[i]) {
-            continue;
-        }
-        if (kept < room) {
-            made[kept++] = made[i];
-        } else {
-            ++refused;
-        }
-    }
-    births.resize(first + kept);
-    return refused;
-}
-
-}  // namespace
-
-std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
-                      std::span<const EmitterMotion> motions, double time) {
-    std::uint64_t refused = 0;
-    for (std::size_t i = 0; i < emitters.size(); ++i) {
-        const std::size_t before = births.size();
-        if (i < motions.size() && motions[i].filter) {
-            refused += emitters[i].emit(dt, kFilteredMax, births);
-            refused += carryFiltered(motions[i], time, emitters[i], room, before, births);
-        } else {
-            refused += emitters[i].emit(dt, room, births);
-            if (i < motions.size()) {
-                carry(motions[i], time, std::span(births).subspan(before), emitters[i].placeVelocities());
-            }
-        }
-        room -= births.size() - before;
-    }
-    return refused;
 }
 
 }  // namespace relief

@@ -5,19 +5,16 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "formats/base/field.h"
+#include "formats/base/enum_words.h"
 #include "formats/base/result.h"
-#include "runtime/collider/pose_keys.h"
 #include "runtime/particles/birth.h"
-#include "runtime/particles/emitter_surface.h"
-#include "runtime/particles/point_list.h"
+#include "runtime/particles/birth_surface.h"
 #include "runtime/particles/random.h"
 
 namespace relief {
@@ -47,6 +44,14 @@ struct EmitterAim {
     float speed_deviation = 0.0F;  ///< ≥ 0, of the normal share, whose mean is 0
 };
 
+/// Places of birth.
+struct PointList {
+    std::vector<glm::vec3> positions;  ///< object units, each coordinate within ±kPointCoordinateMax
+    std::vector<glm::vec3> normals;    ///< of length 1; as many as positions, or none
+};
+inline constexpr std::size_t kPointsMax = std::size_t{1} << 22;
+inline constexpr double kPointCoordinateMax = 1e9;
+
 struct EmitterSettings {
     EmitterShape shape = EmitterShape::kBox;
     glm::vec3 box_min{0.0F};
@@ -55,7 +60,7 @@ struct EmitterSettings {
     float radius = 0.0F;                 ///< of sphere, shell and disc, ≥ 0
     glm::vec3 normal{0.0F, 1.0F, 0.0F};  ///< of the disc, not 0
     PointList points;                    ///< at least one for kPoints
-    EmitterSurface surface;              ///< of some area for kSurface; where it is at first
+    BirthSurfaceValue surface;           ///< of some area for kSurface; where it is at first
 
     double start = 0.0;  ///< seconds before anything is born, ≥ 0
     double rate = 0.0;   ///< births a second, ≥ 0
@@ -97,10 +102,10 @@ class Emitter {
     /// Anything is due in the next `dt` seconds.
     [[nodiscard]] bool isDue(double dt) const;
 
-    /// Moves the surface of kSurface for the next emit(): EmitterSurface::move(). While it has no area, births that are due find no
+    /// Moves the surface of kSurface for the next emit(): BirthSurface::move(). While it has no area, births that are due find no
     /// room.
     void moveSurface(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) {
-        settings_.surface.move(before, now, seconds);
+        settings_.surface->move(before, now, seconds);
     }
     /// The velocities of the places of the births that the last emit() made, for carry(): of kSurface as many, else none.
     [[nodiscard]] std::span<const glm::vec3> placeVelocities() const { return place_velocities_; }
@@ -135,38 +140,5 @@ class Emitter {
     std::uint64_t bursts_ = 0;
     std::vector<glm::vec3> place_velocities_;
 };
-
-/// Which births come into being: one for each. The others are made all the same, so that these do not depend on them.
-/// \param births      of one emitter in one step, in the world.
-/// \param velocities  of their places, world units a second.
-/// \param time        when they enter a step, as carry() has it.
-using BirthFilter = std::function<std::vector<bool>(std::span<const Birth> births,
-                                                    std::span<const glm::vec3> velocities, double time)>;
-/// Births of an emitter with a filter that a step makes at most; the rest is refused.
-inline constexpr std::uint64_t kFilteredMax = std::uint64_t{1} << 20;
-
-/// The trajectory that carries an emitter's births. Its places are then in a space of its own, which `keys` bring into the
-/// space of the body, and `body` into the world; a scale scales places, but no velocities.
-struct EmitterMotion {
-    std::vector<PoseKey> keys;  ///< empty: its space is that of the body
-    std::vector<PoseKey> body;  ///< one key: a body at rest; empty: the space of the body is the world
-    float inherit = 0.0F;       ///< share of the velocity of its place that a birth takes on
-    BirthFilter filter = {};    ///< of emitAll(); empty: all births come into being
-    [[nodiscard]] bool none() const { return keys.empty() && body.empty(); }
-};
-
-/// Brings births into the world: each from where the emitter is at its own moment, `age` before `time`.
-/// \param time  when they enter a step: its beginning, seconds on the clock of the keys.
-/// \param own   velocities of their places in the emitter's space, of which they take on a share as well; empty: none moves.
-/// \param velocities  becomes those of their places in the world; may be null.
-void carry(const EmitterMotion& motion, double time, std::span<Birth> births,
-           std::span<const glm::vec3> own = {}, std::vector<glm::vec3>* velocities = nullptr);
-
-/// emit() of each in turn: where there is too little room, the earlier ones take it.
-/// \param motions  of as many, or none: they carry the births along, at once, and filter them. What a filter drops takes no room.
-/// \param time     of the beginning of these `dt` seconds, on the clock of the motions.
-/// \return the sum.
-std::uint64_t emitAll(std::span<Emitter> emitters, double dt, std::uint64_t room, std::vector<Birth>& births,
-                      std::span<const EmitterMotion> motions = {}, double time = 0.0);
 
 }  // namespace relief

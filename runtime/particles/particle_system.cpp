@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <unordered_map>
 
 #include "formats/base/finite.h"
 #include "runtime/gl/compute_units.h"
@@ -94,15 +93,30 @@ Result<void> ParticleSystem::createTextures() {
     }
     RELIEF_TRY(checkAllocated("the state of " + std::to_string(ids_.size()) + " particles",
                               "choose a smaller capacity"));
+    RELIEF_TRY(makeStepTargets());
     for (int i = 0; i < 2; ++i) {
-        const std::array<GLuint, 3> textures{position_[i].name(), velocity_[i].name(), birth_.name()};
-        step_target_[i] = RELIEF_TRY(makeFramebuffer(std::span(textures).first(2)));
-        birth_target_[i] = RELIEF_TRY(makeFramebuffer(textures));
+        birth_target_[i] = RELIEF_TRY(
+            makeFramebuffer(std::array<GLuint, 3>{position_[i].name(), velocity_[i].name(), birth_.name()}));
         glBindFramebuffer(GL_FRAMEBUFFER, birth_target_[i].name());
         glClearBufferfv(GL_COLOR, 0, kDeadPosition.data());
         glClearBufferfv(GL_COLOR, 1, kZero.data());
         glClearBufferfv(GL_COLOR, 2, kZero.data());
     }
+    return {};
+}
+
+Result<void> ParticleSystem::makeStepTargets() {
+    GlFramebuffer made[2];
+    for (int i = 0; i < 2; ++i) {
+        std::vector<GLuint> textures{position_[i].name(), velocity_[i].name()};
+        for (const std::shared_ptr<StepFeature>& feature : features_) {
+            for (const GlTexture& output : feature->outputs()) {
+                textures.push_back(output.name());
+            }
+        }
+        made[i] = RELIEF_TRY(makeFramebuffer(textures));
+    }
+    std::swap(step_target_, made);
     return {};
 }
 
@@ -114,45 +128,34 @@ Result<void> ParticleSystem::createPrograms() {
     return remakeStep(nullptr);
 }
 
-StepFeatures ParticleSystem::featuresFor(const ColliderTextures* collider) const {
-    const bool radius =
-        std::any_of(types_.begin(), types_.end(), [](const ParticleType& t) { return t.radius > 0.0F; });
-    return {collider,
-            air_.get(),
-            integrator_ == Integrator::kVerlet,
-            sweep_ > 0.0F,
-            radius && collider != nullptr,
-            path_ == StepPath::kCompute,
-            std::any_of(types_.begin(), types_.end(),
-                        [](const ParticleType& t) { return t.collides != kCollidesWithAll; }),
-            static_cast<int>(types_.size()),
-            events_ != nullptr};
-}
-
-std::uint32_t ParticleSystem::materialCount() const {
-    const ColliderTextures* collider = step_.features().collider;
-    return collider == nullptr ? 0 : static_cast<std::uint32_t>(collider->materialNames().size());
-}
-
-Result<void> ParticleSystem::remakeStep(const ColliderTextures* collider) {
-    if (events_ && collider != nullptr) {
-        const std::size_t bodies = std::max<std::size_t>(collider->bodyCount(), 1);
-        const std::size_t materials = collider->materialNames().size();
-        if ((bodies + 1) * (materials + 1) > EventList::kPlacesMax) {
-            return fail(ErrorCode::kLimit,
-                        "events cannot tell " + std::to_string(materials) + " materials of " +
-                            std::to_string(bodies) + " bodies apart: at most " +
-                            std::to_string(EventList::kPlacesMax) +
-                            " pairs; give materials the same names, or bake with --materials none");
-        }
+StepVariant ParticleSystem::variantFor(const ShaderCollider* collider) const {
+    StepVariant variant{.collider = collider,
+                        .features = {},
+                        .verlet = integrator_ == Integrator::kVerlet,
+                        .sweep = sweep_ > 0.0F,
+                        .compute = path_ == StepPath::kCompute,
+                        .types = static_cast<int>(types_.size())};
+    for (const ParticleType& type : types_) {
+        variant.radius = variant.radius || (type.radius > 0.0F && collider != nullptr);
+        variant.masks = variant.masks || type.collides != kCollidesWithAll;
     }
-    step_ = RELIEF_TRY(StepPass::create(featuresFor(collider)));
+    for (const std::shared_ptr<StepFeature>& feature : features_) {
+        variant.features.push_back(feature.get());
+    }
+    return variant;
+}
+
+Result<void> ParticleSystem::remakeStep(const ShaderCollider* collider) {
+    for (const std::shared_ptr<StepFeature>& feature : features_) {
+        RELIEF_TRY(feature->check(collider));
+    }
+    step_ = RELIEF_TRY(StepPass::create(variantFor(collider)));
     return {};
 }
 
 Result<void> ParticleSystem::remakeStepIfNeeded() {
-    const ColliderTextures* collider = step_.features().collider;
-    if (featuresFor(collider) == step_.features()) {
+    const ShaderCollider* collider = step_.variant().collider;
+    if (variantFor(collider) == step_.variant()) {
         return {};
     }
     const PassState state;
@@ -197,110 +200,27 @@ Result<void> ParticleSystem::setSweep(float length) {
     return remakeStepIfNeeded();
 }
 
-Result<void> ParticleSystem::setCollider(const ColliderTextures* collider) {
+Result<void> ParticleSystem::setCollider(const ShaderCollider* collider) {
     const PassState state;
     return remakeStep(collider);
 }
 
-Result<void> ParticleSystem::setAir(const AirSettings& air) {
-    if (air == air_settings_) {
-        return {};  // a new step is compiled otherwise
-    }
+Result<void> ParticleSystem::replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now) {
     const PassState state;
-    auto block = RELIEF_TRY(AirBlock::create(air));
-    std::unique_ptr<AirBlock> old = std::move(air_);
-    air_ = block.defines().empty() ? nullptr : std::make_unique<AirBlock>(std::move(block));
-    if (auto done = remakeStep(step_.features().collider); !done) {
-        air_ = std::move(old);  // the present step points to it
-        return done;
+    const std::vector<std::shared_ptr<StepFeature>> before = features_;  // the present step points to them
+    std::erase_if(features_, [&](const std::shared_ptr<StepFeature>& one) { return one.get() == old; });
+    if (now) {
+        features_.push_back(std::move(now));
     }
-    air_settings_ = air;
-    return {};
-}
-
-Result<void> ParticleSystem::setEvents(const std::optional<EventOptions>& options) {
-    return setEvents(options ? std::span(&*options, 1) : std::span<const EventOptions>());
-}
-
-Result<void> ParticleSystem::setEvents(std::span<const EventOptions> lists) {
-    const PassState state;
-    std::unique_ptr<EventList> made;
-    if (!lists.empty()) {
-        made = std::make_unique<EventList>(RELIEF_TRY(EventList::create(lists, capacity())));
-        RELIEF_TRY(createEventTextures());
+    auto done = makeStepTargets();
+    if (done) {
+        done = remakeStep(step_.variant().collider);
     }
-    std::swap(events_, made);
-    if (step_.features().events != (events_ != nullptr)) {
-        if (auto done = remakeStep(step_.features().collider); !done) {
-            std::swap(events_, made);
-            return done;
-        }
+    if (!done) {
+        features_ = before;
+        static_cast<void>(makeStepTargets());
     }
-    replaced_.clear();
-    if (!events_) {
-        event_velocity_ = {};
-        event_surface_ = {};
-        for (GlFramebuffer& target : event_target_) {
-            target = {};
-        }
-    }
-    stepped_extent_ = 0;  // the last step has said nothing
-    return {};
-}
-
-Result<void> ParticleSystem::createEventTextures() {
-    if (event_velocity_) {
-        return {};
-    }
-    forgetGlErrors();
-    GlTexture way = makeStateTexture();
-    GlTexture surface = makeStateTexture();
-    RELIEF_TRY(checkAllocated("the events of " + std::to_string(ids_.size()) + " particles",
-                              "choose a smaller capacity"));
-    for (int i = 0; i < 2; ++i) {
-        event_target_[i] = RELIEF_TRY(makeFramebuffer(
-            std::array<GLuint, 4>{position_[i].name(), velocity_[i].name(), way.name(), surface.name()}));
-    }
-    event_velocity_ = std::move(way);
-    event_surface_ = std::move(surface);
-    return {};
-}
-
-bool ParticleSystem::requestEvents(std::uint64_t tag) {
-    if (!events_) {
-        return false;
-    }
-    const PassState state;
-    return events_->request({event_velocity_, event_surface_, position_[1 - current_], birth_, width_,
-                             stepped_extent_, types_, tag, steps_, step_begin_, time_, stepped_materials_});
-}
-
-std::optional<StepEvents> ParticleSystem::pollEvents() {
-    auto collected = events_ ? events_->poll() : std::nullopt;
-    return collected ? std::optional(withIds(std::move(*collected))) : std::nullopt;
-}
-
-Result<std::optional<StepEvents>> ParticleSystem::waitEvents() {
-    if (!events_) {
-        return std::optional<StepEvents>();
-    }
-    auto collected = RELIEF_TRY(events_->wait());
-    return collected ? std::optional(withIds(std::move(*collected))) : std::nullopt;
-}
-
-StepEvents ParticleSystem::withIds(EventList::Collected collected) const {
-    // The first that took the place of the one that the event is about.
-    std::unordered_map<std::uint32_t, std::uint32_t> before;
-    for (const Replaced& one : replaced_) {
-        if (one.step >= collected.number) {
-            before.try_emplace(one.index, one.id);
-        }
-    }
-    for (ParticleEvent& event : collected.events.events) {
-        const auto found = before.find(event.index);
-        event.id = found == before.end() ? ids_[event.index] : found->second;
-    }
-    return std::move(collected.events);
+    return done;
 }
 
 Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
@@ -312,7 +232,10 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
                         "finite age of at least 0, and a type below 2^24");
     }
     const float now = clock();
-    const glm::vec3 wind = air_ ? air_settings_.wind : forces_.wind;
+    glm::vec3 wind = forces_.wind;
+    for (const std::shared_ptr<StepFeature>& feature : features_) {
+        wind = feature->wind().value_or(wind);
+    }
     std::size_t accepted = 0;
     for (const Birth& birth : births) {
         const std::optional<std::uint32_t> index = allocator_.acquire();
@@ -328,8 +251,8 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
             (birth.velocity + birth.age * (type.gravity * forces_.gravity + drag * wind)) *
             (1.0F / (1.0F + birth.age * drag));
         const auto id = static_cast<std::uint32_t>(born_ + accepted);
-        if (events_) {
-            replaced_.push_back({steps_, *index, ids_[*index]});
+        for (const std::shared_ptr<StepFeature>& feature : features_) {
+            feature->replaced(*index, ids_[*index]);
         }
         ids_[*index] = id;
         deaths_.push(death, *index);
@@ -352,14 +275,11 @@ Result<void> ParticleSystem::step(float dt) {
         return fail(ErrorCode::kUsage, "a step takes more than 0 seconds, and is finite");
     }
     const PassState state;
-    // Lists are of the step before this one, or older and under way.
-    const std::uint64_t oldest = events_ ? events_->oldestNumber().value_or(steps_ + 1) : 0;
-    while (!replaced_.empty() && replaced_.front().step < oldest) {
-        replaced_.pop_front();
-    }
-    ++steps_;
-    step_begin_ = time_;
     runBirths(dt);
+    for (const std::shared_ptr<StepFeature>& feature : features_) {
+        feature->beforeStep(time_, time_ + static_cast<double>(dt), allocator_.extent(),
+                            step_.variant().collider);
+    }
     time_ += static_cast<double>(dt);
     const float now = clock();
     runStep(dt, now);
@@ -393,7 +313,6 @@ void ParticleSystem::runBirths(float dt) {
 void ParticleSystem::runStep(float dt, float now) {
     const std::uint32_t extent = allocator_.extent();
     stepped_extent_ = extent;
-    stepped_materials_ = materialCount();
     if (extent == 0) {
         return;
     }
@@ -406,10 +325,10 @@ void ParticleSystem::runStep(float dt, float now) {
         storage.emplace();
     }
     Forces forces = forces_;
-    if (air_) {
-        forces.wind = glm::vec3(0.0F);  // its own is among the rest
+    for (const std::shared_ptr<StepFeature>& feature : features_) {
+        forces.wind = feature->wind() ? glm::vec3(0.0F) : forces.wind;
     }
-    step_.use({now, dt, ground_.value_or(kNoGround), sweep_, airTime(air_settings_, time_), forces, types_});
+    step_.use({now, dt, ground_.value_or(kNoGround), sweep_, time_, forces, types_});
     // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only
     // reached again through a birth, which overwrites it, and an index below it has been stepped ever since.
     const std::uint32_t rows = (extent + width_ - 1) / width_;
@@ -417,14 +336,16 @@ void ParticleSystem::runStep(float dt, float now) {
         const ImageUnits units;
         ImageUnits::write(0, position_[next]);
         ImageUnits::write(1, velocity_[next]);
-        if (events_) {
-            ImageUnits::write(2, event_velocity_);
-            ImageUnits::write(3, event_surface_);
+        int unit = 2;
+        for (const std::shared_ptr<StepFeature>& feature : features_) {
+            for (const GlTexture& output : feature->outputs()) {
+                ImageUnits::write(unit++, output);
+            }
         }
         step_.dispatch(width_, rows);
         ImageUnits::finish();
     } else {
-        step_.draw((events_ ? event_target_ : step_target_)[next].name(), width_, rows);
+        step_.draw(step_target_[next].name(), width_, rows);
     }
     current_ = next;
 }

@@ -6,7 +6,7 @@
 //         position  2 × RGBA32F (double-buffered)      xyz, collisions (−1: dead)
 //         velocity  2 × RGBA32F (double-buffered)      xyz, contact of the last step
 //         birth     1 × RGBA32F                        time of birth, time of death, type, id mod 2^24
-//     (96 · texels once the clock has been set back for the first time; 32 · texels more with setEvents())
+//     (96 · texels once the clock has been set back for the first time; 16 · texels more for each output of a feature)
 //
 // A step, in this order: births are written into the textures (birth_pass.h); one pass over the occupied rows
 // decides deaths, moves and collides (shaders/particles/step.glsl); the CPU frees the indices of the dead.
@@ -18,23 +18,21 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "formats/base/enum_words.h"
 #include "formats/base/result.h"
-#include "runtime/air/air_block.h"
-#include "runtime/collider/collider_textures.h"
+#include "runtime/collider/shader_collider.h"
 #include "runtime/gl/gl_object.h"
+#include "runtime/particles/birth.h"
 #include "runtime/particles/birth_pass.h"
 #include "runtime/particles/death_queue.h"
-#include "runtime/particles/emitter.h"
-#include "runtime/particles/event_list.h"
 #include "runtime/particles/index_allocator.h"
-#include "runtime/particles/particle_event.h"
+#include "runtime/particles/step_feature.h"
 #include "runtime/particles/step_pass.h"
 #include "runtime/particles/step_path.h"
 
@@ -103,7 +101,7 @@ class ParticleSystem {
     /// the object space of a single collider, or in the world of several bodies.
     /// \param collider  must outlive its use by the system; null: nothing.
     /// Errors: kFailure (the driver's compiler).
-    [[nodiscard]] Result<void> setCollider(const ColliderTextures* collider);
+    [[nodiscard]] Result<void> setCollider(const ShaderCollider* collider);
     /// Errors: kUsage (a number that is not finite, a drag or viscosity below 0); the forces then stay as they were.
     [[nodiscard]] Result<void> setForces(const Forces& forces);
     /// The types of particles: Birth::type is an index here, and the last one for what lies beyond. Compiles
@@ -117,33 +115,24 @@ class ParticleSystem {
     /// StepPass::kSweepPieces of them in a step is slowed down. 0: only both ends are tested, as in the paper.
     /// Errors: kUsage, kFailure (the driver's compiler).
     [[nodiscard]] Result<void> setSweep(float length);
-    /// Moving air and fields. Its wind takes the place of Forces::wind; its viscosity is ignored, as Forces has
-    /// one. Fails as AirBlock::create does, and with kFailure (the driver's compiler).
-    [[nodiscard]] Result<void> setAir(const AirSettings& air);
     /// A floor: everything below this height is solid, in union with the collider. nullopt: none.
     /// Errors: kUsage (a height that is not finite).
     [[nodiscard]] Result<void> setGround(std::optional<float> height);
 
-    /// From the next step on, each step records the event of every particle. nullopt: no longer, as at first; a step
-    /// then costs nothing more, in time or memory. Compiles the step where that changes; what is under way is lost.
-    /// Errors: kUsage (the options), kLimit, kUnsupported (a GL that draws to fewer textures), kFailure.
-    [[nodiscard]] Result<void> setEvents(const std::optional<EventOptions>& options);
-    /// The same with several lists, each of events of its own; an event may be in more than one.
-    /// \param lists  up to kEventLists.
-    [[nodiscard]] Result<void> setEvents(std::span<const EventOptions> lists);
-    /// Lists the events of the last step on the GPU, and requests their read-back. Restores the GL state. Collect each request:
-    /// until then the system keeps every id that a birth takes the place of.
-    /// \param tag  comes back with them, the number of the step for example.
-    /// \return false, and nothing is done, while EventList::kInFlightMax lists are under way, and without setEvents().
-    bool requestEvents(std::uint64_t tag);
-    /// The oldest list, if the GPU has finished it: never waits.
-    [[nodiscard]] std::optional<StepEvents> pollEvents();
-    /// The oldest list, which the GPU is waited for; nullopt if none is under way.
-    /// Errors: kFailure (the GPU has not answered for ten seconds, or its memory cannot be read).
-    [[nodiscard]] Result<std::optional<StepEvents>> waitEvents();
-    [[nodiscard]] int eventsInFlight() const { return events_ ? events_->inFlight() : 0; }
-    /// The list of the last request on the GPU, for shaders of your own; null without setEvents().
-    [[nodiscard]] const EventList* eventList() const { return events_.get(); }
+    /// The feature of a class; null: none.
+    template <class Feature>
+    [[nodiscard]] Feature* feature() const {
+        for (const std::shared_ptr<StepFeature>& one : features_) {
+            if (auto* const found = dynamic_cast<Feature*>(one.get()); found != nullptr) {
+                return found;
+            }
+        }
+        return nullptr;
+    }
+    /// Puts a feature in the place of another, and compiles the step for it. \param old  null: adds it.
+    /// \param now  null: removes the old one. Errors: kUsage or kLimit (StepFeature::check), kUnsupported (a GL that draws to
+    /// fewer textures), kFailure (the driver's compiler). The system then keeps the features that it had.
+    [[nodiscard]] Result<void> replaceFeature(const StepFeature* old, std::shared_ptr<StepFeature> now);
 
     /// Gives birth at the start of the next step; what has an age then has moved freely, under the forces,
     /// since its own birth. Texels without a particle are taken in ascending order.
@@ -163,12 +152,19 @@ class ParticleSystem {
     [[nodiscard]] ParticleCounts counts() const;
     [[nodiscard]] double time() const { return time_; }  ///< seconds since time 0
     [[nodiscard]] bool isLive(std::uint32_t index) const { return allocator_.isLive(index); }
+    /// ParticleState::id of the last particle that had this index.
+    [[nodiscard]] std::uint32_t idOf(std::uint32_t index) const { return ids_[index]; }
+    [[nodiscard]] std::span<const ParticleType> types() const { return types_; }
+    /// An empty texture of the state's size, RGBA32F, for an output of a feature.
+    [[nodiscard]] GlTexture makeStateTexture() const;
 
     // For renderers: particle i < extent() lies at texel (i mod width, i / width). Births since the last step
     // are not in the textures yet.
     [[nodiscard]] const GlTexture& positions() const { return position_[current_]; }
     [[nodiscard]] const GlTexture& velocities() const { return velocity_[current_]; }
     [[nodiscard]] const GlTexture& births() const { return birth_; }
+    /// As they were before the last step.
+    [[nodiscard]] const GlTexture& positionsBefore() const { return position_[1 - current_]; }
     [[nodiscard]] std::uint32_t textureWidth() const { return width_; }
     [[nodiscard]] std::uint32_t extent() const { return drawn_extent_; }
     [[nodiscard]] float clock() const;  ///< the time that births() counts in
@@ -184,36 +180,24 @@ class ParticleSystem {
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
-    [[nodiscard]] StepFeatures featuresFor(const ColliderTextures* collider) const;
-    /// Names of materials among the colliders.
-    [[nodiscard]] std::uint32_t materialCount() const;
-    [[nodiscard]] Result<void> remakeStep(const ColliderTextures* collider);
-    /// After a change of anything but the collider and the air, which may be other ones at the same place.
+    [[nodiscard]] StepVariant variantFor(const ShaderCollider* collider) const;
+    [[nodiscard]] Result<void> remakeStep(const ShaderCollider* collider);
+    /// After a change of anything but the collider, which may be another one at the same place.
     [[nodiscard]] Result<void> remakeStepIfNeeded();
     [[nodiscard]] float clockOf(double time) const { return static_cast<float>(time - epoch_); }
     void setEpochForward();
     void runBirths(float dt);
-    [[nodiscard]] GlTexture makeStateTexture() const;
     void runStep(float dt, float now);
     void freeDead(float now);
-    [[nodiscard]] Result<void> createEventTextures();
-    /// With whole ids: as they were in that step.
-    [[nodiscard]] StepEvents withIds(EventList::Collected collected) const;
+    /// Of the state and the features' outputs.
+    [[nodiscard]] Result<void> makeStepTargets();
 
     IndexAllocator allocator_;
     DeathQueue deaths_;
     std::vector<std::uint32_t> dead_;          // of the last step, kept for its memory
     std::vector<std::uint32_t> ids_;           // of each index
     std::vector<BirthPass::Newborn> newborn_;  // since the last step
-    struct Replaced {                          // an id that a birth took the place of
-        std::uint64_t step;                    // the last one that it was in
-        std::uint32_t index;
-        std::uint32_t id;
-    };
-    std::deque<Replaced> replaced_;  // since the oldest list of events under way
-    std::uint64_t steps_ = 0;
-    std::uint32_t stepped_materials_ = 0;  // of the collider of the last step
-    std::uint32_t stepped_extent_ = 0;     // of the last step: those that died in it included
+    std::uint32_t stepped_extent_ = 0;         // of the last step: those that died in it included
     std::uint64_t born_ = 0;
     std::uint64_t died_ = 0;
     std::uint64_t refused_ = 0;
@@ -226,9 +210,8 @@ class ParticleSystem {
     Forces forces_;
     std::vector<ParticleType> types_{ParticleType{}};
     float sweep_ = 0.0F;
-    AirSettings air_settings_;
-    std::unique_ptr<AirBlock> air_;  // at one place: StepPass points to it
     std::optional<float> ground_;
+    std::vector<std::shared_ptr<StepFeature>> features_;
 
     std::uint32_t width_ = 0;
     std::uint32_t height_ = 0;
@@ -238,17 +221,12 @@ class ParticleSystem {
     GlTexture velocity_[2];
     GlTexture birth_;
     GlTexture birth_spare_;          // made when the clock is first set back
-    GlFramebuffer step_target_[2];   // position and velocity
+    GlFramebuffer step_target_[2];   // position, velocity and the features' outputs
     GlFramebuffer birth_target_[2];  // position, velocity, birth
     GlFramebuffer rebase_target_;    // birth_spare_
     BirthPass birth_pass_;
     GlProgram rebase_program_;
     StepPass step_;
-    std::unique_ptr<EventList> events_;
-    GlTexture event_velocity_;  // as step_event.glsl writes them
-    GlTexture event_surface_;
-    GlFramebuffer event_target_[2];  // step_target_'s and both of these
-    double step_begin_ = 0.0;
 };
 
 }  // namespace relief

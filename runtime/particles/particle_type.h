@@ -5,8 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "formats/base/field.h"
-#include "formats/base/scene_limits.h"
+#include "formats/base/enum_words.h"
 #include "shaders/particles/constants.h"
 
 namespace relief {
@@ -34,8 +33,5 @@ inline constexpr float kParticleMassMin = 1e-15F;
 
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<OnCollision>{"bounce", "stop", "slide", "die"};
-
-/// All but `collides`, which names bodies.
-void fields(FieldVisitor& visit, ParticleType& type);
 
 }  // namespace relief

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/gl/gl_functions.h"
@@ -18,9 +19,9 @@ constexpr int kTourMapsMax = 64;
 
 /// True if lanes proceed on their own along their paths (shaders/collider/collider_tour.glsl). For one point this gains nothing,
 /// and a ball's points are as well asked in loops.
-bool toursMaps(const StepFeatures& features) {
-    return features.compute && features.collider != nullptr && !features.radius && features.sweep &&
-           features.collider->bodyCount() == 0 && features.collider->mapCount() <= kTourMapsMax;
+bool toursMaps(const StepVariant& variant) {
+    return variant.compute && variant.collider != nullptr && !variant.radius && variant.sweep &&
+           variant.collider->bodyCount() == 0 && variant.collider->mapCount() <= kTourMapsMax;
 }
 
 }  // namespace
@@ -30,61 +31,64 @@ float dragRate(const Forces& forces, const ParticleType& type) {
                                    : forces.drag / type.mass;
 }
 
-Result<StepPass> StepPass::create(const StepFeatures& features, const StepShader& shader) {
-    std::string defines = shader.defines + "#define RELIEF_TYPES " + std::to_string(features.types) + "\n";
+float stokesRate(float viscosity, float radius, float mass) {
+    constexpr float kSixPi = 18.849556F;
+    return kSixPi * viscosity * radius / mass;
+}
+
+Result<StepPass> StepPass::create(StepVariant variant, const StepShader& shader) {
+    std::string defines = shader.defines + "#define RELIEF_TYPES " + std::to_string(variant.types) + "\n";
     const auto defineIf = [&](bool wanted, const std::string& what) {
         defines += wanted ? "#define " + what + "\n" : "";
     };
-    defineIf(features.verlet, "RELIEF_VERLET");
-    defineIf(features.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
-    defineIf(features.radius, "RELIEF_RADIUS");
-    defineIf(features.events, "RELIEF_EVENTS");
-    defineIf(features.masks, "RELIEF_MASKS");
-    if (features.air != nullptr) {
-        defines += features.air->defines();
+    defineIf(variant.verlet, "RELIEF_VERLET");
+    defineIf(variant.sweep, "RELIEF_SWEEP " + std::to_string(kSweepPieces));
+    defineIf(variant.radius, "RELIEF_RADIUS");
+    defineIf(variant.masks, "RELIEF_MASKS");
+    bool materials = variant.collider != nullptr && variant.collider->materialsRespond();
+    for (const StepFeature* feature : variant.features) {
+        defines += feature->defines();
+        materials = materials || feature->readsMaterials();
+    }
+    if (variant.collider != nullptr) {
+        defines += "#define RELIEF_COLLIDER\n" + variant.collider->defines();
+        defines += materials ? variant.collider->materialDefines() : "";
     }
     StepPass pass;
-    pass.features_ = features;
-    if (features.collider != nullptr) {
-        defines += "#define RELIEF_COLLIDER\n";
-        defines += features.collider->defines();
-        if (features.events || features.collider->materialsRespond()) {
-            defines += features.collider->materialDefines();
-        }
-    }
-    pass.tours_ = toursMaps(features);
+    pass.tours_ = toursMaps(variant);
     defineIf(pass.tours_, "RELIEF_TOUR");
-    pass.program_ = RELIEF_TRY(features.compute ? makeComputeProgram(shader.file, defines)
-                                                : makeScreenProgram(shader.file, defines));
+    pass.program_ = RELIEF_TRY(variant.compute ? makeComputeProgram(shader.file, defines)
+                                               : makeScreenProgram(shader.file, defines));
     pass.program_.use();
     pass.program_.set("u_position", kPositionUnit);
     pass.program_.set("u_velocity", kVelocityUnit);
     pass.program_.set("u_birth", kBirthUnit);
-    if (features.collider != nullptr) {
-        features.collider->attach(pass.program_, kColliderBinding);
+    if (variant.collider != nullptr) {
+        variant.collider->attach(pass.program_, kColliderBinding);
     }
-    if (features.air != nullptr) {
-        features.air->attach(pass.program_, kAirBinding);
+    for (const StepFeature* feature : variant.features) {
+        feature->attach(pass.program_);
     }
+    pass.variant_ = std::move(variant);
     return pass;
 }
 
 void StepPass::use(const Values& values) const {
     program_.use();
-    if (features_.collider != nullptr) {
+    if (variant_.collider != nullptr) {
         float radius = 0.0F;
         for (const ParticleType& type : values.types) {
             radius = std::max(radius, type.radius);
         }
-        features_.collider->reach(radius);
-        features_.collider->bind(kColliderBinding);
-        features_.collider->bindMaterials(kColliderBinding);
+        variant_.collider->reach(radius);
+        variant_.collider->bind(kColliderBinding);
+        variant_.collider->bindMaterials(kColliderBinding);
         if (tours_) {
-            features_.collider->bindStorage(kTourStorage);
+            variant_.collider->bindStorage(kTourStorage);
         }
     }
-    if (features_.air != nullptr) {
-        features_.air->bind(kAirBinding);
+    for (const StepFeature* feature : variant_.features) {
+        feature->bind(program_, values.time);
     }
     const Forces& forces = values.forces;
     program_.set("u_now", values.now);
@@ -95,7 +99,6 @@ void StepPass::use(const Values& values) const {
     program_.set("u_still", 1e-3F * values.dt * glm::length(forces.gravity));
     program_.set("u_ground", values.ground);
     program_.set("u_sweep", values.sweep);
-    program_.set("u_air_time", values.air_time);
     std::vector<glm::vec4> types;
     std::vector<GLint> collides;
     for (const ParticleType& type : values.types) {

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/air/air_block.h"
-#include "runtime/collider/collider_textures.h"
+#include "runtime/collider/shader_collider.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/particles/particle_type.h"
+#include "runtime/particles/step_feature.h"
 
 namespace relief {
 
@@ -24,18 +25,22 @@ struct Forces {
 /// The rate at which a type takes on the velocity of the air, 1/s.
 [[nodiscard]] float dragRate(const Forces& forces, const ParticleType& type);
 
-/// The features that the program is compiled for. A change of any of these needs another one.
-struct StepFeatures {
-    const ColliderTextures* collider = nullptr;  ///< null: nothing solid but the floor
-    const AirBlock* air = nullptr;               ///< null: still, but for the wind of Forces
+/// k = 6π · viscosity · radius / mass, 1/s: the rate of Stokes drag, for
+/// v' = (v + dt (a + k air)) / (1 + dt k).
+/// \param mass  > 0
+[[nodiscard]] float stokesRate(float viscosity, float radius, float mass);
+
+/// What the program is compiled for. A change of any of these needs another program.
+struct StepVariant {
+    const ShaderCollider* collider = nullptr;       ///< null: nothing solid but the floor
+    std::vector<const StepFeature*> features = {};  ///< those with outputs in their order
     bool verlet = false;
     bool sweep = false;
     bool radius = false;   ///< some type has a radius
     bool compute = false;  ///< the program is a compute shader: dispatch()
     bool masks = false;    ///< some type does not collide with all
     int types = 1;
-    bool events = false;  ///< writes events, too (shaders/particles/step_event.glsl)
-    friend bool operator==(const StepFeatures&, const StepFeatures&) = default;
+    friend bool operator==(const StepVariant&, const StepVariant&) = default;
 };
 
 /// A file of shaders/ with the program of a step, and lines for it.
@@ -53,38 +58,38 @@ class StepPass {
     static constexpr int kPositionUnit = 0;
     static constexpr int kVelocityUnit = 1;
     static constexpr int kBirthUnit = 2;
-    static constexpr ColliderTextures::Binding kColliderBinding{3, 0};
-    static constexpr AirBlock::Binding kAirBinding{6, 1};
+    static constexpr ShaderCollider::Binding kColliderBinding{3, 0};
 
     struct Values {
         float now = 0.0F;  ///< seconds on the GPU's clock, at the end of the step
         float dt = 0.0F;
         float ground = 0.0F;
         float sweep = 0.0F;
-        float air_time = 0.0F;  ///< as airTime() gives it
+        double time = 0.0;  ///< the same moment, seconds since time 0
         Forces forces;
         std::span<const ParticleType> types;
     };
 
     StepPass() = default;
-    /// \param shader  with solids of its own it includes particles/step.glsl, and `features` has no collider.
+    /// \param variant  points to its collider and features, which must outlive the pass.
+    /// \param shader  with solids of its own it includes particles/step.glsl, and `variant` has no collider.
     /// Errors: kFailure (the driver's compiler).
-    [[nodiscard]] static Result<StepPass> create(const StepFeatures& features, const StepShader& shader = {});
+    [[nodiscard]] static Result<StepPass> create(StepVariant variant, const StepShader& shader = {});
 
     /// Makes the program current and sets its uniforms; binds the collider's textures, and where usesStorage() shader storage
     /// binding kTourStorage.
     void use(const Values& values) const;
     /// After use(): steps the particles of the first `rows` rows of `width` texels into a framebuffer's textures.
     void draw(GLuint framebuffer, std::uint32_t width, std::uint32_t rows) const;
-    /// The same with StepFeatures::compute: steps the particles of the first `rows` rows of `width` texels into image
-    /// units 0 (positions) and 1 (velocities), and with events the next two.
+    /// The same with StepVariant::compute: steps the particles of the first `rows` rows of `width` texels into image
+    /// units 0 (positions) and 1 (velocities), and the features' outputs into the next ones.
     void dispatch(std::uint32_t width, std::uint32_t rows) const;
-    [[nodiscard]] const StepFeatures& features() const { return features_; }
+    [[nodiscard]] const StepVariant& variant() const { return variant_; }
     [[nodiscard]] const GlProgram& program() const { return program_; }
     [[nodiscard]] bool usesStorage() const { return tours_; }
 
   private:
-    StepFeatures features_;
+    StepVariant variant_;
     bool tours_ = false;
     GlProgram program_;
 };

@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-constexpr ColliderTextures::Binding kColliderBinding{0, 0};
+constexpr ShaderCollider::Binding kColliderBinding{0, 0};
 constexpr int kInputUnit = 3;  // after the collider's three
 
 constexpr int kVoxelsOfSide = 40;  // the collider's longest

@@ -68,7 +68,7 @@ class ColliderLight {
     void drawVolume(const Volume& volume) const;
 
     ColliderView collider_;
-    std::optional<std::uint64_t> revision_;  // ColliderTextures::revision() of what is kept
+    std::optional<std::uint64_t> revision_;  // ShaderCollider::revision() of what is kept
     std::uint64_t updates_ = 0;
 
     float sun_texel_ = 0.0F;   // object units

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-constexpr ColliderTextures::Binding kColliderBinding{0, 0};
+constexpr ShaderCollider::Binding kColliderBinding{0, 0};
 constexpr int kColorUnit = 0;
 constexpr int kDepthUnit = 1;
 constexpr int kCoarseUnit = 3;  // after the collider's three; with a mesh:

@@ -51,7 +51,7 @@ class ColliderRenderer {
         ColliderStyle style;
         GLsizei width = 0;
         GLsizei height = 0;
-        std::uint64_t revision = 0;  // ColliderTextures::revision()
+        std::uint64_t revision = 0;  // ShaderCollider::revision()
         friend bool operator==(const Drawn&, const Drawn&) = default;
     };
 

@@ -23,7 +23,7 @@ constexpr GLsizei kBandRows = 64;
 
 }  // namespace
 
-ColliderView worldView(const LoadedWorld& world, const ColliderTextures& textures) {
+ColliderView worldView(const LoadedWorld& world, const ShaderCollider& textures) {
     std::vector<float> texels;
     for (const Collider& collider : world.colliders) {
         texels.push_back(finestTexel(collider));

@@ -6,22 +6,22 @@
 #include <glm/glm.hpp>
 
 #include "formats/collider.h"
-#include "runtime/collider/collider_textures.h"
-#include "runtime/collider/world_bodies.h"
+#include "runtime/bodies/world_bodies.h"
+#include "runtime/collider/shader_collider.h"
 #include "runtime/picture/camera.h"
 
 namespace relief {
 
 /// A collider as the renderers see it. The textures must outlive the renderers.
 struct ColliderView {
-    const ColliderTextures* textures = nullptr;
+    const ShaderCollider* textures = nullptr;
     Bounds bounds;       ///< object space; nothing of the collider lies outside
     float texel = 0.0F;  ///< object units across the finest texel of the maps, > 0
 };
 
 /// A world as the renderers see it while its bodies are in the box of where they stand at the beginning; those that move out of
 /// it need larger bounds. \param textures  of worldBodies(world); must outlive the renderers.
-[[nodiscard]] ColliderView worldView(const LoadedWorld& world, const ColliderTextures& textures);
+[[nodiscard]] ColliderView worldView(const LoadedWorld& world, const ShaderCollider& textures);
 
 /// Unit vector towards the sun of all pictures: from the upper left, in front.
 [[nodiscard]] glm::vec3 sunDirection();

@@ -12,7 +12,8 @@
 
 #include "formats/base/result.h"
 #include "formats/fields/field.h"
-#include "runtime/particles/particle_event.h"
+#include "runtime/events/event_recorder.h"
+#include "runtime/events/particle_event.h"
 
 namespace relief {
 
@@ -24,7 +25,7 @@ class EventsLog {
     [[nodiscard]] static Result<EventsLog> create(const std::filesystem::path& path, float min_speed);
 
     /// A line for each hit where the step before touched nothing. The tag is the number of the step.
-    /// \param materials  ColliderTextures::materialNames()
+    /// \param materials  WorldTextures::materialNames()
     /// Errors: kIo.
     [[nodiscard]] Result<void> write(const StepEvents& step, std::span<const std::string> materials);
     /// Errors: kIo.
@@ -50,7 +51,7 @@ class EventsLog {
 struct HitLine {
     const ParticleEvent& hit = kNone<ParticleEvent>;
     std::uint64_t step = 1;
-    std::span<const std::string> materials = {};  ///< ColliderTextures::materialNames()
+    std::span<const std::string> materials = {};  ///< WorldTextures::materialNames()
 };
 
 void fields(FieldVisitor& visit, const HitLine& line);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/collider/wobble_pass.h"
+#include "runtime/live/wobble_pass.h"
 #include "runtime/picture/mesh_renderer.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_meshes.h"

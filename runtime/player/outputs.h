@@ -25,7 +25,7 @@ namespace relief {
 class Outputs {
   public:
     /// \param options, loaded, textures  must outlive this.
-    Outputs(const PlayerOptions& options, const LoadedScene& loaded, const ColliderTextures& textures)
+    Outputs(const PlayerOptions& options, const LoadedScene& loaded, const WorldTextures& textures)
         : options_(options), loaded_(loaded), textures_(textures) {}
     ~Outputs();
     Outputs(const Outputs&) = delete;
@@ -52,7 +52,7 @@ class Outputs {
 
     const PlayerOptions& options_;
     const LoadedScene& loaded_;
-    const ColliderTextures& textures_;
+    const WorldTextures& textures_;
     std::optional<ScenePicture> picture_;
     std::optional<EventsLog> events_;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/player/player.h"
+#include "runtime/events/event_recorder.h"
 
 #include <algorithm>
 #include <string>

@@ -36,7 +36,7 @@ Result<void> ScenePicture::makeCollider(const ColliderView& view) {
     return {};
 }
 
-Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const ColliderTextures& textures,
+Result<ScenePicture> ScenePicture::create(const LoadedScene& loaded, const WorldTextures& textures,
                                           StepPath path) {
     const Scene& scene = loaded.scene;
     const ColliderView view = colliderView(loaded, textures);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/collider/wobble_pass.h"
+#include "runtime/live/wobble_pass.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
@@ -24,8 +24,8 @@ class ScenePicture {
     /// Needs a current context, as draw() does.
     /// \param loaded, textures  must outlive this. \param path  of the depth sort.
     /// Fails as loadAtlas, loadColliderMesh and the renderers do.
-    [[nodiscard]] static Result<ScenePicture> create(const LoadedScene& loaded,
-                                                     const ColliderTextures& textures, StepPath path);
+    [[nodiscard]] static Result<ScenePicture> create(const LoadedScene& loaded, const WorldTextures& textures,
+                                                     StepPath path);
 
     /// The particles as they are now: 3 · width · height bytes sRGB, the top row first. Waits for the GPU.
     [[nodiscard]] Result<std::vector<std::uint8_t>> draw(const ParticleSystem& particles);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/player/simulation.h"
+#include "runtime/air/particle_air.h"
+#include "runtime/births/emitter_motion.h"
+#include "runtime/events/event_recorder.h"
 
 #include <algorithm>
 #include <limits>
@@ -29,7 +32,7 @@ std::vector<ColliderBody> bodiesOf(const LoadedScene& loaded, std::span<const Po
         bodies.push_back(
             {loaded.colliders[i].get(), poses[i], from.restitution, from.friction, from.deforms()});
         if (from.tile_of) {
-            bodies.back().group = std::min<std::size_t>(*from.tile_of, ColliderTextures::kGroups - 1);
+            bodies.back().group = std::min<std::size_t>(*from.tile_of, WorldTextures::kGroups - 1);
         }
     }
     return bodies;
@@ -41,11 +44,11 @@ Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
                                     scene.air.viscosity.value_or(0.0F)}));
     RELIEF_TRY(particles.setTypes(particleTypes(scene)));
     RELIEF_TRY(particles.setSweep(scene.collision.sweep.value_or(0.0F)));
-    RELIEF_TRY(particles.setAir(scene.air));
+    RELIEF_TRY(setAir(particles, scene.air));
     return particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
 }
 
-Result<ParticleSystem> makeParticles(const Scene& scene, const ColliderTextures& textures, StepPath path) {
+Result<ParticleSystem> makeParticles(const Scene& scene, const WorldTextures& textures, StepPath path) {
     auto particles = RELIEF_TRY(ParticleSystem::create(
         {.capacity = scene.particles.capacity,
          .integrator = scene.time.integrator,
@@ -75,8 +78,8 @@ Result<void> Simulation::makeTextures(const LoadedScene& loaded, std::unique_ptr
         return {};
     }
     const bool alone = loaded.colliders.size() == 1 && !first.posed && !first.deforms();
-    textures_ = std::make_unique<ColliderTextures>(RELIEF_TRY(
-        alone ? ColliderTextures::create(*loaded.colliders.front()) : ColliderTextures::create(bodies)));
+    textures_ = std::make_unique<WorldTextures>(
+        RELIEF_TRY(alone ? WorldTextures::create(*loaded.colliders.front()) : WorldTextures::create(bodies)));
     return {};
 }
 
@@ -149,8 +152,8 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
     RELIEF_TRY(stream());
     RELIEF_TRY(particles_->step(dt));
-    if (particles_->eventList() != nullptr) {
-        particles_->requestEvents(tag);
+    if (eventList(*particles_) != nullptr) {
+        requestEvents(*particles_, tag);
     }
     return {};
 }
@@ -197,19 +200,19 @@ Result<void> Simulation::setEvents() {
     if (lists == event_lists_) {
         return {};
     }
-    while (auto events = RELIEF_TRY(particles_->waitEvents())) {
+    while (auto events = RELIEF_TRY(waitEvents(*particles_))) {
         held_events_.push_back(std::move(*events));
     }
-    RELIEF_TRY(particles_->setEvents(lists));
+    RELIEF_TRY(relief::setEvents(*particles_, lists));
     event_lists_ = std::move(lists);
     return {};
 }
 
 Result<void> Simulation::takeEvents(int in_flight) {
-    while (static_cast<int>(held_events_.size()) + particles_->eventsInFlight() > in_flight) {
+    while (static_cast<int>(held_events_.size()) + eventsInFlight(*particles_) > in_flight) {
         std::optional<StepEvents> events;
         if (held_events_.empty()) {
-            events = RELIEF_TRY(particles_->waitEvents());
+            events = RELIEF_TRY(waitEvents(*particles_));
         } else {
             events = std::move(held_events_.front());
             held_events_.erase(held_events_.begin());

@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/collider/animated_collider.h"
-#include "runtime/collider/live_collider.h"
-#include "runtime/collider/wobble_pass.h"
+#include "runtime/births/emitter_motion.h"
+#include "runtime/births/mesh_trail.h"
+#include "runtime/events/event_recorder.h"
+#include "runtime/live/animated_collider.h"
+#include "runtime/live/live_collider.h"
+#include "runtime/live/wobble_pass.h"
 #include "runtime/particles/emitter.h"
-#include "runtime/particles/mesh_trail.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/player/watchdog.h"
 #include "runtime/scene/loaded_scene.h"
@@ -37,7 +39,7 @@ class Simulation {
   public:
     /// Needs a current context, as step() does. Plays what comes before time 0 (time.prewarm).
     /// \param loaded  must outlive this.
-    /// Fails as ColliderTextures, LiveCollider, WobblePass, AnimatedCollider and ParticleSystem do. An error of the textures names the scene's
+    /// Fails as WorldTextures, LiveCollider, WobblePass, AnimatedCollider and ParticleSystem do. An error of the textures names the scene's
     /// world, or its first collider.
     [[nodiscard]] static Result<Simulation> create(const LoadedScene& loaded, SimulationOptions options = {});
 
@@ -59,11 +61,11 @@ class Simulation {
     /// that nothing waits for the GPU. The tag is the number of the step, from 1.
     /// It may hold more than new hits: all that the scene's [[spawn]] needs. Up to kEventsMax of a step.
     /// \param min_speed  slower hits may be left out.
-    /// Fails as ParticleSystem::setEvents does.
+    /// Fails as setEvents() does.
     using EventSink = std::function<Result<void>(const StepEvents&)>;
     [[nodiscard]] Result<void> listHits(float min_speed, EventSink sink);
     static constexpr std::uint32_t kEventsMax = 1U << 18;
-    /// Passes on the events that are still in flight. Fails as the sink and ParticleSystem::waitEvents do.
+    /// Passes on the events that are still in flight. Fails as the sink and waitEvents() do.
     [[nodiscard]] Result<void> finishEvents() { return takeEvents(0); }
 
     /// Births on top of the emitters', with the next step. Returns how many, and fails, as ParticleSystem::spawn does.
@@ -72,9 +74,7 @@ class Simulation {
     }
 
     [[nodiscard]] const ParticleSystem& particles() const { return *particles_; }
-    [[nodiscard]] const ColliderTextures& textures() const {
-        return stream_ ? stream_->textures() : *textures_;
-    }
+    [[nodiscard]] const WorldTextures& textures() const { return stream_ ? stream_->textures() : *textures_; }
     /// Since the last call: those of the scene (LoadedScene::warnings), and one line for each collider of a streamed world that
     /// could not be loaded.
     [[nodiscard]] std::vector<std::string> takeWarnings();
@@ -129,7 +129,7 @@ class Simulation {
     [[nodiscard]] MeshTrail* trailOf(std::size_t collider);
     [[nodiscard]] Result<void> makeTextures(const LoadedScene& loaded,
                                             std::unique_ptr<ColliderSource> source);
-    [[nodiscard]] ColliderTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
+    [[nodiscard]] WorldTextures& mutableTextures() { return stream_ ? stream_->textures() : *textures_; }
     /// Gives those that play a clip its pose at a time, in seconds; of an error none. Their bodies go with it: posesNow().
     [[nodiscard]] Result<void> playClips(double time);
     /// Moves the bodies; those that jump are there at once.
@@ -163,9 +163,9 @@ class Simulation {
     std::vector<Pose> poses_;  // at the beginning
     std::vector<Pose> shown_;  // of the bodies on the GPU
     std::vector<Emitter> emitters_;
-    std::vector<EmitterMotion> motions_;          // as many
-    std::unique_ptr<ColliderTextures> textures_;  // at one place: the particles point to it
-    std::unique_ptr<WorldStream> stream_;         // in place of them
+    std::vector<EmitterMotion> motions_;       // as many
+    std::unique_ptr<WorldTextures> textures_;  // at one place: the particles point to it
+    std::unique_ptr<WorldStream> stream_;      // in place of them
     bool stream_waits_ = true;
     std::optional<std::vector<PointOfInterest>> points_;
     std::vector<PointOfInterest> emitter_balls_;  // of a world that is streamed

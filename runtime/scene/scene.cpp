@@ -109,7 +109,7 @@ std::size_t numbered(const Scene& scene) {
 
 /// As ParticleType::collides.
 std::uint32_t bodiesOf(const Scene& scene) {
-    const auto groups = std::min<std::size_t>(numbered(scene), ColliderTextures::kGroups);
+    const auto groups = std::min<std::size_t>(numbered(scene), WorldTextures::kGroups);
     return (1U << groups) - 1U + (scene.ground.enabled ? kCollidesWithGround : 0U);
 }
 

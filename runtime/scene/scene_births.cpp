@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_births.h"
+#include "runtime/births/emitter_surface.h"
+#include "runtime/births/point_list.h"
 
 #include <map>
 #include <string>
@@ -8,7 +10,7 @@
 
 #include "formats/animation/mesh_parts.h"
 #include "formats/base/file_io.h"
-#include "runtime/collider/collider_surface.h"
+#include "runtime/births/collider_surface.h"
 #include "runtime/files/mesh_file.h"
 
 namespace relief {
@@ -120,7 +122,8 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
             }
         }
         if (emitter.shape == EmitterShape::kSurface) {
-            settings.surface = RELIEF_TRY(inFront(emitter.place, surfaceOf(emitter, meshes, known)));
+            auto surface = RELIEF_TRY(inFront(emitter.place, surfaceOf(emitter, meshes, known)));
+            settings.surface = BirthSurfaceValue(std::make_unique<EmitterSurface>(std::move(surface)));
         }
         RELIEF_TRY(Emitter::check(settings));
         made.emplace_back(std::move(settings), emitter.seed, made.size());

@@ -9,6 +9,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "runtime/births/emitter_surface.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/scene/scene_collider.h"
 #include "runtime/scene/scene_emitter.h"

@@ -12,8 +12,8 @@
 #include "formats/base/field.h"
 #include "formats/base/scene_limits.h"
 #include "formats/collider.h"
-#include "runtime/collider/collider_textures.h"
-#include "runtime/collider/pose_keys.h"
+#include "runtime/bodies/pose_keys.h"
+#include "runtime/bodies/world_textures.h"
 
 namespace relief {
 

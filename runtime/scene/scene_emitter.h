@@ -13,9 +13,10 @@
 #include "formats/base/result.h"
 #include "formats/base/source_place.h"
 #include "formats/collider.h"
+#include "runtime/births/emitter_motion.h"
+#include "runtime/events/spawner.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/particles/particle_type.h"
-#include "runtime/particles/spawner.h"
 #include "runtime/scene/scene_collider.h"
 
 namespace relief {
@@ -105,7 +106,7 @@ void fields(FieldVisitor& visit, SceneSpawn& spawn);
                                             float scale, double seconds, std::uint32_t capacity);
 
 /// Spawner i draws from stream i of its seed, behind those of the emitters.
-/// \param materials  ColliderTextures::materialNames(); a name that is not among them is never hit.
+/// \param materials  WorldTextures::materialNames(); a name that is not among them is never hit.
 [[nodiscard]] std::vector<Spawner> makeSpawners(std::span<const SceneSpawn> spawns,
                                                 std::span<const std::string> materials);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of a scene file.
 #include "runtime/scene/scene.h"
+#include "runtime/scene/scene_types.h"
 
 namespace relief {
 
@@ -255,7 +256,7 @@ void fields(FieldVisitor& visit, SceneEmitter& e) {
           leftOut({"Number, from 0, of the collider in whose space the emitter is; needs a place, or the "
                    "shape surface",
                    {},
-                   {0.0, ColliderTextures::kBodiesMax - 1},
+                   {0.0, WorldTextures::kBodiesMax - 1},
                    "the world",
                    {.index_of = "collider"}}));
     visit("key", e.given_keys, leftOut({"Poses at times, two or more", {}, {}, {}, {.most = kPoseKeysMax}}));
@@ -450,9 +451,8 @@ void fields(FieldVisitor& visit, Scene& scene) {
                    {},
                    {},
                    "none, and then a collider is required"}));
-    visit(
-        "collider", scene.colliders,
-        {"What particles collide with", {}, {}, {}, {.most = ColliderTextures::kBodiesMax, .single = true}});
+    visit("collider", scene.colliders,
+          {"What particles collide with", {}, {}, {}, {.most = WorldTextures::kBodiesMax, .single = true}});
     visit("material", scene.materials,
           leftOut({"Responses of the colliders' materials", {}, {}, {}, {.most = kSceneMaterialsMax}}));
     visit("stream", scene.stream, leftOut({"Colliders of the world that are there when they are needed"}));

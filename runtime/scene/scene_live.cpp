@@ -7,8 +7,8 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
-#include "runtime/collider/live_collider.h"
 #include "runtime/files/mesh_file.h"
+#include "runtime/live/live_collider.h"
 
 namespace relief {
 

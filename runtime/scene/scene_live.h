@@ -4,7 +4,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/collider/wobble_pass.h"
+#include "runtime/live/wobble_pass.h"
 #include "runtime/picture/picture_mesh.h"
 #include "runtime/scene/scene_collider.h"
 

@@ -87,7 +87,7 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
     return std::make_unique<ColliderMesh>(std::move(drawn));
 }
 
-ColliderView colliderView(const LoadedScene& loaded, const ColliderTextures& textures) {
+ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textures) {
     float texel = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < loaded.colliders.size(); ++i) {
         texel = std::min(texel, loaded.scene.colliders[i].pose.scale * finestTexel(*loaded.colliders[i]));

@@ -30,7 +30,7 @@ namespace relief {
                                                                      const Bounds& bounds);
 
 /// The colliders as renderers see them.
-[[nodiscard]] ColliderView colliderView(const LoadedScene& loaded, const ColliderTextures& textures);
+[[nodiscard]] ColliderView colliderView(const LoadedScene& loaded, const WorldTextures& textures);
 
 /// \param scene  complete (withDefaults).
 /// \param atlas  may be null; must outlive the style.

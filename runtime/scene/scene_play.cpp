@@ -7,7 +7,7 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/collider/animated_collider.h"
+#include "runtime/live/animated_collider.h"
 
 namespace relief {
 namespace {

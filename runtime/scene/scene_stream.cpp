@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_stream.h"
+#include "runtime/births/emitter_motion.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
@@ -23,7 +24,7 @@ PointOfInterest ballOf(const EmitterSettings& emitter) {
             }
             break;
         case EmitterShape::kSurface:
-            box = emitter.surface.bounds();
+            box = emitter.surface->bounds();
             break;
         case EmitterShape::kBox:
         case EmitterShape::kPoint:

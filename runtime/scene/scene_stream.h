@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "runtime/births/emitter_motion.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/stream/world_stream.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/scene/scene_sweep.h"
+#include "runtime/births/emitter_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,7 +165,7 @@ std::vector<Thin> thinColliders(const Scene& scene,
     }
     std::vector<Thin> thin;
     std::vector<Fastest> of_groups;
-    for (std::size_t i = 0; i < std::min<std::size_t>(colliders.size(), ColliderTextures::kGroups); ++i) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(colliders.size(), WorldTextures::kGroups); ++i) {
         of_groups.push_back(fastestAt(i, scene, bounds, births));
     }
     std::map<const Collider*, std::optional<float>> thicknesses;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/collider.h"
+#include "runtime/births/emitter_motion.h"
 #include "runtime/particles/emitter.h"
 #include "runtime/scene/loaded_scene.h"
 

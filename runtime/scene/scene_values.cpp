@@ -109,14 +109,14 @@ void readCollides(const TomlValue& from, void* value, const FieldInfo& /*info*/)
         ++colliders;
     }
     if (top.find("world")) {
-        colliders = ColliderTextures::kBodiesMax;  // its bodies are counted when it is read
+        colliders = WorldTextures::kBodiesMax;  // its bodies are counted when it is read
     }
     bits = 0;
     for (std::size_t i = 0; i < from.array()->size(); ++i) {
         const TomlValue one = from[i];
         if (one.node().is_integer()) {
             const std::int64_t body = one.whole({0.0, static_cast<double>(colliders) - 1.0});
-            bits |= 1U << std::min<std::int64_t>(body, ColliderTextures::kGroups - 1);
+            bits |= 1U << std::min<std::int64_t>(body, WorldTextures::kGroups - 1);
             continue;
         }
         if (!one.node().is_string()) {

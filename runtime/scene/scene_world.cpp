@@ -9,7 +9,7 @@
 
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/collider/world_bodies.h"
+#include "runtime/bodies/world_bodies.h"
 
 namespace relief {
 namespace {
@@ -102,11 +102,11 @@ Result<void> placeBodies(Scene& scene, const World& world) {
         tile.friction = world.bodies[body].friction;
         scene.colliders.push_back(std::move(tile));
     }
-    if (scene.colliders.size() > ColliderTextures::kBodiesMax) {
+    if (scene.colliders.size() > WorldTextures::kBodiesMax) {
         return fail(ErrorCode::kLimit, scene.world_origin + ": the world's " +
                                            std::to_string(world.bodies.size()) +
                                            " bodies and the scene's other colliders are more than " +
-                                           std::to_string(ColliderTextures::kBodiesMax) + "; leave some out");
+                                           std::to_string(WorldTextures::kBodiesMax) + "; leave some out");
     }
     return {};
 }

@@ -19,7 +19,7 @@ namespace relief {
 /// \param world  of scene.world.
 /// Errors, with the place in the scene: kInvalidInput (a node without a body, with several in different places, or that two
 /// colliders name);
-/// kLimit (more bodies than ColliderTextures takes).
+/// kLimit (more bodies than WorldTextures takes).
 [[nodiscard]] Result<void> placeBodies(Scene& scene, const World& world);
 
 }  // namespace relief

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "formats/collider.h"
-#include "runtime/collider/pose.h"
+#include "runtime/bodies/pose.h"
 
 namespace relief {
 

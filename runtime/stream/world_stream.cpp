@@ -13,7 +13,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/finite.h"
 #include "formats/base/text.h"
-#include "runtime/collider/world_bodies.h"
+#include "runtime/bodies/world_bodies.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/stream/texel_ranges.h"
 
@@ -110,7 +110,7 @@ Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
 }  // namespace
 
 struct WorldStream::State {
-    ColliderTextures textures;
+    WorldTextures textures;
     StreamPlan plan;
     std::vector<std::size_t> planned;  // the number in the plan of each body, or kNone
     TexelRanges ranges;
@@ -300,11 +300,11 @@ Result<std::unique_ptr<WorldStream>> WorldStream::create(const World& world,
     }
     RELIEF_TRY(checkContext());
     const std::uint64_t most =
-        std::max<std::uint64_t>(ColliderTextures::texelsMost(), coarse_bytes / kTexelSize) -
+        std::max<std::uint64_t>(WorldTextures::texelsMost(), coarse_bytes / kTexelSize) -
         coarse_bytes / kTexelSize;
     const auto room = static_cast<std::size_t>(
         std::min({std::uint64_t{texels}, (options.gpu_bytes - coarse_bytes) / kTexelSize, most}));
-    auto textures = RELIEF_TRY(ColliderTextures::create(bodies, room));
+    auto textures = RELIEF_TRY(WorldTextures::create(bodies, room));
     const std::size_t first = textures.room();
     auto state = std::make_unique<State>(State{.textures = std::move(textures),
                                                .plan = StreamPlan(std::move(plan), colliders.size()),
@@ -347,11 +347,11 @@ Result<std::unique_ptr<WorldStream>> WorldStream::open(const LoadedWorld& coarse
                    create(coarse.world, worldBodies(coarse), colliders, std::move(source), options));
 }
 
-const ColliderTextures& WorldStream::textures() const {
+const WorldTextures& WorldStream::textures() const {
     return state_->textures;
 }
 
-ColliderTextures& WorldStream::textures() {
+WorldTextures& WorldStream::textures() {
     return state_->textures;
 }
 

@@ -26,7 +26,7 @@
 
 #include "formats/base/result.h"
 #include "formats/world/world.h"
-#include "runtime/collider/collider_textures.h"
+#include "runtime/bodies/world_textures.h"
 #include "runtime/stream/collider_source.h"
 #include "runtime/stream/stream_plan.h"
 
@@ -50,9 +50,9 @@ struct StreamCounts {
 class WorldStream {
   public:
     /// Uploads the coarse likenesses. Needs a current context, as all but the const functions do.
-    /// \param bodies  of the world's colliders, by the pointers of `coarse`, and others, as ColliderTextures takes them.
+    /// \param bodies  of the world's colliders, by the pointers of `coarse`, and others, as WorldTextures takes them.
     /// \param coarse  the world's colliders with WorldDetail::kCoarse, as many as it has. Not needed later.
-    /// Errors: those of ColliderTextures::create; kLimit: the coarse likenesses alone take more than gpu_bytes.
+    /// Errors: those of WorldTextures::create; kLimit: the coarse likenesses alone take more than gpu_bytes.
     [[nodiscard]] static Result<std::unique_ptr<WorldStream>> create(const World& world,
                                                                      std::span<const ColliderBody> bodies,
                                                                      std::span<const Collider* const> coarse,
@@ -72,9 +72,9 @@ class WorldStream {
     ~WorldStream();
 
     /// They stay at one address. Poses are set here, below.
-    [[nodiscard]] const ColliderTextures& textures() const;
-    [[nodiscard]] ColliderTextures& textures();
-    /// As ColliderTextures::setPoses.
+    [[nodiscard]] const WorldTextures& textures() const;
+    [[nodiscard]] WorldTextures& textures();
+    /// As WorldTextures::setPoses.
     void setPoses(std::span<const Pose> poses);
 
     /// Before a step. Its work and what it copies are bounded, and it waits neither for the loader nor for the GPU.

@@ -2,6 +2,8 @@
 // A million snowflakes on a collider, in a window of GLFW: glfw COLLIDER.relief
 #include <GLFW/glfw3.h>
 
+#include <runtime/picture/collider_renderer.h>
+#include <runtime/picture/particle_renderer.h>
 #include <cstdio>
 #include <cstdlib>
 #include <relief/relief.hpp>

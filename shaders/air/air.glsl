@@ -4,7 +4,6 @@
 //
 //     airVelocity        wind + flow + curl noise: acts through drag     object units a second
 //     fieldAcceleration  attractors and vortices                         object units a second squared
-//     stokesRate         the drag of a ball in a viscous fluid           1/s
 #ifdef RELIEF_HAS_CURL
 //!include air/curl_noise.glsl
 #endif
@@ -98,8 +97,4 @@ vec3 fieldAcceleration(vec3 p, vec3 v, float t) {
     }
 #endif
     return sum;
-}
-
-float stokesRate(float viscosity, float radius, float mass) {
-    return RELIEF_SIX_PI * viscosity * radius / mass;
 }

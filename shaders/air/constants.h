@@ -6,8 +6,6 @@ namespace relief {
 
 /// The most attractors, and the most vortices, in the block of air.glsl.
 inline constexpr int kAirFieldsMax = 8;
-/// 6π, of Stokes drag.
-inline constexpr float kSixPi = 18.849556F;
 /// Beyond so many units of the lattice from the origin floats no longer resolve a cell of curl noise.
 inline constexpr float kCurlCellMax = 1048576.0F;
 /// Patterns of curl noise, of the first octave, before they repeat.

@@ -45,7 +45,7 @@ ivec2 reliefTexel(int index, int log2_width) {
 }
 
 #if RELIEF_BODIES > 0
-//!include collider/world.glsl
+//!layer bodies/world.glsl
 #else
 
 layout(std140) uniform ReliefCollider {
@@ -639,6 +639,6 @@ bool reliefSolidAt(vec3 p, int first) {
 
 #else
 
-//!include collider/bodies.glsl
+//!layer bodies/bodies.glsl
 
 #endif

@@ -17,15 +17,6 @@ enum MapFlag : std::int32_t {
 /// The first maps of a collider, which a step evaluates one after another, each by code of its own.
 inline constexpr int kUnrolledMaps = 8;
 
-/// Texels of a map, of a body, and levels of both grids in a world (collider/world.glsl).
-inline constexpr int kWorldMapTexels = 9;
-inline constexpr int kWorldBodyTexels = 8;
-inline constexpr int kWorldLevels = 16;
-
-/// Of materials (collider/materials.glsl): texels of a body, and the flag of a brick among entries.
-inline constexpr int kMaterialHeadTexels = 2;
-inline constexpr int kMaterialIsBrick = 0x40000000;
-
 /// The shader storage binding of the collider in a tour (collider_tour.glsl).
 inline constexpr int kTourStorage = 0;
 

@@ -29,24 +29,6 @@ enum class Contact : std::uint8_t {
 /// for 65,536 bodies: this and more stand for all of it.
 inline constexpr float kLostMost = 0.9921875F;
 
-/// The events of a particle in a step: the sum of these.
-enum EventFlag : std::int32_t {
-    kEventCollision = 1,
-    kEventLasts = 2,  ///< beside kEventCollision: the step before touched something, too
-    kEventDeath = 4,  ///< of age, or beside kEventCollision of the collision
-};
-/// The step writes flags + kEventFlags · (direction + kEventDirections · (m + (materials + 1) · (body + 1))), below 2^24, with m the
-/// number of the material's name + 1, or 0 without one. In a list it is flags + kEventFlags · m.
-inline constexpr int kEventFlags = 8;
-inline constexpr int kEventDirections = 6;
-/// A count of events is that of so many counts before it; kEventLevels of them count the largest system.
-inline constexpr int kEventsCounted = 64;
-inline constexpr int kEventLevels = 4;
-/// Lists of the events of a step: a count has a component for each.
-inline constexpr int kEventLists = 4;
-/// Texels in a row of the counts and of the list of events.
-inline constexpr int kEventsWidth = 1024;
-
 /// Dead particles: their height, out of sight, and their number of collisions.
 inline constexpr float kDeadHeight = -1e30F;
 inline constexpr float kDeadCollisions = -1.0F;

@@ -18,8 +18,8 @@ bool collidesWith(int bits) {
 //!include collider/collider_tour.glsl
 #endif
 #if defined(RELIEF_COLLIDER) && defined(RELIEF_MATERIALS)
-//!include collider/materials.glsl
+//!layer bodies/materials.glsl
 #endif
-//!include air/air.glsl
+//!layer air/air.glsl
 //!include particles/step.glsl
 //!include particles/step_solid.glsl

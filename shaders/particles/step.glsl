@@ -10,7 +10,9 @@ uniform float u_dt;       // seconds
 uniform vec3 u_gravity;   // world units a second squared
 uniform vec3 u_wind;      // velocity of the air, world units a second
 uniform float u_still;    // a particle in contact rests at or below this speed: a thousandth of a step's gravity
-uniform float u_air_time; // seconds, as airTime() gives them
+#if defined(RELIEF_HAS_AIR)
+uniform float u_air_time;  // seconds, as airTime() gives them
+#endif
 uniform float u_ground;   // height of the floor; far below everything if there is none
 uniform vec4 u_types[2 * RELIEF_TYPES];  // as typeOf() reads them
 
@@ -108,7 +110,13 @@ Solid solidOrGround(vec3 p, float radius) {
 }
 
 //!include particles/step_sweep.glsl
-//!include particles/step_event.glsl
+#if defined(RELIEF_EVENTS)
+//!layer events/step_event.glsl
+#else
+void writeNoEvent() {}
+void writeHit(Sweep sweep, float after, float vn, float material, bool lasts, bool dies) {}
+void writeDeath(State state, float time) {}
+#endif
 
 bool caught(State state, float radius, Solid s) {
     vec3 p = state.position;

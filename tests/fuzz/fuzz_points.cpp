@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "bake/report/points_csv.h"
-#include "runtime/particles/point_list.h"
+#include "runtime/births/point_list.h"
 #include "tests/fuzz/target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Air and fields on the CPU: the noise's clock, Stokes drag, and every wrong setting.
 #include "runtime/air/air.h"
+#include "runtime/particles/step_pass.h"
 
 #include <gtest/gtest.h>
 

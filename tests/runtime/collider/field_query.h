@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/collider/collider_textures.h"
+#include "runtime/bodies/world_textures.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/pass_state.h"
 #include "tests/results.h"
@@ -41,16 +41,16 @@ void main() {
 class FieldQuery {
   public:
     /// Uploads the collider.
-    /// Fails as ColliderTextures::create and makeProgram do.
+    /// Fails as WorldTextures::create and makeProgram do.
     [[nodiscard]] static Result<FieldQuery> create(const Collider& collider);
 
     /// Uses textures that are there already: of one collider, or of bodies in their world, some of which may be
     /// live. They must outlive this. Fails as makeProgram does.
     /// \param defines  lines for the shader.
-    [[nodiscard]] static Result<FieldQuery> create(const ColliderTextures& textures,
+    [[nodiscard]] static Result<FieldQuery> create(const WorldTextures& textures,
                                                    const std::string& defines = {});
     /// Goes over to other textures of the same defines().
-    void use(const ColliderTextures& textures) { textures_ = &textures; }
+    void use(const WorldTextures& textures) { textures_ = &textures; }
 
     /// One sample a point, in order. Waits for the GPU.
     /// Errors: kLimit (no room on the GPU), kUnsupported, kFailure.
@@ -59,18 +59,18 @@ class FieldQuery {
   private:
     static constexpr GLsizei kWidth = 1024;
     static constexpr std::size_t kBatch = std::size_t{kWidth} * 1024;  // points evaluated with one draw
-    static constexpr ColliderTextures::Binding kBinding{1, 0};         // unit 0 holds the points
+    static constexpr WorldTextures::Binding kBinding{1, 0};            // unit 0 holds the points
 
     FieldQuery() = default;
 
-    std::unique_ptr<ColliderTextures> own_;  // null: the caller's
-    const ColliderTextures* textures_ = nullptr;
+    std::unique_ptr<WorldTextures> own_;  // null: the caller's
+    const WorldTextures* textures_ = nullptr;
     GlProgram program_;
 };
 
 inline Result<FieldQuery> FieldQuery::create(const Collider& collider) {
-    ColliderTextures textures = RELIEF_TRY(ColliderTextures::create(collider));
-    auto own = std::make_unique<ColliderTextures>(std::move(textures));
+    WorldTextures textures = RELIEF_TRY(WorldTextures::create(collider));
+    auto own = std::make_unique<WorldTextures>(std::move(textures));
     auto query = create(*own);
     if (query) {
         query->own_ = std::move(own);
@@ -78,7 +78,7 @@ inline Result<FieldQuery> FieldQuery::create(const Collider& collider) {
     return query;
 }
 
-inline Result<FieldQuery> FieldQuery::create(const ColliderTextures& textures, const std::string& defines) {
+inline Result<FieldQuery> FieldQuery::create(const WorldTextures& textures, const std::string& defines) {
     RELIEF_TRY(checkContext());
     const PassState state;
     FieldQuery query;
@@ -127,7 +127,7 @@ inline Result<std::vector<FieldSample>> FieldQuery::evaluate(std::span<const glm
 }
 
 /// The field of textures that are there already. \param defines  lines for the shader.
-inline std::vector<FieldSample> fieldOf(const ColliderTextures& textures, std::span<const glm::vec3> points,
+inline std::vector<FieldSample> fieldOf(const WorldTextures& textures, std::span<const glm::vec3> points,
                                         const std::string& defines = {}) {
     const auto query = required(FieldQuery::create(textures, defines));
     auto samples = query.evaluate(points);

@@ -9,6 +9,7 @@
 #include <random>
 #include <span>
 
+#include "runtime/bodies/world_textures.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "tests/formats/analytic_shapes.h"
@@ -229,7 +230,7 @@ TEST_P(FieldQueryGlTest, ExtremePointsGiveAnAnswerAndNoNan) {
                                            {1e-30F, -1e-38F, 0},
                                            {-0.0F, 0.0F, -0.0F},
                                            {1e16F, 1e16F, 1e16F}};
-    const std::vector<FieldSample> samples = fieldOf(ColliderTextures::create(collider).value(), points);
+    const std::vector<FieldSample> samples = fieldOf(WorldTextures::create(collider).value(), points);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const FieldSample cpu = evaluate(collider, points[i]);
         EXPECT_FALSE(std::isnan(samples[i].distance)) << i;
@@ -252,7 +253,7 @@ TEST_P(FieldQueryGlTest, TheEarlyOutAgreesWithTheCpu) {
             }
         }
         const std::vector<glm::vec3> points = randomPoints(kPoints, random);
-        const auto textures = required(ColliderTextures::create(collider));
+        const auto textures = required(WorldTextures::create(collider));
         const std::vector<FieldSample> early = fieldOf(textures, points, "#define RELIEF_QUERY_INSIDE\n");
         double at_border = 0.0;
         for (std::size_t i = 0; i < kPoints; ++i) {
@@ -301,7 +302,7 @@ TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
     collider.maps.push_back(randomMap({MapFormat::kCube8, Compare::kLess, 19, 19}, random));
     // A column is no more than a hundred roundings of x wide.
     expectAgreement(collider, randomPoints(10'000, random), 1e-3F, 4e-2);
-    const auto textures = ColliderTextures::create(collider);
+    const auto textures = WorldTextures::create(collider);
     ASSERT_TRUE(textures);
     EXPECT_GE(textures->bytes(), collider.gpuBytes());
     EXPECT_LE(textures->bytes(), collider.gpuBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";

@@ -5,7 +5,7 @@
 #include <epoxy/egl.h>
 #include <gtest/gtest.h>
 
-#include "runtime/collider/collider_textures.h"
+#include "runtime/bodies/world_textures.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/depth_sort.h"
 #include "runtime/picture/frame.h"
@@ -102,7 +102,7 @@ TEST(NoContext, IsNamed) {
     SharedGlContexts::instance().drop();
     for (const bool had_one : {false, true}) {
         ASSERT_TRUE(!had_one || GlContext::create());
-        expectNamed(ColliderTextures::create(Collider{}));
+        expectNamed(WorldTextures::create(Collider{}));
         expectNamed(ParticleSystem::create());
         expectNamed(DepthSorter::create(1024));
         expectNamed(Frame::create(64, 64));

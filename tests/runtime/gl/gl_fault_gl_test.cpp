@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults put into the GL: libepoxy's entry points are pointers, replaced for a while by functions that fail.
+#include "runtime/air/particle_air.h"
+#include "runtime/bodies/world_textures.h"
+#include "runtime/events/event_recorder.h"
 #include "runtime/gl/gl_fault.h"
 
 #include <gtest/gtest.h>
@@ -14,11 +17,11 @@
 #include <vector>
 
 #include "formats/animation/animated_mesh.h"
-#include "runtime/collider/live_collider.h"
-#include "runtime/collider/skin_pass.h"
-#include "runtime/collider/wobble_pass.h"
 #include "runtime/gl/gl_fence.h"
 #include "runtime/gl/gl_functions.h"
+#include "runtime/live/live_collider.h"
+#include "runtime/live/skin_pass.h"
+#include "runtime/live/wobble_pass.h"
 #include "runtime/picture/collider_mesh.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
@@ -195,7 +198,8 @@ class GlFaultTest : public GlTest {
         particles_.spawn(births);
         particles_.step(0.01F);
         // Every entry point that is replaced below, through to the driver.
-        EXPECT_TRUE(ParticleSystem::create({.capacity = 1})->setAir(air()));
+        auto one = required(ParticleSystem::create({.capacity = 1}));
+        EXPECT_TRUE(setAir(one, air()));
         EXPECT_TRUE(ParticleSystem::create({.capacity = 1, .path = StepPath::kCompute}));
         EXPECT_TRUE(waitForGpu("nothing"));
         EXPECT_TRUE(FieldQuery::create(collider_));
@@ -230,20 +234,20 @@ class GlFaultTest : public GlTest {
             const auto query = RELIEF_TRY(FieldQuery::create(collider_));
             return query.evaluate(std::vector<glm::vec3>(200'000));  // more rows than the limit below
         };
-        const auto setEvents = [this] {
-            EXPECT_TRUE(particles_.setEvents(std::nullopt));
-            return particles_.setEvents(EventOptions{});
+        const auto events = [this] {
+            EXPECT_TRUE(setEvents(particles_, std::nullopt));
+            return setEvents(particles_, EventOptions{});
         };
         const std::vector<std::uint8_t> atlas(4 * 128 * 128);
         return {
-            {"maps", [this] { return ColliderTextures::create(collider_); }},
+            {"maps", [this] { return WorldTextures::create(collider_); }},
             {"query", evaluate},
             {"euler", [] { return particles(Integrator::kEuler, StepPath::kFragment); }},
             {"verlet", [] { return particles(Integrator::kVerlet, StepPath::kFragment); }},
             {"euler, compute", [] { return particles(Integrator::kEuler, StepPath::kCompute); }},
             {"verlet, compute", [] { return particles(Integrator::kVerlet, StepPath::kCompute); }},
-            {"events", setEvents},
-            {"flow", [this] { return particles_.setAir(air()); }},
+            {"events", events},
+            {"flow", [this] { return setAir(particles_, air()); }},
             {"sort", [] { return DepthSorter::create(200'000, StepPath::kFragment); }},
             {"sort, compute", [] { return DepthSorter::create(200'000, StepPath::kCompute); }},
             {"frame", [] { return Frame::create(100, 100); }},
@@ -271,7 +275,7 @@ class GlFaultTest : public GlTest {
         const std::vector<ColliderBody> bodies(2, {&collider_, {}});
         return {{"mesh", [=] { return ColliderMesh::create(mesh); }},
                 {"particles, lit", [this] { return drawParticles(view(), StepPath::kFragment); }},
-                {"bodies", [=] { return ColliderTextures::create(bodies); }},
+                {"bodies", [=] { return WorldTextures::create(bodies); }},
                 {"live mesh", live},
                 {"wobbling mesh", wobble},
                 {"animated mesh", [] { return SkinPass::create(animatedTriangle()); }},
@@ -292,7 +296,7 @@ class GlFaultTest : public GlTest {
     }
 
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 32);
-    ColliderTextures textures_ = required(ColliderTextures::create(collider_));
+    WorldTextures textures_ = required(WorldTextures::create(collider_));
     Frame frame_ = required(Frame::create(32, 32));
     ColliderMesh mesh_ = required(ColliderMesh::create(tetrahedron()));
     ParticleSystem particles_ = required(ParticleSystem::create({.capacity = 100}));
@@ -365,14 +369,14 @@ TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
     const std::array<glm::vec3, 1> points{glm::vec3(0.0F)};
     ASSERT_TRUE(query->evaluate(points));
     ASSERT_TRUE(checkGpu("testing")) << "without a reset there is no error";
-    ASSERT_TRUE(particles_.setEvents(EventOptions{}));
+    ASSERT_TRUE(setEvents(particles_, EventOptions{}));
     particles_.step(0.01F);
-    ASSERT_TRUE(particles_.requestEvents(1));
+    ASSERT_TRUE(requestEvents(particles_, 1));
     {
         const Replaced status(epoxy_glGetGraphicsResetStatus, &guiltyReset);
         for (const Result<void>& done :
              {checkGpu("testing"), waitForGpu("steps 1 to 2"), outcome(query->evaluate(points)),
-              outcome(particles_.readState()), outcome(particles_.waitEvents())}) {
+              outcome(particles_.readState()), outcome(waitEvents(particles_))}) {
             expectFails(done, ErrorCode::kFailure, "the GPU was reset");
         }
     }
@@ -383,7 +387,7 @@ TEST_P(GlFaultTest, AResetIsNamedWhereverSomethingIsReadBack) {
 TEST_P(GlFaultTest, ErrorsWithoutEndEnd) {
     const Replaced errors(epoxy_glGetError, &endlessError);
     forgetGlErrors();
-    expectFails(outcome(ColliderTextures::create(collider_)), ErrorCode::kFailure, "0x0507");
+    expectFails(outcome(WorldTextures::create(collider_)), ErrorCode::kFailure, "0x0507");
 }
 
 TEST_P(GlFaultTest, AWaitThatFailsIsAnError) {

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bodies/world_textures.h"
+#include "runtime/events/event_recorder.h"
 #include "tests/runtime/particles/collision_test.h"
 
 namespace relief {
@@ -106,28 +108,28 @@ TEST_P(ArgumentsGlTest, NumbersOutOfRange) {
 
 TEST_P(ArgumentsGlTest, Bodies) {
     const Collider box = boxCollider();
-    const std::vector<ColliderBody> many(ColliderTextures::kBodiesMax + 1, ColliderBody{&box, {}});
-    EXPECT_TRUE(refused(ColliderTextures::create(many), ErrorCode::kLimit));
+    const std::vector<ColliderBody> many(WorldTextures::kBodiesMax + 1, ColliderBody{&box, {}});
+    EXPECT_TRUE(refused(WorldTextures::create(many), ErrorCode::kLimit));
     ColliderBody body{&box, {}};
     body.pose.scale = 0.0F;
-    EXPECT_TRUE(refused(ColliderTextures::create(std::span(&body, 1))));
+    EXPECT_TRUE(refused(WorldTextures::create(std::span(&body, 1))));
     body.pose.scale = 1.0F;
-    body.group = ColliderTextures::kGroups;
-    EXPECT_TRUE(refused(ColliderTextures::create(std::span(&body, 1))));
+    body.group = WorldTextures::kGroups;
+    EXPECT_TRUE(refused(WorldTextures::create(std::span(&body, 1))));
 }
 
 TEST_P(ArgumentsGlTest, Events) {
     for (const EventOptions& wrong : {EventOptions{.most = 0}, EventOptions{.most = (1U << 24) + 1},
                                       EventOptions{.min_speed = -1.0F}, EventOptions{.min_speed = kNan}}) {
-        EXPECT_TRUE(refused(particles_->setEvents(wrong)));
+        EXPECT_TRUE(refused(setEvents(*particles_, wrong)));
     }
-    EXPECT_TRUE(refused(particles_->setEvents(std::vector<EventOptions>(kEventLists + 1))));
-    ASSERT_TRUE(particles_->setEvents(EventOptions{}));
+    EXPECT_TRUE(refused(setEvents(*particles_, std::vector<EventOptions>(kEventLists + 1))));
+    ASSERT_TRUE(setEvents(*particles_, EventOptions{}));
     EXPECT_TRUE(takeEvents().events.empty()) << "nobody was there";
     for (int i = 0; i < EventList::kInFlightMax; ++i) {
-        EXPECT_TRUE(particles_->requestEvents(0));
+        EXPECT_TRUE(requestEvents(*particles_, 0));
     }
-    EXPECT_FALSE(particles_->requestEvents(0)) << "more lists than there is room for";
+    EXPECT_FALSE(requestEvents(*particles_, 0)) << "more lists than there is room for";
 }
 
 // Events tell the names of 254 materials apart.
@@ -141,10 +143,10 @@ TEST_P(ArgumentsGlTest, MoreMaterialsThanEventsCanTellApart) {
     for (std::size_t i = 0; i < 700; ++i) {
         bodies.push_back({&colliders[i % 2], {{static_cast<float>(i), 0.0F, 0.0F}}});
     }
-    collideWith(ColliderTextures::create(bodies));
-    EXPECT_TRUE(refused(particles_->setEvents(EventOptions{}), ErrorCode::kLimit));
+    collideWith(WorldTextures::create(bodies));
+    EXPECT_TRUE(refused(setEvents(*particles_, EventOptions{}), ErrorCode::kLimit));
     EXPECT_TRUE(particles_->step(kDt));  // as it was
-    EXPECT_FALSE(particles_->requestEvents(1));
+    EXPECT_FALSE(requestEvents(*particles_, 1));
 }
 
 }  // namespace

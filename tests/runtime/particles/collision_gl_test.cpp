@@ -10,6 +10,9 @@
 #include <functional>
 #include <memory>
 
+#include "runtime/air/particle_air.h"
+#include "runtime/bodies/world_textures.h"
+#include "runtime/events/event_recorder.h"
 #include "runtime/gl/gl_functions.h"
 #include "tests/runtime/gl/caller_state.h"
 #include "tests/runtime/particles/collision_test.h"
@@ -81,7 +84,7 @@ TEST_P(CollisionGlTest, ABallOnAFloorBouncesOffAWall) {
         const auto turned = [&](const glm::vec3& v) { return pose.scale * (pose.rotation * v); };
         make({.capacity = 1});
         const ColliderBody body{&corner, pose};
-        collideWith(posed ? ColliderTextures::create(std::span(&body, 1)) : ColliderTextures::create(corner));
+        collideWith(posed ? WorldTextures::create(std::span(&body, 1)) : WorldTextures::create(corner));
         setType({.radius = pose.scale * kRadius, .restitution = 0.5F});
         // 0.01 in the floor, and at the wall after a step and a half.
         const glm::vec3 at(0.5F - kRadius - 1.5F * 0.03F, kRadius - 0.01F, 0.05F);
@@ -178,7 +181,7 @@ TEST_P(CollisionGlTest, MasksOfSeveralBodies) {
         types[i].on_collision = i % 2 == 0 ? OnCollision::kStop : OnCollision::kBounce;
     }
     make({.capacity = 16});
-    collideWith(ColliderTextures::create(bodies));
+    collideWith(WorldTextures::create(bodies));
     ASSERT_TRUE(particles_->setTypes(types));
     EXPECT_TRUE(particles_->setForces({{0.0F, -9.81F, 0.0F}, {}, 0.0F}));
     EXPECT_TRUE(particles_->setGround(-1.0F));  // nobody's
@@ -224,7 +227,7 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyGoesWithIt) {
             std::vector<ColliderBody> bodies(count, ColliderBody{&box, {}});
             std::vector<Pose> poses(count);
             poses.back() = bodies.back().pose = poseAt(0.0F);
-            collideWith(ColliderTextures::create(bodies));
+            collideWith(WorldTextures::create(bodies));
             setType({.radius = 0.05F, .on_collision = OnCollision::kStop});
             spawnMany(40, [](std::uint32_t i) {
                 return Birth{
@@ -261,7 +264,7 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyThatIsGoneStays) {
     make({.capacity = 4});
     std::vector<ColliderBody> bodies(8, ColliderBody{&box, {}});
     bodies[7].pose.position.x = 7.0F;
-    collideWith(ColliderTextures::create(bodies));
+    collideWith(WorldTextures::create(bodies));
     setType({.on_collision = OnCollision::kStop});
     spawnOne({{7.1F, 0.25F, 0.0F}, {0.0F, -1.0F, 0.0F}, 100.0F, 0});
     step(10);
@@ -269,7 +272,7 @@ TEST_P(CollisionGlTest, WhatStoppedOnABodyThatIsGoneStays) {
     ASSERT_EQ(stopped.contact, Contact::kStopped);
     ASSERT_GT(stopped.position.x, 7.0F);
     const auto old = std::move(textures_);
-    collideWith(ColliderTextures::create(std::span(bodies).first(2)));
+    collideWith(WorldTextures::create(std::span(bodies).first(2)));
     step(10);
     EXPECT_LT(glm::length(state().at(0).position - stopped.position), 1e-5F);
     EXPECT_EQ(state().at(0).velocity, glm::vec3(0.0F));
@@ -445,15 +448,15 @@ TEST_P(CollisionGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
         check("setSweep");
         collideWith(box);
         check("setCollider");
-        EXPECT_TRUE(particles_->setAir(air));
+        EXPECT_TRUE(setAir(*particles_, air));
         check("setAir");
         setType({.restitution = 1.0F});
         check("setTypes");
-        EXPECT_TRUE(particles_->setEvents(EventOptions{.lasting = true}));
+        EXPECT_TRUE(setEvents(*particles_, EventOptions{.lasting = true}));
         check("setEvents");
         spawnOne({{0.0F, 0.25F, 0.0F}, {0.0F, -1.5F, 0.0F}, 10.0F, 0});
         std::vector<float> seen;
-        std::unique_ptr<ColliderTextures> old;
+        std::unique_ptr<WorldTextures> old;
         for (int i = 0; i < 8; ++i) {
             if (i == 4) {
                 old = std::move(textures_);

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bodies/world_textures.h"
+#include "runtime/events/event_recorder.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/random.h"
 #include "tests/runtime/collider/analytic_collider.h"
@@ -37,12 +39,12 @@ class CollisionTest : public StepGlTest {
     void make(const ParticleSystemOptions& options) {
         particles_ = std::make_unique<ParticleSystem>(required(ParticleSystem::create(onPath(options))));
     }
-    void collideWith(Result<ColliderTextures> textures) {
-        textures_ = std::make_unique<ColliderTextures>(required(std::move(textures)));
+    void collideWith(Result<WorldTextures> textures) {
+        textures_ = std::make_unique<WorldTextures>(required(std::move(textures)));
         ASSERT_TRUE(particles_->setCollider(textures_.get()));
     }
-    void collideWith(const Collider& collider) { collideWith(ColliderTextures::create(collider)); }
-    void collideWith(const ColliderBody& body) { collideWith(ColliderTextures::create(std::span(&body, 1))); }
+    void collideWith(const Collider& collider) { collideWith(WorldTextures::create(collider)); }
+    void collideWith(const ColliderBody& body) { collideWith(WorldTextures::create(std::span(&body, 1))); }
     void setType(const ParticleType& type) { ASSERT_TRUE(particles_->setTypes(std::span(&type, 1))); }
     void setPose(const Pose& pose) { textures_->setPoses(std::span(&pose, 1)); }
     [[nodiscard]] std::vector<ParticleState> state() const { return required(particles_->readState()); }
@@ -62,11 +64,11 @@ class CollisionTest : public StepGlTest {
     }
     /// The events of the last step.
     StepEvents takeEvents(std::uint64_t tag = 0) {
-        EXPECT_TRUE(particles_->requestEvents(tag));
-        return required(particles_->waitEvents()).value();
+        EXPECT_TRUE(requestEvents(*particles_, tag));
+        return required(waitEvents(*particles_)).value();
     }
 
-    std::unique_ptr<ColliderTextures> textures_;
+    std::unique_ptr<WorldTextures> textures_;
     std::unique_ptr<ParticleSystem> particles_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where, which way, how fast and when an emitter gives birth: against closed forms, for fixed seeds.
 #include "runtime/particles/emitter.h"
+#include "runtime/births/emitter_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The simulation on the GPU, in OpenGL 3.3 and in OpenGL ES 3.0: against a CPU step particle by particle,
 // against closed forms, and for what must hold whatever the input.
+#include "runtime/air/particle_air.h"
+#include "runtime/bodies/world_textures.h"
 #include "runtime/particles/particle_system.h"
 
 #include <gtest/gtest.h>
@@ -107,7 +109,7 @@ TEST_P(ParticleSystemGlTest, StepEqualsTheReferenceParticleByParticle) {
             bodies.push_back({body.collider, body.now, body.restitution, body.friction});
         }
         const bool moves = bodies.size() > 1;
-        collideWith(moves ? ColliderTextures::create(bodies) : ColliderTextures::create(mixed));
+        collideWith(moves ? WorldTextures::create(bodies) : WorldTextures::create(mixed));
         setType(reference.type);
         EXPECT_TRUE(particles_->setForces(reference.forces));
         EXPECT_TRUE(particles_->setGround(reference.ground));
@@ -372,7 +374,7 @@ TEST_P(ParticleSystemGlTest, AnAgeIsAStepOfItsOwn) {
         if (with_air) {
             AirSettings air;
             air.wind = wind;
-            ASSERT_TRUE(particles_->setAir(air));
+            ASSERT_TRUE(setAir(*particles_, air));
         }
         const glm::vec3 start(4.0F, 5.0F, 6.0F);
         spawnOne({{1.0F, 2.0F, 3.0F}, start, 3.0F * kTime, 0, kTime});

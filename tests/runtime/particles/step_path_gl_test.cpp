@@ -7,6 +7,9 @@
 #include <glm/gtc/quaternion.hpp>
 #include <vector>
 
+#include "runtime/air/particle_air.h"
+#include "runtime/bodies/world_textures.h"
+#include "runtime/events/event_recorder.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
@@ -117,9 +120,9 @@ class StepPathGlTest : public GlTest {
         static const Collider kBox = boxCollider();
         static const Bodies kBodies;
         const Collider box = features.repeats > 0 ? sidesOf(features.repeats) : kBox;
-        ColliderTextures textures =
-            required(features.bodies > 0 ? ColliderTextures::create(kBodies.first(features.bodies))
-                                         : ColliderTextures::create(box));
+        WorldTextures textures =
+            required(features.bodies > 0 ? WorldTextures::create(kBodies.first(features.bodies))
+                                         : WorldTextures::create(box));
         ParticleSystem particles = required(ParticleSystem::create({.capacity = kParticles + 100,
                                                                     .integrator = features.integrator,
                                                                     .epoch_seconds = 0.3,
@@ -138,12 +141,12 @@ class StepPathGlTest : public GlTest {
         if (features.air) {
             AirSettings air;
             air.curl_noise = CurlNoise{.amplitude = 0.5F, .scale = 0.4F, .octaves = 2, .drift = 0.1F};
-            EXPECT_TRUE(particles.setAir(air));
+            EXPECT_TRUE(setAir(particles, air));
         }
         if (features.collider) {
             EXPECT_TRUE(particles.setCollider(&textures));
         }
-        EXPECT_TRUE(particles.setEvents(EventOptions{.lasting = true, .deaths = true}));
+        EXPECT_TRUE(setEvents(particles, EventOptions{.lasting = true, .deaths = true}));
         Played run;
         Pcg32 random(5);
         std::vector<Birth> births;
@@ -166,8 +169,8 @@ class StepPathGlTest : public GlTest {
             }
             textures.setPoses(poses);
             particles.step(kDt);
-            EXPECT_TRUE(particles.requestEvents(0));
-            const StepEvents step = required(particles.waitEvents()).value();
+            EXPECT_TRUE(requestEvents(particles, 0));
+            const StepEvents step = required(waitEvents(particles)).value();
             run.events.insert(run.events.end(), step.events.begin(), step.events.end());
         }
         run.state = required(particles.readState());
@@ -247,20 +250,20 @@ TEST_P(StepPathGlTest, BothPathsGiveTheSameParticles) {
 
 // Whether lanes go on by themselves: else the test above says nothing of it.
 TEST_P(StepPathGlTest, ToursAreForSweepsOfASingleCollider) {
-    const auto tours = [](const Result<ColliderTextures>& textures, StepFeatures features) {
-        features.collider = &*textures;
-        return required(StepPass::create(features)).usesStorage();
+    const auto tours = [](const Result<WorldTextures>& textures, StepVariant variant) {
+        variant.collider = &*textures;
+        return required(StepPass::create(variant)).usesStorage();
     };
     const auto many = [](std::size_t maps) {
         Collider box = boxCollider();
         box.maps.resize(maps, box.maps.front());
-        return ColliderTextures::create(box);
+        return WorldTextures::create(box);
     };
-    const auto box = ColliderTextures::create(boxCollider());
+    const auto box = WorldTextures::create(boxCollider());
     EXPECT_TRUE(tours(box, {.sweep = true, .compute = true}));
     EXPECT_TRUE(tours(many(64), {.sweep = true, .compute = true}));
     EXPECT_FALSE(tours(many(65), {.sweep = true, .compute = true}));
-    EXPECT_FALSE(tours(ColliderTextures::create(Bodies().first(1)), {.sweep = true, .compute = true}));
+    EXPECT_FALSE(tours(WorldTextures::create(Bodies().first(1)), {.sweep = true, .compute = true}));
     EXPECT_FALSE(tours(box, {.compute = true}));
     EXPECT_FALSE(tours(box, {.sweep = true, .radius = true, .compute = true}));
     EXPECT_FALSE(tours(box, {.sweep = true}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light among a collider in closed form: a sphere's shade, a plate's, and that both follow what moves.
+#include "runtime/bodies/world_textures.h"
 #include "runtime/picture/collider_light.h"
 
 #include <gtest/gtest.h>
@@ -9,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "runtime/collider/live_collider.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
+#include "runtime/live/live_collider.h"
 #include "shaders/picture/constants.h"
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/analytic_collider.h"
@@ -46,13 +47,13 @@ void main() {
 
 class ColliderLightGlTest : public GlTest {
   protected:
-    void use(ColliderTextures textures, const Bounds& bounds, float texel) {
+    void use(WorldTextures textures, const Bounds& bounds, float texel) {
         light_.reset();
-        textures_ = std::make_unique<ColliderTextures>(std::move(textures));
+        textures_ = std::make_unique<WorldTextures>(std::move(textures));
         light_.emplace(required(ColliderLight::create({textures_.get(), bounds, texel})));
     }
     void use(const Collider& collider) {
-        use(required(ColliderTextures::create(collider)), collider.bounds, finestTexel(collider));
+        use(required(WorldTextures::create(collider)), collider.bounds, finestTexel(collider));
     }
     /// As particles get it, the mean over their random numbers.
     std::vector<Light> at(const std::vector<glm::vec3>& points) {
@@ -81,7 +82,7 @@ class ColliderLightGlTest : public GlTest {
     }
     Light at(const glm::vec3& point) { return at(std::vector<glm::vec3>{point}).front(); }
 
-    std::unique_ptr<ColliderTextures> textures_;  // stays where it is: the light points at it
+    std::unique_ptr<WorldTextures> textures_;  // stays where it is: the light points at it
     std::optional<ColliderLight> light_;
 };
 
@@ -216,7 +217,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatMoves) {
     Bounds bounds;
     bounds.add(glm::vec3(-1.5F, -0.5F, -0.5F));
     bounds.add(glm::vec3(1.5F, 0.5F, 0.5F));
-    use(required(ColliderTextures::create(std::span(&body, 1))), bounds, finestTexel(ball));
+    use(required(WorldTextures::create(std::span(&body, 1))), bounds, finestTexel(ball));
     // Behind each place of the ball, seen from the sun, and right below it.
     const auto lightUnder = [&](float x) {
         const glm::vec3 place(x, 0.0F, 0.0F);
@@ -249,7 +250,7 @@ TEST_P(ColliderLightGlTest, LightFollowsABodyThatDeforms) {
     ColliderBody body;
     body.collider = &live.frames();
     body.live = true;
-    use(required(ColliderTextures::create(std::span(&body, 1))), box, finestTexel(live.frames()));
+    use(required(WorldTextures::create(std::span(&body, 1))), box, finestTexel(live.frames()));
     ASSERT_TRUE(live.update(*textures_, 0));
     const glm::vec3 behind = glm::vec3(0.8F, 0.0F, 0.0F) - 0.5F * sunDirection();
     const glm::vec3 below(0.8F, -0.4F, 0.0F);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "runtime/bodies/world_textures.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/pass_state.h"
 #include "runtime/picture/collider_renderer.h"
@@ -88,7 +89,7 @@ class ColliderMeshGlTest : public GlTest {
     }
 
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, kRadius), 128);
-    ColliderTextures textures_ = required(ColliderTextures::create(collider_));
+    WorldTextures textures_ = required(WorldTextures::create(collider_));
     ColliderMesh mesh_ = required(ColliderMesh::create(sphereMesh(128, 64)));
     Frame frame_ = required(Frame::create(kWidth, kHeight));
     const RenderTarget target_ = frame_.target();

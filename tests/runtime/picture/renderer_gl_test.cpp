@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/bodies/world_textures.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/picture/collider_renderer.h"
 #include "runtime/picture/depth_sort.h"
@@ -59,7 +60,7 @@ class RendererGlTest : public GlTest {
     }
 
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 128);
-    ColliderTextures textures_ = required(ColliderTextures::create(collider_));
+    WorldTextures textures_ = required(WorldTextures::create(collider_));
     Camera camera_;
     ColliderStyle style_;
     Frame frame_ = required(Frame::create(kWidth, kHeight));
@@ -185,8 +186,8 @@ TEST_P(RendererGlTest, TheCallersStateIsKeptAndDoesNoHarm) {
     spawnAt({0.0F, 0.8F, 0.9F});
     spawnAt({0.0F, 0.7F, 0.0F});
     const auto run = [&](const std::function<void(const char*)>& check) {
-        const auto textures = ColliderTextures::create(collider_);
-        check("ColliderTextures::create");
+        const auto textures = WorldTextures::create(collider_);
+        check("WorldTextures::create");
         const ColliderView seen{&*textures, collider_.bounds, finestTexel(collider_)};
         auto frame = Frame::create(kWidth, kHeight);
         check("Frame::create");

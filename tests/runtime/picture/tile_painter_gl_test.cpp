@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sprites painted by tiles against the same sprites drawn by the GL, in OpenGL 4.3 and in OpenGL ES 3.1: in every style,
 // before and behind a collider, at the picture's edges, of all sizes, and where the tiles have no room.
+#include "runtime/bodies/world_textures.h"
 #include "runtime/gl/compute_units.h"
 #include "runtime/picture/tile_painter.h"
 
@@ -127,7 +128,7 @@ class TilePainterGlTest : public GlTest {
     const Collider collider_ = analytic::frontBackCollider(analytic::sphere({0.0, 0.0, 0.0}, 0.5), 64);
     Camera camera_;
     ParticleStyle style_;
-    ColliderTextures textures_ = required(ColliderTextures::create(collider_));
+    WorldTextures textures_ = required(WorldTextures::create(collider_));
     ColliderRenderer collider_renderer_ = required(ColliderRenderer::create(view()));
     std::vector<ParticleRenderer> renderers_;
     std::optional<ParticleSystem> particles_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes, played: what rains on animated or thin colliders stays outside.
+#include "runtime/events/event_recorder.h"
 #include "runtime/player/simulation.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +12,8 @@
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/live/animated_container.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {

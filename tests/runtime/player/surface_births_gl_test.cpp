@@ -10,8 +10,8 @@
 #include "runtime/player/simulation.h"
 #include "runtime/scene/loaded_scene.h"
 #include "tests/formats/animation/animated_meshes.h"
-#include "tests/runtime/collider/animated_container.h"
 #include "tests/runtime/gl/gl_test.h"
+#include "tests/runtime/live/animated_container.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // [emitter], [[emitter]] and [[spawn]]: what their keys mean, and what is filled in.
 #include "runtime/scene/scene_emitter.h"
+#include "runtime/births/emitter_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "runtime/scene/scene_pictures.h"
 #include "runtime/scene/scene_world.h"
 #include "tests/results.h"
-#include "tests/runtime/collider/three_bodies.h"
+#include "tests/runtime/bodies/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 // (toml_reader_test.cpp); these are the scene's own rules.
 #include <gtest/gtest.h>
 
-#include "runtime/collider/collider_textures.h"
+#include "runtime/bodies/world_textures.h"
 #include "tests/runtime/scene/scene_text.h"
 
 namespace relief {
@@ -51,7 +51,7 @@ TEST(SceneMistakes, OfNumbersOfTables) {
                        {{text, std::to_string(line) + ":1", "there are " + std::to_string(count)}});
     }
     std::string many;
-    for (std::size_t i = 0; i <= ColliderTextures::kBodiesMax; ++i) {
+    for (std::size_t i = 0; i <= WorldTextures::kBodiesMax; ++i) {
         many += kSceneHead;
     }
     EXPECT_FALSE(sceneOf(many)) << "more bodies than a step takes";

@@ -12,7 +12,7 @@
 #include "runtime/scene/scene_meshes.h"
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/results.h"
-#include "tests/runtime/collider/animated_container.h"
+#include "tests/runtime/live/animated_container.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 

@@ -13,7 +13,7 @@
 #include "tests/formats/animation/animated_meshes.h"
 #include "tests/results.h"
 #include "tests/runtime/collider/analytic_collider.h"
-#include "tests/runtime/collider/animated_container.h"
+#include "tests/runtime/live/animated_container.h"
 #include "tests/runtime/scene/scene_text.h"
 #include "tests/temporary_folder.h"
 
@@ -48,7 +48,7 @@ class SceneSurface : public testing::Test {
     double area(const std::string& text) {
         const auto loaded = load(text);
         EXPECT_TRUE(loaded) << loaded.error().message;
-        return loaded ? loaded->emitters.at(0).settings().surface.area() : 0.0;
+        return loaded ? loaded->emitters.at(0).settings().surface->area() : 0.0;
     }
     void expectRefused(const std::string& text, const std::string& place, const std::string& words) {
         expectErrorOf(load(text), "scene.toml:" + place + ": ", words);
@@ -109,7 +109,7 @@ TEST_F(SceneSurface, OfCollidersWithoutABakedMesh) {
     EXPECT_NEAR(area(box + kSurface + "attach = 0\n"), 2.48, 0.03);
     const auto two = required(
         load(box + box + "position = [3, 0, 0]\n" + kSurface + "attach = 0\n" + kSurface + "attach = 1\n"));
-    EXPECT_EQ(two.emitters[0].settings().surface.area(), two.emitters[1].settings().surface.area());
+    EXPECT_EQ(two.emitters[0].settings().surface->area(), two.emitters[1].settings().surface->area());
     folder_.write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     const std::string wobbles =
         "[[collider]]\nmesh = \"ball.obj\"\ndeform = { amplitude = 0.1, frequency = 1 }\n";

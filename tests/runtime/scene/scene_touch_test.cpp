@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Births where a surface touches another: of the same births without that rule exactly those that closed forms keep.
 #include "runtime/scene/scene_touch.h"
+#include "runtime/births/emitter_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -8,13 +8,13 @@
 #include <glm/glm.hpp>
 #include <memory>
 
-#include "runtime/collider/world_bodies.h"
+#include "runtime/bodies/world_bodies.h"
 #include "runtime/picture/camera.h"
 #include "runtime/scene/loaded_scene.h"
 #include "runtime/scene/scene_pictures.h"
 #include "tests/formats/sample_colliders.h"
 #include "tests/results.h"
-#include "tests/runtime/collider/three_bodies.h"
+#include "tests/runtime/bodies/three_bodies.h"
 #include "tests/runtime/scene/scene_text.h"
 
 namespace relief {

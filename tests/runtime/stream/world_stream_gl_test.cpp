@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Worlds whose colliders come and go: the field is that of the colliders that are there, bit by bit, and nothing falls through
 // while others are missing.
+#include "runtime/bodies/world_textures.h"
 #include "runtime/stream/world_stream.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
 #include "formats/container.h"
-#include "runtime/collider/world_bodies.h"
+#include "runtime/bodies/world_bodies.h"
 #include "runtime/particles/particle_system.h"
 #include "runtime/particles/random.h"
 #include "tests/formats/random_patches.h"
@@ -123,7 +124,7 @@ class WorldStreamGlTest : public GlTest {
                 body.collider = &fine_[index];
             }
         }
-        const auto textures = ColliderTextures::create(bodies);
+        const auto textures = WorldTextures::create(bodies);
         ASSERT_TRUE(textures) << textures.error().message;
         const std::vector<FieldSample> expected = fieldOf(*textures, points_);
         const std::vector<FieldSample> found = fieldOf(stream_->textures(), points_);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/bodies/world_bodies.h"
+
+namespace relief {
+
+Pose poseOf(const WorldBody& body) {
+    const auto& [x, y, z, w] = body.rotation;
+    return {body.position, glm::quat(w, x, y, z), body.scale};
+}
+
+std::vector<ColliderBody> worldBodies(const LoadedWorld& world) {
+    std::vector<ColliderBody> bodies;
+    bodies.reserve(world.world.bodies.size());
+    for (const WorldBody& body : world.world.bodies) {
+        bodies.push_back({&world.colliders[body.collider], poseOf(body), body.restitution, body.friction});
+    }
+    return bodies;
+}
+
+std::vector<Pose> worldPoses(const World& world) {
+    std::vector<Pose> poses;
+    poses.reserve(world.bodies.size());
+    for (const WorldBody& body : world.bodies) {
+        poses.push_back(poseOf(body));
+    }
+    return poses;
+}
+
+Bounds worldBounds(const World& world) {
+    Bounds bounds;
+    for (const WorldBody& body : world.bodies) {
+        const Bounds box = toWorld(poseOf(body), world.colliders[body.collider].box);
+        bounds.add(box.min);
+        bounds.add(box.max);
+    }
+    return bounds;
+}
+
+}  // namespace relief

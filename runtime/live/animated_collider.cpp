@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/live/animated_collider.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace relief {
+namespace {
+
+/// The rounding of a box, of its sides.
+constexpr float kRoomSlack = 1e-5F;
+
+bool isFinite(const MeshPose& pose) {
+    const auto numbers = [](const glm::vec4& row) { return std::isfinite(row.x + row.y + row.z + row.w); };
+    return std::all_of(pose.joints.begin(), pose.joints.end(),
+                       [&](const Affine& joint) { return std::all_of(joint.row, joint.row + 3, numbers); }) &&
+           std::all_of(pose.weights.begin(), pose.weights.end(),
+                       [](float weight) { return std::isfinite(weight); });
+}
+
+std::string sidesText(const glm::vec3& sides) {
+    return std::to_string(sides.x) + " x " + std::to_string(sides.y) + " x " + std::to_string(sides.z);
+}
+
+}  // namespace
+
+Result<Collider> animatedFrames(const glm::vec3& room, std::uint32_t resolution) {
+    Collider frames =
+        RELIEF_TRY(liveFrames({-0.5F * room, 0.5F * room}, resolution, LiveSize::kSquareTexels));
+    for (DepthMap& map : frames.maps) {
+        map.encloses = true;
+        map.empty_is_outside = true;
+    }
+    return frames;
+}
+
+Result<AnimatedCollider> AnimatedCollider::create(std::shared_ptr<const AnimatedMesh> mesh,
+                                                  const AnimatedColliderOptions& options) {
+    const glm::vec3 room = options.room ? *options.room : poseExtent(*mesh).room;
+    Collider frames = RELIEF_TRY(animatedFrames(room, options.resolution));
+    SkinPass pass = RELIEF_TRY(SkinPass::create(*mesh));
+    // Any places would do: setPose() moves all of them before anything is drawn.
+    LiveCollider live = RELIEF_TRY(LiveCollider::create(mesh->positions, mesh->triangles, std::move(frames)));
+    AnimatedCollider made(std::move(mesh), room, std::move(pass), std::move(live));
+    RELIEF_TRY(made.setPose(firstPose(*made.mesh_)));
+    return made;
+}
+
+Result<void> AnimatedCollider::check(const MeshPose& pose) const {
+    if (pose.joints.size() != mesh_->joints.size() || pose.weights.size() != mesh_->weights.size()) {
+        return fail(ErrorCode::kUsage, "a pose of " + std::to_string(pose.joints.size()) + " joints and " +
+                                           std::to_string(pose.weights.size()) +
+                                           " morph weights was given to a mesh of " +
+                                           std::to_string(mesh_->joints.size()) + " and " +
+                                           std::to_string(mesh_->weights.size()));
+    }
+    if (!isFinite(pose)) {
+        return fail(ErrorCode::kUsage, "the pose of an animated collider is not finite");
+    }
+    const Bounds box = bounds_.of(pose);
+    if (!glm::all(
+            glm::lessThanEqual(box.size(), room_ + kRoomSlack * std::max({room_.x, room_.y, room_.z})))) {
+        return fail(ErrorCode::kUsage, "a pose takes up " + sidesText(box.size()) +
+                                           ", more than the room of the animated collider, " +
+                                           sidesText(room_) + "; create it with more");
+    }
+    return {};
+}
+
+Result<void> AnimatedCollider::setPose(const MeshPose& pose) {
+    if (pose == pose_) {
+        return {};
+    }
+    RELIEF_TRY(check(pose));
+    const glm::vec3 middle = bounds_.of(pose).center();
+    pass_.run(pose, middle);
+    RELIEF_TRY(live_.setPositions(pass_.buffer().name()));
+    middle_ = middle;
+    pose_ = pose;
+    return {};
+}
+
+Pose AnimatedCollider::placed(const Pose& body) const {
+    return {toWorld(body, middle_), body.rotation, body.scale};
+}
+
+}  // namespace relief

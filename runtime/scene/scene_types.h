@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of a scene's types of particles and of its births by events.
+#pragma once
+
+#include "formats/base/field.h"
+#include "formats/base/scene_limits.h"
+#include "runtime/events/spawner.h"
+#include "runtime/particles/particle_type.h"
+
+namespace relief {
+
+/// All but `collides`, which names bodies.
+void fields(FieldVisitor& visit, ParticleType& type);
+
+void fields(FieldVisitor& visit, SpawnSettings& s);
+
+}  // namespace relief

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lists of a step's events in ascending order of index, one below the other: fragment k of a list finds the k-th event that
+// counts there, down the levels of counts.
+//
+//     position  x y z   of the contact with the surface, or of the death; world space
+//               w       seconds from the step's beginning to the event
+//     surface   x y z   the normal, out of the body; 0 for a death of age
+//               w       speed of approach along it, relative to the surface
+//     velocity  x y z   of the particle before the event
+//               w       body; -1 the floor
+//     identity  x       index     y  id modulo 2^24     z  type     w  flags (EventFlag) + RELIEF_EVENT_FLAGS * m, with m
+//               the number of the material's name + 1, or 0 without a material
+//!include events/events.glsl
+uniform highp sampler2D u_event_velocity;
+uniform highp sampler2D u_position_before;
+uniform highp sampler2D u_count_1;  // of particles
+uniform highp sampler2D u_count_2;  // of count_1's
+uniform highp sampler2D u_count_3;
+uniform highp sampler2D u_count_4;  // of all
+uniform int u_width;                          // of the particles' textures
+uniform int u_first_row[RELIEF_EVENT_LISTS];  // of each list
+uniform float u_radius[RELIEF_TYPES];
+
+layout(location = 0) out vec4 o_position;
+layout(location = 1) out vec4 o_surface;
+layout(location = 2) out vec4 o_velocity;
+layout(location = 3) out vec4 o_identity;
+
+// In: the k-th event counted by the entries from `first` on, k from 0. Out: the k-th of the entry returned.
+// of: 1 at the component of the list.
+int descended(highp sampler2D level, vec4 of, int first, inout float k) {
+    int i = first;
+    for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
+        float count = dot(texelFetch(level, texelOf(i, RELIEF_EVENTS_WIDTH), 0), of);
+        if (k < count) {
+            break;
+        }
+        k -= count;
+    }
+    return i;
+}
+
+int indexOf(int list, int first, float k) {
+    int i = first;
+    for (; i < first + RELIEF_EVENTS_COUNTED; ++i) {
+        ivec2 texel = texelOf(i, u_width);
+        if (countsIn(list, texel, texelFetch(u_event_surface, texel, 0))) {
+            if (k < 1.0) {
+                break;
+            }
+            k -= 1.0;
+        }
+    }
+    return i;
+}
+
+vec3 normalOf(vec2 two, int direction) {
+    float largest = sqrt(max(1.0 - dot(two, two), 0.0)) * (direction % 2 == 0 ? 1.0 : -1.0);
+    int axis = direction / 2;
+    return axis == 0 ? vec3(largest, two) : axis == 1 ? vec3(two.y, largest, two.x) : vec3(two, largest);
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    int list = 0;
+    for (int i = 1; i < RELIEF_EVENT_LISTS; ++i) {
+        list = at.y >= u_first_row[i] ? i : list;
+    }
+    vec4 of = vec4(equal(ivec4(list), ivec4(0, 1, 2, 3)));
+    float k = float((at.y - u_first_row[list]) * RELIEF_EVENTS_WIDTH + at.x);
+    if (k >= dot(texelFetch(u_count_4, ivec2(0), 0), of)) {
+        o_position = o_surface = o_velocity = o_identity = vec4(0.0);  // beyond, the counts are leftovers
+        return;
+    }
+    int first = descended(u_count_3, of, 0, k);
+    first = descended(u_count_2, of, first * RELIEF_EVENTS_COUNTED, k);
+    first = descended(u_count_1, of, first * RELIEF_EVENTS_COUNTED, k);
+    int index = indexOf(list, first * RELIEF_EVENTS_COUNTED, k);
+    ivec2 texel = texelOf(index, u_width);
+
+    vec4 surface = texelFetch(u_event_surface, texel, 0);
+    vec4 velocity = texelFetch(u_event_velocity, texel, 0);
+    vec4 birth = texelFetch(u_birth, texel, 0);
+    int code = int(surface.w);
+    int flags = code % RELIEF_EVENT_FLAGS;
+    int place = code / (RELIEF_EVENT_FLAGS * RELIEF_EVENT_DIRECTIONS);
+    int body = place / u_materials - 1;
+    int material = materialOf(code);
+    vec3 normal = vec3(0.0);
+    float radius = 0.0;
+    if ((flags & RELIEF_EVENT_COLLISION) != 0) {
+        normal = normalOf(surface.xy, (code / RELIEF_EVENT_FLAGS) % RELIEF_EVENT_DIRECTIONS);
+        radius = u_radius[clamp(int(birth.z), 0, RELIEF_TYPES - 1)];
+    }
+    vec3 center = texelFetch(u_position_before, texel, 0).xyz + velocity.w * velocity.xyz;
+    o_position = vec4(center - radius * normal, velocity.w);
+    o_surface = vec4(normal, surface.z);
+    o_velocity = vec4(velocity.xyz, float(body));
+    o_identity = vec4(float(index), birth.w, birth.z, float(flags + RELIEF_EVENT_FLAGS * material));
+}

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Births on surfaces that move and bend: against closed forms, for fixed seeds.
+#include "runtime/births/emitter_surface.h"
+#include "runtime/births/emitter_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+
+#include "runtime/particles/emitter.h"
+#include "tests/formats/animation/animated_meshes.h"
+#include "tests/results.h"
+#include "tests/runtime/particles/statistics.h"
+
+namespace relief {
+namespace {
+
+constexpr int kCount = 50'000;
+constexpr double kPi = std::numbers::pi;
+
+/// A grid of `u` times `v` quads, whose vertex (i, j) is at place(i / u, j / v).
+struct Grid {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+
+    Grid(std::uint32_t u, std::uint32_t v, const std::function<glm::dvec3(double, double)>& place) {
+        for (std::uint32_t i = 0; i <= u; ++i) {
+            for (std::uint32_t j = 0; j <= v; ++j) {
+                positions.emplace_back(place(double(i) / u, double(j) / v));
+                if (i < u && j < v) {
+                    const std::uint32_t k = i * (v + 1) + j;
+                    triangles.emplace_back(k, k + v + 1, k + v + 2);
+                    triangles.emplace_back(k, k + v + 2, k + 1);
+                }
+            }
+        }
+    }
+};
+
+EmitterSurface surfaceOf(const std::vector<glm::uvec3>& triangles, const std::vector<glm::vec3>& positions,
+                         std::vector<float> weights = {}) {
+    return required(EmitterSurface::create(triangles, std::move(weights), positions));
+}
+
+std::vector<EmitterSurface::Place> drawn(const EmitterSurface& surface, int count = kCount,
+                                         float age = 0.0F) {
+    Pcg32 random(7);
+    std::vector<EmitterSurface::Place> places;
+    for (int i = 0; i < count; ++i) {
+        places.push_back(surface.draw(random, age));
+    }
+    return places;
+}
+
+TEST(EmitterSurface, LiesInTheFacesOfABoxAndPointsOutwards) {
+    const glm::vec3 half(0.5F, 2.0F, 0.1F);
+    const AnimatedMesh box = movingBox(half);
+    std::vector<std::size_t> counts(3);
+    for (const EmitterSurface::Place& place : drawn(surfaceOf(box.triangles, box.positions))) {
+        ASSERT_NEAR(glm::length(place.normal), 1.0F, 1e-6F);
+        ASSERT_EQ(place.velocity, glm::vec3(0.0F));
+        int axis = 0;
+        while (axis < 2 && std::abs(place.normal[axis]) < 0.5F) {
+            ++axis;
+        }
+        ASSERT_NEAR(place.position[axis], std::copysign(half[axis], place.normal[axis]), 1e-6F);
+        ++counts[static_cast<std::size_t>(axis)];
+    }
+    EXPECT_LT(test::chiSquare(counts, {2.0 * 0.1, 0.5 * 0.1, 0.5 * 2.0}), test::kChiSquareMax);
+}
+
+// A straight pipe that is bent into a quarter of a torus: its outer side is stretched, R + r cos φ.
+TEST(EmitterSurface, IsUniformOnABentPipe) {
+    constexpr double kBend = 1.0;
+    constexpr double kRadius = 0.5;
+    const auto straight = [](double u, double v) {
+        return glm::dvec3(kBend + kRadius * std::cos(2 * kPi * v), 0.5 * kPi * kBend * u,
+                          kRadius * std::sin(2 * kPi * v));
+    };
+    const auto bent = [](double u, double v) {
+        const double out = kBend + kRadius * std::cos(2 * kPi * v);
+        return glm::dvec3(out * std::cos(0.5 * kPi * u), out * std::sin(0.5 * kPi * u),
+                          kRadius * std::sin(2 * kPi * v));
+    };
+    const Grid rest(200, 400, straight);
+    const Grid turned(200, 400, bent);
+    EmitterSurface surface = surfaceOf(rest.triangles, rest.positions);
+    surface.move(rest.positions, turned.positions, 0.0);
+    EXPECT_NEAR(surface.area(), 0.5 * kPi * kBend * 2 * kPi * kRadius, 1e-3);
+    std::vector<double> around;
+    std::vector<double> along;
+    for (const EmitterSurface::Place& place : drawn(surface, 100'000)) {
+        const glm::dvec3 p(place.position);
+        const double phi = std::atan2(p.z, std::hypot(p.x, p.y) - kBend);
+        around.push_back(phi < 0.0 ? phi + 2 * kPi : phi);
+        along.push_back(std::atan2(p.y, p.x));
+    }
+    EXPECT_LT(test::kolmogorov(along, [](double theta) { return theta / (0.5 * kPi); }),
+              test::kKolmogorovMax);
+    const auto bent_share = [](double phi) {
+        return (kBend * phi + kRadius * std::sin(phi)) / (2 * kPi * kBend);
+    };
+    EXPECT_LT(test::kolmogorov(around, bent_share), test::kKolmogorovMax);
+    EXPECT_GT(test::kolmogorov(around, [](double phi) { return phi / (2 * kPi); }), 20.0)
+        << "areas at rest would be seen";
+}
+
+// Points of a turning body go with ω × r; what a straight line makes of the arc is within the header's bounds.
+TEST(EmitterSurface, MovesAsATurningBodyDoes) {
+    const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
+    const glm::vec3 axis = glm::normalize(glm::vec3(1.0F, 2.0F, -1.0F));
+    constexpr double kTurn = 3.0;  // radians a second
+    EmitterSurface surface = surfaceOf(box.triangles, box.positions);
+    for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        const auto turned = [&](double time) {
+            std::vector<glm::vec3> out;
+            const glm::mat3 turn = glm::mat3_cast(glm::angleAxis(static_cast<float>(kTurn * time), axis));
+            for (const glm::vec3& p : box.positions) {
+                out.push_back(turn * p);
+            }
+            return out;
+        };
+        surface.move(turned(0.4 - dt), turned(0.4), dt);
+        const float age = static_cast<float>(0.5 * dt);
+        const std::vector<EmitterSurface::Place> then = drawn(surface, 500, age);
+        surface.move(turned(0.4), turned(0.4 - 0.5 * dt), 0.0);
+        const std::vector<EmitterSurface::Place> exact = drawn(surface, 500);
+        for (std::size_t i = 0; i < then.size(); ++i) {
+            const glm::vec3 velocity = float(kTurn) * glm::cross(axis, exact[i].position);
+            const double arm = double{glm::length(velocity)} / kTurn;
+            ASSERT_LE(double{glm::length(then[i].position - exact[i].position)},
+                      arm * kTurn * kTurn * dt * dt / 8 + 1e-6);
+            ASSERT_LE(double{glm::length(then[i].velocity - velocity)},
+                      arm * kTurn * kTurn * dt / 2 * 1e-1 + 1e-6 / dt)
+                << "in the middle of the step it is far better";
+            ASSERT_GT(glm::dot(then[i].normal, exact[i].normal), 0.99999F);
+        }
+    }
+}
+
+TEST(EmitterSurface, WeightsAreADensityThatIsLinear) {
+    const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
+    const std::vector<glm::uvec3> two{{0, 1, 2}, {3, 4, 5}};
+    // The shares of a corner that alone has a weight are those of a beta distribution, 6 x (1 − x).
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        std::vector<float> weights(6, 0.0F);
+        weights[corner] = 0.3F;
+        std::vector<double> shares;
+        for (const EmitterSurface::Place& place : drawn(surfaceOf(two, corners, weights))) {
+            const double x{place.position.x};
+            const double y{place.position.y};
+            ASSERT_LE(x + y, 1.000001) << "the other triangle has no weight";
+            shares.push_back(corner == 0 ? 1.0 - x - y : corner == 1 ? x : y);
+        }
+        EXPECT_LT(test::kolmogorov(shares, [](double x) { return x * x * (3.0 - 2.0 * x); }),
+                  test::kKolmogorovMax);
+    }
+    // A triangle of thrice the mean weight has thrice the births.
+    std::size_t near = 0;
+    for (const EmitterSurface::Place& place :
+         drawn(surfaceOf(two, corners, {1.0F, 0.5F, 0.3F, 0.1F, 0.2F, 0.3F}))) {
+        near += place.position.x < 2.0F ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(near) / kCount, 0.75, 5 * std::sqrt(0.1875 / kCount));
+}
+
+TEST(EmitterSurface, RefusesWhatIsNoSurface) {
+    const std::vector<glm::vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const std::vector<glm::uvec3> one{{0, 1, 2}};
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const auto refused = [](const std::vector<glm::uvec3>& triangles, const std::vector<float>& weights,
+                            const std::vector<glm::vec3>& positions) {
+        return !EmitterSurface::create(triangles, weights, positions);
+    };
+    EXPECT_TRUE(refused({{0, 1, 3}}, {}, corners));
+    EXPECT_TRUE(refused({{0, 1, 1}}, {}, corners));
+    EXPECT_TRUE(refused({}, {}, corners));
+    EXPECT_TRUE(refused(one, {1.0F}, corners));
+    EXPECT_TRUE(refused(one, {1.0F, -1.0F, 1.0F}, corners));
+    EXPECT_TRUE(refused(one, {1.0F, kNan, 1.0F}, corners));
+    EXPECT_TRUE(refused(one, {0.0F, 0.0F, 0.0F}, corners));
+    EXPECT_TRUE(refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kNan, 1, 0}}));
+    EXPECT_TRUE(refused(one, {}, {{0, 0, 0}, {1, 0, 0}, {kInfinity, 1, 0}}));
+    // Tiny and huge ones are none the worse.
+    for (const float scale : {1e-18F, 1e15F}) {
+        EmitterSurface surface = surfaceOf(one, {corners[0], scale * corners[1], scale * corners[2]});
+        Pcg32 random(1);
+        const EmitterSurface::Place place = surface.draw(random, 0.0F);
+        EXPECT_EQ(place.normal, glm::vec3(0, 0, 1));
+        EXPECT_GT(place.position.x, 0.0F);
+    }
+}
+
+// --- as an emitter has it
+
+EmitterSettings settingsOf(EmitterSurface surface) {
+    EmitterSettings settings;
+    settings.shape = EmitterShape::kSurface;
+    settings.surface = BirthSurfaceValue(surface.clone());
+    settings.rate = 3000.0;
+    EmitterAim& aim = settings.aim.emplace();
+    aim.speed_min = 2.0F;
+    aim.speed_max = 2.0F;
+    return settings;
+}
+
+TEST(EmitterSurface, AnEmitterThrowsAlongTheNormalAndTakesOnItsVelocity) {
+    const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
+    Emitter emitter(settingsOf(surfaceOf(box.triangles, box.positions)), 1);
+    std::vector<glm::vec3> later = box.positions;
+    for (glm::vec3& p : later) {
+        p += glm::vec3(0.1F, 0.0F, 0.2F);
+    }
+    emitter.moveSurface(box.positions, later, 0.1);
+    std::vector<Birth> births;
+    EXPECT_TRUE(emitter.isDue(0.1));
+    EXPECT_EQ(emitter.emit(0.1, 1000, births), 0U);
+    ASSERT_EQ(births.size(), 300U);
+    ASSERT_EQ(emitter.placeVelocities().size(), births.size());
+    EmitterMotion motion;
+    // Scaled and turned as its body is, whose own speed comes on top.
+    const glm::quat quarter = glm::angleAxis(float(kPi) / 2, glm::vec3(0, 1, 0));
+    motion.body = {{0.0, {{0, 0, 0}, quarter, 3.0F}}, {1.0, {{0, 5, 0}, quarter, 3.0F}}};
+    motion.inherit = 0.5F;
+    const std::vector<Birth> own = births;
+    carry(motion, 0.5, births, emitter.placeVelocities());
+    for (std::size_t i = 0; i < births.size(); ++i) {
+        EXPECT_NEAR(glm::length(own[i].velocity), 2.0F, 1e-5F);
+        const glm::vec3 at_end = own[i].position + own[i].age * glm::vec3(1, 0, 2);
+        const glm::vec3 from = glm::abs(at_end - glm::vec3(0.1F, 0, 0.2F)) - glm::vec3(0.5F, 0.3F, 0.2F);
+        EXPECT_NEAR(std::max({from.x, from.y, from.z}), 0.0F, 1e-5F) << "on the box of its own moment";
+        // x goes to −z and z to x.
+        const glm::vec3 thrown = births[i].velocity - quarter * own[i].velocity;
+        EXPECT_LT(glm::length(thrown - 0.5F * glm::vec3(3 * 2.0F, 5.0F, -3 * 1.0F)), 1e-4F);
+    }
+}
+
+TEST(EmitterSurface, WithoutAnAreaNothingIsBorn) {
+    const AnimatedMesh box = movingBox({0.5F, 0.3F, 0.2F});
+    EmitterSettings settings = settingsOf({});
+    EXPECT_FALSE(Emitter::check(settings));
+    settings.surface = BirthSurfaceValue(surfaceOf(box.triangles, box.positions).clone());
+    ASSERT_TRUE(Emitter::check(settings));
+    Emitter emitter(settings, 1);
+    std::vector<Birth> births;
+    // Flat as a line, then without numbers: due births find no room, and later ones are born.
+    for (const float all : {1.0F, std::numeric_limits<float>::infinity()}) {
+        emitter.moveSurface(box.positions, std::vector<glm::vec3>(8, glm::vec3(all)), 0.1);
+        EXPECT_EQ(emitter.emit(0.1, 1000, births), 300U);
+    }
+    EXPECT_TRUE(births.empty());
+    emitter.moveSurface(std::vector<glm::vec3>(8, glm::vec3(std::numeric_limits<float>::quiet_NaN())),
+                        box.positions, 0.1);
+    EXPECT_EQ(emitter.emit(0.1, 1000, births), 0U);
+    ASSERT_EQ(births.size(), 300U);
+    for (const Birth& birth : births) {
+        EXPECT_TRUE(isValid(birth));
+    }
+}
+
+}  // namespace
+}  // namespace relief
