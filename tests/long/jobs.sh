@@ -276,6 +276,18 @@ job_clang() {
 job weekly 45 sanitize_cli
 job_sanitize_cli() { sanitized -L cli -LE plain; }
 
+job nightly 1 core
+job_core() {
+    local begun
+    cmake --preset core
+    cmake --build --preset core --target clean
+    begun=$SECONDS
+    cmake --build --preset core
+    say "builds alone in $((SECONDS - begun)) s"
+    programs '*' build/core/bin/relief_core_test
+    ! ldd build/core/bin/relief_core_test | grep -E 'assimp|embree|OpenEXR|png|spdlog|tbb'
+}
+
 job weekly 45 headers
 job_headers() { built headers -DRELIEF_PRECOMPILE=OFF -DRELIEF_UNITY=OFF; }
 
