@@ -56,7 +56,6 @@ class EndView {
         : far_(end == RayEnd::kFar),
           u_max_(view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {}
 
-    [[nodiscard]] double uMax() const { return u_max_; }
     /// A ray that meets nothing.
     [[nodiscard]] FootprintRay fromViewer(const TexelRay& ray) const {
         return far_ ? FootprintRay{ray.origin + u_max_ * ray.direction, -ray.direction, -1.0, glm::dvec3(0.0)}

@@ -62,7 +62,6 @@ class EndFitter {
           deep_(scene, map),
           finest_(finest),
           probe_(scene, finest, end),
-          probe_other_(scene, finest, otherEnd(end)),
           view_(view),
           fine_(fine_rays.view()),
           fine_rays_(fine_rays),
@@ -71,8 +70,8 @@ class EndFitter {
           inside_out_(scene.insideOut()),
           may_start_inside_(mayStartInside(scene, view, end)),
           starts_free_(view.startsFree(end)),
-          other_starts_free_(view.projection() == Projection::kOrthographic &&
-                             view.startsFree(otherEnd(end))),
+          shares_edges_(view.projection() == Projection::kOrthographic && starts_free_ &&
+                        view.startsFree(otherEnd(end)) && !may_start_inside_),
           fit_(fitOptions(view, options)) {
         fit_.cautious = options.cautious;
         fit_.rays_apart = 0.5 / samples_;
@@ -80,15 +79,13 @@ class EndFitter {
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
-    /// \param hits        of this end in the fine view, from row `first_row` of the face on, including the rows next to
-    ///                    the texel's
-    /// \param other_hits  of the other end; may be empty
-    /// \param other       the fitter of the other end, if it has fitted this texel before
+    /// \param hits   in the fine view, from row `first_row` of the face on, including the rows next to the texel's
+    /// \param other  the fitter of the other end, if it has fitted this texel before
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
-                               std::span<const Hit> hits, std::span<const Hit> other_hits,
-                               const EndFitter* other = nullptr) {
-        const Footprint here{face, x, y, first_row, hits, other_hits};
+                               std::span<const Hit> hits, const EndFitter* other = nullptr) {
+        const Footprint here{face, x, y, first_row, hits};
         found_.clear();
+        edge_.clear();
         prefetch(here);
         const auto [any, all] = hitsOf(here);
         if (!any) {
@@ -105,18 +102,12 @@ class EndFitter {
                 rays_[std::size_t{j} * samples_ + i] = rayAt(here, column, row);
             }
         }
-        if (!all && other != nullptr && sharesEdges()) {
-            for (const EdgeHits& edge : other->found_) {
-                found_.push_back({edge.x, edge.y, edge.other, edge.last});
+        if (!all && other != nullptr && shares_edges_) {
+            for (const EdgeRay& edge : other->found_) {
+                addEdge(face, edge, probe_.trace(face, edge.x, edge.y));
             }
         } else if (!all) {
             findEdge(here);
-        }
-        edge_.clear();
-        for (const EdgeHits& edge : found_) {
-            if (!edge.last.empty()) {
-                edge_.push_back(footprintRay(finest_.ray(face, edge.x, edge.y), edge.last, edge.other));
-            }
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
@@ -135,7 +126,6 @@ class EndFitter {
         std::uint32_t y;
         std::uint32_t first_row;
         std::span<const Hit> hits;
-        std::span<const Hit> other_hits;
     };
 
     /// The normals of a following texel, which are scattered in memory.
@@ -150,12 +140,10 @@ class EndFitter {
         }
     }
 
-    [[nodiscard]] FootprintRay footprintRay(const TexelRay& along, const Hit& hit, const Hit& other) const {
+    [[nodiscard]] FootprintRay footprintRay(const TexelRay& along, const Hit& hit) const {
         FootprintRay ray = end_.fromViewer(along);
         if (!hit.empty()) {
             ray.u = end_.uOf(hit.depth());
-            ray.u_last =
-                other.empty() || !other_starts_free_ ? end_.uMax() : std::max(ray.u, end_.uOf(other.depth()));
             const glm::dvec3& normal = normals_[hit.triangle()];
             ray.normal = hit.fromBehind() ? -normal : normal;
         }
@@ -163,9 +151,7 @@ class EndFitter {
     }
 
     [[nodiscard]] FootprintRay rayAt(const Footprint& here, std::uint32_t column, std::uint32_t row) const {
-        const std::size_t at = indexOf(here, column, row);
-        return footprintRay(fine_rays_.at(here.face, column, row), here.hits[at],
-                            here.other_hits.empty() ? Hit() : here.other_hits[at]);
+        return footprintRay(fine_rays_.at(here.face, column, row), here.hits[indexOf(here, column, row)]);
     }
 
     /// The ray of a hit started in the solid.
@@ -239,18 +225,17 @@ class EndFitter {
         });
     }
 
-    /// All rays of both ends start in free space, so that both ends meet the same edges.
-    [[nodiscard]] bool sharesEdges() const {
-        return starts_free_ && other_starts_free_ && !may_start_inside_;
-    }
-
-    /// The last ray of the finest grid with a hit, from either end.
-    struct EdgeHits {
+    /// The last ray of the finest grid with a hit.
+    struct EdgeRay {
         std::uint32_t x;
         std::uint32_t y;
-        Hit last;
-        Hit other;  // may be empty
     };
+
+    void addEdge(std::uint32_t face, const EdgeRay& edge, const Hit& hit) {
+        if (!hit.empty()) {
+            edge_.push_back(footprintRay(finest_.ray(face, edge.x, edge.y), hit));
+        }
+    }
 
     void findEdgeBetween(const Footprint& here, std::uint32_t column, std::uint32_t row, std::uint32_t right,
                          std::uint32_t up) {
@@ -275,8 +260,8 @@ class EndFitter {
             last = hit.empty() ? last : hit;
         }
         if (isOwn(here, on[0] / kEdgeParts, on[1] / kEdgeParts) && !startsInside(last)) {
-            found_.push_back({on[0], on[1], last,
-                              other_starts_free_ ? probe_other_.trace(here.face, on[0], on[1]) : Hit()});
+            found_.push_back({on[0], on[1]});
+            addEdge(here.face, found_.back(), last);
         }
     }
 
@@ -284,7 +269,6 @@ class EndFitter {
     DeepSolid deep_;
     const View& finest_;
     RayProbe probe_;
-    RayProbe probe_other_;
     const View& view_;
     const View& fine_;
     const RayGrid& fine_rays_;
@@ -293,11 +277,11 @@ class EndFitter {
     bool inside_out_;
     bool may_start_inside_;
     bool starts_free_;
-    bool other_starts_free_;
+    bool shares_edges_;  // all rays of both ends start in free space, so that both ends meet the same edges
     PlaneFitOptions fit_;
     std::vector<FootprintRay> rays_;
     std::vector<FootprintRay> around_;
-    std::vector<EdgeHits> found_;  // of the current texel
+    std::vector<EdgeRay> found_;  // of the current texel, by findEdge()
     std::vector<FootprintRay> edge_;
 };
 
@@ -395,12 +379,11 @@ class MapFitter {
                 Texel texel;
                 if (worker.busy[x] != 0 && !isBorder(view_, x, y)) {
                     if (view_.keeps(RayEnd::kNear)) {
-                        texel.front =
-                            worker.near_fitter.fit(rows.face, x, y, rays.begin, near_hits, far_hits);
+                        texel.front = worker.near_fitter.fit(rows.face, x, y, rays.begin, near_hits);
                     }
                     if (view_.keeps(RayEnd::kFar)) {
                         texel.back =
-                            worker.far_fitter.fit(rows.face, x, y, rays.begin, far_hits, near_hits,
+                            worker.far_fitter.fit(rows.face, x, y, rays.begin, far_hits,
                                                   view_.keeps(RayEnd::kNear) ? &worker.near_fitter : nullptr);
                     }
                     if (view_.compare == Compare::kGreater) {

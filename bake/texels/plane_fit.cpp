@@ -36,7 +36,7 @@ constexpr std::size_t kLanes = 2;
 class RayTable {
   public:
     RayTable(std::span<const FootprintRay> rays, const glm::dvec3& origin, double u_max)
-        : count_(rays.size()), blocks_((rays.size() + kLanes - 1) / kLanes) {
+        : count_(rays.size()), blocks_((rays.size() + kLanes - 1) / kLanes), u_max_(u_max) {
         assert(count_ <= kFootprintRaysMax);
         for (std::size_t i = 0; i < blocks_ * kLanes; ++i) {
             const FootprintRay& ray = rays[std::min(i, count_ - 1)];  // a repeated ray changes no maximum
@@ -50,7 +50,6 @@ class RayTable {
             const bool meets = ray.u >= 0.0;
             block.least[lane] = meets ? -kInfinity : kInfinity;
             block.first[lane] = ray.u;
-            block.last[lane] = ray.u_last;
             block.free_end[lane] = meets ? ray.u : u_max;
         }
     }
@@ -64,13 +63,14 @@ class RayTable {
         }
     }
 
-    /// The least offset of a plane with no surface point in front of it. One that faces away from the viewer must not cut
-    /// what lies behind the surface on a ray.
+    /// The least offset of a plane with no surface point in front of it. One that faces away from a ray of a cube must not
+    /// cut what lies behind the surface on it, whose end is unknown.
     [[nodiscard]] double support() const {
+        const Lanes end = Lanes{} + u_max_;
         Lanes most = {-kInfinity, -kInfinity};
         for (std::size_t b = 0; b < blocks_; ++b) {
             const Block& block = table_[b];
-            const Lanes u = block.along > 0.0 ? block.last : block.first;
+            const Lanes u = block.along > 0.0 ? end : block.first;
             const Lanes value = block.at_start + u * block.along;
             const Lanes met = block.least < value ? value : most;
             most = met > most ? met : most;
@@ -109,13 +109,13 @@ class RayTable {
         Lanes direction[3];
         Lanes least;  // lower bound of its support; +∞ for a ray without a hit
         Lanes first;
-        Lanes last;
         Lanes free_end;
         Lanes along;
         Lanes at_start;
     };
     std::size_t count_;
     std::size_t blocks_;
+    double u_max_;
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
 };
 
@@ -375,7 +375,7 @@ class PlaneSearch {
             if (ray.u >= 0.0) {
                 const double along = dot(normal, ray.direction);
                 offset = std::max(offset, dot(normal, ray.origin - centre_.origin) +
-                                              (along > 0.0 ? ray.u_last : ray.u) * along);
+                                              (along > 0.0 ? options_.u_max : ray.u) * along);
             }
         }
         return offset;

@@ -34,7 +34,6 @@ struct FootprintRay {
     glm::dvec3 direction{0.0};
     double u = -1.0;         ///< of the surface; negative without one
     glm::dvec3 normal{0.0};  ///< unit length, of the surface, towards the viewer
-    double u_last = -1.0;    ///< of the last surface on the ray, behind which nothing is solid
 };
 
 inline constexpr std::size_t kFootprintRaysMax = 64;

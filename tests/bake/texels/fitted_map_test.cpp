@@ -43,7 +43,6 @@ TEST(PlaneFit, NoSampledSurfacePointLiesInFrontOfThePlaneWhicheverWayIsSearched)
             rays[i].direction = {0, 0, 1};
             rays[i].u = std::max(
                 0.0, depth + dot(slope, rays[i].origin) + (repeat % 4 == 0 ? 0.0 : 0.004 * unit(random)));
-            rays[i].u_last = 1.0;
             rays[i].normal =
                 glm::normalize(glm::dvec3(slope.x + 0.2 * unit(random), slope.y + 0.2 * unit(random), -1.0));
         }
