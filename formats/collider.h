@@ -64,7 +64,6 @@ struct Collider {
 
     /// Bytes of all maps' texels, in memory and on the GPU.
     [[nodiscard]] std::uint64_t texelBytes() const;
-    [[nodiscard]] std::uint64_t gpuBytes() const { return texelBytes(); }
     /// Whether any map is of patches.
     [[nodiscard]] bool hasPatches() const;
     friend bool operator==(const Collider&, const Collider&) = default;

@@ -177,8 +177,8 @@ struct Page {
 
   private:
     [[nodiscard]] Result<void> checkSize() const {
-        std::uint64_t rest =
-            container.size() + (scene ? scene->size() : 0) + (collider != nullptr ? collider->gpuBytes() : 0);
+        std::uint64_t rest = container.size() + (scene ? scene->size() : 0) +
+                             (collider != nullptr ? collider->texelBytes() : 0);
         for (const auto& [name_in_scene, file] : files) {
             rest += file.size();
         }

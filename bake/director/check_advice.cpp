@@ -41,7 +41,7 @@ class Advisor {
         patches_.texel.reset();
         patches_.holes = Holes::kClose;
         patches_.resolution.reset();
-        patches_.budget = roundBudget(run.collider.gpuBytes());
+        patches_.budget = roundBudget(run.collider.texelBytes());
         if (!closes_) {
             // Its maps follow --resolution, not a budget.
             patches_.budget = std::min(*patches_.budget, kBudgetDefault);
@@ -63,7 +63,7 @@ class Advisor {
             tryBudget(*patches_.budget, "patches of as many bytes");
         }
         if (closes_ && any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryBudget(roundBudget(2 * run_.collider.gpuBytes()), "patches of twice the bytes");
+            tryBudget(roundBudget(2 * run_.collider.texelBytes()), "patches of twice the bytes");
         }
         if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();

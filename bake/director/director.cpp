@@ -297,7 +297,7 @@ class Director {
         result_.times.search_ms = request().max_error ? watch.ms() : 0.0;
         const DepthMap& tree = baked.collider.maps.front();
         baked.report.build_ms += request().max_error ? 0.0 : tree_ms;
-        report.bytes = baked.collider.gpuBytes();
+        report.bytes = baked.collider.texelBytes();
         report.texel = patchSpacing(tree.texels) * double{tree.object_per_map.x};
         result_.patches = std::move(report);
         return baked;

@@ -196,7 +196,7 @@ class GroundBaker {
         baked.bytes = RELIEF_TRY(containerOf(collider));
         baked.tile.hash = xxh3_128Hex(baked.bytes);
         baked.tile.bytes = baked.bytes.size();
-        baked.tile.gpu_bytes = collider.gpuBytes();
+        baked.tile.gpu_bytes = collider.texelBytes();
         baked.tile.squares = ground.squares;
         baked.tile.steep = ground.steep;
         baked.tile.error_max = ground.error_max;
@@ -217,7 +217,7 @@ class GroundBaker {
                                  .heights = glm::dvec2(box.min.y, box.max.y)};
         collider.maps = {RELIEF_TRY(inFront(map_.name(), bakeGround(coarseOf(grid), coarse))).map};
         baked.coarse = RELIEF_TRY(containerOf(collider));
-        baked.tile.coarse = {"", xxh3_128Hex(baked.coarse), collider.gpuBytes()};
+        baked.tile.coarse = {"", xxh3_128Hex(baked.coarse), collider.texelBytes()};
         return {};
     }
 

@@ -573,7 +573,7 @@ Materials materialsFor(const Collider& collider, const MaterialSource* source) {
     options.box = collider.bounds;
     options.texel = double{finestTexel(collider)};
     options.most =
-        std::max(static_cast<std::size_t>(kMaterialsShare * static_cast<double>(collider.gpuBytes())),
+        std::max(static_cast<std::size_t>(kMaterialsShare * static_cast<double>(collider.texelBytes())),
                  kMaterialsBytesMin);
     return TreeBuilder(*source, options, sampleContacts(collider, *source)).build();
 }

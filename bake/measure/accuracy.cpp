@@ -186,7 +186,7 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
     measureDistances(samples, nearestFieldOf(collider), accuracy.field);
     accuracy.unseen_percent = Sights(collider.maps, query).unseenPercent(samples.surface);
     accuracy.buried_percent = percent(buriedPoints(samples.surface), samples.surface.size());
-    accuracy.gpu_bytes = collider.gpuBytes();
+    accuracy.gpu_bytes = collider.texelBytes();
     return accuracy;
 }
 

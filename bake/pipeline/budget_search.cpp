@@ -76,7 +76,7 @@ class Search {
     Result<bool> keeps(std::uint64_t budget) {
         Baked baked = RELIEF_TRY(bakePatchesWithin(query_, budget, options_.bake));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();
-        const BudgetTry made{budget, baked.collider.gpuBytes(), wrong};
+        const BudgetTry made{budget, baked.collider.texelBytes(), wrong};
         tries_.push_back(made);
         if (options_.tried) {
             options_.tried(made);

@@ -486,7 +486,7 @@ PYBIND11_MODULE(_relief, m) {
         .def_property_readonly("unit", [](const Collider& c) { return c.unit; })
         .def_property_readonly("mesh_name", [](const Collider& c) { return c.provenance.mesh_name; })
         .def_property_readonly("options", [](const Collider& c) { return c.provenance.optionsText(); })
-        .def_property_readonly("gpu_bytes", &Collider::gpuBytes)
+        .def_property_readonly("gpu_bytes", &Collider::texelBytes)
         .def_property_readonly("map_count", [](const Collider& c) { return c.maps.size(); })
         .def("describe_map", &describe)
         .def("map_texels", [](const py::object& self, std::size_t i) { return texelsOf(self, i); })

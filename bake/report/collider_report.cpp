@@ -115,7 +115,7 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
     visit("file_size", info.file_size, {"Size of the file", "bytes"});
     visit("bounds", collider.bounds, {"Box of the mesh"});
     visit("unit", collider.unit, {"Unit of lengths: m, or empty if the source names none"});
-    visit("texel_bytes", collider.gpuBytes(), {"Size of all maps on the GPU", "bytes"});
+    visit("texel_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});
     visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
     visit("materials", collider.materials.list,
           {"Materials of its surface, by their ids; none: its surface is all the same"});

@@ -153,7 +153,7 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
     if (!(needed > 0.0) || (patches && !cure.empty() && texel <= right)) {
         return cure;
     }
-    auto bytes = static_cast<double>(collider.gpuBytes());
+    auto bytes = static_cast<double>(collider.texelBytes());
     if (patches) {
         // Cells are split where the mistakes are: no other part takes as much more.
         bytes *= kMorePatches;

@@ -19,11 +19,11 @@ constexpr float kMargin = 1e-5F;
 
 bool hasCoarse(const Collider& fine) {
     return fine.maps.size() == 1 && fine.maps[0].format == MapFormat::kPatches &&
-           fine.gpuBytes() > kCoarseFrom;
+           fine.texelBytes() > kCoarseFrom;
 }
 
 FineCollider FineCollider::of(const Collider& fine) {
-    return {solidBox(fine), fine.bounds, fine.gpuBytes()};
+    return {solidBox(fine), fine.bounds, fine.texelBytes()};
 }
 
 Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,

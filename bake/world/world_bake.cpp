@@ -386,7 +386,7 @@ class WorldBaker {
 
     static void take(const Collider& from, std::span<const std::byte> bytes, WorldColliderResult& collider) {
         collider.box = from.bounds;
-        collider.gpu_bytes = from.gpuBytes();
+        collider.gpu_bytes = from.texelBytes();
         collider.has_coarse = hasCoarse(from);
         collider.bytes = bytes.size();
         collider.hash = xxh3_128Hex(bytes);
@@ -509,7 +509,7 @@ class WorldBaker {
 
     Result<void> writeCoarse(const Collider& coarse, WorldColliderResult& of) const {
         const auto bytes = RELIEF_TRY(writeContainer(coarse, {static_cast<int>(request_.compress)}));
-        of.coarse = WorldFile{coarseFile(of.file), xxh3_128Hex(bytes), coarse.gpuBytes()};
+        of.coarse = WorldFile{coarseFile(of.file), xxh3_128Hex(bytes), coarse.texelBytes()};
         of.coarse_bytes = bytes.size();
         return writeFile(request_.folder / of.coarse->file, bytes);
     }

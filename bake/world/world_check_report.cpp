@@ -13,7 +13,7 @@ namespace relief {
 std::uint64_t gpuBytesOf(const WorldField& field) {
     std::uint64_t bytes = 0;
     for (const Collider& collider : field.colliders()) {
-        bytes += collider.gpuBytes();
+        bytes += collider.texelBytes();
     }
     return bytes;
 }

@@ -42,7 +42,7 @@ Json colliderInfo(const Collider& collider) {
             {"tool", from.tool_version},
             {"options", from.optionsText()},
             {"bytes", collider.texelBytes()},
-            {"gpu_bytes", collider.gpuBytes()},
+            {"gpu_bytes", collider.texelBytes()},
             {"finest_texel", finestTexel(collider)},
             {"maps", maps}};
 }

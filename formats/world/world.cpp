@@ -218,8 +218,8 @@ Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldD
     if (!(collider.bounds == of.box)) {
         return invalidInput(named + " has another box than its min and max have" + kBakeAgain);
     }
-    if (collider.gpuBytes() != from.gpu_bytes) {
-        return invalidInput(named + " takes " + std::to_string(collider.gpuBytes()) +
+    if (collider.texelBytes() != from.gpu_bytes) {
+        return invalidInput(named + " takes " + std::to_string(collider.texelBytes()) +
                             " bytes on the GPU, and not " + std::to_string(from.gpu_bytes) + kBakeAgain);
     }
     MaterialResponses(world.materials).apply(collider.materials);

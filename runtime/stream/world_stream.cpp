@@ -79,7 +79,7 @@ Result<Start> layOut(const World& world, std::span<const ColliderBody> bodies,
     std::set<const Collider*> counted;
     for (const ColliderBody& body : bodies) {
         const bool first = body.live || counted.insert(body.collider).second;
-        start.coarse_bytes += first ? body.collider->gpuBytes() : 0;
+        start.coarse_bytes += first ? body.collider->texelBytes() : 0;
         const auto found = body.live ? own.end() : own.find(body.collider);
         const bool streamed = found != own.end() && world.colliders[found->second].coarse;
         start.planned.push_back(streamed ? start.plan.size() : kNone);
@@ -204,7 +204,7 @@ void WorldStream::State::take(ColliderSource::Arrival arrival) {
     if (!arrival.loaded) {
         giveUp(arrival.collider, arrival.loaded.error().message);
     } else if (!isStreamable(*arrival.loaded) ||
-               arrival.loaded->gpuBytes() != kTexelSize * colliders[arrival.collider].texels) {
+               arrival.loaded->texelBytes() != kTexelSize * colliders[arrival.collider].texels) {
         giveUp(arrival.collider, names[arrival.collider] + " is not the collider that the world names");
     } else {
         arrived.push_back({arrival.collider, *std::move(arrival.loaded)});

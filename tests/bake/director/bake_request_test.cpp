@@ -297,7 +297,7 @@ TEST(Director, BakesAMeshInMemory) {
     BakeRequest request;
     request.budget = 60'000;
     const BakeResult made = required(bake(request, {}, makeBoxMesh({0, 0, 0}, {1, 1, 1})));
-    EXPECT_LE(made.baked.collider.gpuBytes(), 60'000U);
+    EXPECT_LE(made.baked.collider.texelBytes(), 60'000U);
     EXPECT_TRUE(made.patches && made.wrong && made.wrong->total() < 5.0);
     EXPECT_LT(checkOf(made, makeBoxMesh({0, 0, 0}, {1, 1, 1})).wrongPercent(), 5.0);
     // bakeSolid() makes the same maps of a mesh that needs nothing before.

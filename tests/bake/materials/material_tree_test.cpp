@@ -193,7 +193,7 @@ BakeResult baked(const TriangleMesh& mesh, const Format& format, std::optional<u
 
 bool isWithinItsShare(const Collider& collider) {
     return static_cast<double>(collider.materials.bytes()) <=
-           std::max(kMaterialsShare * static_cast<double>(collider.gpuBytes()), double{kMaterialsBytesMin});
+           std::max(kMaterialsShare * static_cast<double>(collider.texelBytes()), double{kMaterialsBytesMin});
 }
 
 TEST(MaterialTree, ContactsAreRightInEveryFormat) {

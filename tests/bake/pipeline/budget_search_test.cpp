@@ -23,7 +23,7 @@ TEST(BudgetSearch, KeepsThePromiseWithLittleMoreThanItNeeds) {
     options.tried = [&](const BudgetTry&) { ++told; };
     const BudgetSearchResult found = required(bakeForError(query, query, options));
     EXPECT_LE(found.chosen.wrong_percent, kPercent);
-    EXPECT_EQ(found.chosen.bytes, found.baked.collider.gpuBytes());
+    EXPECT_EQ(found.chosen.bytes, found.baked.collider.texelBytes());
     EXPECT_LE(found.chosen.bytes, found.chosen.budget);
     EXPECT_EQ(told, found.tries.size());
     // What it says is what measuring the result says.

@@ -30,7 +30,7 @@ TEST(CoarseCollider, IsTheSameShapeInASixteenthOfTheBytesAndAroundTheBox) {
             const FineCollider of = FineCollider::of(fine.baked.collider);
             const auto by_mesh = [&](const BakeRequest& other) { return bake(other, {}, mesh); };
             const Collider coarse = required(bakeCoarse(request, of, by_mesh));
-            EXPECT_LE(16 * coarse.gpuBytes(), fine.baked.collider.gpuBytes());
+            EXPECT_LE(16 * coarse.texelBytes(), fine.baked.collider.texelBytes());
             EXPECT_TRUE(contains(insideBox(coarse).value(), insideBox(fine.baked.collider).value()));
             EXPECT_EQ(coarse.bounds, fine.baked.collider.bounds);
             EXPECT_EQ(required(bakeCoarse(request, of, by_mesh)), coarse);

@@ -155,7 +155,7 @@ class WorldFolder : public testing::Test {
         world_.colliders = {{fileOf("a.relief", bytes), "a", collider_.bounds, {}}};
     }
     [[nodiscard]] WorldFile fileOf(const char* name, std::span<const std::byte> bytes) const {
-        return {name, xxh3_128Hex(bytes), collider_.gpuBytes()};
+        return {name, xxh3_128Hex(bytes), collider_.texelBytes()};
     }
     Result<LoadedWorld> load(WorldDetail detail = WorldDetail::kFine) {
         const std::string text = worldText(world_);

@@ -519,7 +519,7 @@ TEST_F(CApi, AWorldIsStreamed) {
         collider.maps = {test::randomPatches(random)};
         const std::vector<std::byte> bytes = writeContainer(collider).value();
         EXPECT_TRUE(writeFile(folder.path() / name, bytes));
-        return WorldFile{name, xxh3_128Hex(bytes), collider.gpuBytes()};
+        return WorldFile{name, xxh3_128Hex(bytes), collider.texelBytes()};
     };
     for (const std::uint32_t i : {0U, 1U}) {
         world.colliders.push_back({write("fine " + std::to_string(i)),

@@ -261,7 +261,7 @@ class Stage {
     void writeWorld(const Collider& box) {
         World file;
         file.colliders = {
-            {{path_.filename().string(), xxh3_128Hex(bytes_), box.gpuBytes()}, "box", box.bounds, {}}};
+            {{path_.filename().string(), xxh3_128Hex(bytes_), box.texelBytes()}, "box", box.bounds, {}}};
         for (std::uint32_t i = 0; i < kItems; ++i) {
             file.bodies.push_back({.collider = 0,
                                    .node = "box " + std::to_string(i % 3),

@@ -304,8 +304,8 @@ TEST_P(FieldQueryGlTest, MapsOfAnyShapeLieTogetherWithoutAGap) {
     expectAgreement(collider, randomPoints(10'000, random), 1e-3F, 4e-2);
     const auto textures = WorldTextures::create(collider);
     ASSERT_TRUE(textures);
-    EXPECT_GE(textures->bytes(), collider.gpuBytes());
-    EXPECT_LE(textures->bytes(), collider.gpuBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
+    EXPECT_GE(textures->bytes(), collider.texelBytes());
+    EXPECT_LE(textures->bytes(), collider.texelBytes() + 1024 * (4 + 8 + 16)) << "less than a row each";
 }
 
 RELIEF_INSTANTIATE_GL_TESTS(FieldQueryGlTest);

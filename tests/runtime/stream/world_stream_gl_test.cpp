@@ -78,12 +78,12 @@ class WorldStreamGlTest : public GlTest {
         }
         for (std::size_t i = 0; i < kColliders; ++i) {
             const std::string name = "thing " + std::to_string(i);
-            world_.colliders.push_back({{name, "", fine_[i].gpuBytes()},
+            world_.colliders.push_back({{name, "", fine_[i].texelBytes()},
                                         "",
                                         fine_[i].bounds,
-                                        WorldFile{name + " coarse", "", coarse_[i].gpuBytes()}});
-            coarse_bytes_ += coarse_[i].gpuBytes();
-            largest_ = std::max(largest_, fine_[i].gpuBytes());
+                                        WorldFile{name + " coarse", "", coarse_[i].texelBytes()}});
+            coarse_bytes_ += coarse_[i].texelBytes();
+            largest_ = std::max(largest_, fine_[i].texelBytes());
             for (int k = 0; k < 3; ++k) {
                 const auto turn = static_cast<float>(i + 10 * static_cast<std::size_t>(k));
                 bodies_.push_back({&coarse_[i],
@@ -173,7 +173,7 @@ TEST_P(WorldStreamGlTest, TheFieldIsThatOfWhatIsThere) {
     expectFine({});
     EXPECT_EQ(finish({1, 4}), (std::vector<std::size_t>{1, 4}));
     EXPECT_EQ(stream_->counts().present, 2U);
-    EXPECT_EQ(stream_->counts().gpu_bytes, coarse_bytes_ + fine_[1].gpuBytes() + fine_[4].gpuBytes());
+    EXPECT_EQ(stream_->counts().gpu_bytes, coarse_bytes_ + fine_[1].texelBytes() + fine_[4].texelBytes());
     expectFine({1, 4});
     EXPECT_EQ(finish({0, 1, 2, 3, 5}), (std::vector<std::size_t>{0, 2, 3, 5}));
     expectFine({0, 1, 2, 3, 4, 5});
@@ -213,18 +213,18 @@ TEST_P(WorldStreamGlTest, AnUpdateCopiesSoManyBytesAndTheCoarseMapsStandInUntilA
         before = stream_->counts().uploaded;
         ++updates;
     }
-    EXPECT_GE(updates, static_cast<int>(fine_[3].gpuBytes() / 64));
+    EXPECT_GE(updates, static_cast<int>(fine_[3].texelBytes() / 64));
     expectFine({3});
-    EXPECT_EQ(stream_->counts().uploaded, fine_[3].gpuBytes());
+    EXPECT_EQ(stream_->counts().uploaded, fine_[3].texelBytes());
 }
 
 TEST_P(WorldStreamBooksGlTest, WhatWasNotWantedForTheLongestTimeGoes) {
     // The first to go is the largest, so that its place is enough for any other.
     std::vector<std::size_t> by_size{0, 1, 2, 3, 4, 5};
-    std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].gpuBytes(); });
+    std::ranges::sort(by_size, std::greater(), [&](std::size_t i) { return fine_[i].texelBytes(); });
     const std::size_t old = by_size[0], first = by_size[1], second = by_size[2], late = by_size[3];
     const std::uint64_t room =
-        coarse_bytes_ + fine_[old].gpuBytes() + fine_[first].gpuBytes() + fine_[second].gpuBytes();
+        coarse_bytes_ + fine_[old].texelBytes() + fine_[first].texelBytes() + fine_[second].texelBytes();
     open({.gpu_bytes = room});
     static_cast<void>(finish({first}));
     static_cast<void>(finish({old}));
@@ -333,7 +333,7 @@ TEST_P(WorldStreamGlTest, NothingFallsThroughTilesThatComeAndGo) {
         return tile;
     };
     bodies_.clear();
-    const std::uint64_t bytes = plane(0.5).gpuBytes();
+    const std::uint64_t bytes = plane(0.5).texelBytes();
     for (std::size_t i = 0; i < kColliders; ++i) {
         fine_[i] = plane(0.5);
         coarse_[i] = plane(0.45);
