@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbered issues of a container. README.md beside this file, "Issues", lists the codes; they keep their
+// The numbered issues of a container. README.md beside this file, "Validation", lists the codes; they keep their
 // meaning from version to version.
 #pragma once
 

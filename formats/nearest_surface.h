@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nearest surface of a collider, found by evaluating its maps repeatedly; README.md, "The nearest surface", in
-// words.
+// The nearest surface of a collider, found by evaluating its maps repeatedly.
 //
 // A vote knows one plane: that of the texel that P falls on. Its distance is the surface's where the surface is that
 // plane, and wrong beside a silhouette, off an edge, or in a pocket, where another part is nearer. So the search
@@ -13,6 +12,8 @@
 //        ·   2  1  ·   ·      3. eight points on spheres about P, inside the distance found: where one is
 //     ____\ /______ ·         on the other side, a nearer surface is there
 //          X
+// Another implementation may evaluate other points. It must keep the sign, and offer only points of the other side, or feet
+// whose plane was met just behind them.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -92,7 +92,8 @@ void fields(FieldVisitor& visit, const MapInspectionReport& report) {
     const std::optional<DepthMap>& frame = report.map.frame;
     const std::optional<PayloadInfo>& payload = report.map.payload;
     visit("index", report.index, {"Position in the container"});
-    visit("state", report.map.state, {"How far the map can be trusted"});
+    visit("state", report.map.state,
+          {"unverified: the map is right, but the metadata that describes it has a wrong checksum"});
     visit(
         "format", frame ? std::optional(mapFormatName(frame->format)) : std::nullopt,
         {.help = "Format of the texels; null if the map's description is invalid", .words = kMapFormatWords});

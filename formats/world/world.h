@@ -7,7 +7,7 @@
 //       "bodies": [{"collider": 0, "node": "chair.001", "position": [3, 0, 1], "rotation": [0, 0, 0, 1], "scale": 1, …}]
 //     }
 //
-// README.md of formats, "Worlds", in words. It differs from a tileset.json of OGC 3D Tiles in that a collider is named once
+// README.md beside this file describes it. It differs from a tileset.json of OGC 3D Tiles in that a collider is named once
 // however often it is placed, and that a pose keeps shapes: distances of a collider are those of its body times the scale.
 #pragma once
 

@@ -24,7 +24,7 @@ std::string readme() {
 
 /// The bytes of all lines "offset  bytes  | words", whose offsets have to follow each other.
 std::vector<std::byte> parseDump(const std::string& text) {
-    const std::regex line_pattern("([0-9a-f]{4})  ((?:[0-9a-f]{2} ){1,16}) *\\| .*");
+    const std::regex line_pattern("([0-9a-f]{4})  ((?:[0-9a-f]{2} ){1,32}) *\\| .*");
     std::vector<std::byte> bytes;
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
