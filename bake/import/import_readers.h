@@ -28,8 +28,7 @@ namespace relief {
 /// header needs is binary, whatever it begins with; a warning counts the bytes behind its last triangle.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);
 
-/// AC3D, as text, with the triangle strips, normals and several textures that TORCS adds to it. Not by assimp, which turns
-/// objects the wrong way and leaves those below a shifted one behind.
+/// AC3D, as text, with the triangle strips, normals and several textures that TORCS adds to it.
 ///
 /// An object is a node, its kids are below it, and its surfaces have a part for each material. Lines are left out, and
 /// subdivisions not made, both with a warning. `data` may be anything.

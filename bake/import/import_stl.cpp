@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Not by assimp 5.2: it reads a text cut behind a facet as a smaller mesh, and no triangle of a binary file with bytes behind
+// its last one and a header that begins with "solid" (import_text_test.cpp, Stl and BinaryStlOfAnyHeaderAndLength).
 #include "bake/import/import_readers.h"
 
 #include <array>
