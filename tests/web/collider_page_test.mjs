@@ -90,12 +90,13 @@ function compare({ half, step }) {
     return found;
 }
 
-test("a ball and a cube are drawn where they are, in the light that falls on them", { timeout: 120_000 }, async (t) => {
+test("a ball of patches or front-back maps, and a cube, are drawn where they are, in the light that falls on them", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     const at = (name) => path.join(folder, name);
     writeFileSync(at("ball.obj"), ball(64));
     const open = await viewer(t);
     for (const [name, half, mesh, ...options] of [["ball", null, at("ball.obj"), "--budget", "60kB"],
+                                            ["front-back", null, at("ball.obj"), "--holes", "keep", "--resolution", "64"],
                                             ["cube, at rest", [1, 1, 1], animated, "--animated", "--resolution", "64"]]) {
         run("relief", "bake", mesh, "-q", "-o", at(`${name}.relief`), ...options);
         run("relief", "view", at(`${name}.relief`));
