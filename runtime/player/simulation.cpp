@@ -43,12 +43,12 @@ Result<void> applyScene(const Scene& scene, ParticleSystem& particles) {
                                     scene.air.viscosity ? 0.0F : scene.forces.drag,
                                     scene.air.viscosity.value_or(0.0F)}));
     RELIEF_TRY(particles.setTypes(particleTypes(scene)));
-    RELIEF_TRY(particles.setSweep(scene.collision.sweep.value_or(0.0F)));
     RELIEF_TRY(setAir(particles, scene.air));
     return particles.setGround(scene.ground.enabled ? scene.ground.height : std::nullopt);
 }
 
-Result<ParticleSystem> makeParticles(const Scene& scene, const WorldTextures& textures, StepPath path) {
+Result<ParticleSystem> makeParticles(const Scene& scene, const WorldTextures& textures, StepPath path,
+                                     float sweep) {
     auto particles = RELIEF_TRY(ParticleSystem::create(
         {.capacity = scene.particles.capacity,
          .integrator = scene.time.integrator,
@@ -56,6 +56,7 @@ Result<ParticleSystem> makeParticles(const Scene& scene, const WorldTextures& te
          .start_time = -static_cast<double>(prewarmSteps(scene)) * static_cast<double>(scene.time.dt)}));
     RELIEF_TRY(particles.setCollider(&textures));
     RELIEF_TRY(applyScene(scene, particles));
+    RELIEF_TRY(particles.setSweep(sweep));
     return particles;
 }
 
@@ -103,6 +104,8 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
     made.emitter_balls_ = emitterBalls(made.emitters_);
     made.types_ = particleTypes(scene);
     made.warnings_ = loaded.warnings;
+    made.sweep_ = loaded.sweep;
+    const float sweep = made.sweep_.lengthFor(scene.time.dt, scene, made.warnings_);
     made.motions_ = emitterMotions(loaded);
     made.poses_change_ = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                      [](const SceneCollider& c) { return !c.keys.empty() || c.play; });
@@ -115,8 +118,9 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
     RELIEF_TRY(inFront(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
                        watched(watchdog, "uploading the collider",
                                [&] { return made.makeTextures(loaded, std::move(options.source)); })));
-    auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles",
-                                        [&] { return makeParticles(scene, made.textures(), options.path); }));
+    auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles", [&] {
+        return makeParticles(scene, made.textures(), options.path, sweep);
+    }));
     made.particles_ = std::make_unique<ParticleSystem>(std::move(particles));
     RELIEF_TRY(watched(watchdog, "the colliders' first maps",
                        [&] { return made.showLive(made.particles_->time()); }));
@@ -151,11 +155,18 @@ Result<void> Simulation::stepAs(std::uint64_t tag, float dt) {
     RELIEF_TRY(giveBirth(dt));
     RELIEF_TRY(moveColliders(particles_->time() + static_cast<double>(dt)));
     RELIEF_TRY(stream());
+    RELIEF_TRY(particles_->setSweep(sweep_.lengthFor(dt, *scene_, warnings_)));
     RELIEF_TRY(particles_->step(dt));
     if (eventList(*particles_) != nullptr) {
         requestEvents(*particles_, tag);
     }
     return {};
+}
+
+Result<std::size_t> Simulation::spawn(std::span<const Birth> births) {
+    const std::size_t accepted = RELIEF_TRY(particles_->spawn(births));
+    sweep_.add(*scene_, births);
+    return accepted;
 }
 
 Result<void> Simulation::listHits(float min_speed, EventSink sink) {
@@ -249,6 +260,7 @@ Result<void> Simulation::change(std::optional<std::vector<Emitter>> emitters) {
     if (emitters) {
         emitters_ = std::move(*emitters);
         emitter_balls_ = emitterBalls(emitters_);
+        sweep_.add(*scene_, emitters_);
     }
     motions_ = emitterMotions(*loaded_);
     types_ = particleTypes(*scene_);
@@ -278,6 +290,7 @@ Result<void> Simulation::giveBirth(float dt) {
     bendSurfaces(static_cast<double>(dt));
     births_.clear();
     births_.swap(spawned_);
+    sweep_.add(*scene_, births_);
     const std::uint64_t room =
         particles_->room() - std::min<std::uint64_t>(particles_->room(), births_.size());
     refused_ += emitAll(emitters_, static_cast<double>(dt), room, births_, motions_, particles_->time());

@@ -69,9 +69,7 @@ class Simulation {
     [[nodiscard]] Result<void> finishEvents() { return takeEvents(0); }
 
     /// Births on top of the emitters', with the next step. Returns how many, and fails, as ParticleSystem::spawn does.
-    [[nodiscard]] Result<std::size_t> spawn(std::span<const Birth> births) {
-        return particles_->spawn(births);
-    }
+    [[nodiscard]] Result<std::size_t> spawn(std::span<const Birth> births);
 
     [[nodiscard]] const ParticleSystem& particles() const { return *particles_; }
     [[nodiscard]] const WorldTextures& textures() const { return stream_ ? stream_->textures() : *textures_; }
@@ -177,7 +175,8 @@ class Simulation {
     std::uint64_t steps_ = 0;
     std::vector<ParticleType> types_;
     std::vector<std::string> warnings_;  // not taken yet
-    std::vector<SceneSpawn> spawns_;     // that the spawners are made of
+    SceneSweep sweep_;
+    std::vector<SceneSpawn> spawns_;  // that the spawners are made of
     std::vector<Spawner> spawners_;
     std::vector<Birth> spawned_;  // for the next step
     std::vector<EventOptions> event_lists_;

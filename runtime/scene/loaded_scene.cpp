@@ -16,7 +16,6 @@
 #include "formats/container.h"
 #include "runtime/files/flow_file.h"
 #include "runtime/scene/scene_parser.h"
-#include "runtime/scene/scene_sweep.h"
 #include "runtime/scene/scene_world.h"
 
 namespace relief {
@@ -272,7 +271,8 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         auto flow = RELIEF_TRY(loadFlow(*loaded.scene.flow));
         loaded.scene.air.flow = std::make_shared<const FlowField>(std::move(flow));
     }
-    loaded.warnings = fitSweep(loaded.scene, loaded.colliders, loaded.emitters, loaded.bounds);
+    loaded.sweep = SceneSweep(loaded.scene, loaded.colliders, loaded.emitters, loaded.bounds);
+    static_cast<void>(loaded.sweep.lengthFor(loaded.scene.time.dt, loaded.scene, loaded.warnings));
     return loaded;
 }
 

@@ -17,6 +17,7 @@
 #include "runtime/scene/scene_births.h"
 #include "runtime/scene/scene_live.h"
 #include "runtime/scene/scene_play.h"
+#include "runtime/scene/scene_sweep.h"
 
 namespace relief {
 
@@ -49,8 +50,9 @@ struct LoadedScene {
     std::vector<std::optional<PlayedMesh>> played;
     Bounds bounds;                  ///< of what they occupy in the course of time, in the particles' space
     std::vector<Emitter> emitters;  ///< those of the scene, which have given no birth yet
+    SceneSweep sweep;
     std::vector<std::string>
-        warnings;  ///< of settings that are valid but probably mistakes: those of fitSweep()
+        warnings;  ///< of settings that are valid but probably mistakes: those of the sweep
 
     [[nodiscard]] SceneMeshes meshes() const { return {scene.colliders, colliders, live, played}; }
 };
@@ -71,7 +73,7 @@ inline constexpr std::size_t kOverlapMax = 1024;
 [[nodiscard]] std::vector<std::filesystem::path> filesOf(const Scene& scene);
 
 /// Reads a scene (.toml), or a collider (.relief) or a world (.json), for which the default scene is made, and every file
-/// that it names. Chooses collision.sweep as fitSweep() does. Needs no context.
+/// that it names. Needs no context.
 /// Fails as the readers of these files and makeEmitters() do; errors of files that a scene names begin with its line and column.
 [[nodiscard]] Result<LoadedScene> loadAll(const std::filesystem::path& input,
                                           const SceneOverrides& overrides);

@@ -54,7 +54,7 @@ struct SceneCollision {
     float restitution = 0.0F;  ///< these three as in ParticleType
     float friction = 1.0F;
     float friction_threshold = 0.0F;
-    std::optional<float> sweep;  ///< as ParticleSystem::setSweep; fitSweep() chooses it
+    std::optional<float> sweep;  ///< as ParticleSystem::setSweep; nullopt: that of SceneSweep
 };
 
 void fields(FieldVisitor& visit, SceneCollision& c);

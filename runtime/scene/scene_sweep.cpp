@@ -10,6 +10,8 @@
 #include <map>
 #include <set>
 #include <span>
+#include <tuple>
+#include <utility>
 
 #include "formats/base/file_io.h"
 #include "formats/nearest_surface.h"
@@ -24,6 +26,7 @@ constexpr std::size_t kPlacesMin = 16;  // fewer places are no sample of a body
 constexpr float kThinnest = 0x1p-14F;   // of the longest side, as are the next
 constexpr float kThickest = 2.0F;
 constexpr float kWider = 1.2F;           // from one depth that is tried to the next
+constexpr int kHalvings = 5;             // of the last such interval
 constexpr std::uint64_t kBirths = 1000;  // of each emitter
 
 std::string number(double value) {
@@ -32,15 +35,24 @@ std::string number(double value) {
     return text;
 }
 
-/// How far it is inwards from a place of the surface to the other side; nullopt beside an edge.
+/// How far it is inwards from a place of the surface to the other side, at most 1/160 too short; nullopt beside an edge.
 std::optional<float> thicknessAt(const Collider& collider, const SurfaceSample& place, float longest) {
+    const auto inside = [&](float depth) {
+        return evaluate(collider, place.point - depth * place.normal).inside();
+    };
     float depth = kThinnest * longest;
-    for (; depth < kThickest * longest; depth *= kWider) {
-        if (!evaluate(collider, place.point - depth * place.normal).inside()) {
-            break;
-        }
+    if (!inside(depth)) {
+        return std::nullopt;
     }
-    return depth > kThinnest * longest ? std::optional(depth) : std::nullopt;
+    float beyond = kWider * depth;
+    while (beyond < kThickest * longest && inside(beyond)) {
+        depth = std::exchange(beyond, kWider * beyond);
+    }
+    for (int i = 0; i < kHalvings; ++i) {
+        const float middle = 0.5F * (depth + beyond);
+        (inside(middle) ? depth : beyond) = middle;
+    }
+    return depth;
 }
 
 /// The first births of an emitter, in the world.
@@ -73,59 +85,6 @@ float speedAtBodies(const Birth& birth, const ParticleType& type, const Scene& s
     return drag > 0.0F ? std::min(free, std::max(start, pull / drag)) : free;
 }
 
-struct Fastest {
-    float speed = 0.0F;
-    float radius = 0.0F;
-};
-
-/// Of what meets the bodies of a group, a bit of ParticleType::collides.
-Fastest fastestAt(std::size_t group, const Scene& scene, const Bounds& bounds,
-                  std::span<const Birth> births) {
-    Fastest fastest;
-    for (const Birth& birth : births) {
-        const ParticleType type =
-            birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
-        const bool meets = (type.collides >> group & 1U) != 0;
-        const float speed = meets ? speedAtBodies(birth, type, scene, bounds) : 0.0F;
-        if (speed > fastest.speed) {
-            fastest = {speed, type.radius};
-        }
-    }
-    return fastest;
-}
-
-/// A body that is thinner than a step is long.
-struct Thin {
-    std::string file;
-    float thick = 0.0F;  // world units, as are the next
-    float speed = 0.0F;
-    float step = 0.0F;
-};
-
-/// The thinnest of several decides the cure. \param sweeps  collision.sweep can be one.
-std::string thinWarning(std::span<const Thin> all, bool sweeps) {
-    const Thin& worst = *std::min_element(all.begin(), all.end(),
-                                          [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
-    const bool several = all.size() > 1;
-    return "at a speed of " + number(double{worst.speed}) + " a step is " + number(double{worst.step}) +
-           " long, and " + worst.file + " mostly " + number(double{worst.thick}) + " thick" +
-           (several ? ", the thinnest of " + std::to_string(all.size()) + " such colliders" : "") +
-           ": particles may pass through " + (several ? "them" : "it") + "; set " +
-           (sweeps ? "collision.sweep = " + number(0.5 * double{worst.thick}) + ", or " : "") +
-           "a smaller time.dt";
-}
-
-/// Half of the thinnest, or what the pieces of a sweep reach in the longest step.
-float sweepFor(std::span<const Thin> all) {
-    float half = std::numeric_limits<float>::max();
-    float longest = 0.0F;
-    for (const Thin& thin : all) {
-        half = std::min(half, 0.5F * thin.thick);
-        longest = std::max(longest, thin.step);
-    }
-    return std::max(half, longest / static_cast<float>(StepPass::kSweepPieces - 1));
-}
-
 /// Mostly from one side of a body to the other, in units of its object space; nullopt: too little of it is seen.
 std::optional<float> typicalThickness(const Collider& collider) {
     const float longest = collider.bounds.longestSide();
@@ -153,58 +112,111 @@ std::optional<float> typicalThickness(const Collider& collider) {
     return *middle;
 }
 
-/// The colliders that are thinner than a step is long, each file once.
-std::vector<Thin> thinColliders(const Scene& scene,
-                                std::span<const std::shared_ptr<const Collider>> colliders,
-                                std::span<const Emitter> emitters, const Bounds& bounds) {
-    std::vector<Birth> births;
-    const auto motions = emitterMotions(scene.emitters, scene.colliders);
-    for (std::size_t i = 0; i < emitters.size(); ++i) {
-        const std::vector<Birth> more = birthsOf(emitters[i], motions[i], scene);
-        births.insert(births.end(), more.begin(), more.end());
-    }
-    std::vector<Thin> thin;
-    std::vector<Fastest> of_groups;
-    for (std::size_t i = 0; i < std::min<std::size_t>(colliders.size(), WorldTextures::kGroups); ++i) {
-        of_groups.push_back(fastestAt(i, scene, bounds, births));
-    }
+}  // namespace
+
+struct SceneSweep::Thin {
+    std::string file;
+    float thick = 0.0F;  // world units, as are the next
+    float speed = 0.0F;
+    float step = 0.0F;
+};
+
+/// The thinnest of several decides the cure. \param sweeps  collision.sweep can be one.
+std::string SceneSweep::thinWarning(std::span<const Thin> all, bool sweeps) {
+    const Thin& worst = *std::min_element(all.begin(), all.end(),
+                                          [](const Thin& a, const Thin& b) { return a.thick < b.thick; });
+    const bool several = all.size() > 1;
+    return "at a speed of " + number(double{worst.speed}) + " a step is " + number(double{worst.step}) +
+           " long, and " + worst.file + " mostly " + number(double{worst.thick}) + " thick" +
+           (several ? ", the thinnest of " + std::to_string(all.size()) + " such colliders" : "") +
+           ": particles may pass through " + (several ? "them" : "it") + "; set " +
+           (sweeps ? "collision.sweep = " + number(0.5 * double{worst.thick}) + ", or " : "") +
+           "a smaller time.dt";
+}
+
+SceneSweep::SceneSweep(const Scene& scene, std::span<const std::shared_ptr<const Collider>> colliders,
+                       std::span<const Emitter> emitters, const Bounds& bounds)
+    : bounds_(bounds), groups_(std::min<std::size_t>(colliders.size(), WorldTextures::kGroups)) {
     std::map<const Collider*, std::optional<float>> thicknesses;
-    std::set<std::string> found;  // names of files: a world has a file many times
+    std::set<std::tuple<std::string, float, std::size_t>> known;  // a world has a file many times
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const SceneCollider& body = scene.colliders[i];
-        const Fastest fastest = of_groups[std::min(body.tile_of.value_or(i), of_groups.size() - 1)];
-        const float step = fastest.speed * scene.time.dt;
-        const Collider& collider = *colliders[i];
-        const auto known = thicknesses.find(&collider);
-        const auto thickness = known != thicknesses.end() ? known->second
-                               : body.deforms()           ? std::nullopt
-                                                          : typicalThickness(collider);
-        thicknesses.emplace(&collider, thickness);
-        const float thick = thickness.value_or(0.0F) * body.pose.scale + 2.0F * fastest.radius;
-        if (thickness && step > thick && found.insert(body.path.string()).second) {
+        const auto [at, added] = thicknesses.try_emplace(colliders[i].get());
+        if (added && !body.deforms()) {
+            at->second = typicalThickness(*colliders[i]);
+        }
+        const std::size_t group = std::min(body.tile_of.value_or(i), groups_.size() - 1);
+        const float thick = at->second.value_or(0.0F) * body.pose.scale;
+        if (at->second && known.insert({body.path.string(), thick, group}).second) {
+            bodies_.push_back({body.path, thick, group});
+        }
+    }
+    add(scene, emitters);
+}
+
+void SceneSweep::add(const Scene& scene, std::span<const Emitter> emitters) {
+    const auto motions = emitterMotions(scene.emitters, scene.colliders);
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        add(scene, birthsOf(emitters[i], motions[i], scene));
+    }
+}
+
+void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {
+    for (const Birth& birth : births) {
+        const ParticleType type =
+            birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
+        const float speed = speedAtBodies(birth, type, scene, bounds_);
+        for (std::size_t i = 0; i < groups_.size(); ++i) {
+            if ((type.collides >> i & 1U) != 0 && speed > groups_[i].speed) {
+                groups_[i] = {speed, type.radius};
+                fitted_ = false;
+            }
+        }
+    }
+}
+
+std::vector<SceneSweep::Thin> SceneSweep::thinColliders() const {
+    std::vector<Thin> thin;
+    std::set<std::filesystem::path> found;
+    for (const Body& body : bodies_) {
+        const Fastest& fastest = groups_[body.group];
+        const float step = fastest.speed * longest_;
+        const float thick = body.thick + 2.0F * fastest.radius;
+        if (step > thick && found.insert(body.path).second) {
             thin.push_back({quotedPath(body.path.filename()), thick, fastest.speed, step});
         }
     }
     return thin;
 }
 
-}  // namespace
-
-std::vector<std::string> fitSweep(Scene& scene, std::span<const std::shared_ptr<const Collider>> colliders,
-                                  std::span<const Emitter> emitters, const Bounds& bounds) {
-    std::vector<Thin> thin = thinColliders(scene, colliders, emitters, bounds);
-    std::optional<float>& sweep = scene.collision.sweep;
-    const bool chosen = !sweep && !thin.empty();
-    if (chosen) {
-        sweep = sweepFor(thin);
+float SceneSweep::lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings) {
+    const std::optional<float>& stated = scene.collision.sweep;
+    const auto length = [&] {
+        const float reach = speed_ * dt / static_cast<float>(StepPass::kSweepPieces - 1);
+        return stated.value_or(std::min(std::max(half_, reach), std::numeric_limits<float>::max()));
+    };
+    if (fitted_ && dt <= longest_) {
+        return length();
     }
-    if (sweep.value_or(0.0F) > 0.0F) {
-        std::erase_if(thin, [&](Thin& each) {
-            each.step = std::min(each.step, *sweep);
-            return each.step <= each.thick;
-        });
+    fitted_ = true;
+    longest_ = std::max(longest_, dt);
+    std::vector<Thin> thin = thinColliders();
+    half_ = thin.empty() ? 0.0F : std::numeric_limits<float>::max();
+    for (const Thin& each : thin) {
+        half_ = std::min(half_, 0.5F * each.thick);
+        speed_ = std::max(speed_, each.speed);
     }
-    return thin.empty() ? std::vector<std::string>() : std::vector{thinWarning(thin, !chosen)};
+    if (const float sweep = length(); sweep > 0.0F) {
+        std::erase_if(thin, [&](const Thin& each) { return std::min(each.step, sweep) <= each.thick; });
+        for (Thin& each : thin) {
+            each.step = std::min(each.step, sweep);
+        }
+    }
+    if (!thin.empty() && !warned_) {
+        warned_ = true;
+        warnings.push_back(thinWarning(thin, stated.has_value()));
+    }
+    return length();
 }
 
 }  // namespace relief

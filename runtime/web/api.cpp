@@ -272,9 +272,6 @@ Result<int> changePlayer(Player& player, const char* text, const char* path, boo
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         RELIEF_TRY(played[i] ? changeClip(*played[i], colliders[i]) : Result<void>());
     }
-    if (!wanted.collision.sweep) {
-        wanted.collision.sweep = now.collision.sweep;  // which loadAll() chose
-    }
     wanted.air.flow = now.air.flow;
     wanted.render.atlas = now.render.atlas;
     wanted.colliders = std::move(colliders);

@@ -134,35 +134,48 @@ most = 30
     EXPECT_GT(splashes, 200U);
 }
 
-// Every host creates its simulation so: relief-sim, the page's player and Python.
+// Every host creates its simulation so: relief-sim, the page's player and Python. A host may step by more than the scene's dt,
+// and give birth by itself.
 TEST_P(SimulationGlTest, SweepsWhereAStepIsLongerThanAColliderIsThick) {
     const test::TemporaryFolder folder;
-    const analytic::Shape floor = analytic::box({-2.0, -0.05, -2.0}, {2.0, 0.0, 2.0});
+    const analytic::Shape floor = analytic::box({-2.0, -0.105, -2.0}, {2.0, 0.0, 2.0});
     ASSERT_TRUE(saveCollider(folder.path() / "floor.relief", analytic::frontBackCollider(floor, 64)));
-    const auto below = [&](const std::string& collision) {
+    std::vector<Birth> births;
+    for (int i = 0; i < 1000; ++i) {
+        births.push_back({{0.0F, 1.0F + 0.001F * static_cast<float>(i), 0.0F}, {0.0F, -20.0F, 0.0F}, 9.0F});
+    }
+    const auto below = [&](const std::string& more, float dt, std::size_t warnings = 0) {
+        const bool own = more.find("emitter") == std::string::npos;
         const auto loaded = loadAll(folder.write("scene.toml", R"(
 collider = { file = "floor.relief" }
 particles = { capacity = 1000 }
-time = { dt = 0.02 }
 ground = { enabled = false }
-emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], velocity = [0, -20, 0], rate = 0, burst = 1000, lifetime = 9 }
-)" + collision),
+forces = { gravity = [0, 0, 0], drag = 0 }
+)" + more),
                                     {});
         EXPECT_TRUE(loaded) << loaded.error().message;
         auto made = Simulation::create(*loaded);
         EXPECT_TRUE(made) << made.error().message;
-        EXPECT_EQ(made->takeWarnings().size(), collision.empty() ? 0U : 1U);
-        EXPECT_TRUE(made->takeWarnings().empty());
-        for (int step = 0; step < 10; ++step) {
-            EXPECT_TRUE(made->step());
+        EXPECT_TRUE(!own || made->spawn(births));
+        for (float time = 0.0F; time < 2.0F; time += dt) {
+            EXPECT_TRUE(made->step(dt));
         }
+        EXPECT_EQ(made->takeWarnings().size(), warnings);
         const std::vector<ParticleState> particles = made->particles().readState().value();
         EXPECT_EQ(particles.size(), 1000U);
         return std::count_if(particles.begin(), particles.end(),
-                             [](const ParticleState& one) { return one.position.y < -0.05F; });
+                             [](const ParticleState& one) { return one.position.y < -0.105F; });
     };
-    EXPECT_GT(below("collision = { sweep = 0 }"), 500);
-    EXPECT_EQ(below(""), 0);
+    const auto emitter = [](float speed) {
+        return "emitter = { box_min = [-1, 1, -1], box_max = [1, 2, 1], velocity = [0, -" +
+               std::to_string(speed) + ", 0], rate = 0, burst = 1000, lifetime = 9 }\n";
+    };
+    EXPECT_GT(below("time = { dt = 0.02 }\ncollision = { sweep = 0 }\n" + emitter(20.0F), 0.02F, 1), 500);
+    EXPECT_EQ(below("time = { dt = 0.02 }\n" + emitter(20.0F), 0.02F), 0);
+    EXPECT_EQ(below("time = { dt = 0.005 }\n" + emitter(20.0F), 0.03F), 0) << "a longer step";
+    EXPECT_EQ(below("time = { dt = 0.02 }\n", 0.02F), 0) << "births of the host";
+    EXPECT_EQ(below("time = { dt = 0.02 }\n" + emitter(5.51F), 0.02F), 0)
+        << "a step of 1.05 times the thickness";
 }
 
 }  // namespace
