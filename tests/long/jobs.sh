@@ -171,13 +171,12 @@ job nightly 5 seeds
 job_seeds() {
     local seed=${RELIEF_TEST_SEED:-$(date +%Y%m%d)} next
     release relief relief-sim relief_{unit,import,bake}_test
-    # All that draws its cases by seedFrom() (tests/seeds.h), and the scripts that do.
+    # All that draws its cases by seedFrom() (tests/seeds.h).
     RELIEF_TEST_SEED=$seed programs 'Voxels.*:ImportGltf.*:ImportFormat.*:ImportParts.*:ImportMessage.*:Shape.*:Winding.*:Mutated*.*' \
         "$bin"/relief_{unit,import,bake}_test
     for next in 1 2 3 4 5 6 7 8 9; do
         RELIEF_TEST_SEED=$((seed + next)) programs 'Voxels.*' "$bin/relief_bake_test" >"$work/voxels.log"
     done
-    RELIEF_TEST_SEED=$seed RELIEF_MUTANTS=500 RELIEF_SCENES=200 tested build/release -R '^cli[.](mutants|scenes)$'
     say "seed $seed, and the nine after it for Voxels"
 }
 
@@ -370,7 +369,10 @@ job weekly 40 bytes
 job_bytes() { tests/long/determinism.sh | sed "s/^\([0-9]* bakes .*\)/$name: \1/"; }
 
 job weekly 10 mutants
-job_mutants() { tests/long/mutants.sh 2000 | sed "s/^Hung: /$name: &/"; }
+job_mutants() {
+    release relief
+    python3 tests/cases/mutant_cases.py "$bin" --cases 2700
+}
 
 job weekly 30 outputs
 job_outputs() { tests/long/all_or_nothing.sh; }

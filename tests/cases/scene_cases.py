@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Plays scenes at random within the ranges that runtime/scene/README.md gives, ends included.
+"""Scenes at random within the ranges that runtime/scene/README.md gives, ends included: every number of every particle is finite
+at the end, or one line names a place in the scene, or the type of particle that was lost."""
 
-    scenes.py RELIEF_SIM COLLIDER COUNT
-
-Each ends with particles whose numbers are all finite and whose energy is one; or with one line that names the scene and
-a place in it, or the type of particle that was lost. RELIEF_TEST_SEED makes others.
-"""
+import collections
 import math
-import os
-import random
-import subprocess
+import pathlib
 import sys
 
-import ply
+from cases import Cases
+
+sys.path.append(str(pathlib.Path(__file__).parents[1] / 'cli'))
+import ply  # noqa: E402
+
+BUNNY = '/usr/share/glmark2/models/bunny.obj'
 
 # Key, least, most: a number, or with * a vector of three. A least of 0+ is above 0.
 TABLES = {
@@ -82,43 +82,36 @@ def scene(r, collider):
     return '\n'.join(result) + '\n'
 
 
-def fault(sim, name, dump):
-    """What is wrong with its end, or '', and how it ended."""
-    run = subprocess.run([sim, name, '--dump', dump, '-q'], capture_output=True, text=True, timeout=300)
-    errors = run.stderr.splitlines()
-    if run.returncode == 0:
-        rows = ply.read(dump)
-        os.remove(dump)
+def check(cases, folder, collider):
+    """Returns how it ended."""
+    (folder / 'scene.toml').write_text(scene(cases.random, collider))
+    done = cases.run('relief-sim', 'scene.toml', '--dump', 'out.ply', '-q', seconds=300, cwd=folder)
+    if not done:
+        return 'hung'
+    cases.expect((done.returncode == 0) == (folder / 'out.ply').exists(), f'exit code {done.returncode} beside a dump')
+    if done.returncode == 0:
+        rows = ply.read(folder / 'out.ply')
         wrong = sum(not all(map(math.isfinite, row.values())) for row in rows)
-        return '%d of %d particles are no numbers' % (wrong, len(rows)) if wrong else '', 'played'
-    if os.path.exists(dump):
-        return 'exit code %d and a dump' % run.returncode, ''
-    named = name + ':' in run.stderr and (run.returncode == 3 or 'type' in run.stderr)
-    if run.returncode not in (3, 4) or len(errors) != 1 or not named:
-        return 'exit code %d: %s' % (run.returncode, run.stderr), ''
-    return '', 'refused' if run.returncode == 3 else 'lost'
+        cases.expect(wrong == 0, f'{wrong} of {len(rows)} particles are no numbers')
+        return 'played'
+    named = 'scene.toml:' in done.stderr and (done.returncode == 3 or 'type' in done.stderr)
+    cases.expect(done.returncode in (3, 4) and len(done.stderr.splitlines()) == 1 and named, f'exit code {done.returncode}: {done.stderr}')
+    return 'refused' if done.returncode == 3 else 'lost'
 
 
 def main():
-    sim, collider, count = sys.argv[1], sys.argv[2], int(sys.argv[3])
-    first = 1000000 * int(os.environ.get('RELIEF_TEST_SEED', '0'))
-    ends = {'played': 0, 'refused': 0, 'lost': 0, '': 0}
-    failed = 0
-    for seed in range(first, first + count):
-        with open('scene.toml', 'w') as file:
-            file.write(scene(random.Random(seed), collider))
-        wrong, end = fault(sim, 'scene.toml', 'out.ply')
-        ends[end] += 1
-        if wrong:
-            failed += 1
-            print('FAILED: scene %d: %s\n%s' % (seed, wrong, open('scene.toml').read()), file=sys.stderr)
-    print('%d scenes: %d played, %d refused, %d ended with a particle that was lost' %
-          (count, ends['played'], ends['refused'], ends['lost']))
-    if 2 * ends['played'] < count:
-        print('FAILED: most are not played', file=sys.stderr)
-        failed += 1
-    return 1 if failed else 0
+    cases = Cases('scenes', 40)
+    ends = collections.Counter()
+    collider = None
+    for _, folder in cases.each():
+        if collider is None:
+            cases.run('relief', 'bake', BUNNY, '-o', 'bunny.relief', '--budget', '100kB', '-q', cwd=folder)
+            collider = (folder / 'bunny.relief').read_bytes()
+        (folder / 'bunny.relief').write_bytes(collider)
+        ends[check(cases, folder, 'bunny.relief')] += 1
+    print('scenes: ' + ', '.join(f'{count} {end}' for end, count in sorted(ends.items())))
+    cases.expect(cases.only is not None or 2 * ends['played'] >= cases.count, f'most are not played: {ends}')
+    cases.finish()
 
 
-if __name__ == '__main__':
-    sys.exit(main())
+main()

@@ -1,24 +1,30 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Broken mesh files, the same ones on every machine: mutant N is of the seed mesh N mod (their number).
+"""Broken meshes, and files of assimp-testmodels: `relief bake` makes a collider that `relief check` calls sound, or refuses in one
+line that names the mesh, and leaves nothing else behind: no file, no process."""
 
-    mutate.py N FOLDER    writes mutant N, and what it refers to, into FOLDER
-"""
+import collections
 import copy
+import ctypes
 import json
 import os
-import random
+import pathlib
 import re
+import signal
 import struct
 import sys
 
-MODELS = '/usr/share/assimp/models/'
-# Path below MODELS, what a table calls it, and the file beside it.
-PACKAGED = [('OBJ/box.obj', 'OBJ', None), ('PLY/cube.ply', 'PLY, text', None),
-            ('PLY/cube_binary.ply', 'PLY, binary', None), ('STL/Spider_ascii.stl', 'STL, text', None),
-            ('STL/Spider_binary.stl', 'STL, binary', None), ('glTF2/BoxTextured-glTF-Binary/BoxTextured.glb', 'glb', None),
-            ('glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf', 'glTF', None),
-            ('glTF2/BoxTextured-glTF/BoxTextured.gltf', 'glTF', 'BoxTextured0.bin')]
+from cases import Cases
+
+MODELS = pathlib.Path('/usr/share/assimp/models')
+# Path below MODELS, and the file beside it.
+PACKAGED = [('OBJ/box.obj', None), ('PLY/cube.ply', None), ('PLY/cube_binary.ply', None), ('STL/Spider_ascii.stl', None),
+            ('STL/Spider_binary.stl', None), ('glTF2/BoxTextured-glTF-Binary/BoxTextured.glb', None),
+            ('glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf', None), ('glTF2/BoxTextured-glTF/BoxTextured.gltf', 'BoxTextured0.bin')]
+TEXTS = ('box.obj', 'cube.ply', 'Spider_ascii.stl', 'BoxTextured.gltf')
+OPTIONS = ('-o', 'out.relief', '--map', 'fixed8:size=16', '-q', '--import-time', '10', '--import-memory', '1GB')
+UNSEEN = 'no map sees a surface'  # a flat mesh that the one map looks along: exit code 4, and no fault
+PR_SET_CHILD_SUBREAPER = 36
 
 
 def glb(text, rest):
@@ -26,18 +32,6 @@ def glb(text, rest):
     text += b' ' * (-len(text) % 4)
     return struct.pack('<4sIIII', b'glTF', 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest
 
-
-def seeds():
-    """Each a name, what a table calls it, bytes, and the files beside it by name."""
-    def read(path):
-        with open(MODELS + path, 'rb') as file:
-            return file.read()
-
-    return [(os.path.basename(path), kind, read(path), {beside: read(os.path.join(os.path.dirname(path), beside))} if beside else {})
-            for path, kind, beside in PACKAGED]
-
-
-# --- mutations ---
 
 NUMBERS = [b'0', b'-1', b'1e39', b'-1e38', b'1e-320', b'nan', b'inf', b'-inf', b'4294967295', b'4294967296', b'2147483648',
            b'99999999999999999999', b'1e999', b'0x10', b'', b'1.', b'.', b'-', b'1e', b'9' * 5000, b'true', b'null', b'3']
@@ -163,33 +157,74 @@ def mutate(data, text, r):
     return bytes(data)
 
 
-def mutant(number, meshes):
-    """Name, kind, bytes and files beside it."""
-    name, kind, data, beside = meshes[number % len(meshes)]
-    r = random.Random(number)
-    beside = dict(beside)
-    if beside and r.randrange(4) == 0:
-        other = sorted(beside)[0]
-        beside[other] = mutate(beside[other], False, r)
-    elif kind == 'glTF' and r.randrange(4) != 0:
+def write_mutant(folder, number, r):
+    """Returns its path."""
+    path, beside = PACKAGED[number % len(PACKAGED)]
+    path = MODELS / path
+    data = path.read_bytes()
+    other = (path.parent / beside).read_bytes() if beside else b''
+    if number < len(PACKAGED):
+        pass  # as it is
+    elif other and r.randrange(4) == 0:
+        other = mutate(other, False, r)
+    elif path.suffix == '.gltf' and r.randrange(4) != 0:
         data = mutate_json(data, r)
-    elif kind == 'glb' and r.randrange(2) == 0:  # the lengths fit, so that the document is looked at
+    elif path.suffix == '.glb' and r.randrange(2) == 0:  # the lengths fit, so that the document is read
         size = struct.unpack_from('<I', data, 12)[0]
         document = data[20:20 + size]
-        document = mutate(document, True, r) if r.randrange(4) == 0 else mutate_json(document, r)
-        data = glb(document, data[20 + size:])
+        data = glb(mutate(document, True, r) if r.randrange(4) == 0 else mutate_json(document, r), data[20 + size:])
     else:
-        data = mutate(data, kind in ('OBJ', 'STL, text', 'PLY, text', 'glTF'), r)
-    return 'mutant-%d%s' % (number, os.path.splitext(name)[1]), kind, data, beside
+        data = mutate(data, path.name in TEXTS, r)
+    if beside:
+        (folder / beside).write_bytes(other)
+    mesh = folder / f'mutant-{number}{path.suffix}'
+    mesh.write_bytes(data)
+    return mesh
 
 
-def write(folder, name, data, beside):
-    for file, content in [(name, data), *beside.items()]:
-        with open(os.path.join(folder, file), 'wb') as out:
-            out.write(content)
+def orphans():
+    """Ends what lives on after a bake."""
+    children = [int(pid) for pid in pathlib.Path(f'/proc/self/task/{os.getpid()}/children').read_text().split()]
+    for pid in children:
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+    return children
 
 
-if __name__ == '__main__':
-    name_, _, data_, beside_ = mutant(int(sys.argv[1]), seeds())
-    write(sys.argv[2], name_, data_, beside_)
-    print(os.path.join(sys.argv[2], name_))
+def check(cases, folder, mesh, must_bake):
+    """Returns how it ended."""
+    given = set(os.listdir(folder))
+    (folder / 'tmp').mkdir()
+    done = cases.run('relief', 'bake', mesh, *OPTIONS, seconds=15, cwd=folder, env={**os.environ, 'TMPDIR': folder / 'tmp'})
+    left = orphans()
+    cases.expect(not left, f'{mesh.name}: processes are left: {left}')
+    if not done:
+        return 'hung'
+    files = sorted(set(os.listdir(folder)) - given - {'tmp'}) + os.listdir(folder / 'tmp')
+    cases.expect(files == (['out.relief'] if done.returncode == 0 else []), f'{mesh.name}: exit code {done.returncode}, files {files}')
+    if done.returncode == 0:
+        sound = cases.run('relief', 'check', 'out.relief', cwd=folder)
+        cases.expect(sound and sound.returncode == 0, f'{mesh.name}: baked, and not sound: {sound and sound.stdout}')
+        return 'baked'
+    lines = done.stderr.splitlines()
+    cases.expect(len(lines) == 1 and lines[0].startswith('relief: error: ') and mesh.name in lines[0], f'{mesh.name}: {done.stderr}')
+    cases.expect(not must_bake and (done.returncode in (3, 5, 6) or UNSEEN in done.stderr), f'{mesh.name}: exit code {done.returncode}: {done.stderr}')
+    return f'exit code {done.returncode}'
+
+
+def main():
+    cases = Cases('mutants', 80)
+    if ctypes.CDLL(None, use_errno=True).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0) != 0:
+        sys.exit('mutant_cases.py: prctl: ' + os.strerror(ctypes.get_errno()))
+    models = sorted(path for path in MODELS.rglob('*') if path.is_file())
+    ends = collections.Counter()
+    for number, folder in cases.each():
+        packaged = number % 4 == 3 and number >= len(PACKAGED)  # every file in turn
+        mesh = models[number // 4 % len(models)] if packaged else write_mutant(folder, number, cases.random)
+        ends[check(cases, folder, mesh, number < len(PACKAGED))] += 1
+    print('mutants: ' + ', '.join(f'{count} {end}' for end, count in sorted(ends.items())))
+    cases.expect(cases.only is not None or {'baked', 'exit code 3'} <= set(ends), f'the mutants try nothing: {ends}')
+    cases.finish()
+
+
+main()
