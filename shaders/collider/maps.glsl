@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// For collider.glsl: the maps of a collider, where their texels lie, and the kinds that a program is compiled for.
+struct ReliefMap {
+    vec4 row[3];           // object space to map space, whose rows are orthogonal. Of an orthographic map x and y are
+                           // in texels here
+    vec4 column[3];        // xyz: an axis of map space in object units, so that they undo the rows; w: 0; width - 1;
+                           // height - 1
+    vec4 object_per_map;   // xyz; z is z_scale of an orthographic map, xyz the paper's s of a cube. Of patches the size of a
+                           // root, and how many there are along x, y and z
+    ivec4 place;           // index of texel (0,0) of face 0; from row to row; from face to face; width. Of patches texel 0; from
+                           // root to root along y and z; levels
+    ivec4 info;            // height; format; flags: the sum of MapFlag; of a live map the index of the
+                           // texel (0,0) of its motion, in u_relief_float, whose rows are as wide as that texture
+};
+
+// 1: a world of bodies with poses of their own; 0: one collider, in its own object space.
+#if !defined(RELIEF_BODIES)
+#define RELIEF_BODIES 0
+#endif
+
+// 1: some body is live. Its maps are drawn anew before each step, with the motion of the surface beside them.
+#if !defined(RELIEF_LIVE)
+#define RELIEF_LIVE 0
+#endif
+
+ivec2 reliefTexel(int index, int log2_width) {
+    return ivec2(index & ((1 << log2_width) - 1), index >> log2_width);
+}
+
+#if RELIEF_BODIES > 0
+//!layer bodies/world.glsl
+#else
+
+layout(std140) uniform ReliefCollider {
+    ivec4 u_relief_count;  // maps in use; then RELIEF_LOG2_WIDTHS
+    ReliefMap u_relief_maps[RELIEF_MAP_CAPACITY];
+};
+
+// In a tour (collider_tour.glsl) each lane of a warp is at a map of its own. A uniform block serves lanes at different
+// addresses one after another, shared memory nearly all at once: so the maps below are the work group's copy there, made
+// from the same buffer bound as storage, since copying reads different addresses, too. The counts stay in the block.
+#if defined(RELIEF_TOUR)
+layout(std140, binding = RELIEF_TOUR_STORAGE) readonly buffer ReliefColliderStorage {
+    ivec4 b_relief_count;
+    ReliefMap b_relief_maps[RELIEF_MAP_CAPACITY];
+};
+shared ReliefMap s_relief_maps[RELIEF_MAP_CAPACITY];
+
+// Called first, by every invocation of a group of so many lanes.
+void reliefShare(int lane, int lanes) {
+    for (int i = lane; i < RELIEF_MAP_CAPACITY; i += lanes) {
+        s_relief_maps[i] = b_relief_maps[i];
+    }
+    memoryBarrierShared();
+    barrier();
+}
+
+#define u_relief_maps s_relief_maps
+#endif
+
+#define reliefMapRow(i, k) u_relief_maps[i].row[k]
+#define reliefMapColumn(i, k) u_relief_maps[i].column[k]
+#define reliefObjectPerMap(i) u_relief_maps[i].object_per_map
+#define reliefMapPlace(i) u_relief_maps[i].place
+#define reliefMapInfo(i) u_relief_maps[i].info
+#endif
+
+// Texels of all maps in a row, wrapped at the texture's width: texel i is at (i mod width, i / width). So maps of
+// any sizes lie together without a gap. RELIEF_LOG2_WIDTHS: log2 of the widths, which every texel needs.
+uniform highp sampler2D u_relief_float;
+uniform highp sampler2D u_relief_fixed;
+uniform highp usampler2D u_relief_front_back;
+
+// 1: a texel of planes may hold one end alone. ColliderTextures gives the empty end of a stored one the plane of the other,
+// which changes no vote; the maps of live bodies are as drawn.
+#define RELIEF_HALF_EMPTY (RELIEF_LIVE == 1)
+
+// The kind of a map, constant where all are alike: a GL may otherwise run the branches of all formats for every map.
+// ColliderTextures defines RELIEF_HAS_... for the kinds present.
+bool reliefIsCube(ivec4 info) {
+#if !defined(RELIEF_HAS_CUBE)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_MAP_FORMAT_CUBE8;
+#else
+    return true;
+#endif
+}
+
+// Asked before the other kinds.
+bool reliefIsPatches(ivec4 info) {
+#if !defined(RELIEF_HAS_PATCHES)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED) || defined(RELIEF_HAS_CUBE) || defined(RELIEF_HAS_FRONT_BACK)
+    return info.y == RELIEF_MAP_FORMAT_PATCHES;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsFrontBack(ivec4 info) {  // of an orthographic map, as is the next one
+#if !defined(RELIEF_HAS_FRONT_BACK)
+    return false;
+#elif defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_FIXED)
+    return info.y == RELIEF_MAP_FORMAT_FRONT_BACK_HALF || info.y == RELIEF_MAP_FORMAT_FRONT_BACK_FIXED;
+#else
+    return true;
+#endif
+}
+
+bool reliefIsFloat(ivec4 info) {
+#if !defined(RELIEF_HAS_FLOAT)
+    return false;
+#else
+    return info.y == RELIEF_MAP_FORMAT_FLOAT32;
+#endif
+}
+
+bool reliefIsPlane(ivec4 info) {
+#if !defined(RELIEF_HAS_PLANE)
+    return false;
+#elif defined(RELIEF_HAS_PROJECTED)
+    return (info.z & RELIEF_DECODES_PLANE) != 0;
+#else
+    return true;
+#endif
+}
+
+// The flags that every map has.
+#if !defined(RELIEF_ALL)
+#define RELIEF_ALL 0
+#endif
+
+bool reliefHas(ivec4 info, int flag) {
+    return (RELIEF_ALL & flag) != 0 || (info.z & flag) != 0;
+}

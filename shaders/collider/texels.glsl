@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// For collider.glsl: normals and depths as texels hold them, and the spaces of a map.
+// Equation 3: indices 0...2 half_range in each direction to the octahedron, of which the sphere's point is reliefUnit(). In
+// steps of the index, so that all of it is exact. shaderTexels() leaves no index 255.
+vec3 reliefFold(vec2 index, float half_range) {
+    vec2 st = index - half_range;
+    float z = half_range - abs(st.x) - abs(st.y);
+    // Below the equator both are reflected by their excess.
+    uint beyond = floatBitsToUint(max(-z, 0.0));
+    return vec3(st.x - uintBitsToFloat(beyond | (floatBitsToUint(st.x) & 0x80000000u)),
+                st.y - uintBitsToFloat(beyond | (floatBitsToUint(st.y) & 0x80000000u)), z);
+}
+
+vec3 reliefOctahedron(vec2 index) {
+    return reliefFold(index, float(RELIEF_NORMAL_HALF_RANGE));
+}
+
+vec3 reliefOctahedron(uint code) {
+    return reliefOctahedron(vec2(float(code >> 8), float(code & 255u)));
+}
+
+vec3 reliefUnit(vec3 v) {
+    return v * inversesqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+float reliefRow(vec4 r, vec3 p) {
+    return r.x * p.x + (r.y * p.y + (r.z * p.z + r.w));
+}
+
+// A point of object space in the space of map i.
+vec3 reliefInMap(int i, vec3 p) {
+    return vec3(reliefRow(reliefMapRow(i, 0), p), reliefRow(reliefMapRow(i, 1), p),
+                reliefRow(reliefMapRow(i, 2), p));
+}
+
+// True for a point p of an orthographic map's own space above its texels, without its rim, which is empty.
+bool reliefInWindow(int i, vec3 p) {
+    return p.x >= 1.0 && p.y >= 1.0 && p.x < reliefMapColumn(i, 1).w && p.y < reliefMapColumn(i, 2).w;
+}
+
+bool reliefInDepth(vec3 p) {
+    return p.z >= 0.0 && p.z <= 1.0;
+}
+
+// In the order of the CPU's twin: the order of dot() is the driver's choice.
+float reliefDot(vec3 a, vec3 b) {
+    return a.x * b.x + (a.y * b.y + a.z * b.z);
+}
+
+float reliefLength(vec3 v) {
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+// The face that d meets and the place on it, OpenGL's rule; x wins over y over z among equals. By hand on
+// six layers, so that every GL picks the same texel as the CPU and no seam is filtered.
+vec3 reliefCubeCoordinates(vec3 d) {
+    vec3 a = abs(d);
+    float face, sc, tc, major;
+    if (a.x >= a.y && a.x >= a.z) {
+        face = d.x < 0.0 ? 1.0 : 0.0;
+        sc = d.x < 0.0 ? d.z : -d.z;
+        tc = -d.y;
+        major = a.x;
+    } else if (a.y >= a.z) {
+        face = d.y < 0.0 ? 3.0 : 2.0;
+        sc = d.x;
+        tc = d.y < 0.0 ? -d.z : d.z;
+        major = a.y;
+    } else {
+        face = d.z < 0.0 ? 5.0 : 4.0;
+        sc = d.z < 0.0 ? -d.x : d.x;
+        tc = -d.y;
+        major = a.z;
+    }
+    return vec3(0.5 * (sc / major + 1.0), 0.5 * (tc / major + 1.0), face);
+}
+
+// The direction, of largest component 1, through (s, t) of a face.
+vec3 reliefCubeDirection(vec3 st_face) {
+    vec2 c = 2.0 * st_face.xy - 1.0;
+    int face = int(st_face.z);
+    float way = (face & 1) == 0 ? 1.0 : -1.0;
+    vec3 d = vec3(way * c.x, -c.y, way);
+    if (face < 2) {
+        d = vec3(way, -c.y, -way * c.x);
+    } else if (face < 4) {
+        d = vec3(c.x, way, way * c.y);
+    }
+    return d;
+}
+
+// From map space to object space, directions alone.
+vec3 reliefFromMap(int i, vec3 q) {
+    return reliefMapColumn(i, 0).xyz * q.x +
+           (reliefMapColumn(i, 1).xyz * q.y + reliefMapColumn(i, 2).xyz * q.z);
+}
+
+// The vote of a plane: n*(P - S). along_normal: n times 1 / per_length; from: P - O, with O where the ray of the texel's centre
+// has depth 0; ray: its direction, for a unit of depth.
+float reliefPlane(vec3 along_normal, float per_length, float depth, vec3 from, vec3 ray) {
+    float along = per_length * reliefDot(along_normal, ray);
+    return per_length * reliefDot(along_normal, from) - depth * along;
+}
+
+float reliefOctahedralPlane(vec3 along_normal, float depth, vec3 from, vec3 ray) {
+    return reliefPlane(along_normal, inversesqrt(reliefDot(along_normal, along_normal)), depth, from, ray);
+}
+
+// A half-float depth: a positive normal half, whose exponent's bias is moved from 15 to 127. By hand, since
+// GLSL 3.30 has no unpackHalf2x16.
+float reliefHalf(uint bits) {
+    return uintBitsToFloat((bits << 13) + (112u << 23));
+}
+
+float reliefFrontBackDepth(int format, uint code) {
+#if !defined(RELIEF_HAS_FRONT_BACK_FIXED)
+    return reliefHalf(code);
+#else
+    float fixed_point = (float(code) - 1.0) * (1.0 / float(RELIEF_DEPTH_STEPS));
+#if defined(RELIEF_HAS_FRONT_BACK_HALF)
+    return format == RELIEF_MAP_FORMAT_FRONT_BACK_HALF ? reliefHalf(code) : fixed_point;
+#else
+    return fixed_point;
+#endif
+#endif
+}
+
+// R,G: normal; B,A: 16-bit fixed-point depth, 0 where empty. Of the normal the indices.
+bool reliefFixedTexel(int index, float depth_max, out float depth, out vec2 normal) {
+    vec4 bytes = floor(texelFetch(u_relief_fixed, reliefTexel(index, RELIEF_LOG2_WIDTHS.y), 0) * 255.0 + 0.5);
+    float code = bytes.b * 256.0 + bytes.a;
+    depth = (code - 1.0) * (depth_max / float(RELIEF_DEPTH_STEPS));
+    normal = bytes.rg;
+    return code > 0.0;
+}
+
+// A normal as a texel holds it: of all fetched only the deciding one is decoded. A patch has none but by its heights.
+#if defined(RELIEF_HAS_FLOAT) || defined(RELIEF_HAS_PATCHES)
+#define RELIEF_CODE vec3
+const vec3 RELIEF_NO_CODE = vec3(0.0);
+vec3 reliefCode(uint code) {
+    return reliefUnit(reliefOctahedron(code));
+}
+vec3 reliefCode(vec2 index) {
+    return reliefUnit(reliefOctahedron(index));
+}
+vec3 reliefDecode(vec3 code) {
+    return code;
+}
+#else
+#define RELIEF_CODE uint
+const uint RELIEF_NO_CODE = 0u;
+uint reliefCode(uint code) {
+    return code;
+}
+uint reliefCode(vec2 index) {
+    return (uint(index.x) << 8) | uint(index.y);
+}
+vec3 reliefDecode(uint code) {
+    return reliefUnit(reliefOctahedron(code));
+}
+#endif
