@@ -19,9 +19,9 @@
 #include "formats/fields/json_value.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
-#include "runtime/gl/gl_object.h"
 #include "runtime/layout/gpu_image.h"
 #include "runtime/vdb/vdb_writer.h"
+#include "shaders/shader_text.h"
 
 namespace relief {
 namespace {

@@ -27,10 +27,9 @@ namespace relief {
                                                 const MeshCheck& check, std::optional<float> max_error);
 
 /// The page of a world. \param file  of the world. \param check  made with pictures. \param player  of preflightPage.
-/// Errors: kLimit: more than a page holds; those of loadAll.
-[[nodiscard]] Result<std::string> makeWorldPage(const std::string& file, const ContainerLimits& limits,
-                                                const WorldCheckJson& check, const std::string& player,
-                                                FileGuard& files);
+/// Errors: kLimit: more than a page holds; those of readForPage.
+[[nodiscard]] Result<std::string> makeWorldPage(const std::string& file, const WorldCheckJson& check,
+                                                const std::string& player, FileGuard& files);
 
 /// Adds --mesh, and the fields that need it.
 /// \return --mesh

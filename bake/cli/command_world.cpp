@@ -142,8 +142,8 @@ namespace {
 
 Result<void> writePage(const std::string& file, const WorldCheckCall& call, const WorldField& field,
                        const WorldAccuracy& accuracy, const std::string& player) {
-    const std::string page = RELIEF_TRY(makeWorldPage(
-        file, call.limits, {inputName(file), &field, &accuracy, call.max_error}, player, call.files));
+    const std::string page = RELIEF_TRY(
+        makeWorldPage(file, {inputName(file), &field, &accuracy, call.max_error}, player, call.files));
     return writeFile(call.html, std::as_bytes(std::span(page)));
 }
 

@@ -7,7 +7,6 @@
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
-#include "runtime/bodies/world_bodies.h"
 
 namespace relief {
 namespace {

@@ -70,7 +70,7 @@ struct Placed {
     }
 };
 
-std::array<float, 8> poseOf(const WorldBody& body) {
+std::array<float, 8> poseKeyOf(const WorldBody& body) {
     const auto& [x, y, z, w] = body.rotation;
     return {body.position.x, body.position.y, body.position.z, x, y, z, w, body.scale};
 }
@@ -80,10 +80,11 @@ std::vector<Placed> placedOf(const World& world) {
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
         const WorldBody& body = world.bodies[i];
         const auto [low, high] = world.colliders[body.collider].box;
-        const bool tile = !all.empty() && all.back().node == body.node && all.back().pose == poseOf(body) &&
+        const bool tile = !all.empty() && all.back().node == body.node &&
+                          all.back().pose == poseKeyOf(body) &&
                           world.bodies[i - 1].collider + 1 == body.collider;
         if (!tile) {
-            all.push_back({{}, body.node, poseOf(body), {}, i});
+            all.push_back({{}, body.node, poseKeyOf(body), {}, i});
         }
         all.back().boxes.push_back({low.x, low.y, low.z, high.x, high.y, high.z});
         all.back().bodies = std::span(world.bodies).subspan(all.back().first, i + 1 - all.back().first);

@@ -149,6 +149,21 @@ std::vector<std::size_t> findBodies(const World& world, std::string_view node) {
     return found;
 }
 
+Pose poseOf(const WorldBody& body) {
+    const auto& [x, y, z, w] = body.rotation;
+    return {body.position, glm::quat(w, x, y, z), body.scale};
+}
+
+Bounds worldBounds(const World& world) {
+    Bounds bounds;
+    for (const WorldBody& body : world.bodies) {
+        const Bounds box = toWorld(poseOf(body), world.colliders[body.collider].box);
+        bounds.add(box.min);
+        bounds.add(box.max);
+    }
+    return bounds;
+}
+
 std::string worldText(const World& world) {
     const auto line = [](const char* name, FieldRef value) {
         const std::string json = jsonLineOf(value);

@@ -27,6 +27,7 @@
 #include "formats/collider.h"
 #include "formats/container_limits.h"
 #include "formats/material_response.h"
+#include "formats/world/pose.h"
 
 namespace relief {
 
@@ -75,6 +76,8 @@ struct WorldBody {
 
 void fields(FieldVisitor& visit, WorldBody& body);
 
+[[nodiscard]] Pose poseOf(const WorldBody& body);
+
 struct World {
     std::string format{kWorldFormat};
     std::uint32_t version = kWorldVersion;
@@ -91,6 +94,9 @@ void fields(FieldVisitor& visit, World& world);
 /// The numbers of the bodies of a node, in the world's order: several in one place where its mesh was cut into tiles, which move
 /// as one; those of all nodes that share the name. Empty: there is none.
 [[nodiscard]] std::vector<std::size_t> findBodies(const World& world, std::string_view node);
+
+/// The box that holds all bodies where they are.
+[[nodiscard]] Bounds worldBounds(const World& world);
 
 /// A line for each collider and each body. The same world is the same text.
 [[nodiscard]] std::string worldText(const World& world);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 
 namespace relief {
 namespace {
@@ -12,10 +11,6 @@ namespace {
 /// roundings of its largest coordinate.
 constexpr float kRoom = 0.01F;
 constexpr float kRounding = 1e-5F;
-
-glm::quat rotationOf(const WorldBody& body) {
-    return {body.rotation[3], body.rotation[0], body.rotation[1], body.rotation[2]};
-}
 
 bool isLocal(const Collider& collider) {
     return collider.maps.size() == 1 && collider.maps[0].format == MapFormat::kPatches &&
@@ -31,14 +26,7 @@ bool holds(const Bounds& box, const glm::vec3& p) {
 
 WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
     for (std::size_t i = 0; i < world().bodies.size(); ++i) {
-        const WorldBody& body = world().bodies[i];
-        const Bounds box = solidBox(colliderOf(i));
-        Bounds placed;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::vec3 at{corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                               corner & 4 ? box.max.z : box.min.z};
-            placed.add(body.position + turn(i, at));
-        }
+        Bounds placed = toWorld(poseOf(world().bodies[i]), solidBox(colliderOf(i)));
         float largest = 0.0F;
         for (int axis = 0; axis < 3; ++axis) {
             largest = std::max({largest, std::abs(placed.min[axis]), std::abs(placed.max[axis])});
@@ -53,10 +41,10 @@ WorldField::WorldField(LoadedWorld loaded) : loaded_(std::move(loaded)) {
 
 void WorldField::addSample(std::size_t body, const glm::vec3& p, WorldSample& best) const {
     const FieldSample sample = relief::evaluate(colliderOf(body), toObject(body, p));
-    const WorldBody& placed = world().bodies[body];
+    const Pose placed = poseOf(world().bodies[body]);
     const float distance = sample.distance >= kFarOutside ? kFarOutside : placed.scale * sample.distance;
     if (sample.map >= 0 && (best.body < 0 || distance < best.distance)) {
-        best = {distance, rotationOf(placed) * sample.normal, static_cast<int>(body)};
+        best = {distance, placed.rotation * sample.normal, static_cast<int>(body)};
     }
 }
 
@@ -93,12 +81,12 @@ std::vector<std::uint32_t> WorldField::bodiesIn(const Bounds& box) const {
 }
 
 glm::vec3 WorldField::toObject(std::size_t body, const glm::vec3& p) const {
-    const WorldBody& placed = world().bodies[body];
-    return (glm::conjugate(rotationOf(placed)) * (p - placed.position)) / placed.scale;
+    return relief::toObject(poseOf(world().bodies[body]), p);
 }
 
 glm::vec3 WorldField::turn(std::size_t body, const glm::vec3& v) const {
-    return world().bodies[body].scale * (rotationOf(world().bodies[body]) * v);
+    const Pose placed = poseOf(world().bodies[body]);
+    return placed.scale * (placed.rotation * v);
 }
 
 }  // namespace relief

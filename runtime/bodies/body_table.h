@@ -13,7 +13,7 @@
 
 #include "formats/collider.h"
 #include "runtime/bodies/body_grid.h"
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 #include "runtime/layout/collider_block.h"
 
 namespace relief {

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 
 namespace relief {
 

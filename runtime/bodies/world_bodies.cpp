@@ -3,11 +3,6 @@
 
 namespace relief {
 
-Pose poseOf(const WorldBody& body) {
-    const auto& [x, y, z, w] = body.rotation;
-    return {body.position, glm::quat(w, x, y, z), body.scale};
-}
-
 std::vector<ColliderBody> worldBodies(const LoadedWorld& world) {
     std::vector<ColliderBody> bodies;
     bodies.reserve(world.world.bodies.size());
@@ -24,16 +19,6 @@ std::vector<Pose> worldPoses(const World& world) {
         poses.push_back(poseOf(body));
     }
     return poses;
-}
-
-Bounds worldBounds(const World& world) {
-    Bounds bounds;
-    for (const WorldBody& body : world.bodies) {
-        const Bounds box = toWorld(poseOf(body), world.colliders[body.collider].box);
-        bounds.add(box.min);
-        bounds.add(box.max);
-    }
-    return bounds;
 }
 
 }  // namespace relief

@@ -13,20 +13,15 @@
 #include <vector>
 
 #include "formats/world/world.h"
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 #include "runtime/bodies/world_textures.h"
 
 namespace relief {
-
-[[nodiscard]] Pose poseOf(const WorldBody& body);
 
 /// In the world's order, each with its pose and response. They point to the colliders of `world`, which must stay until they
 /// are uploaded.
 [[nodiscard]] std::vector<ColliderBody> worldBodies(const LoadedWorld& world);
 /// The poses of all bodies, in the world's order.
 [[nodiscard]] std::vector<Pose> worldPoses(const World& world);
-
-/// The box that holds all bodies where they are.
-[[nodiscard]] Bounds worldBounds(const World& world);
 
 }  // namespace relief

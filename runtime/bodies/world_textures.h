@@ -20,7 +20,7 @@
 #include "formats/collider.h"
 #include "runtime/bodies/body_table.h"
 #include "runtime/bodies/material_table.h"
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 #include "runtime/collider/map_textures.h"
 #include "runtime/collider/shader_collider.h"
 

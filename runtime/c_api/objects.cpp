@@ -5,6 +5,7 @@
 
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
+#include "shaders/shader_text.h"
 
 namespace relief {
 

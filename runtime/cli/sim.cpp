@@ -9,6 +9,7 @@
 #include "formats/base/text.h"
 #include "formats/config/confined_path.h"
 #include "formats/fields/json.h"
+#include "runtime/cli/scene_page.h"
 #include "runtime/command_line/command_line.h"
 #include "runtime/command_line/option_values.h"
 #include "runtime/command_line/progress.h"
@@ -190,11 +191,20 @@ void defineSim(CLI::App& app, SimCommand& command) {
         "(default): "
         "compute on a GPU that has it");
     addFields(app, command.player.gpu);
+    addFlag(app, "--json", command.json, "Print the report, or what --check finds, as JSON");
+    const OptionRef page =
+        addOption(app, "--page", command.page,
+                  "Only write a page that plays the scene in a browser, without a GPU: one HTML file that "
+                  "holds every file of the scene. It needs the player that scripts/build.sh web builds once")
+            ->valueText("OUT.html");
     for (const char* played :
          {"--frames", "--dump", "--dump-frames", "--events", "--path", "--device", "--gpu-timeout"}) {
         check->excludes(played);
+        page->excludes(played);
     }
-    addFlag(app, "--json", command.json, "Print the report, or what --check finds, as JSON");
+    for (const char* of_run : {"--check", "--json", "--steps", "--seed", "--root", "--api"}) {
+        page->excludes(of_run);
+    }
     addFlag(app, "-q,--quiet", command.quiet,
             "No progress and no summary; errors still, and what --json asks for");
 }
@@ -213,6 +223,10 @@ Result<void> runSim(int argc, char** argv) {
     if (command.size) {
         command.player.overrides.width = command.size->width;
         command.player.overrides.height = command.size->height;
+    }
+    if (!command.page.empty()) {
+        showWarnings(RELIEF_TRY(writeScenePage(command.player, command.page)), command.quiet);
+        return {};
     }
     return command.check ? checkOnly(command) : playScene(command);
 }

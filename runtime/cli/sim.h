@@ -22,6 +22,7 @@ struct SimCommand {
     PlayerOptions player;
     std::optional<FrameSize> size;
     std::optional<DumpFormat> dump_format;
+    std::string page;  ///< --page; empty: none
     bool check = false;
     bool json = false;
     bool quiet = false;

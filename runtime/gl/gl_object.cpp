@@ -5,79 +5,15 @@
 #include <cstdio>
 #include <glm/glm.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <set>
 
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_fault.h"
 #include "runtime/gl/gl_functions.h"
 #include "shaders/shader_sources.h"
+#include "shaders/shader_text.h"
 
 namespace relief {
 namespace {
-
-/// Replaces every line `//!include NAME` by the file's text, once a file, and `//!layer NAME` in builds that have that layer.
-Result<std::string> resolveIncludes(std::string_view name, std::vector<std::string>& included) {
-    const std::string_view source = shaderSource(name);
-    if (source.empty()) {
-        return fail(ErrorCode::kFailure, "shader '" + std::string(name) + "' is not embedded in this build");
-    }
-    constexpr std::string_view kDirective = "//!include ";
-    constexpr std::string_view kLayer = "//!layer ";
-    std::string text;
-    std::size_t at = 0;
-    while (at < source.size()) {
-        const std::size_t end = std::min(source.find('\n', at), source.size());
-        const std::string_view line = source.substr(at, end - at);
-        at = end + 1;
-        const bool layer = line.starts_with(kLayer);
-        if (!layer && !line.starts_with(kDirective)) {
-            text.append(line).push_back('\n');
-            continue;
-        }
-        const std::string child(line.substr((layer ? kLayer : kDirective).size()));
-        if (layer && shaderSource(child).empty()) {
-            continue;
-        }
-        if (std::find(included.begin(), included.end(), child) == included.end()) {
-            included.push_back(child);
-            std::string nested = RELIEF_TRY(resolveIncludes(child, included));
-            text += nested;
-        }
-    }
-    return text;
-}
-
-/// Adds the names in a text that start with RELIEF_.
-void addNames(std::string_view text, std::set<std::string_view>& names) {
-    constexpr std::string_view kStart = "RELIEF_";
-    constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-    for (std::size_t at = text.find(kStart); at != std::string_view::npos; at = text.find(kStart, at)) {
-        const std::size_t end = std::min(text.find_first_not_of(kLetters, at), text.size());
-        names.insert(text.substr(at, end - at));
-        at = end;
-    }
-}
-
-/// Those of shaderConstants() that a shader uses. Each may use earlier ones.
-std::string constantsOf(std::string_view shader) {
-    constexpr std::string_view kDefine = "#define ";
-    std::set<std::string_view> used;
-    addNames(shader, used);
-    std::string text;
-    std::string_view rest = shaderConstants();
-    while (!rest.empty()) {
-        const std::size_t start = rest.substr(0, rest.size() - 1).rfind('\n') + 1;  // npos + 1 is 0
-        const std::string_view line = rest.substr(start);
-        const std::string_view name =
-            line.substr(kDefine.size(), line.find(' ', kDefine.size()) - kDefine.size());
-        if (used.contains(name)) {
-            addNames(line, used);
-            text.insert(0, line);
-        }
-        rest = rest.substr(0, start);
-    }
-    return text;
-}
 
 std::string infoLog(GLuint name, bool is_program) {
     GLint length = 0;
@@ -92,8 +28,7 @@ std::string infoLog(GLuint name, bool is_program) {
 }
 
 Result<GLuint> compile(GLenum stage, std::string_view file, std::string_view defines) {
-    std::vector<std::string> included;
-    const std::string body = RELIEF_TRY(resolveIncludes(file, included));
+    const std::string body = RELIEF_TRY(includedShader(file));
     // highp everywhere: state and depth are 32-bit floats, and ES 3.0 requires highp in fragment shaders.
     const bool compute = stage == GL_COMPUTE_SHADER;
     std::string source = isGles() ? (compute ? "#version 310 es\n" : "#version 300 es\n")
@@ -363,12 +298,6 @@ void GlProgram::drawScreen(GLuint framebuffer, GLsizei width, GLsizei height) co
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     glViewport(0, 0, width, height);
     drawScreen();
-}
-
-Result<std::string> shaderText(std::string_view file) {
-    std::vector<std::string> included;
-    const std::string text = RELIEF_TRY(resolveIncludes(file, included));
-    return constantsOf(text) + text;
 }
 
 Result<GlProgram> makeProgram(std::string_view vertex, std::string_view fragment, std::string_view defines) {

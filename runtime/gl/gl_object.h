@@ -119,15 +119,6 @@ void bindPackBuffer(GlBuffer& buffer, GLsizeiptr bytes);
     return makeFramebuffer(std::span(color_textures.begin(), color_textures.size()), depth_texture);
 }
 
-/// The first lines of an exported shader.
-inline constexpr std::string_view kShaderLicence =
-    "// SPDX-License-Identifier: Apache-2.0\n"
-    "// From Relief, for any program: no part of it is under the GNU GPL.\n";
-
-/// A file of shaders/, "collider/collider.glsl", with its includes, behind those of shaderConstants() that it uses: for
-/// programs of one's own, between whose version line and text it goes. Fails with kFailure (no such file).
-[[nodiscard]] Result<std::string> shaderText(std::string_view file);
-
 /// Compiles and links a program from GLSL ES 3.00 subset sources. In front come the version line of the current
 /// context, `#version 330 core` or `#version 300 es`, shaderConstants() and precision statements.
 /// \param vertex, fragment  paths in shaders/, for example "base/quad.vert".

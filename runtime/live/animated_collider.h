@@ -21,7 +21,7 @@
 
 #include "formats/animation/mesh_pose.h"
 #include "formats/base/result.h"
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 #include "runtime/live/live_collider.h"
 #include "runtime/live/skin_pass.h"
 

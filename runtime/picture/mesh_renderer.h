@@ -13,7 +13,7 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 #include "runtime/gl/gl_object.h"
 #include "runtime/picture/camera.h"
 #include "runtime/picture/mesh_buffers.h"

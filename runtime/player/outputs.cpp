@@ -128,8 +128,15 @@ Result<std::vector<ParticleState>> Outputs::readParticles(const ParticleSystem& 
 }
 
 Result<void> Outputs::writeDump(std::span<const ParticleState> particles, const fs::path& path) const {
-    const bool vdb = options_.dump_format == DumpFormat::kVdb;
-    return writeFile(path, RELIEF_TRY(vdb ? encodeVdbPoints(particles) : encodePly(particles)));
+    if (options_.dump_format == DumpFormat::kPly) {
+        return writeFile(path, encodePly(particles));
+    }
+    std::vector<VdbPoint> points;
+    points.reserve(particles.size());
+    for (const ParticleState& p : particles) {
+        points.push_back({p.id, p.position, p.velocity, p.age, p.lifetime, p.type});
+    }
+    return writeFile(path, RELIEF_TRY(encodeVdbPoints(points)));
 }
 
 }  // namespace relief

@@ -45,11 +45,11 @@ double voxelSize(const std::vector<openvdb::Vec3f>& positions) {
 
 /// One attribute of all points.
 template <class Value, class Of>
-void add(PointDataTree& tree, const PointIndexGrid& index, std::span<const ParticleState> particles,
+void add(PointDataTree& tree, const PointIndexGrid& index, std::span<const VdbPoint> particles,
          const std::string& name, Of of) {
     std::vector<Value> values;
     values.reserve(particles.size());
-    for (const ParticleState& particle : particles) {
+    for (const VdbPoint& particle : particles) {
         values.push_back(of(particle));
     }
     openvdb::points::appendAttribute<Value>(tree, name);
@@ -57,9 +57,9 @@ void add(PointDataTree& tree, const PointIndexGrid& index, std::span<const Parti
                                        openvdb::points::PointAttributeVector<Value>(values));
 }
 
-openvdb::GridPtrVec makePoints(std::span<const ParticleState> particles) {
+openvdb::GridPtrVec makePoints(std::span<const VdbPoint> particles) {
     std::vector<openvdb::Vec3f> positions;
-    for (const ParticleState& p : particles) {
+    for (const VdbPoint& p : particles) {
         positions.emplace_back(p.position.x, p.position.y, p.position.z);
     }
     const auto transform = openvdb::math::Transform::createLinearTransform(voxelSize(positions));
@@ -71,15 +71,13 @@ openvdb::GridPtrVec makePoints(std::span<const ParticleState> particles) {
     grid->insertMeta("points", openvdb::Int64Metadata(static_cast<std::int64_t>(positions.size())));
     PointDataTree& tree = grid->tree();
     if (!positions.empty()) {
-        add<openvdb::Vec3f>(tree, *index, particles, "v", [](const ParticleState& p) {
+        add<openvdb::Vec3f>(tree, *index, particles, "v", [](const VdbPoint& p) {
             return openvdb::Vec3f(p.velocity.x, p.velocity.y, p.velocity.z);
         });
-        add<float>(tree, *index, particles, "age", [](const ParticleState& p) { return p.age; });
-        add<float>(tree, *index, particles, "life", [](const ParticleState& p) { return p.lifetime; });
-        add<int>(tree, *index, particles, "id",
-                 [](const ParticleState& p) { return static_cast<int>(p.id); });
-        add<int>(tree, *index, particles, "type",
-                 [](const ParticleState& p) { return static_cast<int>(p.type); });
+        add<float>(tree, *index, particles, "age", [](const VdbPoint& p) { return p.age; });
+        add<float>(tree, *index, particles, "life", [](const VdbPoint& p) { return p.lifetime; });
+        add<int>(tree, *index, particles, "id", [](const VdbPoint& p) { return static_cast<int>(p.id); });
+        add<int>(tree, *index, particles, "type", [](const VdbPoint& p) { return static_cast<int>(p.type); });
     }
     return {grid};
 }
@@ -145,7 +143,7 @@ Result<std::vector<std::byte>> vdbBytes(const std::function<openvdb::GridPtrVec(
 
 class Writer : public VdbWriter {
   public:
-    Result<std::vector<std::byte>> points(std::span<const ParticleState> particles) override {
+    Result<std::vector<std::byte>> points(std::span<const VdbPoint> particles) override {
         return vdbBytes([&] { return makePoints(particles); });
     }
 

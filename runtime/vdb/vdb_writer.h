@@ -11,9 +11,18 @@
 #include <vector>
 
 #include "formats/base/result.h"
-#include "runtime/particles/particle_system.h"
 
 namespace relief {
+
+/// A particle.
+struct VdbPoint {
+    std::uint32_t id = 0;  ///< births before its own
+    glm::vec3 position{0.0F};
+    glm::vec3 velocity{0.0F};  ///< units a second
+    float age = 0.0F;          ///< seconds
+    float lifetime = 0.0F;     ///< seconds
+    std::uint32_t type = 0;
+};
 
 /// Signed distances near a surface, on a grid whose voxel (i, j, k) has its centre at voxel × (i, j, k).
 struct NarrowBand {
@@ -35,7 +44,7 @@ class VdbWriter {
     virtual ~VdbWriter() = default;
     // Equal arguments give equal bytes. Errors: kFailure (OpenVDB's, memory).
     /// \param particles  ordered by id, at finite positions.
-    [[nodiscard]] virtual Result<std::vector<std::byte>> points(std::span<const ParticleState> particles) = 0;
+    [[nodiscard]] virtual Result<std::vector<std::byte>> points(std::span<const VdbPoint> particles) = 0;
     [[nodiscard]] virtual Result<std::vector<std::byte>> levelSet(const NarrowBand& band) = 0;
     [[nodiscard]] virtual Result<GridSurface> surface(const NarrowBand& band) = 0;
 };
@@ -45,7 +54,7 @@ class VdbWriter {
 /// keep single precision of their place in a voxel; some eight points share one. The grid's metadata "points" counts
 /// them. The same for any order of `particles` and any number of threads.
 /// Errors: kUnsupported (a build without OpenVDB), kFailure.
-[[nodiscard]] Result<std::vector<std::byte>> encodeVdbPoints(std::span<const ParticleState> particles);
+[[nodiscard]] Result<std::vector<std::byte>> encodeVdbPoints(std::span<const VdbPoint> particles);
 
 /// Fails with kUnsupported where this build has no OpenVDB, with the cure.
 [[nodiscard]] Result<void> checkVdb();

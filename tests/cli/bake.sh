@@ -2,6 +2,10 @@
 # What a bake's options leave in the container, as `relief info` tells; and that threads, folder and name change no byte.
 . "$(dirname "$0")/lib.sh"
 
+for library in epoxy libGL\\. EGL; do
+    ! ldd "$relief" | matches "$library" || die "relief needs $library"
+done
+
 box box.obj 1 2 3
 
 # The paper's set is three orthogonal front-back maps and one cube; the container names its source.

@@ -54,7 +54,7 @@ done
 # Every scene makes a page.
 page_place >stub.html
 for scene in "$samples"/*.toml; do
-    RELIEF_VIEW_PAGE=stub.html expect 0 "$relief" view "$(basename "$scene")" -o page.html
+    RELIEF_VIEW_PAGE=stub.html expect 0 "$relief_sim" "$(basename "$scene")" --page page.html
 done
 
 play() { # NAME STEPS

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief view: a page that holds everything itself, of colliders, of meshes beside them, of scenes and worlds; and what may be
-# wrong with them. A stub stands for the page of scenes, which needs another build; tests/web looks at the real ones.
+# relief view and relief-sim --page: a page that holds everything itself, of colliders, of meshes beside them, of worlds and scenes;
+# and what may be wrong with them. A stub stands for the page of scenes, which needs another build; tests/web looks at the real ones.
 . "$(dirname "$0")/lib.sh"
 
 # data PAGE: what the page holds, to data.json, and the rest to rest.html; nothing in it is elsewhere.
@@ -76,14 +76,15 @@ for name in '<script><!--.relief' $'\xff.relief'; do
     data name.html
 done
 
-# A scene, and the files that it names. A body that deforms is shown at rest.
+# A scene, and the files that it names. Of a body that deforms the panel gets maps without a surface.
 printf '%s\n' '<!doctype html>' '<title>stub</title>' "$(page_place)" '<p>the end</p>' >stub.html
 export RELIEF_VIEW_PAGE=$work/stub.html
 mkdir -p scene/sub
 cp b.relief scene/sub/
 printf '0,2,0\n' >scene/points.csv
 printf '%s\n' '[collider]' 'file = "./sub/b.relief"' '[[emitter]]' 'points = "points.csv"' 'direction = [0, -1, 0]' 'speed = 1.0' >scene/s.toml
-expect 0 "$relief" view scene/s.toml
+expect 0 "$relief_sim" scene/s.toml --page scene/s.html
+[ ! -s stdout ] && [ ! -s stderr ] || die "--page prints something: $(cat stdout stderr)"
 data scene/s.html
 cmp rest.html stub.html || die "not the stub with data"
 holds b.relief 'd["files"]["sub/b.relief"]'
@@ -93,17 +94,24 @@ json data.json 'd["scene"] == open("scene/s.toml").read()'
 box box.obj 1 1 1
 cp box.obj scene/
 printf '[collider]\nmesh = "box.obj"\ndeform = { amplitude = 0.1, frequency = 1.0 }\nresolution = 32\n' >scene/live.toml
-expect 0 "$relief" view scene/live.toml
+expect 0 "$relief_sim" scene/live.toml --page scene/live.html
 data scene/live.html
 holds box.obj 'd["files"]["box.obj"]'
 python3 -c 'import base64, json; open("rest.relief", "wb").write(base64.b64decode(json.load(open("data.json"))["collider"]))'
-expect 0 "$relief" check rest.relief --mesh box.obj --samples 2000
+expect 0 "$relief" check rest.relief
+expect_error 1 'relief-sim scene/s.toml --page scene/s.html' "$relief" view scene/s.toml
+expect_error 1 'relief view' "$relief_sim" b.relief --page o.html
+expect_error 1 'page' "$relief_sim" scene/s.toml --page o.html --dump o.ply
 
 # Errors: one line, and nothing is written.
 mkdir errors
 refuses() { # CODE PATTERN ARGUMENT…
     expect_error "$1" "$2" "$relief" view "${@:3}"
     [ -z "$(ls -A errors)" ] || die "left behind by 'view ${*:3}': $(ls -A errors)"
+}
+pages() {
+    expect_error "$1" "$2" "$relief_sim" "${@:3}"
+    [ -z "$(ls -A errors)" ] || die "left behind by 'relief-sim ${*:3}': $(ls -A errors)"
 }
 head -c 3000 b.relief >short.relief
 truncate -s 200M large.relief
@@ -112,36 +120,35 @@ refuses 6 'large.relief' large.relief -o errors/o.html
 refuses 2 "missing.relief" missing.relief -o errors/o.html
 refuses 2 "missing.obj" b.relief --mesh missing.obj -o errors/o.html
 refuses 3 'box.obj' b.relief --mesh box.obj -o errors/o.html
-refuses 1 'stub.html' scene/s.toml -o stub.html
-refuses 1 'points.csv' scene/s.toml -o scene/points.csv
+pages 1 'stub.html' scene/s.toml --page stub.html
+pages 1 'points.csv' scene/s.toml --page scene/points.csv
 refuses 2 'nowhere' b.relief -o nowhere/o.html
 refuses 1 '-o' -
 refuses 1 'samples' b.relief --samples 10 -o errors/o.html
-refuses 1 's.toml' scene/s.toml --mesh "$bunny" -o errors/o.html
 refuses 6 'samples' b.relief --mesh "$bunny" --samples 1000000000000 -o errors/o.html
 refuses 6 'triangles' b.relief --mesh "$bunny" --max-triangles 10 -o errors/o.html
 printf '[collider]\nfile = "../b.relief"\n' >scene/outside.toml
-refuses 3 'outside.toml:2' scene/outside.toml -o errors/o.html
+pages 3 'outside.toml:2' scene/outside.toml --page errors/o.html
 
 # The page of scenes: the variable first, then the installed one, then the build beside this one.
-RELIEF_VIEW_PAGE=$work/none.html refuses 2 none.html scene/s.toml -o errors/o.html
-RELIEF_VIEW_PAGE=$work/box.obj refuses 3 'scripts/build.sh web' scene/s.toml -o errors/o.html
+RELIEF_VIEW_PAGE=$work/none.html pages 2 none.html scene/s.toml --page errors/o.html
+RELIEF_VIEW_PAGE=$work/box.obj pages 3 'scripts/build.sh web' scene/s.toml --page errors/o.html
 cat stub.html stub.html >twice.html
-RELIEF_VIEW_PAGE=$work/twice.html refuses 3 'scripts/build.sh web' scene/s.toml -o errors/o.html
+RELIEF_VIEW_PAGE=$work/twice.html pages 3 'scripts/build.sh web' scene/s.toml --page errors/o.html
 # A player whose data has another format, or of a release before pages stated it.
 for mark in 's/data-format="/&1/' 's/ data-format="[^"]*"//'; do
     sed "$mark" stub.html >other.html
-    RELIEF_VIEW_PAGE=$work/other.html refuses 3 'other.html.*scripts/build.sh web' scene/s.toml -o errors/o.html
+    RELIEF_VIEW_PAGE=$work/other.html pages 3 'other.html.*scripts/build.sh web' scene/s.toml --page errors/o.html
 done
 mkdir -p tree/release/bin tree/web/bin tree/release/share/relief
-cp "$relief" "$RELIEF_BIN/relief-import" tree/release/bin/
+cp "$relief" "$relief_sim" "$RELIEF_BIN/relief-import" tree/release/bin/
 unset RELIEF_VIEW_PAGE
-expect_error 5 'scripts/build.sh web' tree/release/bin/relief view scene/s.toml -o errors/o.html
+expect_error 5 'scripts/build.sh web' tree/release/bin/relief-sim scene/s.toml --page errors/o.html
 expect 0 tree/release/bin/relief view b.relief -o found.html
 cmp found.html b.html || die "an installed tool makes another page"
 for place in web/bin release/share/relief; do
     sed "s#stub#$place#" stub.html >tree/$place/view.html
-    expect 0 tree/release/bin/relief view scene/s.toml -o found.html
+    expect 0 tree/release/bin/relief-sim scene/s.toml --page found.html
     grep -q "<title>$place" found.html || die "the page in $place is not found"
 done
 

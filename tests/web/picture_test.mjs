@@ -183,7 +183,7 @@ test("a browser draws a scene by its meshes as relief-sim does", { timeout: 300_
 test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     makeScene(folder);
-    run("relief", "view", path.join(folder, "scene.toml"), "-q", "-o", path.join(folder, "made.html"));
+    run("relief-sim", path.join(folder, "scene.toml"), "-q", "--page", path.join(folder, "made.html"));
     const made = dataOf(path.join(folder, "made.html"));
     assert.equal(Buffer.from(made.files["meshes/block.obj"], "base64").toString(), readFileSync(path.join(folder, "meshes/block.obj"), "utf8"));
     const open = await viewer(t);
@@ -247,5 +247,5 @@ test("the page shows a scene by its meshes, or by its maps", { timeout: 300_000 
     assert.match(await broken.page.locator("#message p").textContent(), /render\.meshes: .*has no 'block\.ply' or \.obj/);
     assert.equal(await broken.page.evaluate("reliefView.look.show"), "surface");
     writeFileSync(path.join(folder, "meshes/block.obj"), "v 0 0\n");
-    assert.throws(() => run("relief", "view", path.join(folder, "scene.toml"), "-q", "-o", path.join(folder, "other.html")), /block\.obj/);
+    assert.throws(() => run("relief-sim", path.join(folder, "scene.toml"), "-q", "--page", path.join(folder, "other.html")), /block\.obj/);
 });

@@ -281,7 +281,7 @@ box_max = [60.0, 66.0, 60.0]
 velocity = [0.0, -30.0, 0.0]
 rate = 100.0
 `);
-    run("relief", "view", path.join(folder, "s.toml"), "-o", path.join(folder, "s.html"));
+    run("relief-sim", path.join(folder, "s.toml"), "--page", path.join(folder, "s.html"));
     const { page, said } = await openFile(t, path.join(folder, "s.html"));
     const stream = await page.evaluate(() => {
         reliefView.particles.paused = true;

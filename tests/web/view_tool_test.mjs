@@ -101,7 +101,7 @@ direction = [0.0, -1.0, 0.0]
 speed = 1.0
 rate = 500.0
 `);
-    run("relief", "view", at("s.toml"), "-o", at("s.html"));
+    run("relief-sim", at("s.toml"), "--page", at("s.html"));
     const { page, said } = await opened(t, at("s.html"));
     await page.waitForFunction("reliefView.view.bodies.length === 2",
                                undefined, { timeout: 120_000 });
@@ -243,7 +243,7 @@ resolution = 32
 [particles]
 capacity = 1024
 `);
-    run("relief", "view", at("s.toml"), "-o", at("s.html"));
+    run("relief-sim", at("s.toml"), "--page", at("s.html"));
     const { page } = await opened(t, at("s.html"));
     await page.evaluate(() => (reliefView.particles.paused = true));
     const covered = () => page.evaluate(() => {

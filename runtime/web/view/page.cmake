@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# relief_view_page(OUTPUT): makes the page of `relief view`, without data: OUTPUT.html, or OUTPUT.cpp, which embeds it (bake/cli/view_page.h).
+# relief_view_page(OUTPUT): makes the page of `relief view`, without data: OUTPUT.html, or OUTPUT.cpp, which embeds it (runtime/page/page.h).
 #
 # A page that is opened from disk may import no file. So all modules become one script: their imports and the word `export` go, and
 # names at the top of a module are the names of all.
@@ -42,7 +42,7 @@ if(OUTPUT MATCHES "[.]html$")
 endif()
 # Compilers limit the length of one literal.
 file(WRITE ${OUTPUT} "// Generated from runtime/web/view by page.cmake.
-#include \"bake/cli/view_page.h\"
+#include \"runtime/page/page.h\"
 
 namespace relief {
 

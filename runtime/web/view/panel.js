@@ -134,9 +134,15 @@ export class Panel {
 
     // --- maps
 
+    /** None of a scene whose bodies all deform: their maps have texels only while it plays. */
+    #shownMaps() {
+        const { data, body } = this.app;
+        return data.scene && !data.shows ? [] : body.collider.info.maps;
+    }
+
     #fillMaps() {
         const { collider } = this.app.body;
-        const { maps } = collider.info;
+        const maps = this.#shownMaps();
         $("patches-note").hidden = !maps.some(({ projection }) => projection === "local");
         $("maps").replaceChildren(...maps.map((_, i) => element("button", {
             "aria-pressed": false, onclick: () => this.selectMap(this.#map === i ? -1 : i),
@@ -234,7 +240,8 @@ export class Panel {
         const { info } = body.collider;
         const { bytes: size } = data;
         $("name").textContent = data.name;
-        $("facts").textContent = `${info.maps.length} map${info.maps.length === 1 ? "" : "s"}, ` +
+        const { length } = this.#shownMaps();
+        $("facts").textContent = `${length} map${length === 1 ? "" : "s"}, ` +
             (size >= 1e6 ? `${(size / 1e6).toFixed(2)} MB` : `${Math.round(size / 1e3)} kB`) +
             (info.mesh.triangles ? ` from ${info.mesh.triangles.toLocaleString("en")} triangles` : "") +
             `, ${this.#length(body.box.longest)} long` + (data.collider?.animated ? ", at rest" : "");

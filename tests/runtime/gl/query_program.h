@@ -9,6 +9,7 @@
 #include "runtime/gl/gl_capabilities.h"
 #include "runtime/gl/gl_functions.h"
 #include "runtime/gl/gl_object.h"
+#include "shaders/shader_text.h"
 
 namespace relief {
 

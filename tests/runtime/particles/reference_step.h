@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "formats/collider.h"
-#include "runtime/bodies/pose.h"
+#include "formats/world/pose.h"
 #include "runtime/particles/particle_system.h"
 
 namespace relief {

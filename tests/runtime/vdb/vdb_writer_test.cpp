@@ -7,6 +7,7 @@
 #include <openvdb/points/PointCount.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 #include <random>
@@ -18,10 +19,10 @@ namespace {
 using openvdb::points::AttributeHandle;
 using openvdb::points::PointDataGrid;
 
-std::vector<ParticleState> someParticles(std::size_t count, float offset = 0.0F) {
+std::vector<VdbPoint> someParticles(std::size_t count, float offset = 0.0F) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> at(-2.0F, 3.0F);
-    std::vector<ParticleState> out(count);
+    std::vector<VdbPoint> out(count);
     for (std::size_t i = 0; i < count; ++i) {
         out[i].id = static_cast<std::uint32_t>(3 * i + 1);
         out[i].position = {offset + at(random), at(random), at(random)};
@@ -42,8 +43,8 @@ PointDataGrid::Ptr gridOf(const std::vector<std::byte>& bytes) {
 }
 
 /// What a reader finds, by id.
-std::map<std::uint32_t, ParticleState> particlesOf(const PointDataGrid& grid) {
-    std::map<std::uint32_t, ParticleState> out;
+std::map<std::uint32_t, VdbPoint> particlesOf(const PointDataGrid& grid) {
+    std::map<std::uint32_t, VdbPoint> out;
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
         const AttributeHandle<openvdb::Vec3f> position(leaf->constAttributeArray("P"));
         const AttributeHandle<openvdb::Vec3f> velocity(leaf->constAttributeArray("v"));
@@ -54,7 +55,7 @@ std::map<std::uint32_t, ParticleState> particlesOf(const PointDataGrid& grid) {
         for (auto i = leaf->beginIndexOn(); i; ++i) {
             const openvdb::Vec3d p = grid.indexToWorld(position.get(*i) + i.getCoord().asVec3d());
             const openvdb::Vec3f v = velocity.get(*i);
-            ParticleState state;
+            VdbPoint state;
             state.id = static_cast<std::uint32_t>(id.get(*i));
             state.position = glm::vec3(glm::dvec3(p.x(), p.y(), p.z()));
             state.velocity = {v.x(), v.y(), v.z()};
@@ -68,7 +69,7 @@ std::map<std::uint32_t, ParticleState> particlesOf(const PointDataGrid& grid) {
 }
 
 TEST(VdbPoints, AReaderFindsEachParticle) {
-    const std::vector<ParticleState> particles = someParticles(5000);
+    const std::vector<VdbPoint> particles = someParticles(5000);
     const auto bytes = encodeVdbPoints(particles);
     ASSERT_TRUE(bytes.has_value()) << bytes.error().message;
     const auto grid = gridOf(*bytes);
@@ -77,8 +78,8 @@ TEST(VdbPoints, AReaderFindsEachParticle) {
     EXPECT_EQ(openvdb::points::pointCount(grid->tree()), particles.size());
     const auto found = particlesOf(*grid);
     ASSERT_EQ(found.size(), particles.size());
-    for (const ParticleState& particle : particles) {
-        const ParticleState& read = found.at(particle.id);
+    for (const VdbPoint& particle : particles) {
+        const VdbPoint& read = found.at(particle.id);
         EXPECT_LT(glm::distance(read.position, particle.position), 2e-6F);
         EXPECT_EQ(read.velocity, particle.velocity);
         EXPECT_EQ(read.age, particle.age);
@@ -88,7 +89,7 @@ TEST(VdbPoints, AReaderFindsEachParticle) {
 }
 
 TEST(VdbPoints, TheSameBytesForAnyOrder) {
-    std::vector<ParticleState> particles = someParticles(2000);
+    std::vector<VdbPoint> particles = someParticles(2000);
     const auto bytes = encodeVdbPoints(particles);
     ASSERT_TRUE(bytes.has_value());
     std::reverse(particles.begin(), particles.end());
@@ -101,18 +102,18 @@ TEST(VdbPoints, NoneOneAndFarAway) {
     const auto none = encodeVdbPoints({});
     ASSERT_TRUE(none.has_value()) << none.error().message;
     EXPECT_EQ(openvdb::points::pointCount(gridOf(*none)->tree()), 0U);
-    const std::vector<ParticleState> one = someParticles(1);
+    const std::vector<VdbPoint> one = someParticles(1);
     EXPECT_EQ(particlesOf(*gridOf(*encodeVdbPoints(one))).size(), 1U);
-    const std::vector<ParticleState> far = someParticles(500, 1e9F);
+    const std::vector<VdbPoint> far = someParticles(500, 1e9F);
     const auto found = particlesOf(*gridOf(*encodeVdbPoints(far)));
     ASSERT_EQ(found.size(), far.size());
-    for (const ParticleState& particle : far) {
+    for (const VdbPoint& particle : far) {
         EXPECT_LT(glm::distance(found.at(particle.id).position, particle.position), 100.0F);
     }
 }
 
 TEST(VdbPoints, APositionThatIsNotFiniteIsRefused) {
-    std::vector<ParticleState> particles = someParticles(3);
+    std::vector<VdbPoint> particles = someParticles(3);
     particles[1].position.y = std::numeric_limits<float>::quiet_NaN();
     const auto bytes = encodeVdbPoints(particles);
     ASSERT_FALSE(bytes.has_value());
