@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdio>
 
-#include "bake/ground/ground_check_report.h"
 #include "bake/ground/ground_report.h"
 #include "bake/import/import_format.h"
 #include "formats/base/file_io.h"

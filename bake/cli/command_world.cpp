@@ -11,7 +11,6 @@
 #include "bake/report/recipe_report.h"
 #include "bake/report/report_text.h"
 #include "bake/world/world_bake.h"
-#include "bake/world/world_check_report.h"
 #include "bake/world/world_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"

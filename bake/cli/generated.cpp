@@ -4,12 +4,10 @@
 #include "bake/cli/world_info.h"
 #include "bake/director/bake_json.h"
 #include "bake/director/mesh_check_report.h"
-#include "bake/ground/ground_check_report.h"
 #include "bake/ground/ground_report.h"
 #include "bake/report/collider_report.h"
 #include "bake/report/inspect_report.h"
 #include "bake/report/recipe_report.h"
-#include "bake/world/world_check_report.h"
 #include "bake/world/world_report.h"
 #include "formats/fields/json.h"
 

@@ -2,6 +2,7 @@
 #include "bake/ground/ground_report.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "bake/report/report_text.h"
 
@@ -13,13 +14,40 @@ std::optional<double> bound(double error_max) {
     return error_max > 0.0 ? std::optional(error_max) : std::nullopt;
 }
 
+/// "12.3 mm"
+std::string millimetres(double metres) {
+    return shortNumber(1000.0 * metres) + " mm";
+}
+
+std::vector<std::string> nearRow(const std::string& kind, const GroundNear& near) {
+    return {kind,
+            std::to_string(near.points),
+            percentText(near.wrong.total()),
+            percentText(near.wrong.false_inside),
+            percentText(near.wrong.false_outside),
+            millimetres(near.mean),
+            millimetres(near.mean_abs),
+            millimetres(near.p99),
+            millimetres(near.most),
+            std::to_string(near.missing)};
+}
+
+/// Of a bake and of a check.
+void sourceFields(FieldVisitor& visit, const std::string& heights, std::uint32_t columns,
+                  std::uint32_t rows) {
+    visit("heights", heights, {"Effective settings, as --heights takes them"});
+    visit("unit", std::string("m"), {.help = "Unit of lengths", .words = kWords<"m">});
+    visit("columns", columns, {"Samples in a row, along +x", {}, {2.0}});
+    visit("rows", rows, {"Rows of samples, along +z", {}, {2.0}});
+}
+
 }  // namespace
 
 std::string groundText(const GroundResult& result, const std::string& output, double ms) {
     const std::string tiles = result.container.empty() ? " in " + countText(result.tiles.size(), "tile") : "";
     const bool steep = std::any_of(result.tiles.begin(), result.tiles.end(),
                                    [](const GroundTile& tile) { return tile.steep > 0; });
-    const std::string error = shortNumber(1000.0 * result.errorMax()) + " mm along y";
+    const std::string error = millimetres(result.errorMax()) + " along y";
     return output + ": ground of " + std::to_string(result.columns) + "x" + std::to_string(result.rows) +
            " samples" + tiles + ", " +
            (!steep                    ? "nowhere off by more than " + error
@@ -47,20 +75,90 @@ void fields(FieldVisitor& visit, const GroundTile& tile) {
 
 void fields(FieldVisitor& visit, const GroundJson& report) {
     const GroundResult& r = report.result;
-    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
+    toolField(visit);
     visit("output", report.output, {"--output or --world as given"});
-    visit("heights", report.heights, {"Effective settings, as --heights takes them"});
-    visit("unit", std::string("m"), {.help = "Unit of lengths", .words = kWords<"m">});
-    visit("columns", r.columns, {"Samples in a row, along +x", {}, {2.0}});
-    visit("rows", r.rows, {"Rows of samples, along +z", {}, {2.0}});
+    sourceFields(visit, report.heights, r.columns, r.rows);
     visit("gpu_bytes", r.gpuBytes(), {"Bytes that all tiles take on the GPU", "bytes"});
     visit("error_max", bound(r.errorMax()), {"The largest error_max of the tiles", "m", kFromZero});
     visit("tiles", r.tiles,
           {.help = "Tiles with ground, row by row; without --world the only one", .items = kFromOne});
-    visit("removed", r.removed, {"Containers that only the world from before named, and that are gone now"});
-    visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
-    visit("inputs", r.inputs, {.help = "All files that it was made from", .items = kFromOne});
-    visit("warnings", r.warnings, {"Warnings, one line each"});
+    folderFields(visit, r.removed, report.ms, r.inputs, r.warnings);
+}
+
+std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& name) {
+    std::string text =
+        name + ": ground of " + accuracy.map + ", " + std::to_string(accuracy.columns) + "x" +
+        std::to_string(accuracy.rows) + " samples; " + countText(accuracy.squares, "square") +
+        " with ground, " + std::to_string(accuracy.steep) + " of them steep, " +
+        std::to_string(accuracy.holes) + " without\n" + percentText(accuracy.near.wrong.total()) +
+        " of the points within " + lengthText(accuracy.within, "m") +
+        " of the surface are on the wrong side; along y it is off by " + millimetres(accuracy.near.mean_abs) +
+        " on average, at most " + millimetres(accuracy.near.most) + "\n\n";
+    std::vector<std::vector<std::string>> rows = {
+        {"points", "number>", "wrong>", "inside by mistake>", "outside>", "mean error>", "absolute>", "99 %>",
+         "most>", "no surface>"},
+        nearRow("near the surface", accuracy.near)};
+    if (accuracy.seams) {
+        rows.push_back(nearRow("near seams", *accuracy.seams));
+    }
+    rows.push_back({"anywhere", std::to_string(accuracy.anywhere_points),
+                    percentText(accuracy.anywhere.total()), percentText(accuracy.anywhere.false_inside),
+                    percentText(accuracy.anywhere.false_outside), "", "", "", "", ""});
+    text += table(rows) + "\n";
+    rows = {{"worst place", "tile", "error>", "rise of its square, in sides>"}};
+    for (const GroundWorstPlace& place : accuracy.worst) {
+        rows.push_back({positionText(place.place), place.node.empty() ? "-" : place.node,
+                        place.error ? millimetres(*place.error) : "no surface", shortNumber(place.rise)});
+    }
+    return text + table(rows);
+}
+
+void fields(FieldVisitor& visit, const GroundNear& near) {
+    visit("points", near.points, {"Points, as many in each square with ground"});
+    fields(visit, near.wrong);
+    const auto distances = [&](FieldVisitor& inner) {
+        inner("mean", near.mean, {"Mean of them; upwards is positive", "m"});
+        inner("mean_abs", near.mean_abs, {"Mean of their absolute values", "m", kFromZero});
+        inner("p99", near.p99, {"99 % of their absolute values are smaller", "m", kFromZero});
+        inner("max", near.most, {"The largest absolute value", "m", kFromZero});
+    };
+    visit("error", group(distances), {"Distances along y from the height map's surface to the collider's"});
+    visit("missing", near.missing, {"Points where the collider has no surface so near; not in error"});
+}
+
+void fields(FieldVisitor& visit, const GroundWorstPlace& place) {
+    visit("place", place.place, {"On the surface of the height map", "[x, y, z]"});
+    visit("node", place.node, {"The tile there; empty of a single collider"});
+    visit("error", place.error, {"Distance along y to the collider's surface; null: none is so near", "m"});
+    visit("rise", place.rise, {"Rise of the square there, in its sides", {}, kFromZero});
+}
+
+void fields(FieldVisitor& visit, const GroundCheckJson& report) {
+    const GroundAccuracy& a = report.accuracy;
+    toolField(visit);
+    visit("file", report.file, {"File of the collider or the world"});
+    visit("map", a.map, {"File of the height map"});
+    visit("hash", a.hash, {.help = "XXH3-128 of the height map's file", .pattern = kHashPattern});
+    sourceFields(visit, report.heights, a.columns, a.rows);
+    visit("squares", a.squares, {"Squares with ground", {}, kFromOne});
+    visit("steep_squares", a.steep, {"Those of them that rise by more than 2.9 of their side"});
+    visit("holes", a.holes, {"Squares without ground"});
+    visit("within", a.within,
+          {"Largest distance of points near the surface from it, along y", "m", kFromZero});
+    visit("near", a.near, {"Points near the surface"});
+    visit("seams", a.seams,
+          {"Those within a leaf, four squares, of a seam between tiles; null where there is none"});
+    const auto anywhere = [&](FieldVisitor& inner) {
+        inner("points", a.anywhere_points, {"Points"});
+        fields(inner, a.anywhere);
+    };
+    visit("anywhere", group(anywhere),
+          {"Points of the map's whole box and a square around it: from what ground must be solid down to, "
+           "holes and edges included"});
+    visit("worst", a.worst, {"At most ten places, the worst first"});
+    visit("max_error_percent", report.max_error, {"--max-error; null without it", "%", kPercentRange});
+    visit("warnings", a.warnings, {"Warnings, one line each"});
+    visit("seconds", a.seconds, {"Time of the measurement", "s", kFromZero});
 }
 
 }  // namespace relief

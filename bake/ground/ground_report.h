@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of a bake of a height map, for people and for programs.
+// The reports of a bake of a height map and of a check against it, for people and for programs.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/ground/ground_bake.h"
+#include "bake/ground/ground_check.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
 #include "formats/fields/field.h"
@@ -27,5 +28,24 @@ struct GroundJson {
 };
 
 void fields(FieldVisitor& visit, const GroundJson& report);
+
+// --- The check.
+
+/// \param name  of the collider or the world, for people
+[[nodiscard]] std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& name);
+
+void fields(FieldVisitor& visit, const GroundNear& near);
+
+void fields(FieldVisitor& visit, const GroundWorstPlace& place);
+
+/// `relief check --heights --json`
+struct GroundCheckJson {
+    const GroundAccuracy& accuracy = kNone<GroundAccuracy>;
+    std::string file{};
+    std::string heights{};  ///< the settings
+    std::optional<float> max_error{};
+};
+
+void fields(FieldVisitor& visit, const GroundCheckJson& report);
 
 }  // namespace relief

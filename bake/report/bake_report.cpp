@@ -210,6 +210,18 @@ void fields(FieldVisitor& visit, const InputFile& input) {
     visit("hash", input.hash, {.help = "XXH3-128 of its contents", .pattern = kHashPattern});
 }
 
+void toolField(FieldVisitor& visit) {
+    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
+}
+
+void folderFields(FieldVisitor& visit, const std::vector<std::string>& removed, double ms,
+                  const std::vector<InputFile>& inputs, const std::vector<std::string>& warnings) {
+    visit("removed", removed, {"Containers that only the world from before named, and that are gone now"});
+    visit("ms", ms, {"Time of the whole run", "ms", kFromZero});
+    visit("inputs", inputs, {.help = "All files that it was made from", .items = kFromOne});
+    visit("warnings", warnings, {"Warnings, one line each"});
+}
+
 void fields(FieldVisitor& visit, const ColliderReport<BakedMapReport>& report) {
     colliderFields(visit, report.collider, report.info, report.maps, report.animated);
 }

@@ -77,4 +77,11 @@ void fields(FieldVisitor& visit, const RepairReport& care);
 
 void fields(FieldVisitor& visit, const InputFile& input);
 
+/// "tool", the program and its version.
+void toolField(FieldVisitor& visit);
+/// The last fields of a bake into a folder.
+/// \param removed  containers
+void folderFields(FieldVisitor& visit, const std::vector<std::string>& removed, double ms,
+                  const std::vector<InputFile>& inputs, const std::vector<std::string>& warnings);
+
 }  // namespace relief

@@ -69,8 +69,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
     visit("bytes", payload.raw_size, {"Size of all texels in memory", "bytes"});
     visit("stored_bytes", payload.stored_size, {"Size in the file", "bytes"});
     visit("compression", packingName(payload.packing),
-          {.help = "Encoding in the file: plain, a zstd frame, or rows without their empty ends",
-           .words = kWords<"none", "zstd">});
+          {.help = "Encoding in the file: plain, or a zstd frame", .words = kWords<"none", "zstd">});
     visit("offset", payload.offset, {"First byte in the file"});
     visit("object_to_map", rows, {"Rows of the affine map from object space to map space"});
     visit("object_per_map", map.object_per_map,

@@ -274,7 +274,7 @@ void fields(FieldVisitor& visit, const RecipeJson& report) {
 
 void fields(FieldVisitor& visit, const RecipeStart& start) {
     visit("event", "start", {.help = "The first line", .words = kWords<"start">});
-    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
+    toolField(visit);
     visit("recipe", start.recipe, {"Recipe as given"});
     visit("assets", start.assets, {"All assets"});
     visit("shard", shardText(start.shard), kShardField);

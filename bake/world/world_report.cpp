@@ -1,13 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/world/world_report.h"
 
-#include "bake/report/report_text.h"
+#include <algorithm>
+#include <utility>
+
+#include "bake/report/check_report.h"
+#include "formats/base/text.h"
+#include "formats/fields/text.h"
 
 namespace relief {
 namespace {
 
 std::string wrongText(const WorldColliderResult& collider) {
     return collider.wrong ? percentText(collider.wrong->total()) : "-";
+}
+
+/// Advice, each sentence once, behind the bodies that it is for.
+std::string adviceLines(const WorldField& field, const WorldAccuracy& accuracy) {
+    std::vector<std::pair<std::string, std::string>> lines;  // advice, bodies
+    for (std::size_t i = 0; i < accuracy.places.size(); ++i) {
+        const std::string advice = WorldPlaceReport{&field, accuracy, i}.advice();
+        if (advice.empty()) {
+            continue;
+        }
+        const std::string body = std::to_string(accuracy.worst[i]);
+        const auto line = std::ranges::find(lines, advice, &std::pair<std::string, std::string>::first);
+        if (line == lines.end()) {
+            lines.emplace_back(advice, body);
+        } else {
+            line->second += ", " + body;
+        }
+    }
+    std::string text;
+    for (const auto& [advice, bodies] : lines) {
+        text += (text.empty() ? "\n" : "") + bodies + ": " + advice + "\n";
+    }
+    return text;
 }
 
 }  // namespace
@@ -78,7 +106,7 @@ void fields(FieldVisitor& visit, const WorldColliderReport& report) {
 
 void fields(FieldVisitor& visit, const WorldBakeJson& report) {
     const WorldBakeResult& r = report.result;
-    visit("tool", std::string("relief ") + RELIEF_VERSION, {"Name and version of the program"});
+    toolField(visit);
     visit("output", report.output, {"Folder of the world as given"});
     visit("written", r.written, {"Whether its world.json is there; false if a collider failed"});
     visit("unit", r.world.unit, {"Unit of lengths: m, or empty"});
@@ -89,11 +117,155 @@ void fields(FieldVisitor& visit, const WorldBakeJson& report) {
     visit("baked", r.countOf(WorldColliderState::kBaked), {"Colliders that were baked"});
     visit("up_to_date", r.countOf(WorldColliderState::kUpToDate), {"Colliders that were left as they were"});
     visit("failed", r.countOf(WorldColliderState::kFailed), {"Colliders that failed"});
-    visit("removed", r.removed, {"Containers that only the world from before named, and that are gone now"});
-    visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
-    visit("inputs", r.inputs, {.help = "All files that it was made from", .items = kFromOne});
-    visit("warnings", r.warnings, {"Warnings of the level, one line each"});
+    folderFields(visit, r.removed, report.ms, r.inputs, r.warnings);
     visit("colliders", viewsOf<WorldColliderReport>(r.colliders), {"Colliders, in the order of the world"});
+}
+
+std::uint64_t gpuBytesOf(const WorldField& field) {
+    std::uint64_t bytes = 0;
+    for (const Collider& collider : field.colliders()) {
+        bytes += collider.texelBytes();
+    }
+    return bytes;
+}
+
+Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit) {
+    const bool lost = !accuracy.lost.empty();
+    const std::string grade = lost ? "poor" : accuracy.coarse > 0 ? "fair" : "good";
+    const std::string but = countText(lost ? accuracy.lost.size() : accuracy.coarse, "mesh", "meshes") +
+                            (lost ? " lost parts" : " with coarse parts");
+    return verdictOf(accuracy.all.total(), grade, but, accuracy.ignored, unit);
+}
+
+std::string WorldPlaceReport::advice() const {
+    if (body().wrong.total() <= kGoodPercent) {
+        return "";
+    }
+    switch (place().cause) {
+        case WorldCause::kMoved:
+            return "the world has it elsewhere than the level: bake the level again";
+        case WorldCause::kFloats:
+            return "floats are coarse so far from the origin of its mesh: move the mesh there, and its node "
+                   "back";
+        case WorldCause::kTexel:
+            return "it is finer than the texels: bake with --budget " +
+                   bytesWord(roundBudget(2 * gpuBytesOf(*field))) +
+                   ", which makes them about 0.7 times as wide";
+        case WorldCause::kMesh:
+            break;
+    }
+    return "more than texels are wide: its mesh may be open there, or faces cross; mend it, or name what it "
+           "is by "
+           "--as " +
+           shellQuoted((body().node.empty() ? body().mesh : body().node) + "=solid") + ", shell or terrain";
+}
+
+std::string worldCheckText(const WorldField& field, const std::string& name, const WorldAccuracy* accuracy) {
+    std::string text = name + ": " + countText(field.world().bodies.size(), "body", "bodies") + " of " +
+                       countText(field.world().colliders.size(), "collider") + ", " +
+                       bytesText(gpuBytesOf(field));
+    if (accuracy == nullptr) {
+        return text + "; every container is there, and as the world has it\n";
+    }
+    const std::uint64_t points = accuracy->bodies.front().points;
+    text += "\n" + percentText(accuracy->all.total()) +
+            " of the points near the surface are on the wrong side (" +
+            percentText(accuracy->all.false_inside) + " inside by mistake, " +
+            percentText(accuracy->all.false_outside) + " outside), of " + countText(points, "point") +
+            " for each body\n" + verdictOf(*accuracy, field.world().unit).text + "\n";
+    for (const LostParts& mesh : accuracy->lost) {
+        text += (&mesh == &accuracy->lost.front() ? "\nLost parts, each by its own size:\n  " : "  ") +
+                mesh.mesh + ": " + mesh.text + "\n";
+    }
+    if (accuracy->worst.empty()) {
+        return text;
+    }
+    std::vector<std::vector<std::string>> rows = {
+        {"worst body", "node", "mesh", "wrong>", "for example at", "off by>", "texels>"}};
+    const std::string& unit = field.world().unit;
+    for (std::size_t i = 0; i < accuracy->worst.size(); ++i) {
+        const BodyAccuracy& body = accuracy->bodies[accuracy->worst[i]];
+        const WorldPlace& place = accuracy->places[i];
+        rows.push_back({std::to_string(accuracy->worst[i]), body.node, body.mesh,
+                        percentText(body.wrong.total()), positionText(body.place),
+                        lengthText(place.distance, unit),
+                        place.texel > 0.0 ? lengthText(place.texel, unit) : "-"});
+    }
+    return text + "\n" + table(rows) + adviceLines(field, *accuracy);
+}
+
+void fields(FieldVisitor& visit, const WorldPlaceReport& report) {
+    const bool schema = report.field == nullptr;
+    const WorldPlace& place = schema ? kNone<WorldPlace> : report.place();
+    const BodyAccuracy& body = schema ? kNone<BodyAccuracy> : report.body();
+    visit("body", schema ? std::size_t{0} : report.accuracy.worst[report.number],
+          {"Index of the body in bodies"});
+    visit("node", body.node, {"Name of its node in the level"});
+    visit("mesh", body.mesh, {"Name of its mesh"});
+    visit("wrong_percent", body.wrong.total(),
+          {"Share of the points near it that are on the wrong side", "%", kPercentRange});
+    visit("position", body.place, {"A typical point on the wrong side, in the world", "[x, y, z]"});
+    visit("normal", place.normal, {"Of the surface beside it, outwards", "[x, y, z]"});
+    visit("distance", place.distance, {"From that surface", "world units", kFromZero});
+    visit("texel", place.texel,
+          {"Side of the texels of the body that decides there; 0: none does", "world units", kFromZero});
+    visit(
+        "cause", place.cause,
+        {"moved: the world has the node elsewhere; texel: the point is less than a texel and a half from the "
+         "surface; mesh: it is farther"});
+    visit("advice", schema ? std::string() : report.advice(),
+          {"What to do, one sentence; empty of a body with at most 1 % wrong"});
+}
+
+void fields(FieldVisitor& visit, const LostParts& parts) {
+    visit("mesh", parts.mesh, {"Name of the mesh"});
+    visit("lost", parts.lost, {"Parts that its collider loses, each judged by its own size", {}, kFromOne});
+    visit("text", parts.text, {"How many of how many, the largest, and what would keep it"});
+}
+
+void fields(FieldVisitor& visit, const BodyAccuracy& body) {
+    visit("node", body.node, {"Name of its node in the level"});
+    visit("mesh", body.mesh, {"Name of its mesh"});
+    visit("points", body.points, {"Points near its surface", {}, kFromOne});
+    fields(visit, body.wrong);
+    visit("tiles", body.tiles,
+          {"Bodies of the world that follow those of the body before: several of a mesh in tiles; 0 of all "
+           "if the level has other nodes"});
+    visit("place", body.place,
+          {"A typical point on the wrong side, in the world; the body's position without any", "[x, y, z]"});
+}
+
+void fields(FieldVisitor& visit, const WorldCheckJson& report) {
+    const World& world = report.field != nullptr ? report.field->world() : kNone<World>;
+    const WorldAccuracy& accuracy = report.accuracy != nullptr ? *report.accuracy : kNone<WorldAccuracy>;
+    toolField(visit);
+    visit("file", report.file, {"File of the world"});
+    visit("unit", world.unit, {"Unit of lengths: m, or empty"});
+    visit("bodies", world.bodies.size(), {"Bodies"});
+    visit("colliders", world.colliders.size(), {"Colliders"});
+    visit("gpu_bytes", report.field != nullptr ? gpuBytesOf(*report.field) : std::uint64_t{0},
+          {"Bytes that the colliders take on the GPU", "bytes"});
+    visit("verdict",
+          report.accuracy != nullptr ? std::optional(verdictOf(accuracy, world.unit)) : std::nullopt,
+          {"Summary; null without --mesh"});
+    visit("accuracy",
+          groupIf(report.accuracy != nullptr,
+                  [&](FieldVisitor& inner) {
+                      fields(inner, accuracy.all);
+                      inner("max_error_percent", report.max_error,
+                            {"--max-error; null without it", "%", kPercentRange});
+                      inner("worst", accuracy.worst,
+                            {"Indices of the bodies that are most often wrong, the worst first"});
+                      inner("places", placesOf(report),
+                            {"Of those the place where each is typically wrong, and what to do"});
+                      inner("lost_parts", accuracy.lost, {"Meshes that lose parts"});
+                      inner("ignored_parts", accuracy.ignored,
+                            {"Parts that the grade ignores because they are small; sizes in the world"});
+                      inner("bodies", accuracy.bodies, {"Bodies, in the order of the level"});
+                      inner("warnings", accuracy.warnings, {"Warnings, one line each"});
+                      inner("seconds", accuracy.seconds, {"Time of the measurement", "s", kFromZero});
+                  }),
+          {"The world measured against its level; null without --mesh"});
 }
 
 }  // namespace relief
