@@ -19,13 +19,13 @@ Bounds volumeBox(const DepthMap& map) {
         map.projection() == Projection::kLocal ? glm::vec3(patchTreeSize(map.texels).roots) : glm::vec3(1.0F);
     Bounds box;
     for (int corner = 0; corner < 8; ++corner) {
-        glm::vec3 p(0.0F);
+        glm::dvec3 p(0.0);
         for (int i = 0; i < 3; ++i) {
-            const glm::vec4& row = map.object_to_map.row[i];
-            const glm::vec3 axis(row);
+            const glm::dvec4 row = map.object_to_map.row[i];
+            const glm::dvec3 axis(row);
             p += axis * (((corner >> i & 1) != 0 ? high[i] : low) - row.w) / glm::dot(axis, axis);
         }
-        box.add(p);
+        box.add(glm::vec3(p));
     }
     return box;
 }

@@ -59,11 +59,6 @@ std::array<std::uint32_t, 2> coarseIndex(const glm::vec3& normal) {
     return {coarse(fine.s), coarse(fine.t)};
 }
 
-PatchFrame frameOf(const PatchRecord& patch) {
-    return {static_cast<std::uint8_t>(patch.low >> 5U & 3U), static_cast<std::uint8_t>(patch.low >> 7U & 3U),
-            static_cast<std::uint8_t>(patch.low >> 9U & 3U)};
-}
-
 /// A distance of the given side of the surface, no nearer than that is known.
 float onSide(bool inside, float distance, float nearest) {
     return inside ? std::min(distance, -nearest) : std::max(distance, nearest);
@@ -73,7 +68,7 @@ float onSide(bool inside, float distance, float nearest) {
 constexpr float kNearest = 1.0F / 1024.0F;
 
 PatchVote votePatch(PatchTexels texels, const PatchRecord& patch, const glm::vec3& in_cell) {
-    const PatchFrame frame = frameOf(patch);
+    const PatchFrame frame = patch.frame();
     const std::uint32_t side = patch.side();
     const glm::vec3 at = frame.across(in_cell);
     const auto last = static_cast<float>(side - 1);
@@ -229,6 +224,11 @@ void PatchHeights::decode(std::span<double> out) const {
     for (std::size_t i = 0; i < std::size_t{side} * side; ++i) {
         out[i] = double{low()} + double{step()} * codes[i];
     }
+}
+
+PatchFrame PatchRecord::frame() const {
+    return {static_cast<std::uint8_t>(low >> 5U & 3U), static_cast<std::uint8_t>(low >> 7U & 3U),
+            static_cast<std::uint8_t>(low >> 9U & 3U)};
 }
 
 PatchRecord PatchRecord::flat(bool inside, const glm::vec3& normal, float distance) {
@@ -397,7 +397,7 @@ Result<void> validatePatches(PatchTexels texels) {
     };
     const auto check = [&](std::uint32_t index) -> Result<void> {
         const PatchRecord record = patchTexel(texels, index);
-        const PatchFrame frame = frameOf(record);
+        const PatchFrame frame = record.frame();
         const std::uint32_t side = record.side();
         if (record.kind() != PatchRecord::Kind::kPatch || side == 0 || frame.diagonal > 2 ||
             frame.first > 2) {

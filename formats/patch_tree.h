@@ -96,6 +96,7 @@ struct PatchRecord {
     [[nodiscard]] std::uint32_t children() const { return low >> 2U & 0xffU; }  ///< of a split cell: a mask
     /// Heights along each side of a patch; 0 of a pair.
     [[nodiscard]] std::uint32_t side() const { return std::array{2U, 3U, 5U, 0U}[low >> 2U & 3U]; }
+    [[nodiscard]] PatchFrame frame() const;                                 ///< of a patch
     [[nodiscard]] std::uint32_t first() const { return high & 0xffffffU; }  ///< of a split cell or a patch
 
     /// \param distance  of the nearest plane from the cell's middle, root cells.

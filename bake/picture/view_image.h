@@ -28,11 +28,13 @@ inline constexpr std::uint32_t kViewSizeMax = 4096;
 /// "view_+x.exr"
 [[nodiscard]] std::string viewImageName(int view);
 
-/// A view of the bounds. Depths are exact to 1/1024 of a step of the ray, which is at most half of a patch's cell beside a surface.
-/// A wall or a gap may be missed if it is thinner, along the ray, than 1/64 of its cell plus 1/8 of the finest texel
-/// (finestTexel). The result does not depend on the number of threads.
+/// A view of the bounds. Depths are exact to 1/1024 of a step of the ray, which is at most a patch's cell beside a surface.
+/// A wall or a gap may be missed if it is thinner, along the ray, than 1/64 of its cell plus 1/8 of the finest texel (finestTexel;
+/// or 1/16384 of the ray); plus 1/4 of its cell between the two surfaces of a pair of patches; plus the finest texel if the collider
+/// has several maps.
+/// The result does not depend on the number of threads.
 /// \param view  index of kDirectionNames. \param size  texels along the longer side; kViewSizeMin … kViewSizeMax.
-/// Errors: kInvalidInput (bounds too large for floats), kLimit (out of memory).
+/// Errors: kInvalidInput (bounds or maps too large for floats), kLimit (out of memory).
 [[nodiscard]] Result<ExrImage> viewImage(const Collider& collider, int view, std::uint32_t size);
 
 }  // namespace relief

@@ -10,6 +10,7 @@
 #include "tests/bake/meshes.h"
 #include "tests/bake/picture/exr_file.h"
 #include "tests/bake/threads.h"
+#include "tests/formats/random_patches.h"
 
 namespace relief::test {
 namespace {
@@ -173,7 +174,46 @@ TEST(ViewImage, OfTinyAndOfHugeColliders) {
         const View image(box, 0, 16);
         EXPECT_EQ(image.grid.height, 2U);
         EXPECT_EQ(image.grid.width, 16U);
+        const View above(box, 2, 16);
+        above.forEach([&](const glm::vec3&, std::size_t pixel) {
+            ASSERT_NEAR(above.front[pixel], 0.0, 0.005 * scale);
+            ASSERT_NEAR(above.back[pixel], 0.02 * scale, 0.005 * scale);
+        });
     }
+}
+
+// A ridge along y at x = 0.5, as high as the cell, in one patch: beside it the surface is a flat floor at z = 0.
+TEST(ViewImage, OfARidgeWithinAPatch) {
+    PatchHeights heights;
+    heights.side = 5;
+    heights.scale = 12 << 4;
+    for (std::size_t i = 2; i < 25; i += 5) {
+        heights.codes[i] = 255;
+    }
+    Collider ridge;
+    ridge.maps = {patchesOf({{1, 1, 1}, 0}, {PatchRecord::patch({0, 2, 0}, false, heights, 2),
+                                             heights.texel(0), heights.texel(1), heights.texel(2)})};
+    ridge.maps[0].encloses = ridge.maps[0].empty_is_outside = true;
+    // Bounds of a point limit neither the field nor the steps of a ray, half of which pass the tree.
+    for (const glm::vec3& size : {glm::vec3(1.0F), glm::vec3(0.0F)}) {
+        ridge.bounds = {glm::vec3(0.0F), size};
+        const View image(ridge, 0, size.x > 0.0F ? 32 : 2);
+        image.forEach([&](const glm::vec3& p, std::size_t pixel) {
+            if (p.y < 0.0F || p.z < 0.0F) {
+                ASSERT_TRUE(image.empty(pixel));
+            } else if (p.z < 0.95F) {
+                ASSERT_NEAR(image.front[pixel], 0.25F + 0.25F * p.z, 1e-3);
+                ASSERT_NEAR(image.back[pixel], 0.75F - 0.25F * p.z, 1e-3);
+            }
+        });
+    }
+    for (int i = 0; i < 3; ++i) {
+        glm::vec4& row = ridge.maps[0].object_to_map.row[i];
+        row = glm::vec4(2e-38F * glm::vec3(row), -9.0F);
+    }
+    const Result<ExrImage> refused = viewImage(ridge, 0, 2);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
 }
 
 }  // namespace
