@@ -34,25 +34,4 @@ TexelRay rayThrough(const DepthMap& map, std::uint32_t face, double x, double y)
     return {start, object_from_map * glm::normalize(through[face])};
 }
 
-double planeDepth(const TexelRay& ray, const glm::dvec3& normal, const glm::dvec3& point) {
-    return glm::dot(normal, point - ray.origin) / glm::dot(normal, ray.direction);
-}
-
-glm::dvec3 turnedToViewer(const glm::dvec3& normal, const glm::dvec3& viewer) {
-    // cos(a − e) ≤ cos a + e, so e more than the bound survives a turn by e.
-    constexpr double kCosine = double{kPlaneCosineMin} + kNormalIndexError;
-    const glm::dvec3 n = glm::normalize(normal);
-    const glm::dvec3 v = glm::normalize(viewer);
-    const double cosine = glm::dot(n, v);
-    if (cosine >= kCosine) {
-        return n;
-    }
-    const glm::dvec3 across = n - cosine * v;
-    const double length = glm::length(across);
-    if (!(length > 1e-9)) {  // looks straight away: no direction to turn in is better than another
-        return v;
-    }
-    return kCosine * v + (std::sqrt(1.0 - kCosine * kCosine) / length) * across;
-}
-
 }  // namespace relief
