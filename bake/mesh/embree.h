@@ -19,7 +19,7 @@ namespace relief {
 /// For rtcNewDevice(). By default Embree runs the widest instruction set of the processor. Fused multiply-add changes
 /// which rays meet an edge, and the vector width which of two surfaces at one depth comes first, so that another
 /// processor would bake other bytes. Hence one set for all, that of every processor since 2008; others get Embree's
-/// error. It costs about a tenth of a planned bake.
+/// error. It costs about a tenth of a bake.
 #if defined(__x86_64__)
 inline constexpr const char* kEmbreeConfig = "isa=sse4.2";
 #else

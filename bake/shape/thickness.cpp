@@ -27,7 +27,7 @@ double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
 }
 
 double thicknessOfTexel(const Bounds& bounds, double texel) {
-    // A float, which containers and plans record exactly.
+    // A float, which containers record exactly.
     return double{static_cast<float>(std::min(1.5 * texel, 0.04 * double{bounds.longestSide()}))};
 }
 

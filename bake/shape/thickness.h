@@ -13,7 +13,7 @@ namespace relief {
 /// The largest --thickness, in units of the mesh's longest side.
 inline constexpr double kThicknessMax = 0.5;
 
-/// One and a half texels of a planned bake of this box, for walls that fill their texels; at most 4 % of its longest side.
+/// One and a half texels of a bake of this box, for walls that fill their texels; at most 4 % of its longest side.
 /// \param budget_bytes  of all texels.
 [[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
 /// The same of a texel that is given.

@@ -58,7 +58,7 @@ struct FieldWords {
 /// Errors: kUsage: no field has the name, or its value is wrong; names the option.
 [[nodiscard]] Result<void> setField(FieldRef target, std::string_view name, std::string_view word);
 
-/// "1MB", "60", "normal, or the plan's"; empty: there is no default.
+/// "1MB", "60", "512; with --holes keep and --animated, 256"; empty: there is no default.
 [[nodiscard]] std::string defaultText(const FieldWords& field);
 /// Stands for the value in --help: "BYTES", "fast|normal|best".
 [[nodiscard]] std::string valueText(const FieldWords& field);
