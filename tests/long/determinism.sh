@@ -3,7 +3,7 @@
 # Bakes meshes in surroundings that must not matter, and compares the bytes: tests/long/determinism.sh [--quick | --page].
 # Prints a table of SHA-256 and ends with 0 if no mesh has two; 7 if one has.
 #
-#   (nothing)   204 bakes: ten meshes, the paper's maps and planned ones; threads, locale, time zone, folder, umask,
+#   (nothing)   204 bakes: ten meshes, the paper's maps and patches; threads, locale, time zone, folder, umask,
 #               GCC -O2, GCC -O0 and Clang, glibc without FMA and AVX2, and two other processors by QEMU
 #   --quick     two meshes in six cells, with the executables in RELIEF_BIN alone
 #   --page      the full run, and its table into bake/measure/trust.md
@@ -56,7 +56,7 @@ no_fma=GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable
 turkish=LC_ALL=tr_TR.UTF-8
 
 paper=(--paper --resolution 128)
-planned=(--budget 100kB)
+patches=(--budget 100kB)
 failed=0
 count=0
 declare -A first
@@ -108,8 +108,8 @@ if [ "$mode" = --quick ]; then
         # shellcheck disable=SC2046
         cell 'Nehalem (SSE4.2)' gcc "$mesh" paper $(cpu Nehalem) -- -j 1
     done
-    cell 'as it is' gcc "$(off lion-head)" planned --
-    elsewhere planned "$(off lion-head)"
+    cell 'as it is' gcc "$(off lion-head)" patches --
+    elsewhere patches "$(off lion-head)"
 else
     meshes=("$bunny")
     for name in fandisk cheese lion-head refined_elephant couplingdown anchor_dense camel man knot2; do
@@ -130,17 +130,17 @@ else
         # shellcheck disable=SC2046
         cell 'Haswell (AVX2, FMA)' gcc "$mesh" paper $(cpu Haswell) --
 
-        cell 'as it is' gcc "$mesh" planned --
-        cell 'threads 1' gcc "$mesh" planned -- -j 1
-        cell 'threads 8' gcc "$mesh" planned -- -j 8
-        elsewhere planned "$mesh"
-        cell 'glibc without FMA' gcc "$mesh" planned env "$no_fma" --
-        cell 'Clang -O2' clang "$mesh" planned --
+        cell 'as it is' gcc "$mesh" patches --
+        cell 'threads 1' gcc "$mesh" patches -- -j 1
+        cell 'threads 8' gcc "$mesh" patches -- -j 8
+        elsewhere patches "$mesh"
+        cell 'glibc without FMA' gcc "$mesh" patches env "$no_fma" --
+        cell 'Clang -O2' clang "$mesh" patches --
     done
     for mesh in "${meshes[@]:1:2}"; do
-        cell 'GCC -O0' debug "$mesh" planned --
+        cell 'GCC -O0' debug "$mesh" patches --
         # shellcheck disable=SC2046
-        cell 'Nehalem (SSE4.2)' gcc "$mesh" planned $(cpu Nehalem) --
+        cell 'Nehalem (SSE4.2)' gcc "$mesh" patches $(cpu Nehalem) --
     done
 fi
 
@@ -159,7 +159,7 @@ two = sum(len(digests) > 1 for digests in table.values())
 summary = f'{len(rows)} bakes of {len(table)} mesh and map choices in {len(cells)} surroundings: {two} with two hashes.'
 print('\n'.join(lines + ['', summary]))
 if sys.argv[2] == '--page':
-    body = '\n'.join(['Written by `tests/long/determinism.sh --page`; “planned” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
+    body = '\n'.join(['Written by `tests/long/determinism.sh --page`; “patches” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
                       '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.', ''] + lines)
     open(sys.argv[3], 'w').write(body + '\n')
 P
