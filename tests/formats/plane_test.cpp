@@ -4,15 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <random>
 
 #include "formats/collider.h"
-#include "formats/normal_index.h"
-#include "formats/validate.h"
 #include "tests/formats/analytic_shapes.h"
 
 namespace relief {
