@@ -145,7 +145,8 @@ bool isLimit(IssueCode code) {
            code == IssueCode::kMapSizeLimit || code == IssueCode::kTexelLimit;
 }
 
-/// How to come by a file that loads; "" where the message has it.
+}  // namespace
+
 std::string cureOf(IssueCode code, std::uint16_t major) {
     switch (code) {
         case IssueCode::kTooShort:
@@ -158,8 +159,6 @@ std::string cureOf(IssueCode code, std::uint16_t major) {
             return isLimit(code) ? "" : "; copy the file again, or bake it again";
     }
 }
-
-}  // namespace
 
 std::uint64_t containerSizeMax(const ContainerLimits& limits) {
     const std::uint64_t texel_bytes = std::min(limits.texel_bytes, std::uint64_t{1} << 62);
@@ -181,7 +180,7 @@ void ContainerReader::readDescription() {
     }
 }
 
-/// Checks the signature, the checksum and the version, and the fields that version 2 fixes.
+/// Checks the signature, the version and the checksum, and the fields that version 2 fixes.
 /// \return whether the rest of the header can be understood.
 bool ContainerReader::readHeader() {
     if (bytes_.size() < sizeof(header)) {
@@ -196,18 +195,17 @@ bool ContainerReader::readHeader() {
         return false;
     }
     header = read;
-    header_state = PartState::kDamaged;
-    header_intact_ = header.header_hash == header.computeHash();
-    if (!header_intact_) {
-        add(IssueCode::kHeaderChecksum, "the checksum of the header is wrong", 56);
-    }
     const ContainerHeader expected;
+    // Another major version may have another layout, and another checksum.
     if (header.major != expected.major) {
-        header_state = PartState::kUnreadable;
         add(IssueCode::kMajorVersion, "container version " + std::to_string(header.major) + "." +
                                           std::to_string(header.minor) + ", this program reads version " +
                                           std::to_string(kContainerMajor));
         return false;
+    }
+    header_intact_ = header.header_hash == header.computeHash();
+    if (!header_intact_) {
+        add(IssueCode::kHeaderChecksum, "the checksum of the header is wrong", 56);
     }
     if (header.header_size != expected.header_size || header.reserved != expected.reserved ||
         header.metadata_offset != expected.metadata_offset) {
@@ -447,12 +445,9 @@ bool ContainerReader::readTexels(std::size_t index) {
 }
 
 std::optional<Error> ContainerReader::refusal() const {
-    const auto of = [&](auto matches) { return std::find_if(issues.begin(), issues.end(), matches); };
-    // A later major version may lay out all the rest differently, its checksum too.
-    auto first = of([](const Issue& issue) { return issue.code == IssueCode::kMajorVersion; });
-    if (first == issues.end()) {
-        first = of([](const Issue& issue) { return issue.severity() != Severity::kWarning; });
-    }
+    const auto first = std::find_if(issues.begin(), issues.end(), [](const Issue& issue) {
+        return issue.severity() != Severity::kWarning;
+    });
     if (first == issues.end()) {
         return std::nullopt;
     }

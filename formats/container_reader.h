@@ -119,6 +119,10 @@ class ContainerReader {
     bool header_intact_ = false;
 };
 
+/// How to get a file that loads, to append to the issue's message; "" if that names it.
+/// \param major  of the file.
+[[nodiscard]] std::string cureOf(IssueCode code, std::uint16_t major);
+
 /// kUnsupported for another major version, kLimit if limits are all that is wrong, else kInvalidInput.
 [[nodiscard]] ErrorCode errorCodeOf(std::span<const Issue> issues);
 

@@ -67,7 +67,7 @@ Result<void> checkFile(const std::string& file, bool json, const ContainerLimits
         if (issue.severity() != Severity::kWarning) {
             const std::string map = issue.map >= 0 ? "map " + std::to_string(issue.map) + ": " : "";
             return fail(inspection.errorCode(), quoted + " cannot be used: " + issue.id() + ", " + map +
-                                                    issue.message + "; copy it again, or bake it again");
+                                                    issue.message + cureOf(issue.code, inspection.major));
         }
     }
     return {};

@@ -129,6 +129,7 @@ json stdout 'd["errors"] == 2 and [m["state"] for m in d["maps"]] == ["sound", "
 cp b.relief later.relief
 printf '\3' | dd of=later.relief bs=1 seek=12 conv=notrunc status=none
 expect 5 "$relief" check later.relief
+grep -q 'RLF-1003, .*version 3\..*; use a newer Relief$' stderr || die "the cure of a later version: $(cat stderr)"
 
 # Fresh bakes have no issues, not even boxes whose faces lie at the end of their maps.
 for options in '--budget 60kB' '--paper --resolution 32' '--map float:size=32 --map fixed8:dir=1/2/3,size=32,compare=greater --map cube:size=16'; do

@@ -89,6 +89,7 @@ TEST(Container, VersionsBeforeTwoAreRefusedInOneLineWithTheCure) {
         std::memcpy(bytes.data() + 14, &minor, sizeof(minor));
         const Result<Collider> read = readContainer(bytes);
         EXPECT_FALSE(read);
+        EXPECT_EQ(inspectContainer(bytes)->issues.size(), 1U) << "the checksum, too, is of another version";
         return read ? "" : read.error().message;
     };
     EXPECT_EQ(refusedAs(1, 6), "container version 1.6, this program reads version 2: bake the mesh again");
