@@ -153,18 +153,25 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
     if (!(needed > 0.0) || (patches && !cure.empty() && texel <= right)) {
         return cure;
     }
-    auto bytes = static_cast<double>(collider.texelBytes());
     if (patches) {
         // Cells are split where the mistakes are: no other part takes as much more.
-        bytes *= kMorePatches;
+        const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
         cure += cure.empty() ? "its patches' heights are " + lengthText(texel, collider.unit) + " apart; try "
                              : ", and try ";
+        cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
     } else {
-        bytes *= (texel / needed) * (texel / needed);
+        std::uint32_t side = 0;
+        for (const DepthMap& map : collider.maps) {
+            side = std::max({side, map.width, map.height});
+        }
+        const double resolution = std::ceil(side * (texel / needed));
         cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
         cure += "texels of " + lengthText(needed, collider.unit) + " take ";
+        if (resolution <= kMapSizeMax) {
+            const std::string texels = std::to_string(static_cast<std::uint32_t>(resolution));
+            cure += "--resolution " + texels + " (--map: size=" + texels + "), or ";
+        }
     }
-    cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
     return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
 }
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "bake/report/parts_report.h"
+#include "tests/formats/analytic_shapes.h"
+
 namespace relief {
 namespace {
 
@@ -25,6 +28,19 @@ TEST(SizeReport, AForgottenUnitIsNamedWithWhatItWouldMake) {
     EXPECT_NE(person->find("with --unit cm 0.5 x 1.8 x 0.3 m, with --unit mm 0.05 x 0.18 x 0.03 m"),
               std::string::npos)
         << *person;
+}
+
+TEST(PartCure, OfMapsIsTheirSizeAndNoBudget) {
+    Collider collider;
+    collider.maps = {test::emptyMap(test::centeredFrame({0, 0, 0}, glm::dmat3(1.0), {4, 4, 4}),
+                                    MapFormat::kFloat32, Compare::kLess, 64, 64)};
+    collider.bounds = {glm::vec3(-2.0F), glm::vec3(2.0F)};
+    SurfacePart rod;
+    rod.bounds = {glm::vec3(0.0F), {1.0F, 0.046875F, 0.046875F}};
+    EXPECT_EQ(
+        partCure(rod, collider),
+        "its texels are 0.062 wide; texels of 0.016 take --resolution 256 (--map: size=256), or a bake of "
+        "this part by itself");
 }
 
 }  // namespace
