@@ -393,14 +393,17 @@ class Bake {
     [[nodiscard]] Result<void> checkCovered() const {
         const std::vector<MapReport>& maps = baked_.report.maps;
         if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
-            return fail(ErrorCode::kFailure,
-                        mesh_->name + ": no map sees a surface of the mesh" +
-                            (options_.budget > 0
-                                 ? ", whose parts are smaller than a texel of " +
-                                       shortest(static_cast<float>(finestTexel())) + " in a box of " +
-                                       shortest(mesh_->bounds.longestSide()) +
-                                       "; bake parts that lie far apart by themselves, or raise --budget"
-                                 : "; raise the maps' sizes, or change their dir or box"));
+            const auto tree = std::find_if(jobs_.begin(), jobs_.end(),
+                                           [](const Job& job) { return kindOf(job) == Kind::kPatches; });
+            return fail(
+                ErrorCode::kFailure,
+                mesh_->name + ": no map sees a surface of the mesh" +
+                    (tree != jobs_.end() ? ", whose parts are smaller than a texel of " +
+                                               shortest(static_cast<float>(finestTexel())) + " in a box of " +
+                                               shortest(mesh_->bounds.longestSide()) +
+                                               "; bake parts that lie far apart by themselves, or " +
+                                               (tree->spec.texel > 0.0F ? "lower --texel" : "raise --budget")
+                                         : "; raise the maps' sizes, or change their dir or box"));
         }
         return {};
     }
