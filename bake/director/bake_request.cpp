@@ -88,8 +88,8 @@ std::string conflictOf(const BakeRequest& request, const BakeSettings& settings)
     }
     const bool axis_maps = settings.source == MapSource::kPatches && request.holes == Holes::kKeep;
     if (request.resolution && settings.source == MapSource::kPatches && !axis_maps) {
-        return "--resolution does nothing for patches; leave it out, set --budget, or choose --map or "
-               "--paper";
+        return "--resolution does nothing for patches; leave it out, set --budget, or choose --map, --paper "
+               "or --holes keep";
     }
     if (axis_maps && (request.budget || request.texel || request.max_error)) {
         return std::string(request.budget  ? "--budget"
@@ -146,9 +146,6 @@ bool isRecorded(std::string_view name) {
 
 /// Takes one option of a record. \return whether it is one that a bake records, with a value that makes sense.
 bool take(std::string_view name, std::string_view value, BakeRequest& request) {
-    if (name == "backend") {
-        return true;  // of older versions: raster, whose bakes were drawn on the GPU
-    }
     BakeRequest changed = request;
     if (!isRecorded(name) || !setField(changed, name, value) || !parseShapeOptions(changed.as) ||
         !wrapAlpha(changed.repair.method) || (name == "map" && !parseMapSpec(value)) ||
@@ -227,7 +224,8 @@ void fields(FieldVisitor& visit, BakeRequest& request) {
                  "dir      direction the view looks in: +x -x +y -y +z -z or a/b/c\n"
                  "up       direction that points upwards in the image: as dir\n"
                  "size     texels, N or WxH (cube: N)\n"
-                 "compare  less or greater: keep the nearest or the farthest surface; of front-back\n"
+                 "compare  less or greater: keep the nearest or the farthest surface; not of front-back, "
+                 "which keeps both\n"
                  "center   a/b/c, where a cube looks from\n"
                  "depth    of front-back maps: unorm16, or half (the paper's)\n"
                  "decode   plane: fitted to the whole texel, or projected (the paper's)\n"
