@@ -134,11 +134,13 @@ class GroundBaker {
     Result<GroundResult> run() {
         RELIEF_TRY(checkPlace());
         const Result<void> done = options_.folder.empty() ? bakeWhole() : bakeTiles();
-        if (!done && done.error().code == ErrorCode::kLimit && map_.isRaw()) {
+        if (!done && done.error().code == ErrorCode::kLimit) {
             const LikelierFormat format = map_.likelierFormat();
-            return fail(ErrorCode::kLimit,
-                        done.error().message + "; " +
-                            (format.found() ? cureBy(format) : "check --heights type and order too"));
+            if (format.found() || format.doubtful) {
+                return fail(ErrorCode::kLimit,
+                            done.error().message + "; " +
+                                (format.found() ? cureBy(format) : "check --heights type and order too"));
+            }
         }
         RELIEF_TRY(done);
         warn();

@@ -239,10 +239,11 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     const std::array<RawFormat, 4> formats = {ofTwoBytes(ByteOrder::kLittle), ofTwoBytes(ByteOrder::kBig),
                                               RawFormat{SampleType::kFloat32, ByteOrder::kLittle},
                                               RawFormat{SampleType::kFloat32, ByteOrder::kBig}};
+    const auto roughnessOf = [&](const RawFormat& format) {
+        return variationOf(bytes, spec, format).value_or(Variation()).roughness();
+    };
     std::array<double, 4> roughness{};
-    for (std::size_t i = 0; i < formats.size(); ++i) {
-        roughness.at(i) = variationOf(bytes, spec, formats.at(i)).value_or(Variation()).roughness();
-    }
+    std::transform(formats.begin(), formats.end(), roughness.begin(), roughnessOf);
     const std::size_t in_order = own.order == ByteOrder::kLittle ? 0 : 1;
     std::size_t best = own.bytes() == 2 ? in_order : 2 + in_order;
     const std::size_t swapped = 1 - in_order;
@@ -253,8 +254,8 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
         best = swapped;
     }
     const RawFormat first = formats.at(best);
+    constexpr double kNoise = 1.3;
     if (first.order != own.order || first == own) {
-        constexpr double kNoise = 1.3;
         double least = 0.5 * std::min(roughness.at(best), kNoise);
         for (std::size_t i = 0; i < formats.size(); ++i) {
             if (roughness.at(i) < least) {
@@ -271,6 +272,14 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     if (found.order != own.order) {
         likelier.order = found.order;
         likelier.eight_bits = values.low == 1;
+    }
+    if (!likelier.found()) {
+        const SampleType sign = own.type == SampleType::kInt16 ? SampleType::kUint16 : SampleType::kInt16;
+        const auto between = [&](SampleType type) {
+            return variationOf(bytes, spec, {type, own.order}).value_or(Variation()).between;
+        };
+        likelier.doubtful =
+            !(roughness.at(best) < 0.5 * kNoise) || (own.bytes() == 2 && between(sign) < between(own.type));
     }
     return likelier;
 }

@@ -24,6 +24,7 @@ struct LikelierFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
     bool eight_bits = false;              ///< the samples may also be as given: 8 bits times 256
+    bool doubtful = false;  ///< none is found; but the samples are noise, or differ less with another sign
 
     [[nodiscard]] bool found() const { return type || order; }
     friend bool operator==(const LikelierFormat&, const LikelierFormat&) = default;

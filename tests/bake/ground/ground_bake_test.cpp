@@ -185,14 +185,17 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
                   .find("h.raw: its samples look like those of another format; try --heights order=little\n"),
               std::string::npos);
     // Also if they cannot be baked so.
-    const Result<GroundResult> far =
-        tryBake("h.raw", parseHeightsSpec("spacing=0.01,low=0,high=65535,order=big").value(), {});
-    ASSERT_FALSE(far);
-    EXPECT_EQ(far.error().code, ErrorCode::kLimit);
-    EXPECT_NE(far.error().message.find(
-                  "; its samples look like those of another format; try --heights order=little"),
-              std::string::npos)
-        << far.error().message;
+    const auto tooFar = [&](const std::string& settings) {
+        const Result<GroundResult> far =
+            tryBake("h.raw", parseHeightsSpec("spacing=0.01," + settings).value(), {});
+        EXPECT_FALSE(far);
+        EXPECT_EQ(far.error().code, ErrorCode::kLimit);
+        return far ? "" : far.error().message;
+    };
+    const std::string right = "low=0,high=65535";
+    expectHas(tooFar(right + ",order=big"),
+              "; its samples look like those of another format; try --heights order=little");
+    EXPECT_EQ(tooFar(right).find("order"), std::string::npos) << "smooth as they are";
     EXPECT_NE(warned("low=-2000,high=4400")
                   .find("h.raw: most of its squares are steep; check --heights spacing, low "),
               std::string::npos);
@@ -211,6 +214,12 @@ TEST_F(GroundBakes, SamplesOfAnotherKindAreNamed) {
                         "stands for no data, --heights hole=65535\n"),
               std::string::npos)
         << sign;
+    std::mt19937 random(1);
+    write("h.raw", 17, 17, [&](double, double) { return sample(static_cast<double>(random() % 65536)); });
+    expectHas(tooFar(right), "; check --heights type and order too");
+    write("h.raw", 17, 17, [&](double x, double) { return sample(32768.0 + 1000.0 * (x - 8.0)); });
+    EXPECT_EQ(tooFar(right).find("order"), std::string::npos);
+    expectHas(tooFar("type=int16"), "type");
     // Right as they are, or heights up to 200 m in the other order.
     write("h.raw", 17, 17, [&](double x, double z) { return sample(256.0 * std::round(6.0 * (x + z))); });
     EXPECT_NE(warned("spacing=100,low=0,high=100")
