@@ -5,9 +5,11 @@
 // square roots, and a particle that slides along an edge may fall on either side of it; so most particles must be where
 // they are natively, and all of them as a whole: how many lie on the body, and how high they lie.
 import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 
+import { boxes } from "./lib/boxes.mjs";
 import { libraryPage } from "./lib/library.mjs";
 import { bunny, play, run, scratch } from "./lib/native.mjs";
 
@@ -64,3 +66,27 @@ async function compare(t, ...options) {
 test("300 steps of snow agree with relief-sim", { timeout: 120_000 }, (t) => compare(t, "--budget", "200kB"));
 
 test("300 steps of snow among patches agree with relief-sim", { timeout: 120_000 }, (t) => compare(t, "--map", "patches:bytes=200kB"));
+
+test("nothing that a page gives birth to passes a floor thinner than a step", { timeout: 300_000 }, async (t) => {
+    const folder = scratch(t);
+    writeFileSync(path.join(folder, "floor.obj"), boxes([{ low: [-2, -0.1, -2], high: [2, 0, 2] }]));
+    run("relief", "bake", path.join(folder, "floor.obj"), "-q", "-o", path.join(folder, "floor.relief"), "--budget", "20kB");
+    const { page, said } = await libraryPage(t, folder);
+    const below = await page.evaluate(async () => {
+        const collider = await relief.load("/files/floor.relief");
+        return [{ sweep: 0 }, {}].map((collision) => {
+            const system = new relief.ParticleSystem(gl, { collider, scene: {
+                collision, particles: { capacity: 1000 }, time: { dt: 1 / 240 }, forces: { gravity: [0, 0, 0], drag: 0 }, ground: { enabled: false } } });
+            system.spawn(Array.from({ length: 1000 }, (_, i) => ({ position: [0, 1 + i / 1000, 0], velocity: [0, -20, 0], lifetime: 9 })));
+            for (let i = 0; i < 15; ++i) {
+                system.step(1 / 30);
+            }
+            const count = system.read().filter((y, i) => i % 12 === 1 && y < -0.1).length;
+            system.dispose();
+            return count;
+        });
+    });
+    assert.ok(below[0] > 500, `${below[0]} pass without a sweep`);
+    assert.equal(below[1], 0);
+    assert.equal(said.length, 1, "a warning without a sweep");
+});
