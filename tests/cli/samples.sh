@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The samples' scenes with a fortieth of their particles: every scene is valid and plays, and pictures show something. Unit tests
-# and demo.sh show where particles are.
+# The samples' scenes with a fortieth of their particles: every scene is valid and plays, pictures show something, and the village
+# and the kitchen, of many nodes and materials, hold what falls on them, by the formulas that they are made from.
 . "$(dirname "$0")/lib.sh"
 
 samples=$RELIEF_SOURCE/samples
@@ -58,7 +58,7 @@ for scene in "$samples"/*.toml; do
 done
 
 play() { # NAME STEPS
-    expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --json
+    expect 0 "$relief_sim" "$1.toml" --steps "$2" --size 320x240 --frames "frames_$1" --dump "$1.ply" --json
     json stdout "d['steps'] == $2 and d['particles']['refused'] == 0 and d['particles']['in_contact'] > 0"
     json stdout "d['particles']['born'] == d['particles']['alive'] + d['particles']['died']"
     local colors
@@ -73,7 +73,44 @@ play rain 300
 play village 200
 play wobbling_torus 180
 play walker 60
+expect 0 "$relief_sim" kitchen.toml --events hits.ndjson -q
 play kitchen 480
+
+PYTHONPATH=$PYTHONPATH:$samples python3 - <<'P'
+import json, math, kitchen, ply, village
+
+def particles(name):
+    return [((p['x'], p['y'], p['z']), p['type'], p['vx'] == p['vy'] == p['vz'] == 0) for p in ply.read(name)]
+
+def surface(x, y, z):
+    on_plate = max(r - math.hypot(x - px, z - pz) for px, pz, r in kitchen.PLATES)
+    if abs(y - kitchen.PLATE_TOP) < 0.003 and on_plate > 0.008:
+        return 'hot plate'
+    if abs(y - kitchen.STOVE_TOP) < 0.003 and on_plate < -0.01 and 0.51 < x < 1.11 and -0.57 < z < 0.01:
+        return 'enamel'
+    if abs(y - kitchen.TABLE_TOP) < 0.003 and -1.14 < x < 0.04 and abs(z) < 0.44 and math.hypot(x + 0.55, z) > 0.17:
+        return 'wood'
+    return 'tiles' if y < 0.003 else None
+
+hits = [(surface(*hit['position']), hit['material']) for hit in map(json.loads, open('hits.ndjson'))]
+known = [one for one in hits if one[0]]
+assert all(sum(one[0] == name for one in known) > 20 for name in ('hot plate', 'enamel', 'wood', 'tiles')), known
+assert sum(a != b for a, b in known) * 100 <= len(known), known
+lying = [p for p, kind, rests in particles('kitchen.ply') if rests and kind < 2]
+assert sum(abs(y - kitchen.TABLE_TOP) < 0.04 and -1.14 < x < 0.04 and abs(z) < 0.44 for x, y, z in lying) > 200
+assert not any(abs(y - kitchen.PLATE_TOP) < 0.04 and math.hypot(x - px, z - pz) < r - 0.01 for x, y, z in lying
+               for px, pz, r in kitchen.PLATES), 'flakes stay on a hot plate'
+
+drops = particles('village.ply')
+deep = min(y - village.ground(x, z) for (x, y, z), _, _ in drops)
+assert len(drops) > 2000 and deep > -0.2, (len(drops), deep)
+splashes = [p[1] for p, kind, _ in drops if kind == 1]
+assert sum(y > 2.5 for y in splashes) > 5 and sum(y < 1 for y in splashes) > 5, 'on roofs, and on the ground'
+inside = [(x, y, z) for (x, y, z), _, _ in drops if abs(x - 15.5) < 2 and abs(z - 17.5) < 2 and y - village.ground(15.5, 17.5) < 3.4]
+assert not inside, f'in a barn whose eaves are at 3.6: {inside[:3]}'
+mud = [p[1] for p, kind, _ in drops if kind == 3]
+assert mud and max(mud) < 1, 'from under feet'
+P
 
 # A walker's feet press prints into snow all the way, not only where a picture is drawn of it.
 cat >prints.toml <<'T'
