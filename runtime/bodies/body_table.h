@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "formats/collider.h"
-#include "runtime/bodies/body_grid.h"
 #include "formats/world/pose.h"
+#include "runtime/bodies/body_grid.h"
 #include "runtime/layout/collider_block.h"
 
 namespace relief {

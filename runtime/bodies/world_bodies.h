@@ -12,8 +12,8 @@
 
 #include <vector>
 
-#include "formats/world/world.h"
 #include "formats/world/pose.h"
+#include "formats/world/world.h"
 #include "runtime/bodies/world_textures.h"
 
 namespace relief {

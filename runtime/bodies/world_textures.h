@@ -18,9 +18,9 @@
 
 #include "formats/base/result.h"
 #include "formats/collider.h"
+#include "formats/world/pose.h"
 #include "runtime/bodies/body_table.h"
 #include "runtime/bodies/material_table.h"
-#include "formats/world/pose.h"
 #include "runtime/collider/map_textures.h"
 #include "runtime/collider/shader_collider.h"
 
