@@ -34,11 +34,6 @@ struct BakeCommand {
     std::string world;  // a folder
 };
 
-/// Without --output. A folder by itself has no name: bakes refuse it.
-std::string outputOf(const std::string& mesh) {
-    return std::filesystem::path(mesh).filename().replace_extension(kColliderExtension).string();
-}
-
 /// Shows the stages of a bake.
 BakeWatcher watcherOf(Progress& progress, FileGuard& files) {
     BakeWatcher watcher;
@@ -106,7 +101,11 @@ Result<void> report(const BakeCommand& command, const BakeResult& result, std::s
     return {};
 }
 
-Result<void> runBake(BakeCommand& command, FileGuard& files) {
+/// A mesh, also one that moves.
+Result<void> runMeshCommand(BakeCommand& command, FileGuard& files) {
+    if (command.request.mesh.empty()) {
+        return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
+    }
     const Stopwatch total;
     Progress progress({quotedPath(command.request.mesh), !command.common.quiet, command.request.time_limit});
     static_cast<void>(RELIEF_TRY(settingsOf(command.request)));
@@ -123,6 +122,24 @@ Result<void> runBake(BakeCommand& command, FileGuard& files) {
     result.times.write_ms = writing.ms();
     result.times.total_ms = total.ms();
     return report(command, result, bytes);
+}
+
+/// A recipe, a height map, a level or a mesh.
+Result<void> runBake(BakeCommand& command, const CLI::App& verb, FileGuard& files) {
+    if (!command.recipe.recipe.empty()) {
+        return runRecipeCommand(command.recipe,
+                                {verb, command.common, command.output, command.request.threads,
+                                 command.outputs.depfile, command.outputs.json, files});
+    }
+    if (command.output.empty() && command.world.empty()) {
+        // A folder by itself has no name: bakes refuse it.
+        const std::filesystem::path mesh(command.request.mesh);
+        command.output = mesh.filename().replace_extension(kColliderExtension).string();
+    }
+    const WorldCall call{command.request, command.outputs, command.common, command.output, files};
+    return !command.request.heights.empty() ? runGroundCommand(command.world, call)
+           : !command.world.empty()         ? runWorldCommand(command.world, call)
+                                            : runMeshCommand(command, files);
 }
 
 }  // namespace
@@ -155,28 +172,7 @@ void addBake(CLI::App& app, Action& action) {
     addRecipeOptions(verb, command->recipe);
     addWorldOption(verb, command->world);
     onVerb(verb, [command, &verb, &action] {
-        action = [command, &verb](FileGuard& files) -> Result<void> {
-            if (!command->recipe.recipe.empty()) {
-                return runRecipeCommand(command->recipe,
-                                        {verb, command->common, command->output, command->request.threads,
-                                         command->outputs.depfile, command->outputs.json, files});
-            }
-            if (command->output.empty() && command->world.empty()) {
-                command->output = outputOf(command->request.mesh);
-            }
-            if (!command->request.heights.empty()) {
-                return runGroundCommand(command->world, {command->request, command->outputs, command->common,
-                                                         command->output, files});
-            }
-            if (!command->world.empty()) {
-                return runWorldCommand(command->world, {command->request, command->outputs, command->common,
-                                                        command->output, files});
-            }
-            if (command->request.mesh.empty()) {
-                return fail(ErrorCode::kUsage, "MESH is required; see relief bake --help");
-            }
-            return runBake(*command, files);
-        };
+        action = [command, &verb](FileGuard& files) { return runBake(*command, verb, files); };
     });
 }
 
