@@ -13,7 +13,7 @@ namespace relief {
 namespace {
 
 /// The maps of --holes keep and of --animated. The runtime draws those of a moving mesh in the same directions
-/// (runtime/collider/live_collider.h).
+/// (runtime/live/live_collider.h).
 constexpr std::array<const char*, 3> kAxisMaps = {"front-back:dir=+x,up=+y", "front-back:dir=-y,up=-z",
                                                   "front-back:dir=-z,up=+y"};
 constexpr std::uint32_t kAxisResolution = 256;

@@ -119,7 +119,7 @@ auto airWith(void (*add)(AirSettings&, const BenchScene&)) {
     };
 }
 
-Result<void> setEvents(ParticleSystem& particles, const BenchScene& /*scene*/) {
+Result<void> recordEvents(ParticleSystem& particles, const BenchScene& /*scene*/) {
     return setEvents(particles, EventOptions{.lasting = true, .deaths = true});
 }
 
@@ -228,8 +228,8 @@ std::vector<BenchVariant> benchVariants() {
         {.name = "flow", .set = airWith(addFlow)},
         {.name = "curl_noise", .set = airWith(addCurlNoise)},
         {.name = "attractors", .set = airWith(addAttractors)},
-        {.name = "events", .set = setEvents},
-        {.name = "events_listed", .set = setEvents, .each_step = EachStep::kEvents},
+        {.name = "events", .set = recordEvents},
+        {.name = "events_listed", .set = recordEvents, .each_step = EachStep::kEvents},
         {.name = "bodies_1000_moving",
          .solids = Solids::kCrowd,
          .each_step = EachStep::kPoses,

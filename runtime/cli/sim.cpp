@@ -202,7 +202,8 @@ void defineSim(CLI::App& app, SimCommand& command) {
         check->excludes(played);
         page->excludes(played);
     }
-    for (const char* of_run : {"--check", "--json", "--steps", "--seed", "--root", "--api"}) {
+    for (const char* of_run :
+         {"--check", "--json", "--steps", "--seed", "--root", "--api", "--dump-format"}) {
         page->excludes(of_run);
     }
     addFlag(app, "-q,--quiet", command.quiet,

@@ -2,6 +2,8 @@
 #include "runtime/events/event_recorder.h"
 
 #include <algorithm>
+#include <array>
+#include <deque>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -20,7 +22,8 @@ std::uint32_t materialCount(const ShaderCollider* collider) {
 class EventRecorder : public StepFeature {
   public:
     using Outputs = std::array<GlTexture, 2>;  // velocity and surface, as step_event.glsl writes them
-    EventRecorder(EventList list, Outputs outputs) : list_(std::move(list)), outputs_(std::move(outputs)) {}
+    EventRecorder(EventList list, Outputs outputs, double time)
+        : list_(std::move(list)), outputs_(std::move(outputs)), begin_(time), end_(time) {}
 
     [[nodiscard]] std::string defines() const override { return "#define RELIEF_EVENTS\n"; }
     [[nodiscard]] bool readsMaterials() const override { return true; }
@@ -142,8 +145,8 @@ Result<void> setEvents(ParticleSystem& particles, std::span<const EventOptions> 
     EventRecorder::Outputs outputs{particles.makeStateTexture(), particles.makeStateTexture()};
     RELIEF_TRY(checkAllocated("the events of " + std::to_string(particles.capacity()) + " particles",
                               "choose a smaller capacity"));
-    return particles.replaceFeature(nullptr,
-                                    std::make_shared<EventRecorder>(std::move(list), std::move(outputs)));
+    return particles.replaceFeature(
+        nullptr, std::make_shared<EventRecorder>(std::move(list), std::move(outputs), particles.time()));
 }
 
 bool requestEvents(ParticleSystem& particles, std::uint64_t tag) {

@@ -2,9 +2,7 @@
 // Events of a particle system: each step records what hit and what died, and lists of these come to the CPU later.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 

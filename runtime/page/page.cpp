@@ -30,8 +30,7 @@ Result<fs::path> findPlayer() {
     }
     return fail(ErrorCode::kUnsupported,
                 "the page of a scene or a world plays particles, which needs the player of browsers; run "
-                "scripts/build.sh web in the sources once, name a player with RELIEF_VIEW_PAGE, or view one "
-                "collider");
+                "scripts/build.sh web in the sources once, or name a player with RELIEF_VIEW_PAGE");
 }
 
 /// The place for data in a page, and the format of that data. The player of another release may expect another format.

@@ -105,7 +105,9 @@ class Emitter {
     /// Moves the surface of kSurface for the next emit(): BirthSurface::move(). While it has no area, births that are due find no
     /// room.
     void moveSurface(std::span<const glm::vec3> before, std::span<const glm::vec3> now, double seconds) {
-        settings_.surface->move(before, now, seconds);
+        if (settings_.surface) {
+            settings_.surface->move(before, now, seconds);
+        }
     }
     /// The velocities of the places of the births that the last emit() made, for carry(): of kSurface as many, else none.
     [[nodiscard]] std::span<const glm::vec3> placeVelocities() const { return place_velocities_; }

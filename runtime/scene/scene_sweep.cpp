@@ -167,26 +167,36 @@ void SceneSweep::add(const Scene& scene, std::span<const Birth> births) {
             birth.type < scene.types.size() ? ParticleType(scene.types[birth.type]) : ParticleType{};
         const float speed = speedAtBodies(birth, type, scene, bounds_);
         for (std::size_t i = 0; i < groups_.size(); ++i) {
-            if ((type.collides >> i & 1U) != 0 && speed > groups_[i].speed) {
-                groups_[i] = {speed, type.radius};
-                fitted_ = false;
+            if ((type.collides >> i & 1U) == 0) {
+                continue;
             }
+            float& fastest = groups_[i][type.radius];
+            fitted_ = fitted_ && speed <= fastest;
+            fastest = std::max(fastest, speed);
         }
     }
 }
 
 std::vector<SceneSweep::Thin> SceneSweep::thinColliders() const {
-    std::vector<Thin> thin;
-    std::set<std::filesystem::path> found;
+    std::map<std::filesystem::path, Thin> thin;
     for (const Body& body : bodies_) {
-        const Fastest& fastest = groups_[body.group];
-        const float step = fastest.speed * longest_;
-        const float thick = body.thick + 2.0F * fastest.radius;
-        if (step > thick && found.insert(body.path).second) {
-            thin.push_back({quotedPath(body.path.filename()), thick, fastest.speed, step});
+        for (const auto& [radius, speed] : groups_[body.group]) {
+            const float step = speed * longest_;
+            const float thick = body.thick + 2.0F * radius;
+            if (step <= thick) {
+                continue;
+            }
+            const auto [at, added] = thin.try_emplace(body.path);
+            Thin& of = at->second;
+            of = {quotedPath(body.path.filename()), added ? thick : std::min(of.thick, thick),
+                  std::max(of.speed, speed), std::max(of.step, step)};
         }
     }
-    return thin;
+    std::vector<Thin> all;
+    for (const auto& [path, each] : thin) {
+        all.push_back(each);
+    }
+    return all;
 }
 
 float SceneSweep::lengthFor(float dt, const Scene& scene, std::vector<std::string>& warnings) {
@@ -202,6 +212,7 @@ float SceneSweep::lengthFor(float dt, const Scene& scene, std::vector<std::strin
     longest_ = std::max(longest_, dt);
     std::vector<Thin> thin = thinColliders();
     half_ = thin.empty() ? 0.0F : std::numeric_limits<float>::max();
+    speed_ = 0.0F;
     for (const Thin& each : thin) {
         half_ = std::min(half_, 0.5F * each.thick);
         speed_ = std::max(speed_, each.speed);

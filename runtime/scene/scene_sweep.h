@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -42,21 +43,17 @@ class SceneSweep {
         float thick = 0.0F;     // mostly, world units
         std::size_t group = 0;  // a bit of ParticleType::collides
     };
-    struct Fastest {
-        float speed = 0.0F;
-        float radius = 0.0F;
-    };
     struct Thin;
     [[nodiscard]] std::vector<Thin> thinColliders() const;
     [[nodiscard]] static std::string thinWarning(std::span<const Thin> all, bool sweeps);
 
     Bounds bounds_;
     std::vector<Body> bodies_;
-    std::vector<Fastest> groups_;  // of what meets the bodies of each
-    float longest_ = 0.0F;         // step, seconds
-    float half_ = 0.0F;            // of the thinnest; 0: no step is longer than a collider is thick
-    float speed_ = 0.0F;           // of the fastest that meets a collider as thin
-    bool fitted_ = false;          // these two, to the births so far
+    std::vector<std::map<float, float>> groups_;  // the fastest that meets the bodies of each, by its radius
+    float longest_ = 0.0F;                        // step, seconds
+    float half_ = 0.0F;    // of the thinnest; 0: no step is longer than a collider is thick
+    float speed_ = 0.0F;   // of the fastest that meets a collider as thin
+    bool fitted_ = false;  // these two, to the births so far
     bool warned_ = false;
 };
 

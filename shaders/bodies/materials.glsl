@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The material of a contact: formats/materials.cpp has the same in C++. The octree of a collider is a top grid here, with bricks
 // of 4^3 entries where it goes on, two levels each: fewer fetches that wait for one another. The data lie in one texture, as
-// runtime/collider/material_table.h writes them, texel i at (i mod width, i / width):
+// runtime/bodies/material_table.h writes them, texel i at (i mod width, i / width):
 //
 //     bodies       RELIEF_MATERIAL_HEAD_TEXELS of each: lowest corner of the cube, object space, and 1 / its side; then the
 //                  texels of the first material, 0: it has none, and of the top grid, log2 of cells along the cube, and of

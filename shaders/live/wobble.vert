@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes the vertices of a mesh at rest wobble, for transform feedback; nothing is rasterised. The formula is in
-// runtime/collider/wobble_pass.h.
+// runtime/live/wobble_pass.h.
 layout(location = 0) in vec3 a_position;  // object space, at rest
 layout(location = 1) in vec3 a_normal;    // of length 1, or zero
 

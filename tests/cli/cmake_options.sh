@@ -11,11 +11,19 @@ configure runtime -DRELIEF_BUILD_BAKE=OFF || die "the runtime does not configure
 says "is not built; build all with: cmake --build $work/runtime"
 [ ! -e prefix ] || die "half an installation is left: $(find prefix)"
 
-for part in BAKE TESTS BENCHMARKS; do
+for part in BAKE BENCHMARKS; do
     ! configure runtime -DRELIEF_BUILD_$part=ON -DRELIEF_BUILD_PLAYER=OFF || die "$part needs no player"
-    says "RELIEF_BUILD_$part needs the player: configure with -DRELIEF_BUILD_PLAYER=ON"
+    says "RELIEF_BUILD_$part needs RELIEF_BUILD_PLAYER: configure with -DRELIEF_BUILD_PLAYER=ON"
     configure runtime -DRELIEF_BUILD_$part=OFF || die "the runtime does not configure again: $(tail log)"
 done
+
+# Layers: one without those that need it is refused, and the core without any of them is not installed.
+! configure layers -DRELIEF_BUILD_BAKE=OFF -DRELIEF_LAYER_BODIES=OFF -DRELIEF_LAYER_C_API=OFF || die "pictures need no bodies"
+says 'RELIEF_LAYER_PICTURE needs RELIEF_LAYER_BODIES: configure with -DRELIEF_LAYER_BODIES=ON'
+configure layers -DRELIEF_BUILD_BAKE=OFF -DRELIEF_LAYER_{AIR,EVENTS,BODIES,BIRTHS,LIVE,STREAM,PICTURE,C_API}=OFF \
+    || die "the core does not configure: $(tail log)"
+! cmake --install layers --prefix prefix >log 2>&1 || die "a part of the runtime is installed"
+says 'a runtime without all layers is not installed'
 
 # Optional parts name their package and their option. CMake finds no header in /usr/include that is not given.
 configure vdb -DRELIEF_BUILD_BAKE=OFF -DRELIEF_BUILD_PLAYER=ON -DRELIEF_BUILD_OPENVDB=ON -DCMAKE_IGNORE_PATH=/usr/include \

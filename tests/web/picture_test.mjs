@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene by its meshes in a browser: the picture that relief-sim makes, snow and footprints included; and the page of
-// `relief view` of such a scene.
+// the page of such a scene.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";

@@ -267,7 +267,7 @@ test("a tile that is missing or damaged is named once, and its coarse one stays"
     assert.deepEqual(said.filter((line) => !line.startsWith("warning: ") && !line.includes("404")), []);
 });
 
-test("a page of relief view plays a scene with [stream] from its own files", { timeout: 120_000 }, async (t) => {
+test("a page plays a scene with [stream] from its own files", { timeout: 120_000 }, async (t) => {
     const folder = scratch(t);
     bakeTiles(folder);
     writeFileSync(path.join(folder, "s.toml"), `world = "w/world.json"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages as `relief view` makes them: a checked sheet, a scene of several bodies, and a world.
+// Pages as `relief view` and `relief-sim --page` make them: a checked sheet, a scene of several bodies, and a world.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { writeFileSync } from "node:fs";

@@ -9,7 +9,7 @@ export function fromBase64(text, what) {
     }
 }
 
-export const damaged = (how) => new Error(`this page is damaged: ${how}; make the page again with 'relief view'`);
+export const damaged = (how) => new Error(`this page is damaged: ${how}; make the page again with the tool that made it, 'relief view' or 'relief-sim --page'`);
 
 /** The data, with bytes in place of base64, or null of an empty page. Of a scene `file` names the collider in the panel. */
 export function readPageData() {
@@ -26,7 +26,7 @@ export function readPageData() {
     }
     if (data.format !== format) {
         throw new Error(`this page's data has the format ${data.format}, and the page understands ${format}; make it again ` +
-                        "with the 'relief view' of one release");
+                        "with tools of one release");
     }
     if (!data.scene) {
         return { ...data, mesh: data.mesh && meshOf(data.mesh) };
