@@ -176,6 +176,9 @@ forces = { gravity = [0, 0, 0], drag = 0 }
     EXPECT_EQ(below("time = { dt = 0.02 }\n", 0.02F), 0) << "births of the host";
     EXPECT_EQ(below("time = { dt = 0.02 }\n" + emitter(5.51F), 0.02F), 0)
         << "a step of 1.05 times the thickness";
+    births[0] = {{0.0F, 3.0F, 0.0F}, {0.0F, -50.0F, 0.0F}, 9.0F, 1};
+    EXPECT_EQ(below("time = { dt = 0.02 }\ntype = [{}, { radius = 0.4 }]\n", 0.02F), 0)
+        << "a larger, faster one among them";
 }
 
 }  // namespace
