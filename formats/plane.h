@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a texel's ray runs in object space. In double.
+// The ray of a texel in object space, in double precision.
 #pragma once
 
 #include <cstdint>

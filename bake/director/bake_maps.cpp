@@ -9,7 +9,7 @@ namespace relief {
 namespace {
 
 BakeOptions watched(const BakeSettings& settings, const BakeWatcher& watcher) {
-    tell(watcher.begin, "baking the maps");
+    notify(watcher.begin, "baking the maps");
     BakeOptions options = settings.bake;
     options.progress = watcher.progress;
     return options;
@@ -25,7 +25,7 @@ std::optional<std::uint64_t> budgetOf(const BakeRequest& request) {
 Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSettings& settings,
                                         const MeshQuery& query, const MeshQuery& truth,
                                         const BakeWatcher& watcher) {
-    tell(watcher.begin, "searching for the least budget");
+    notify(watcher.begin, "searching for the least budget");
     BudgetSearchOptions options;
     options.max_error_percent = double{*request.max_error};
     if (const double floats = wrongByFloats(truth.mesh()); floats > 2.0 * options.max_error_percent) {
@@ -36,7 +36,7 @@ Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSe
     }
     options.budget_max = request.budget.value_or(options.budget_max);
     options.bake = settings.bake;
-    options.bake.progress = [&watcher](double) { tell(watcher.checkpoint); };
+    options.bake.progress = [&watcher](double) { notify(watcher.checkpoint); };
     options.tried = watcher.tried;
     return bakeForError(query, truth, options);
 }

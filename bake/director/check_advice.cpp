@@ -160,7 +160,7 @@ class Advisor {
     const std::string& output_;
     BakeRequest patches_;  // the recorded bake as patches of as many bytes, its holes closed
     bool closes_;          // the recorded bake, its holes
-    TruthSamples truth_;   // near the surface alone, and fewer
+    TruthSamples truth_;   // only near the surface, and fewer
     std::vector<Advice> advice_;
 };
 

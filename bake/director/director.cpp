@@ -118,11 +118,12 @@ Result<BakeResult> bakeFrom(const BakeRequest& request, const BakeSettings& sett
         }
     }
     BakedMaps made = RELIEF_TRY(std::move(maps));
+    result.imported.reset();  // only --max-error measured it
     made.baked.collider = finished(std::move(made.baked.collider), request, settings, solid);
     std::optional<SelfCheck> check;
     if (made.patches && !request.no_check) {  // named maps may be wrong on purpose
         const Stopwatch watch;
-        tell(watcher.begin, "measuring the collider");
+        notify(watcher.begin, "measuring the collider");
         check = RELIEF_TRY(selfCheck(solid.mesh.mesh, solid.parts, made.baked.collider));
         result.times.check_ms = watch.ms();
         result.wrong = check->wrong;
@@ -154,12 +155,12 @@ int BakeResult::threads() const {
 
 Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher,
                         std::optional<TriangleMesh> mesh) {
-    tell(watcher.begin, "reading its options");
+    notify(watcher.begin, "reading its options");
     const BakeSettings settings = RELIEF_TRY(checkedSettings(request, mesh ? &*mesh : nullptr));
     const BakeRequest whole = completed(request);
     const auto threads = threadLimit(whole);
     const Stopwatch watch;
-    tell(watcher.begin, "reading the mesh");
+    notify(watcher.begin, "reading the mesh");
     SourceMesh source = mesh ? SourceMesh{std::move(*mesh)} : RELIEF_TRY(importSource(whole, settings));
     std::set<std::uint32_t> nodes;
     for (const SurfaceName& name : source.mesh.surface_names) {

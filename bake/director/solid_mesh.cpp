@@ -76,7 +76,7 @@ Result<SolidMesh> solidOf(const BakeRequest& request, SourceMesh source, const B
     if (request.max_error && repairs) {
         solid.imported = source.mesh;
     }
-    tell(watcher.begin, repairs ? "repairing the mesh" : "examining the mesh");
+    notify(watcher.begin, repairs ? "repairing the mesh" : "examining the mesh");
     const std::vector<glm::uvec3> before = solid.animated ? source.mesh.triangles : std::vector<glm::uvec3>();
     MaterialSource materials = repairs ? RELIEF_TRY(materialsOf(request, source.mesh)) : MaterialSource();
     solid.mesh = RELIEF_TRY(repairMesh(std::move(source.mesh), request.repair));
@@ -88,7 +88,7 @@ Result<SolidMesh> solidOf(const BakeRequest& request, SourceMesh source, const B
     }
     RELIEF_TRY(checkThickness(request, *solid.mesh.mesh));
     if (request.holes == Holes::kClose) {
-        tell(watcher.begin, "making a solid of the mesh");
+        notify(watcher.begin, "making a solid of the mesh");
     }
     ShapedMesh shaped = RELIEF_TRY(makeSolid(request, solid.mesh.mesh));
     solid.mesh.mesh = std::move(shaped.mesh);

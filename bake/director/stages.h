@@ -31,7 +31,7 @@ struct BakeWatcher {
 
 /// Calls a function of a watcher that may be empty.
 template <class... Arguments>
-void tell(const std::function<void(Arguments...)>& function, Arguments... arguments) {
+void notify(const std::function<void(Arguments...)>& function, Arguments... arguments) {
     if (function) {
         function(arguments...);
     }
@@ -81,7 +81,7 @@ struct BakedMaps {
 /// The maps of a solid, by their names, or patches for its budget (not for an error). Errors: as bake.
 [[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
 
-/// Warnings of the import, the parts and the unit; those of the maps; and those of the measurement.
+/// The warnings of a bake: of the import, the parts and the unit, then of the maps, then of the measurement.
 /// \param check  null: the collider is not measured.
 [[nodiscard]] std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh& solid,
                                                   const Baked& baked, const SelfCheck* check);

@@ -32,7 +32,7 @@ std::vector<std::string> nearRow(const std::string& kind, const GroundNear& near
             std::to_string(near.missing)};
 }
 
-/// Of a bake and of a check.
+/// The fields that reports of a bake and of a check share.
 void sourceFields(FieldVisitor& visit, const std::string& heights, std::uint32_t columns,
                   std::uint32_t rows) {
     visit("heights", heights, {"Effective settings, as --heights takes them"});

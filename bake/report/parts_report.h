@@ -33,7 +33,7 @@ void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 
 /// "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  of SurfaceParts::parts; counted from 1 in the text.
 [[nodiscard]] std::string partName(const SurfacePart& part, std::size_t index);
-/// Of a lost or coarse part: a budget or a resolution, a thickness or a bake of its own that would keep it.
+/// The cure of a lost or coarse part: a budget, a resolution, a thickness, or a bake of its own that would keep it.
 [[nodiscard]] std::string partCure(const SurfacePart& part, const Collider& collider);
 /// Side of the finest texels at the middle of a part, or of patches in its box, object units; 0 without maps.
 [[nodiscard]] double partTexel(const SurfacePart& part, const Collider& collider);

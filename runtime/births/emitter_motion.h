@@ -16,7 +16,7 @@ namespace relief {
 /// Which births come into being: one for each. The others are made all the same, so that these do not depend on them.
 /// \param births      of one emitter in one step, in the world.
 /// \param velocities  of their places, world units a second.
-/// \param time        when they enter a step, as carry() has it.
+/// \param time        when they enter a step: the `time` of carry().
 using BirthFilter = std::function<std::vector<bool>(std::span<const Birth> births,
                                                     std::span<const glm::vec3> velocities, double time)>;
 /// Births of an emitter with a filter that a step makes at most; the rest is refused.

@@ -193,9 +193,6 @@ Result<WorldTextures> WorldTextures::upload(std::span<const PlacedMap> maps, std
                                             std::span<const Materials* const> materials,
                                             std::size_t room_texels) {
     RELIEF_TRY(checkContext());
-    if (maps.empty()) {
-        return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
-    }
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, MapTextures::sideMax(), room_texels));
     WorldTextures result;
     result.places_ = layout.places;

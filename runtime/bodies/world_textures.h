@@ -66,7 +66,7 @@ class WorldTextures : public ShaderCollider {
     [[nodiscard]] std::size_t room() const { return room_; }
     /// The most texels of patches that a texture of this GL holds, those of the bodies included.
     [[nodiscard]] static std::size_t texelsMost();
-    /// Of a row of the room's texture.
+    /// The texels in a row of the room's texture.
     [[nodiscard]] std::size_t rowTexels() const { return std::size_t{1} << room_log2_width_; }
     /// Copies texels of a map of patches into the room, for exchange(). Waits for nothing.
     /// \param first  texel of the room, counted as room() is.

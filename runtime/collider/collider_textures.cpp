@@ -12,9 +12,6 @@ namespace relief {
 
 Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
     RELIEF_TRY(checkContext());
-    if (collider.maps.empty()) {
-        return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
-    }
     GLint block_max = 0;
     glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &block_max);
     if (const std::size_t most = mapsInBlock(static_cast<std::size_t>(block_max));
@@ -23,10 +20,7 @@ Result<ColliderTextures> ColliderTextures::create(const Collider& collider) {
                                            " maps, this GL takes " + std::to_string(most) +
                                            "; bake it with fewer");
     }
-    std::vector<PlacedMap> maps;
-    for (const DepthMap& map : collider.maps) {
-        maps.push_back({&map, false});
-    }
+    const std::vector<PlacedMap> maps = placedMaps(collider);
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, MapTextures::sideMax()));
     const PassState state;  // row lengths and skips among it: texels are tightly packed
     forgetGlErrors();

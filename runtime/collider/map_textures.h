@@ -32,7 +32,7 @@ class MapTextures {
     MapTextures(std::span<const PlacedMap> maps, const MapLayout& layout);
 
     void setBlock(std::span<const std::byte> block) const;
-    /// As ShaderCollider has them.
+    /// The functions of ShaderCollider with these names, for the maps and the block.
     void attach(GLuint program, const ShaderCollider::Binding& binding) const;
     void bind(const ShaderCollider::Binding& binding) const;
     void bindStorage(int binding) const;

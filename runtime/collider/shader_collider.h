@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What shaders that include collider/collider.glsl read: a collider in its own object space (ColliderTextures), or a layer's
-// world of bodies (runtime/bodies).
+// The inputs of shaders that include collider/collider.glsl: a collider in its own object space (ColliderTextures), or a world
+// of bodies (runtime/bodies).
 #pragma once
 
 #include <cstddef>

@@ -90,13 +90,7 @@ bool isUsed(const Collider& collider, TexelKind kind) {
 }
 
 Result<GpuImage> gpuImage(const Collider& collider, std::int32_t side_max) {
-    if (collider.maps.empty()) {
-        return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
-    }
-    std::vector<PlacedMap> maps;
-    for (const DepthMap& map : collider.maps) {
-        maps.push_back({&map, false});
-    }
+    const std::vector<PlacedMap> maps = placedMaps(collider);
     const MapLayout layout = RELIEF_TRY(MapLayout::create(maps, side_max));
     return GpuImage{mapTextures(maps, layout), colliderBlock(maps, layout), colliderDefines(maps, layout)};
 }

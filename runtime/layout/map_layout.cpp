@@ -38,6 +38,14 @@ Result<void> reserve(std::span<const PlacedMap> maps, std::int32_t side_max, std
 
 }  // namespace
 
+std::vector<PlacedMap> placedMaps(const Collider& collider) {
+    std::vector<PlacedMap> maps;
+    for (const DepthMap& map : collider.maps) {
+        maps.push_back({&map, false});
+    }
+    return maps;
+}
+
 std::size_t TexelLayout::texels() const {
     std::size_t sum = packed_;
     for (const TexelRectangle& r : rectangles_) {
@@ -99,6 +107,9 @@ TexelKind texelKindOf(MapFormat format) {
 
 Result<MapLayout> MapLayout::create(std::span<const PlacedMap> maps, std::int32_t side_max,
                                     std::size_t room_texels) {
+    if (maps.empty()) {
+        return fail(ErrorCode::kUnsupported, "a collider without maps has nothing to collide with");
+    }
     MapLayout layout;
     auto& textures = layout.textures;
     RELIEF_TRY(reserve(maps, side_max, room_texels, textures));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/base/result.h"
+#include "formats/collider.h"
 #include "formats/depth_map.h"
 
 namespace relief {
@@ -18,6 +19,9 @@ struct PlacedMap {
     const DepthMap* map = nullptr;
     bool live = false;
 };
+
+/// The maps of a collider by itself.
+[[nodiscard]] std::vector<PlacedMap> placedMaps(const Collider& collider);
 
 /// A part of a texture that is drawn to.
 struct TexelRectangle {
@@ -85,7 +89,7 @@ struct MapLayout {
 
     /// \param side_max  of a texture, texels.
     /// \param room_texels  for patches that come later.
-    /// Fails with kLimit where a texture would have to be larger.
+    /// Errors: kUnsupported (no maps), kLimit (a texture would have to be larger).
     [[nodiscard]] static Result<MapLayout> create(std::span<const PlacedMap> maps, std::int32_t side_max,
                                                   std::size_t room_texels = 0);
 };

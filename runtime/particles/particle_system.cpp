@@ -128,6 +128,14 @@ Result<void> ParticleSystem::createPrograms() {
     return remakeStep(nullptr);
 }
 
+std::optional<glm::vec3> ParticleSystem::featureWind() const {
+    std::optional<glm::vec3> wind;
+    for (const std::shared_ptr<StepFeature>& feature : features_) {
+        wind = feature->wind() ? feature->wind() : wind;
+    }
+    return wind;
+}
+
 StepVariant ParticleSystem::variantFor(const ShaderCollider* collider) const {
     StepVariant variant{.collider = collider,
                         .features = {},
@@ -232,10 +240,7 @@ Result<std::size_t> ParticleSystem::spawn(std::span<const Birth> births) {
                         "finite age of at least 0, and a type below 2^24");
     }
     const float now = clock();
-    glm::vec3 wind = forces_.wind;
-    for (const std::shared_ptr<StepFeature>& feature : features_) {
-        wind = feature->wind().value_or(wind);
-    }
+    const glm::vec3 wind = featureWind().value_or(forces_.wind);
     std::size_t accepted = 0;
     for (const Birth& birth : births) {
         const std::optional<std::uint32_t> index = allocator_.acquire();
@@ -325,8 +330,8 @@ void ParticleSystem::runStep(float dt, float now) {
         storage.emplace();
     }
     Forces forces = forces_;
-    for (const std::shared_ptr<StepFeature>& feature : features_) {
-        forces.wind = feature->wind() ? glm::vec3(0.0F) : forces.wind;
+    if (featureWind()) {
+        forces.wind = glm::vec3(0.0F);  // the feature adds it
     }
     step_.use({now, dt, ground_.value_or(kNoGround), sweep_, time_, forces, types_});
     // Rows beyond the extent keep what they held in either buffer. That is sound: an index beyond it is only

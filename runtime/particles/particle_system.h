@@ -180,6 +180,8 @@ class ParticleSystem {
     explicit ParticleSystem(std::uint32_t capacity) : allocator_(capacity) {}
     [[nodiscard]] Result<void> createTextures();
     [[nodiscard]] Result<void> createPrograms();
+    /// The wind that a feature adds; nullopt: none does, and Forces::wind acts.
+    [[nodiscard]] std::optional<glm::vec3> featureWind() const;
     [[nodiscard]] StepVariant variantFor(const ShaderCollider* collider) const;
     [[nodiscard]] Result<void> remakeStep(const ShaderCollider* collider);
     /// After a change of anything but the collider, which may be another one at the same place.
