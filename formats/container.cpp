@@ -207,7 +207,7 @@ Result<std::vector<std::byte>> writeChecked(const Collider& collider, const Cont
     return bytes;
 }
 
-/// Common formats of `relief bake`; those that cannot be mistaken for a collider are left out.
+/// Common formats of `relief bake`; those that cannot be wrong for a collider are left out.
 constexpr std::array<std::string_view, 16> kMeshExtensions = {
     ".ac",   ".acc", ".3ds", ".b3d", ".blend", ".dae", ".fbx", ".glb",
     ".gltf", ".lwo", ".obj", ".off", ".ms3d",  ".ply", ".stl", ".x"};
@@ -260,13 +260,13 @@ Result<ContainerInfo> readContainerInfo(std::span<const std::byte> bytes, const 
 Result<Collider> loadCollider(const std::filesystem::path& path, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(path, containerSizeMax(limits)));
     RELIEF_TRY(refuseMesh(path, bytes));
-    return inFront(quotedPath(path), readContainer(bytes, limits));
+    return withPrefix(quotedPath(path), readContainer(bytes, limits));
 }
 
 Result<void> saveCollider(const std::filesystem::path& path, const Collider& collider,
                           const ContainerWriteOptions& options) {
     return writeFile(
-        path, RELIEF_TRY(inFront("cannot write " + quotedPath(path), writeContainer(collider, options))));
+        path, RELIEF_TRY(withPrefix("cannot write " + quotedPath(path), writeContainer(collider, options))));
 }
 
 Result<void> refuseMeshName(const std::filesystem::path& path) {

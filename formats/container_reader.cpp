@@ -133,7 +133,7 @@ Result<Materials> readMaterials(const fb::Materials& stored) {
     }
     std::vector<std::byte> nodes(bytes.begin(), bytes.end());
     if (packing == Packing::kZstd) {
-        nodes = RELIEF_TRY(inFront("the nodes of the materials", decompress(bytes, size)));
+        nodes = RELIEF_TRY(withPrefix("the nodes of the materials", decompress(bytes, size)));
     }
     materials.nodes.resize(size / sizeof(MaterialNode));
     std::memcpy(materials.nodes.data(), nodes.data(), nodes.size());

@@ -15,7 +15,7 @@ METHODS = {**RIVALS, "paper": "paper", "ours": "ours"}
 BUDGETS = (250_000, 1_000_000, 4_000_000)
 # The wrong points that we allow ourselves for those of a rival, by budget.
 AIMS = {"volume": (0.2, 0.2, 0.2), "bricks": (0.45, 0.45, 0.5), "fitted": (0.7, 0.7, 0.75)}
-ABOVE_MAX = {"volume": 0, "fitted": 1}  # closed meshes on which ours may make more mistakes than a rival
+ABOVE_MAX = {"volume": 0, "fitted": 1}  # closed meshes on which ours may make more errors than a rival
 TIMED_BUDGET, BAKE_SECONDS_MAX = 1_000_000, 3.0
 
 

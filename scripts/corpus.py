@@ -139,7 +139,7 @@ def summary(rows, rivals):
         of = [row for row in rows if kind in ('all', row['kind'])]
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
-        lines.append(f'{kind}, {len(of)}: mistakes of ours in geometric means: {"; ".join(against(of, rival) for rival in rivals)}; '
+        lines.append(f'{kind}, {len(of)}: errors of ours in geometric means: {"; ".join(against(of, rival) for rival in rivals)}; '
                      f'above 10 % wrong {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
     for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),

@@ -106,7 +106,7 @@ Result<void> runRelief(int argc, char** argv) {
 Result<ColliderFile> readColliderFile(const std::string& file, const ContainerLimits& limits) {
     std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
     RELIEF_TRY(refuseMesh(file, bytes));
-    Collider collider = RELIEF_TRY(inFront(shownInput(file), readContainer(bytes, limits)));
+    Collider collider = RELIEF_TRY(withPrefix(shownInput(file), readContainer(bytes, limits)));
     return ColliderFile{std::move(bytes), std::move(collider)};
 }
 

@@ -10,8 +10,8 @@
 #include "bake/cli/command_ground.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/command_world.h"
-#include "bake/director/bake_json.h"
-#include "bake/director/director.h"
+#include "bake/pipeline/bake.h"
+#include "bake/pipeline/bake_json.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/report_text.h"
 #include "formats/base/file_io.h"
@@ -30,7 +30,7 @@ struct BakeCommand {
     BakeRequest request;
     std::string output;
     BakeOutputs outputs;
-    RecipeOptionsOfBake recipe;
+    BakeRecipeOptions recipe;
     std::string world;  // a folder
 };
 

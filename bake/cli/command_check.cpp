@@ -7,7 +7,7 @@
 #include "bake/cli/command_ground.h"
 #include "bake/cli/command_view.h"
 #include "bake/cli/command_world.h"
-#include "bake/director/mesh_check_report.h"
+#include "bake/pipeline/mesh_check_report.h"
 #include "bake/report/bake_report.h"
 #include "bake/report/inspect_report.h"
 #include "bake/report/parts_report.h"
@@ -52,9 +52,9 @@ Result<void> checkAnimation(const std::vector<std::byte>& bytes, const Container
 Result<void> checkFile(const std::string& file, bool json, const ContainerLimits& limits) {
     const std::vector<std::byte> bytes = RELIEF_TRY(readFile(file, containerSizeMax(limits)));
     const std::string quoted = shownInput(file);
-    const Inspection inspection = RELIEF_TRY(inFront(quoted, inspectContainer(bytes, limits)));
+    const Inspection inspection = RELIEF_TRY(withPrefix(quoted, inspectContainer(bytes, limits)));
     if (!inspection.damaged()) {
-        RELIEF_TRY(inFront(quoted, checkAnimation(bytes, limits)));
+        RELIEF_TRY(withPrefix(quoted, checkAnimation(bytes, limits)));
     }
     const std::string name = inputName(file);
     const Result<void> printed =

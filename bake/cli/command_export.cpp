@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "bake/cli/command.h"
-#include "bake/picture/map_image.h"
-#include "bake/picture/view_image.h"
+#include "bake/images/map_image.h"
+#include "bake/images/view_image.h"
 #include "bake/volume/level_set.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
@@ -174,7 +174,7 @@ Result<void> exportGrids(const Collider& collider, const ExportCommand& command)
     if (!options.level_set && !options.surface) {
         return {};
     }
-    const FieldGrids grids = RELIEF_TRY(inFront(shownInput(command.file), encodeGrids(collider, options)));
+    const FieldGrids grids = RELIEF_TRY(withPrefix(shownInput(command.file), encodeGrids(collider, options)));
     if (grids.missing >= kMissingShown) {
         spdlog::warn(
             "{}: some {:.2g} % of its surface is missing: parts thinner than a voxel, {:.3g} wide; "

@@ -94,10 +94,10 @@ Result<void> runInfo(const InfoCommand& command, const std::string& file) {
     // Checked as a whole, payloads included.
     const ColliderFile shown = RELIEF_TRY(readColliderFile(file, command.limits));
     const ContainerInfo info =
-        RELIEF_TRY(inFront(shownInput(file), readContainerInfo(shown.bytes, command.limits)));
+        RELIEF_TRY(withPrefix(shownInput(file), readContainerInfo(shown.bytes, command.limits)));
     std::optional<AnimatedMesh> mesh;
     if (!shown.collider.animation.empty()) {
-        mesh = RELIEF_TRY(inFront(shownInput(file), readAnimatedMesh(shown.collider.animation)));
+        mesh = RELIEF_TRY(withPrefix(shownInput(file), readAnimatedMesh(shown.collider.animation)));
     }
     const AnimatedMesh* const animated = mesh ? &*mesh : nullptr;
     ColliderReport<ColliderMapReport> report = infoReport(shown.collider, info, animated);

@@ -9,11 +9,11 @@
 #include <set>
 #include <thread>
 
-#include "bake/director/bake_request.h"
 #include "bake/import/animated_import.h"
 #include "bake/import/import_format.h"
 #include "bake/import/level_folder.h"
 #include "bake/import/mesh_import.h"
+#include "bake/pipeline/bake_request.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/recipe_run.h"
@@ -37,7 +37,7 @@ constexpr std::string_view kClips = "--clips=";
 constexpr std::string_view kHeights = "--heights=";
 
 /// Options of a bake that a run of a recipe has its own place for: they are no keys.
-constexpr std::array<std::string_view, 3> kOfTheRun = {"threads", "json", "depfile"};
+constexpr std::array<std::string_view, 3> kRunOptions = {"threads", "json", "depfile"};
 
 std::string keyOf(const FieldWords& field) {
     return optionName(field.name).substr(2);
@@ -47,7 +47,7 @@ std::vector<FieldWords> fieldsOfAsset() {
     std::vector<FieldWords> all = fieldsOf(BakeRequest());
     std::ranges::move(fieldsOf(BakeOutputs()), std::back_inserter(all));
     std::erase_if(all, [](const FieldWords& field) {
-        return std::ranges::find(kOfTheRun, field.name) != kOfTheRun.end();
+        return std::ranges::find(kRunOptions, field.name) != kRunOptions.end();
     });
     return all;
 }
@@ -118,7 +118,7 @@ std::optional<Shard> parseShard(const std::string& text) {
     return Shard{*index, *count};
 }
 
-Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& call) {
+Result<RecipeRun> runOf(const BakeRecipeOptions& options, const RecipeCall& call) {
     RecipeRun run;
     run.recipe = options.recipe;
     run.output_folder = call.output.empty() ? recipeFolder(options.recipe) : fs::path(call.output);
@@ -131,7 +131,7 @@ Result<RecipeRun> runOf(const RecipeOptionsOfBake& options, const RecipeCall& ca
 }
 
 /// Files that are written beside the outputs.
-Result<void> preflight(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
+Result<void> preflight(const BakeRecipeOptions& options, const RecipeCall& call, const RecipeRun& run,
                        FileGuard& files) {
     for (const std::string& file : {options.stamp, call.depfile}) {
         if (file == "-") {
@@ -180,7 +180,7 @@ struct RecipeWork {
 };
 
 /// Reads the recipe and plans the run; bakes and writes nothing.
-Result<RecipeWork> plan(const RecipeOptionsOfBake& options, const RecipeCall& call) {
+Result<RecipeWork> plan(const BakeRecipeOptions& options, const RecipeCall& call) {
     RecipeWork work;
     RELIEF_TRY(checkOptions(call));
     work.run = RELIEF_TRY(runOf(options, call));
@@ -301,7 +301,7 @@ Result<void> addKeys(std::vector<AssetResult>& assets, const RecipeRun& run) {
 }
 
 /// Chooses what standard output carries.
-Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& call, const RecipeRun& run,
+Result<void> printResult(const BakeRecipeOptions& options, const RecipeCall& call, const RecipeRun& run,
                          const RecipeResult& result, double ms) {
     if (!call.json) {
         return options.dry_run && options.events != "-" ? printDryRun(result.assets) : Result<void>();
@@ -313,7 +313,7 @@ Result<void> printResult(const RecipeOptionsOfBake& options, const RecipeCall& c
 }
 
 /// The files for build systems, once everything is up to date.
-Result<void> writeFiles(const RecipeOptionsOfBake& options, const RecipeCall& call, RecipeWork& work,
+Result<void> writeFiles(const BakeRecipeOptions& options, const RecipeCall& call, RecipeWork& work,
                         const std::vector<AssetResult>& assets) {
     if (call.depfile.empty() && options.stamp.empty()) {
         return {};
@@ -357,7 +357,7 @@ std::vector<RecipeKey> recipeKeys() {
     return keys;
 }
 
-void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
+void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options) {
     OptionRef recipe = addOption(
         verb, "--recipe", options.recipe,
         "Bake what this TOML file lists instead of MESH: only what is not up to date, -j assets at\n"
@@ -379,7 +379,7 @@ void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options) {
         ->needs(recipe);
 }
 
-Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call) {
+Result<void> runRecipeCommand(const BakeRecipeOptions& options, const RecipeCall& call) {
     const Stopwatch watch;
     RecipeWork work = RELIEF_TRY(plan(options, call));
     RecipeEvents events;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/cli/command.h"
-#include "bake/director/bake_request.h"
+#include "bake/pipeline/bake_request.h"
 #include "bake/recipe/recipe_jobs.h"
 #include "formats/base/field.h"
 
@@ -27,7 +27,7 @@ void fields(FieldVisitor& visit, BakeOutputs& outputs);
 [[nodiscard]] Result<void> preflightBake(const BakeRequest& request, const std::string& output,
                                          const BakeOutputs& outputs, FileGuard& files);
 
-struct RecipeOptionsOfBake {
+struct BakeRecipeOptions {
     std::string recipe;
     std::string events;
     std::optional<Shard> shard;
@@ -49,10 +49,10 @@ struct RecipeCall {
 /// The options of `relief bake` that a recipe may set.
 [[nodiscard]] std::vector<RecipeKey> recipeKeys();
 
-void addRecipeOptions(CLI::App& verb, RecipeOptionsOfBake& options);
+void addRecipeOptions(CLI::App& verb, BakeRecipeOptions& options);
 
 /// Bakes the recipe's assets. Ends the program by the signal that interrupted it.
 /// Errors: those of the first asset in the recipe's order that failed; kUsage, kIo.
-[[nodiscard]] Result<void> runRecipeCommand(const RecipeOptionsOfBake& options, const RecipeCall& call);
+[[nodiscard]] Result<void> runRecipeCommand(const BakeRecipeOptions& options, const RecipeCall& call);
 
 }  // namespace relief

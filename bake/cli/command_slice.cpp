@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "bake/cli/command.h"
-#include "bake/picture/slice.h"
+#include "bake/images/slice.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/container.h"

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/director/mesh_check_report.h"
+#include "bake/pipeline/mesh_check_report.h"
 #include "bake/report/parts_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
@@ -52,7 +52,8 @@ Result<std::string> colliderPage(const ViewCommand& command, FileGuard& files) {
     const std::string container = RELIEF_TRY(readForPage(files, command.file));
     const std::span<const std::byte> bytes = std::as_bytes(std::span(container));
     RELIEF_TRY(refuseMesh(command.file, bytes));
-    Collider collider = RELIEF_TRY(inFront(shownInput(command.file), readContainer(bytes, command.limits)));
+    Collider collider =
+        RELIEF_TRY(withPrefix(shownInput(command.file), readContainer(bytes, command.limits)));
     Page page{.name = inputName(command.file), .bytes = container.size(), .collider = &collider};
     if (command.check.mesh.empty()) {
         return page.make(viewPage());
@@ -94,7 +95,7 @@ Result<Json> worldCheckJson(const WorldCheckJson& check) {
     accuracy.erase("seconds");  // no two runs have the same
     for (std::size_t i = 0; i < check.accuracy->places.size(); ++i) {
         const std::vector<std::byte> picture =
-            RELIEF_TRY(drawMistakes(*check.accuracy->places[i].slice, check.field->world().unit));
+            RELIEF_TRY(drawVerdicts(*check.accuracy->places[i].slice, check.field->world().unit));
         accuracy["places"][i]["picture"] = base64(picture);
     }
     return report;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/director/mesh_check.h"
+#include "bake/pipeline/mesh_check.h"
 #include "bake/world/world_report.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"

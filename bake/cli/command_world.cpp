@@ -66,7 +66,7 @@ Result<void> verdict(const fs::path& folder, const WorldBakeResult& result) {
 Result<void> checkCoarse(const World& world, const std::string& file, const ContainerLimits& limits) {
     for (std::size_t i = 0; i < world.colliders.size(); ++i) {
         if (world.colliders[i].coarse) {
-            static_cast<void>(RELIEF_TRY(inFront(
+            static_cast<void>(RELIEF_TRY(withPrefix(
                 quotedPath(file),
                 loadWorldCollider(world, i, WorldDetail::kCoarse, fs::path(file).parent_path(), limits))));
         }

@@ -8,8 +8,8 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
-#include "bake/director/bake_request.h"
-#include "bake/director/mesh_check.h"
+#include "bake/pipeline/bake_request.h"
+#include "bake/pipeline/mesh_check.h"
 
 namespace relief {
 

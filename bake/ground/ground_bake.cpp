@@ -174,11 +174,11 @@ class GroundBaker {
     }
 
     Result<std::vector<std::byte>> containerOf(const Collider& collider) const {
-        return inFront(map_.name(), writeContainer(collider, {static_cast<int>(options_.compress)}));
+        return withPrefix(map_.name(), writeContainer(collider, {static_cast<int>(options_.compress)}));
     }
 
     Result<BakedTile> bakeTile(const HeightGrid& grid, const GroundPlace& place) const {
-        Ground ground = RELIEF_TRY(inFront(map_.name(), bakeGround(grid, place)));
+        Ground ground = RELIEF_TRY(withPrefix(map_.name(), bakeGround(grid, place)));
         BakedTile baked;
         if (ground.squares == 0) {
             return baked;
@@ -217,7 +217,7 @@ class GroundBaker {
                                  .origin = place.origin,
                                  .leaf_level = kLeafLevel - std::countr_zero(kCoarse),
                                  .heights = glm::dvec2(box.min.y, box.max.y)};
-        collider.maps = {RELIEF_TRY(inFront(map_.name(), bakeGround(coarseOf(grid), coarse))).map};
+        collider.maps = {RELIEF_TRY(withPrefix(map_.name(), bakeGround(coarseOf(grid), coarse))).map};
         baked.coarse = RELIEF_TRY(containerOf(collider));
         baked.tile.coarse = {"", xxh3_128Hex(baked.coarse), collider.texelBytes()};
         return {};

@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "bake/director/bake_request.h"
 #include "bake/ground/ground_tree.h"
-#include "bake/heights/height_map.h"
-#include "bake/heights/heights_spec.h"
+#include "bake/height_map/height_map.h"
+#include "bake/height_map/heights_spec.h"
+#include "bake/pipeline/bake_request.h"
 #include "bake/recipe/depfile.h"
 #include "formats/base/result.h"
 #include "formats/world/world.h"

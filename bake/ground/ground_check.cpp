@@ -8,12 +8,12 @@
 #include <span>
 #include <utility>
 
-#include "bake/director/bake_request.h"
 #include "bake/ground/ground_tree.h"
-#include "bake/heights/height_map.h"
+#include "bake/height_map/height_map.h"
 #include "bake/measure/percent.h"
 #include "bake/mesh/loops.h"
 #include "bake/mesh/surface_sampler.h"
+#include "bake/pipeline/bake_request.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/heights/heights_spec.h"
+#include "bake/height_map/heights_spec.h"
 #include "bake/import/import_job.h"
 #include "bake/measure/accuracy.h"
 #include "formats/base/result.h"

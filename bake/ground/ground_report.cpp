@@ -95,7 +95,7 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
         " of the surface are on the wrong side; along y it is off by " + millimetres(accuracy.near.mean_abs) +
         " on average, at most " + millimetres(accuracy.near.most) + "\n\n";
     std::vector<std::vector<std::string>> rows = {
-        {"points", "number>", "wrong>", "inside by mistake>", "outside>", "mean error>", "absolute>", "99 %>",
+        {"points", "number>", "wrong>", "inside by error>", "outside>", "mean error>", "absolute>", "99 %>",
          "most>", "no surface>"},
         nearRow("near the surface", accuracy.near)};
     if (accuracy.seams) {

@@ -143,8 +143,8 @@ int work(std::span<char*> arguments) {
                                                     ", and so does not begin; raise the limits of this "
                                                     "process (ulimit -a)"};
         return image ? sendError(error)
-                     : sendMessage(inFront("cannot read the mesh " + quotedPath(path),
-                                           Result<TriangleMesh>(tl::unexpected<Error>(error))));
+                     : sendMessage(withPrefix("cannot read the mesh " + quotedPath(path),
+                                              Result<TriangleMesh>(tl::unexpected<Error>(error))));
     }
     if (orphaned()) {
         return kImportExitArguments;

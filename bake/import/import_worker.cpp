@@ -66,7 +66,7 @@ class Import {
         const std::string name = quotedPath(path_);
         return raw || raw.error().message.find(name) != std::string::npos
                    ? std::move(raw)
-                   : inFront("cannot read the mesh " + name, std::move(raw));
+                   : withPrefix("cannot read the mesh " + name, std::move(raw));
     }
 
     Result<TriangleMesh> workOn(ImportSource& source, ImportKind kind) {

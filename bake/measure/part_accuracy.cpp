@@ -244,7 +244,7 @@ double defaultDetail(const SurfaceParts& parts, const std::string& unit, double 
     if (parts.parts.empty()) {
         return 0.0;
     }
-    const Strays strays = straysOf(parts.parts);
+    const OutlierParts strays = straysOf(parts.parts);
     Bounds box = strays.rest;
     if (strays.parts.empty()) {
         for (const SurfacePart& part : parts.parts) {

@@ -35,7 +35,7 @@ struct WorstPlace {
     Bounds box;                   ///< of its points on the wrong side
     std::uint64_t points = 0;     ///< on the wrong side
     double share_percent = 0.0;   ///< of all points near the surface on the wrong side
-    double inside_percent = 0.0;  ///< of its points: inside by mistake
+    double inside_percent = 0.0;  ///< of its points: inside by error
     int map = -1;                 ///< that decides most of them; −1: no map votes
     double map_percent = 0.0;     ///< of its points: decided by that map
     double texel = 0.0;           ///< side of that map's texels at `position`, object units; 0 without a map

@@ -67,14 +67,14 @@ void SurfacePartsBuilder::add(const std::vector<std::uint32_t>& triangles, PartK
     }
 }
 
-Strays straysOf(const std::vector<SurfacePart>& parts) {
+OutlierParts straysOf(const std::vector<SurfacePart>& parts) {
     double area = 0.0;
     Bounds whole;
     for (const SurfacePart& part : parts) {
         area += part.area;
         addBounds(whole, part.bounds);
     }
-    Strays strays;
+    OutlierParts strays;
     if (parts.size() < 2) {
         return strays;
     }

@@ -57,11 +57,11 @@ class SurfacePartsBuilder {
 };
 
 /// Parts so far from the others that the common box is mostly empty: a stray vertex, a forgotten helper object.
-struct Strays {
+struct OutlierParts {
     std::vector<std::uint32_t> parts;  ///< indices, ascending
     Bounds rest;                       ///< of all others
 };
 /// All strays together have at most a hundredth of the area, and without them the box's longest side is at most a tenth.
-[[nodiscard]] Strays straysOf(const std::vector<SurfacePart>& parts);
+[[nodiscard]] OutlierParts straysOf(const std::vector<SurfacePart>& parts);
 
 }  // namespace relief

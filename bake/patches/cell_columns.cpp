@@ -493,7 +493,7 @@ double LineGrid::expectedHits(const ClippedTriangle& piece) const {
     return piece.area * std::abs(dot(piece.normal, along_)) / volume_per_length_;
 }
 
-double CellColumn::wrongAt(double height, bool outside_below, const MistakeCosts& costs) const {
+double CellColumn::wrongAt(double height, bool outside_below, const ErrorCosts& costs) const {
     const double middle = std::clamp(height, enters, leaves);
     const double below = insideTo(middle);
     const double above = insideTo(leaves) - below;

@@ -140,7 +140,7 @@ class LineGrid {
 };
 
 /// The costs of volume on the wrong side.
-struct MistakeCosts {
+struct ErrorCosts {
     double false_inside = 1.0;
     double false_outside = 1.0;
 };
@@ -168,7 +168,7 @@ struct CellColumn {
         return length + (in ? std::max(0.0, w - from) : 0.0);
     }
     /// The length on which "inside where w < height" is wrong, or with outside_below "w ≥ height", times its costs.
-    [[nodiscard]] double wrongAt(double height, bool outside_below, const MistakeCosts& costs) const;
+    [[nodiscard]] double wrongAt(double height, bool outside_below, const ErrorCosts& costs) const;
 };
 
 /// All lines of a cell.

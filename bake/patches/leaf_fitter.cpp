@@ -37,7 +37,7 @@ double volumePassedBy(const CellColumns& columns, std::span<const ClippedTriangl
 /// Tries the shapes of one leaf after the other, as they stand in kPatchShapes.
 class LeafTrial {
   public:
-    LeafTrial(const MeshQuery& query, const MistakeCosts& costs, const std::vector<LineGrid>& grids,
+    LeafTrial(const MeshQuery& query, const ErrorCosts& costs, const std::vector<LineGrid>& grids,
               PatchNode& node)
         : costs_(costs),
           node_(node),
@@ -98,7 +98,7 @@ class LeafTrial {
         node_.turned = singles_->outsideBelow();
     }
 
-    const MistakeCosts& costs_;
+    const ErrorCosts& costs_;
     PatchNode& node_;
     double volume_;
     std::vector<UnitTriangle> triangles_;
@@ -120,7 +120,7 @@ std::vector<ClippedTriangle> clippedTriangles(std::span<const UnitTriangle> tria
     return pieces;
 }
 
-LeafFitter::LeafFitter(const MeshQuery& query, const MistakeCosts& costs, const LeafLines& lines)
+LeafFitter::LeafFitter(const MeshQuery& query, const ErrorCosts& costs, const LeafLines& lines)
     : query_(query), costs_(costs) {
     for (const PatchFrame& frame : patchFrames()) {
         grids_.emplace_back(frame, lines.choose);
@@ -185,7 +185,7 @@ bool LeafFitter::hold(PatchNode& node, double within, double byte) const {
     const PatchFrame& frame = patchFrames()[node.frame.index];
     const double wrong_most = kMeanShare * within * node.cell.size * node.cell.size;
     const auto holds = [&](std::size_t index) {
-        if (node.mistakes[index] > wrong_most) {
+        if (node.errors[index] > wrong_most) {
             return false;
         }
         const PatchShape& shape = kPatchShapes[index];
@@ -196,7 +196,7 @@ bool LeafFitter::hold(PatchNode& node, double within, double byte) const {
             node.split = false;
             node.chosen = static_cast<std::uint8_t>(index);
             node.bytes = shape.bytes();
-            node.wrong = node.mistakes[index];
+            node.wrong = node.errors[index];
         }
         return agrees;
     };

@@ -23,7 +23,7 @@ struct LeafLines {
 class LeafFitter {
   public:
     /// \param query  borrowed.
-    LeafFitter(const MeshQuery& query, const MistakeCosts& costs, const LeafLines& lines);
+    LeafFitter(const MeshQuery& query, const ErrorCosts& costs, const LeafLines& lines);
 
     /// Tries what may pay where a byte is worth so much wrong volume.
     void tryWorth(PatchNode& node, double byte) const;
@@ -43,7 +43,7 @@ class LeafFitter {
     [[nodiscard]] CellColumns keptColumns(const PatchNode& node) const;
 
     const MeshQuery& query_;
-    MistakeCosts costs_;
+    ErrorCosts costs_;
     std::vector<LineGrid> grids_;  // by frame
     std::vector<LineGrid> kept_grids_;
 };

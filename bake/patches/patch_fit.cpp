@@ -295,7 +295,7 @@ struct Part {
     double gain = 0.0;  // over none; 0: none is best
 };
 
-Part bestPart(const CellColumn& column, const MistakeCosts& costs, bool walls) {
+Part bestPart(const CellColumn& column, const ErrorCosts& costs, bool walls) {
     Part best;
     double gain = 0.0;
     double begin = column.enters;
@@ -322,7 +322,7 @@ Part bestPart(const CellColumn& column, const MistakeCosts& costs, bool walls) {
 
 }  // namespace
 
-PatchFitter::PatchFitter(const CellColumns& columns, const MistakeCosts& costs, const CellPlane& mean,
+PatchFitter::PatchFitter(const CellColumns& columns, const ErrorCosts& costs, const CellPlane& mean,
                          std::optional<bool> outside_below)
     : columns_(columns), costs_(costs), mean_(mean), targets_(columns.grid().lines().size()) {
     const std::vector<double>& lengths = columns.grid().lengths();
@@ -442,14 +442,14 @@ FittedPatch PatchFitter::fit(std::uint32_t side, int rounds) const {
     return side == 2 ? fitOf<2>(rounds) : side == 3 ? fitOf<3>(rounds) : fitOf<5>(rounds);
 }
 
-PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, const glm::dvec3& normal,
+PairFitter::PairFitter(const CellColumns& columns, const ErrorCosts& costs, const glm::dvec3& normal,
                        std::optional<bool> walls)
     : columns_(columns),
       normal_(normal),
       targets_{HeightTargets(columns.grid().lines().size()), HeightTargets(columns.grid().lines().size())} {
     const std::vector<LineGrid::Line>& lines = columns.grid().lines();
     const auto leastOf = [&](bool of_walls) {
-        const MistakeCosts between = of_walls ? costs : MistakeCosts{costs.false_outside, costs.false_inside};
+        const ErrorCosts between = of_walls ? costs : ErrorCosts{costs.false_outside, costs.false_inside};
         double least = 0.0;
         for (std::size_t i = 0; i < lines.size(); ++i) {
             if (!lines[i].misses()) {
@@ -464,7 +464,7 @@ PairFitter::PairFitter(const CellColumns& columns, const MistakeCosts& costs, co
     const double of_gaps = leastOf(false);
     walls_ = walls.value_or(of_walls <= of_gaps);
     least_ = walls_ ? of_walls : of_gaps;
-    costs_ = walls_ ? costs : MistakeCosts{costs.false_outside, costs.false_inside};
+    costs_ = walls_ ? costs : ErrorCosts{costs.false_outside, costs.false_inside};
     for (std::uint32_t i = 0; i < lines.size(); ++i) {
         if (lines[i].misses()) {
             continue;

@@ -61,7 +61,7 @@ class PairFitter {
     /// \param columns  borrowed.
     /// \param normal  of the planes that heights lie in where no line meets the surface.
     /// \param walls  by the columns where it is not given.
-    PairFitter(const CellColumns& columns, const MistakeCosts& costs, const glm::dvec3& normal,
+    PairFitter(const CellColumns& columns, const ErrorCosts& costs, const glm::dvec3& normal,
                std::optional<bool> walls = {});
 
     [[nodiscard]] bool walls() const { return walls_; }
@@ -77,7 +77,7 @@ class PairFitter {
     [[nodiscard]] FittedPair fitOf(int rounds) const;
 
     const CellColumns& columns_;
-    MistakeCosts costs_;  // of what lies between
+    ErrorCosts costs_;  // of what lies between
     glm::dvec3 normal_;
     bool walls_ = true;
     double least_ = 0.0;
@@ -91,7 +91,7 @@ class PatchFitter {
     /// \param columns  borrowed.
     /// \param mean  the plane that heights lie in where no line meets the surface.
     /// \param outside_below  by the columns where it is not given.
-    PatchFitter(const CellColumns& columns, const MistakeCosts& costs, const CellPlane& mean,
+    PatchFitter(const CellColumns& columns, const ErrorCosts& costs, const CellPlane& mean,
                 std::optional<bool> outside_below = {});
 
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
@@ -113,7 +113,7 @@ class PatchFitter {
     void aimAtEnds();
 
     const CellColumns& columns_;
-    MistakeCosts costs_;
+    ErrorCosts costs_;
     CellPlane mean_;
     bool outside_below_ = false;
     HeightTargets targets_;

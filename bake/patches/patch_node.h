@@ -51,12 +51,11 @@ struct PatchNode {
     bool walls = true;     ///< a pair has the inside between
     bool in_void = false;  ///< of one without triangles
     DepthPlanes planes = DepthPlanes::kNone;
-    std::array<double, kPatchShapes.size()>
-        mistakes;             ///< of each tried: volume, object units, times its costs
-    double pair_least = 0.0;  ///< mistakes of the best pair there could be
-    double passed_by = 0.0;   ///< volume between the lines, counted with each one's mistakes
-    double bytes = 0.0;       ///< of the tree below it, as it was chosen
-    double wrong = 0.0;       ///< mistakes of that
+    std::array<double, kPatchShapes.size()> errors;  ///< of each tried: volume, object units, times its costs
+    double pair_least = 0.0;                         ///< errors of the best pair there could be
+    double passed_by = 0.0;  ///< volume between the lines, counted with each one's errors
+    double bytes = 0.0;      ///< of the tree below it, as it was chosen
+    double wrong = 0.0;      ///< errors of that
     std::unique_ptr<std::array<PatchNode, 8>> children;
     MeshCell cell;
     CellPlane mean;                       ///< of the surface in the cell
@@ -76,9 +75,9 @@ struct PatchNode {
     /// Of one without a surface.
     [[nodiscard]] bool inside() const { return empty() ? in_void || cell.bodies.inside() : chosen == 1; }
     [[nodiscard]] double cost(std::size_t index, double byte) const {
-        return mistakes[index] + byte * kPatchShapes[index].bytes();
+        return errors[index] + byte * kPatchShapes[index].bytes();
     }
-    void add(double wrong_volume) { mistakes[tried++] = wrong_volume; }
+    void add(double wrong_volume) { errors[tried++] = wrong_volume; }
     /// Takes the cheapest of those tried, where a byte is worth so much wrong volume.
     void chooseLeaf(double byte) {
         split = false;
@@ -87,7 +86,7 @@ struct PatchNode {
             chosen = cost(i, byte) < cost(chosen, byte) ? i : chosen;
         }
         bytes = shape().bytes();
-        wrong = mistakes[chosen];
+        wrong = errors[chosen];
     }
 };
 

@@ -111,13 +111,13 @@ class Planner {
         return PatchTree{std::move(map), texel_};
     }
 
-    MistakeCurve mistakes() {
+    ErrorCurve errors() {
         roots_.size = rootSizeByBytes();
         makeRoots();
         narrow(descend(), kSpareOfCurve);
-        std::ranges::stable_sort(tried_, {}, &MistakePoint::bytes);
-        MistakeCurve curve;
-        for (const MistakePoint& tree : tried_) {
+        std::ranges::stable_sort(tried_, {}, &ErrorPoint::bytes);
+        ErrorCurve curve;
+        for (const ErrorPoint& tree : tried_) {
             if (curve.empty() || (tree.bytes > curve.back().bytes && tree.wrong < curve.back().wrong)) {
                 curve.push_back(tree);
             }
@@ -211,7 +211,7 @@ class Planner {
         if (node.tried < kFlatsAndSingles) {
             return options_.trial_bytes;
         }
-        const double mended = node.mistakes[3] / node.mistakes[4];
+        const double mended = node.errors[3] / node.errors[4];
         return options_.trial_bytes * std::clamp(mended, kMendedLeast, kMendedMost);
     }
 
@@ -296,7 +296,7 @@ class Planner {
         double taken_cheap = 0.0;
     };
 
-    /// Plans larger and larger trees, up to one that does not fit, is without mistakes, or gains too little by more bytes.
+    /// Plans larger and larger trees, up to one that does not fit, is without errors, or gains too little by more bytes.
     ByteRange descend() {
         double byte = 1e-3 * static_cast<double>(roots_.size * roots_.size * roots_.size);
         ByteRange range{.dear = byte};
@@ -543,7 +543,7 @@ class Planner {
     DepthPlaneChoice depth_planes_;
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the tree tried last
-    std::vector<MistakePoint> tried_;
+    std::vector<ErrorPoint> tried_;
     std::atomic<std::size_t> looked_at_ = 0;
     std::atomic<bool> all_least_ =
         false;                  // in the tree tried last, a byte was worth its least below each root
@@ -561,8 +561,8 @@ Result<PatchTree> bakePatches(const MeshQuery& query, const PatchOptions& option
     return Planner(query, options).run();
 }
 
-MistakeCurve planMistakes(const MeshQuery& query, const PatchOptions& options) {
-    return Planner(query, options).mistakes();
+ErrorCurve planErrors(const MeshQuery& query, const PatchOptions& options) {
+    return Planner(query, options).errors();
 }
 
 }  // namespace relief

@@ -27,9 +27,9 @@ struct PatchOptions {
     /// A tree by texel that takes more has small roots, so that it can be cut into tiles of this size (patch_tiles.h); one by
     /// bytes always has.
     std::uint64_t tile_bytes = PatchTileOptions().bytes;
-    MistakeCosts costs{};
+    ErrorCosts costs{};
     LeafLines lines{};
-    /// A leaf is split on trial where it has more mistakes than so many bytes are worth: fewer find more, in more time.
+    /// A leaf is split on trial where it has more errors than so many bytes are worth: fewer find more, in more time.
     double trial_bytes = 45.0;
     /// Called now and then, from any thread but from one at a time, with the share of the work done; what it throws ends it.
     std::function<void(double)> progress{};
@@ -41,19 +41,19 @@ struct PatchTree {
 };
 
 /// A tree by bytes.
-struct MistakePoint {
+struct ErrorPoint {
     double bytes = 0.0;
-    double wrong = 0.0;  ///< its mistakes: volume, object units cubed, times its costs
+    double wrong = 0.0;  ///< its errors: volume, object units cubed, times its costs
 
-    bool operator==(const MistakePoint&) const = default;
+    bool operator==(const ErrorPoint&) const = default;
 };
-/// By bytes; each tree is larger and has fewer mistakes than the one before.
-using MistakeCurve = std::vector<MistakePoint>;
+/// By bytes; each tree is larger and has fewer errors than the one before.
+using ErrorCurve = std::vector<ErrorPoint>;
 
 /// Trees that bakePatches() tries on the way to the one that it takes, some of them too large: a curve for the time of a plan
 /// without its encoding. The same for any number of threads.
 /// \param options  whose texel is 0.
-[[nodiscard]] MistakeCurve planMistakes(const MeshQuery& query, const PatchOptions& options);
+[[nodiscard]] ErrorCurve planErrors(const MeshQuery& query, const PatchOptions& options);
 
 /// The same for any number of threads.
 /// Errors: kUsage (a texel that floats do not resolve), kLimit (one that takes more bytes, without `coarsen`).

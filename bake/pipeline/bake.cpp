@@ -1,483 +1,196 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/pipeline/bake.h"
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include <tbb/info.h>
 
-#include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
-#include <limits>
-#include <mutex>
-#include <optional>
-#include <span>
-#include <vector>
+#include <set>
 
-#include "bake/measure/accuracy.h"
-#include "bake/measure/patch_cells.h"
-#include "bake/mesh/mesh_query.h"
-#include "bake/patches/patch_planner.h"
-#include "bake/texels/encode.h"
-#include "bake/texels/fitted_map.h"
-#include "bake/texels/scan_convert.h"
-#include "bake/views/view.h"
+#include "bake/materials/material_tree.h"
+#include "bake/pipeline/stages.h"
+#include "bake/report/parts_report.h"
+#include "formats/animation/animated_mesh.h"
 #include "formats/base/stopwatch.h"
-#include "formats/base/text.h"
-#include "formats/container_limits.h"
-#include "formats/patch_tree.h"
-#include "formats/validate.h"
 
 namespace relief {
 namespace {
 
-/// Texels between two calls of the progress function.
-constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
-/// Texels that one task traces and then encodes: few, so that their hits stay in the cache and cost no fresh
-/// pages (a first touch of 12 MB takes 8 ms).
-constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
-
-/// Triangles, times maps, that are begun at the same time.
-constexpr std::size_t kTrianglesAtOnce = std::size_t{1} << 21;
-
-/// In units of the longest side.
-constexpr double kOnSurface = 1e-5;
-
-struct Job {
-    MapSpec spec;  // complete
-    View view;
-    bool compare_was_given;
-    bool centre_inside = false;  // of a given compare
-
-    [[nodiscard]] std::uint64_t texels() const {
-        return std::uint64_t{view.faceCount()} * view.width * view.height;
-    }
-};
-
-/// Finds out whether the centre of a cube that keeps the nearest surface is inside, or nearer to the surface than floats can
-/// be trusted to tell its sides.
-Result<void> examineCentre(const PreparedMesh& mesh, Job& job) {
-    if (job.view.projection() == Projection::kCube && job.view.compare == Compare::kLess) {
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-        job.view.centre_on_surface =
-            query.closest(job.view.origin).distance <= kOnSurface * mesh->bounds.longestSide();
-        job.centre_inside = job.compare_was_given && query.inside(job.view.origin);
-    }
-    return {};
+/// An animated mesh keeps its holes: its parts pass through each other as it moves, and are drawn as they are.
+BakeRequest completed(BakeRequest request) {
+    request.holes = request.animated ? Holes::kKeep : request.holes;
+    return request;
 }
 
-Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& options) {
-    const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
-    const ContainerLimits limits;
-    if (specs.size() > limits.maps) {
-        return fail(ErrorCode::kLimit, std::to_string(specs.size()) + " maps are more than the limit of " +
-                                           std::to_string(limits.maps) + "; bake fewer");
+/// The settings of a bake, before anything large is read. \param given  instead of the file's; may be null.
+Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleMesh* given) {
+    BakeSettings settings = RELIEF_TRY(settingsOf(request));
+    if (!request.heights.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "--heights is for a height map that is read from a file; leave it out");
     }
-    std::vector<Job> jobs;
-    std::uint64_t bytes = 0;
-    for (const MapSpec& spec : specs) {
-        const MapSpec complete = RELIEF_TRY(completeSpec(spec, mesh, options.resolution));
-        const View view = RELIEF_TRY(makeView(complete, *mesh));
-        jobs.push_back({complete, view, spec.compare.has_value()});
-        RELIEF_TRY(examineCentre(mesh, jobs.back()));
-        bytes += jobs.back().texels() * texelSize(view.format);
+    const std::string import = importOptionOf(request.import, request.import_limits);
+    if (given != nullptr && !import.empty()) {
+        return fail(ErrorCode::kUsage, import + " is for a mesh that is read from a file; leave it out");
     }
-    if (bytes > limits.texel_bytes) {
-        return fail(ErrorCode::kLimit,
-                    "the maps' texels take " + std::to_string(bytes) + " bytes, more than the limit of " +
-                        std::to_string(limits.texel_bytes) + "; lower --resolution or the maps' sizes");
+    if (given != nullptr && request.animated) {
+        return fail(ErrorCode::kUsage, "--animated is for a mesh that is read from a file; leave it out");
     }
-    return jobs;
+    if (given != nullptr && given->marks.empty() && !settings.shape.named.empty()) {
+        return fail(ErrorCode::kUsage,
+                    "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
+    }
+    return settings;
 }
 
-std::vector<RecordedOption> effectiveOptions(const std::vector<Job>& jobs, const BakeOptions& options) {
-    std::vector<RecordedOption> recorded;
-    bool fitted = false;
-    for (const Job& job : jobs) {
-        recorded.push_back({"map", toString(job.spec)});
-        fitted = fitted || job.spec.decode == Decode::kPlane;
-    }
-    if (fitted) {
-        recorded.push_back({"quality", std::string(wordOf(options.quality))});
-        if (options.prefer != Prefer::kNeither) {
-            recorded.push_back({"prefer", std::string(wordOf(options.prefer))});
-        }
-    }
-    if (options.budget > 0) {
-        recorded.push_back({"budget", std::to_string(options.budget)});
-    }
-    return recorded;
-}
-
-void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeReport& report) {
-    if (const std::optional<std::string> warning = coarseFloatsWarning(*mesh)) {
-        report.warnings.push_back(*warning);
-    }
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        const View& view = jobs[i].view;
-        if (view.centre_on_surface) {
-            report.warnings.push_back(
-                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") has its centre on the surface of the mesh; move center into free space");
-        } else if (jobs[i].centre_inside) {
-            report.warnings.push_back(
-                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") compares less but its centre seems to lie inside the mesh; move center, or "
-                "use compare=greater");
-        }
-        if (report.maps[i].covered == 0) {
-            report.warnings.push_back(
-                "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") is empty: its rays meet no outer side of the mesh; change its dir, box or size");
-        }
-    }
-}
-
-/// Cost of the mistake that --prefer is against, of patches.
-constexpr double kPreferredCost = 8.0;
-
-FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
-    const Quality quality = bake.quality;
-    const double side = mesh.bounds.longestSide();
-    FittedMapOptions options;
-    options.samples = quality == Quality::kFast ? 1 : quality == Quality::kNormal ? 4 : 6;
-    options.refinements = quality == Quality::kFast ? 0 : 3;
-    options.reach = 0.02 * side;
-    // A hundredth of a texel: far below what any texel can resolve.
-    options.good_enough = 0.01 * side / std::max(view.width, view.height);
-    options.cautious = bake.prefer == Prefer::kInside;
-    options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
-    return options;
-}
-
-PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
-    PatchOptions options;
-    options.bytes = spec.bytes > 0 ? spec.bytes : kPatchBytesMax;
-    options.texel = double{spec.texel};
-    options.coarsen = spec.bytes > 0;
-    options.roots_hold = bake.roots_hold;
-    options.costs.false_inside = bake.prefer == Prefer::kOutside ? kPreferredCost : 1.0;
-    options.costs.false_outside = bake.prefer == Prefer::kInside ? kPreferredCost : 1.0;
-    if (bake.quality == Quality::kFast) {
-        options.lines.keep = options.lines.choose;
-        options.trial_bytes *= 2.0;
-    } else if (bake.quality == Quality::kBest) {
-        options.lines = {.choose = 16, .keep = 28};
-        options.trial_bytes *= 0.6;
-    }
-    return options;
-}
-
-/// Bakes maps of surfaces at the texels' centres.
-class MapBaker {
-  public:
-    MapBaker(const RayScene& scene, const NormalTable& normals) : scene_(scene), normals_(normals) {}
-
-    /// \param stripeDone  called with the number of texels finished.
-    /// \param scan  of the view.
-    DepthMap bake(const View& view, const ScanConverter& scan, BakeReport& report, std::uint64_t& covered,
-                  const std::function<void(std::uint64_t)>& stripeDone) const {
-        DepthMap map = view.emptyMap();
-        const auto rows_of = [&](std::uint64_t texels) {
-            return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(texels / view.width, 4, view.height));
-        };
-        const std::uint32_t stripe_rows = rows_of(kStripeTexels);
-        for (std::uint32_t face = 0; face < view.faceCount(); ++face) {
-            for (std::uint32_t y = 0; y < view.height; y += stripe_rows) {
-                const RowRange stripe{face, y, std::min(y + stripe_rows, view.height)};
-                covered += bakeStripe(view, scan, stripe, rows_of(kBlockTexels), report, map);
-                stripeDone(std::uint64_t{stripe.end - stripe.begin} * view.width);
-            }
-        }
-        return map;
-    }
-
-  private:
-    /// What a thread keeps from one block of rows to the next.
-    struct Worker {
-        std::vector<Hit> hits[2];
-        std::uint64_t covered = 0;
-        double trace_ms = 0.0;
-        double encode_ms = 0.0;
-    };
-
-    std::uint64_t bakeStripe(const View& view, const ScanConverter& scan, const RowRange& stripe,
-                             std::uint32_t block_rows, BakeReport& report, DepthMap& map) const {
-        double stripe_ms = 0.0;
-        tbb::enumerable_thread_specific<Worker> workers;
-        {
-            const TimeAdder watch(stripe_ms);
-            const std::uint32_t blocks = (stripe.end - stripe.begin + block_rows - 1) / block_rows;
-            tbb::parallel_for(std::uint32_t{0}, blocks, [&](std::uint32_t block) {
-                const std::uint32_t begin = stripe.begin + block * block_rows;
-                const RowRange rows{stripe.face, begin, std::min(begin + block_rows, stripe.end)};
-                Worker& worker = workers.local();
-                {
-                    const TimeAdder watch_trace(worker.trace_ms);
-                    trace(view, scan, rows, worker);
-                }
-                const TimeAdder watch_encode(worker.encode_ms);
-                worker.covered +=
-                    encodeRows(scene_, normals_, view, rows, worker.hits[0], worker.hits[1], map);
-            });
-        }
-        Worker all;
-        for (const Worker& worker : workers) {
-            all.covered += worker.covered;
-            all.trace_ms += worker.trace_ms;
-            all.encode_ms += worker.encode_ms;
-        }
-        // The threads' times, scaled to the time that passed.
-        const double share = stripe_ms / std::max(all.trace_ms + all.encode_ms, 1e-9);
-        report.trace_ms += share * all.trace_ms;
-        report.encode_ms += share * all.encode_ms;
-        return all.covered;
-    }
-
-    static void trace(const View& view, const ScanConverter& scan, const RowRange& rows, Worker& worker) {
-        for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
-            worker.hits[static_cast<std::size_t>(end)].resize(
-                view.keeps(end) ? std::size_t{rows.end - rows.begin} * view.width : 0);
-        }
-        scan.scan(rows, worker.hits[0], worker.hits[1]);
-    }
-
-    const RayScene& scene_;
-    const NormalTable& normals_;
-};
-
-class Bake {
-  public:
-    Bake(const PreparedMesh& mesh, const BakeOptions& options) : mesh_(mesh), options_(options) {}
-
-    Result<Baked> run() {
-        jobs_ = RELIEF_TRY(planJobs(mesh_, options_));
-        for (const Job& job : jobs_) {
-            texels_ += job.texels();
-        }
-        RELIEF_TRY(makeMaps());
-        RELIEF_TRY(checkCovered());
-        warnAbout(mesh_, jobs_, baked_.report);
-        baked_.collider.bounds = mesh_->bounds;
-        baked_.collider.unit = mesh_->unit;
-        baked_.collider.provenance = {storedMeshName(mesh_->name), mesh_->content_hash,
-                                      mesh_->sourceTriangles(), "relief " RELIEF_VERSION,
-                                      effectiveOptions(jobs_, options_)};
-        return std::move(baked_);
-    }
-
-  private:
-    void finish(std::uint64_t texels) {
-        const std::lock_guard lock(finish_);
-        done_ += texels;
-        if (options_.progress) {
-            options_.progress(static_cast<double>(done_) / static_cast<double>(texels_));
-        }
-    }
-    [[nodiscard]] auto rowsDone(const View& view) {
-        return [this, width = view.width](std::uint32_t rows) { finish(std::uint64_t{rows} * width); };
-    }
-    void add(DepthMap map, MapReport report) {
-        baked_.collider.maps.push_back(std::move(map));
-        baked_.report.maps.push_back(std::move(report));
-    }
-
-    Result<void> makeMaps() {
-        std::optional<RayScene> scene;
-        {
-            const TimeAdder watch(baked_.report.build_ms);
-            scene = RELIEF_TRY(RayScene::build(mesh_));
-        }
-        std::optional<NormalTable> packed_normals;
-        std::optional<TriangleNormals> unit_normals;
-        for (auto job = jobs_.begin(); job != jobs_.end();) {
-            const Kind kind = kindOf(*job);
-            if (kind == Kind::kPatches) {
-                RELIEF_TRY(bakeTree(*job++));
-                continue;
-            }
-            const std::ptrdiff_t most = std::min(atOnce(), jobs_.end() - job);
-            const auto end = std::find_if(job, job + most, [&](const Job& j) { return kindOf(j) != kind; });
-            const std::span<const Job> jobs(job, end);
-            job = end;
-            if (kind == Kind::kSurfaces) {
-                if (!packed_normals) {
-                    const TimeAdder watch(baked_.report.encode_ms);
-                    packed_normals.emplace(*mesh_, scene->winding(), texels_);
-                }
-                traceMaps(*scene, MapBaker(*scene, *packed_normals), jobs);
-                continue;
-            }
-            const TimeAdder watch(baked_.report.fit_ms);
-            if (!unit_normals) {
-                unit_normals.emplace(*mesh_);
-            }
-            fitMaps(*scene, *unit_normals, jobs);
-        }
-        return {};
-    }
-
-    enum class Kind : std::uint8_t { kSurfaces, kPlanes, kPatches };
-    static Kind kindOf(const Job& job) {
-        return job.spec.format == MapFormat::kPatches ? Kind::kPatches
-               : job.spec.decode == Decode::kPlane    ? Kind::kPlanes
-                                                      : Kind::kSurfaces;
-    }
-
-    /// Maps that are begun at the same time, at most: each takes about eighty bytes a triangle meanwhile.
-    [[nodiscard]] std::ptrdiff_t atOnce() const {
-        return std::max<std::ptrdiff_t>(
-            1, static_cast<std::ptrdiff_t>(kTrianglesAtOnce /
-                                           std::max<std::size_t>(mesh_->triangles.size(), 1)));
-    }
-
-    void traceMaps(const RayScene& scene, const MapBaker& baker, std::span<const Job> jobs) {
-        std::vector<std::optional<ScanConverter>> scans(jobs.size());
-        {
-            const TimeAdder watch(baked_.report.trace_ms);
-            tbb::parallel_for(std::size_t{0}, jobs.size(),
-                              [&](std::size_t i) { scans[i].emplace(scene, jobs[i].view); });
-        }
-        for (std::size_t i = 0; i < jobs.size(); ++i) {
-            const Job& job = jobs[i];
-            MapReport report{job.spec, 0, job.texels()};
-            DepthMap map = baker.bake(job.view, *scans[i], baked_.report, report.covered,
-                                      [this](std::uint64_t texels) { finish(texels); });
-            add(std::move(map), std::move(report));
-            scans[i].reset();
-        }
-    }
-
-    /// Where one map's work runs out, the next one's has begun.
-    void fitMaps(const RayScene& scene, const TriangleNormals& normals, std::span<const Job> jobs) {
-        struct Fitted {
-            DepthMap map;
-            MapReport report;
-        };
-        std::vector<Fitted> fitted(jobs.size());
-        tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
-            const Job& job = jobs[i];
-            fitted[i].report = {job.spec, 0, job.texels()};
-            fitted[i].map = bakeFittedMap(scene, normals, job.view, fitOptions(*mesh_, job.view, options_),
-                                          fitted[i].report.covered, rowsDone(job.view));
-        });
-        for (Fitted& f : fitted) {
-            add(std::move(f.map), std::move(f.report));
-        }
-    }
-
-    Result<void> bakeTree(const Job& job) {
-        const TimeAdder watch(baked_.report.fit_ms);
-        const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh_));
-        PatchOptions options = patchOptions(options_, job.spec);
-        if (options_.progress) {
-            options.progress = [&, before = static_cast<double>(done_)](double share) {
-                options_.progress((before + share * static_cast<double>(job.texels())) /
-                                  static_cast<double>(texels_));
-            };
-        }
-        PatchTree tree = RELIEF_TRY(bakePatches(query, options));
-        const std::uint64_t covered = patchCount(tree.map) > 0 ? job.texels() : 0;
-        add(std::move(tree.map), MapReport{job.spec, covered, job.texels()});
-        finish(job.texels());
-        if (tree.texel > options.texel) {
-            baked_.report.warnings.push_back(
-                mesh_->name + ": its texel is " + shortest(static_cast<float>(tree.texel)) + " where " +
-                shortest(job.spec.texel) + " is wanted, which takes more than its " +
-                std::to_string(job.spec.bytes) + " bytes; give a larger --budget or --texel");
-        }
-        return {};
-    }
-
-    [[nodiscard]] Result<void> checkCovered() const {
-        const std::vector<MapReport>& maps = baked_.report.maps;
-        if (std::all_of(maps.begin(), maps.end(), [](const MapReport& map) { return map.covered == 0; })) {
-            const auto tree = std::find_if(jobs_.begin(), jobs_.end(),
-                                           [](const Job& job) { return kindOf(job) == Kind::kPatches; });
-            return fail(
-                ErrorCode::kFailure,
-                mesh_->name + ": no map sees a surface of the mesh" +
-                    (tree != jobs_.end() ? ", whose parts are smaller than a texel of " +
-                                               shortest(static_cast<float>(finestTexel())) + " in a box of " +
-                                               shortest(mesh_->bounds.longestSide()) +
-                                               "; bake parts that lie far apart by themselves, or " +
-                                               (tree->spec.texel > 0.0F ? "lower --texel" : "raise --budget")
-                                         : "; raise the maps' sizes, or change their dir or box"));
-        }
-        return {};
-    }
-
-    /// Object units.
-    [[nodiscard]] double finestTexel() const {
-        double finest = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < jobs_.size(); ++i) {
-            const glm::dvec3& across = jobs_[i].view.axis[0];
-            const DepthMap& map = baked_.collider.maps[i];
-            const double texel = kindOf(jobs_[i]) == Kind::kPatches
-                                     ? patchSpacing(map.texels) * double{map.object_per_map.x}
-                                     : std::sqrt(dot(across, across)) / jobs_[i].view.width;
-            finest = std::min(finest, texel);
-        }
-        return finest;
-    }
-
-    const PreparedMesh& mesh_;
-    const BakeOptions& options_;
-    std::vector<Job> jobs_;
-    std::uint64_t texels_ = 0;  // of all jobs
-    std::mutex finish_;
-    std::uint64_t done_ = 0;
-    Baked baked_;
-};
-
-}  // namespace
-
-Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
-    if (options.threads == 0) {
-        return Bake(mesh, options).run();
-    }
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, options.threads);
-    tbb::task_arena arena(static_cast<int>(options.threads));
-    std::optional<Result<Baked>> result;
-    arena.execute([&] { result.emplace(Bake(mesh, options).run()); });
-    return std::move(*result);
-}
-
-namespace {
-
-/// Measured: a house at (4e5, 0, 8e5) m, a ball there.
-constexpr double kWrongPerStep = 0.1;
-
-/// The largest magnitude of a coordinate of the mesh's box.
-float farthestOf(const TriangleMesh& mesh) {
-    const glm::vec3 corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
-    return std::max({corner.x, corner.y, corner.z});
-}
-
-}  // namespace
-
-double wrongByFloats(const TriangleMesh& mesh) {
-    const double step = std::ldexp(1.0, std::ilogb(farthestOf(mesh)) - 23);
-    const double sigma = AccuracyOptions().sigma_share * double{mesh.bounds.longestSide()};
-    return std::min(50.0, 100.0 * kWrongPerStep * step / sigma);
-}
-
-std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh) {
-    if (mesh.bounds.longestSide() >= 1e-3F * farthestOf(mesh)) {
+/// --threads, for measurements too, as long as it lives.
+std::optional<tbb::global_control> threadLimit(const BakeRequest& request) {
+    if (!request.threads) {
         return std::nullopt;
     }
-    return mesh.name +
-           " lies more than 1000 times its size away from the origin, where floats are coarse; move it to "
-           "the "
-           "origin";
+    return std::optional<tbb::global_control>(std::in_place, tbb::global_control::max_allowed_parallelism,
+                                              *request.threads);
 }
 
-Result<MistakeCurve> planMistakes(const PreparedMesh& mesh, const BakeOptions& options, std::uint64_t bytes) {
-    MapSpec spec;
-    spec.bytes = bytes;
-    const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
-    return planMistakes(query, patchOptions(options, spec));
+/// The files that the mesh refers to, a buffer or a material, none of which an output may replace.
+Result<std::vector<InputFile>> inputsOf(const TriangleMesh& mesh, FileGuard* files) {
+    std::vector<InputFile> inputs;
+    for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
+        if (files != nullptr) {
+            RELIEF_TRY(files->reads(mesh.dependencies[i]));
+        }
+        inputs.push_back({mesh.dependencies[i], mesh.dependency_hashes[i]});
+    }
+    return inputs;
+}
+
+/// The request that makes the same solid again, which recordedBake() reads back; the maps record themselves.
+BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, const SolidMesh& solid) {
+    BakeRequest record;
+    if (request.animated) {
+        // Which maps these are follows from it, and that its holes stay.
+        record.animated = true;
+        record.resolution = settings.bake.resolution;
+    } else {
+        record.holes = request.holes;
+    }
+    record.import = request.import;
+    record.repair.method = solid.mesh.report.repair;
+    record.as = asWords(solid.shape);
+    record.thickness = thicknessOf(solid.shape);
+    record.texel = request.texel;
+    record.materials = request.materials;
+    record.voids = solid.shape.voids > 0 ? VoidsAs::kFull : request.voids;
+    return record;
+}
+
+/// Maps with all that a container holds beside them.
+Collider finished(Collider collider, const BakeRequest& request, const BakeSettings& settings,
+                  const SolidMesh& solid) {
+    std::vector<RecordedOption>& options = collider.provenance.options;
+    if (solid.animated) {
+        collider.animation = writeAnimatedMesh(*solid.animated);
+        for (DepthMap& map : collider.maps) {
+            map.encloses = false;  // the mesh may leave the box of its rest pose
+        }
+        std::erase_if(options, [](const RecordedOption& option) { return option.name == "map"; });
+    }
+    collider.materials = materialsFor(collider, solid.materials.get());
+    for (const FieldWords& field : changedFields(recordOf(request, settings, solid))) {
+        for (const std::string& word : field.words) {
+            options.push_back({field.name, word});
+        }
+    }
+    return collider;
+}
+
+/// \param nodes  as noticesOf().
+Result<BakeResult> bakeFrom(const BakeRequest& request, const BakeSettings& settings, SolidMesh prepared,
+                            std::size_t nodes, const BakeWatcher& watcher) {
+    BakeResult result{std::move(prepared), request, settings, {}, {}, {}, {}, {}, {}, {}};
+    const SolidMesh& solid = result;
+    const TriangleMesh& mesh = *solid.mesh.mesh;
+    result.notices = noticesOf(solid, nodes);
+    result.inputs = RELIEF_TRY(inputsOf(mesh, watcher.files));
+    Result<BakedMaps> maps = bakeMaps(request, settings, solid, watcher);
+    if (!maps && maps.error().code != ErrorCode::kUsage) {
+        if (const auto stray = strayText(solid.parts, mesh.unit)) {
+            return fail(maps.error().code, mesh.name + ": " + *stray);
+        }
+    }
+    BakedMaps made = RELIEF_TRY(std::move(maps));
+    result.imported.reset();  // only --max-error measured it
+    made.baked.collider = finished(std::move(made.baked.collider), request, settings, solid);
+    std::optional<SelfCheck> check;
+    if (made.patches && !request.no_check) {  // named maps may be wrong on purpose
+        const Stopwatch watch;
+        notify(watcher.begin, "measuring the collider");
+        check = RELIEF_TRY(selfCheck(solid.mesh.mesh, solid.parts, made.baked.collider));
+        result.times.check_ms = watch.ms();
+        result.wrong = check->wrong;
+        result.part_accuracy = check->parts;
+    }
+    made.baked.report.warnings = warningsOf(request, solid, made.baked, check ? &*check : nullptr);
+    result.times.search_ms = made.search_ms;
+    result.baked = std::move(made.baked);
+    result.patches = std::move(made.patches);
+    return result;
+}
+
+}  // namespace
+
+std::optional<Verdict> BakeResult::verdict() const {
+    return wrong ? std::optional(
+                       verdictOf(wrong->total(), part_accuracy.value_or(PartsAccuracy{}), mesh.mesh->unit))
+                 : std::nullopt;
+}
+
+BakeSummary BakeResult::summary(bool verbose) const {
+    return {*mesh.mesh, baked,     patches,         times,   mesh.report,
+            shape,      verdict(), unused_vertices, verbose, animated ? &*animated : nullptr};
+}
+
+int BakeResult::threads() const {
+    return request.threads ? static_cast<int>(*request.threads) : tbb::info::default_concurrency();
+}
+
+Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher,
+                        std::optional<TriangleMesh> mesh) {
+    notify(watcher.begin, "reading its options");
+    const BakeSettings settings = RELIEF_TRY(checkedSettings(request, mesh ? &*mesh : nullptr));
+    const BakeRequest whole = completed(request);
+    const auto threads = threadLimit(whole);
+    const Stopwatch watch;
+    notify(watcher.begin, "reading the mesh");
+    SourceMesh source = mesh ? SourceMesh{std::move(*mesh)} : RELIEF_TRY(importSource(whole, settings));
+    std::set<std::uint32_t> nodes;
+    for (const SurfaceName& name : source.mesh.surface_names) {
+        nodes.insert(name.node_index);
+    }
+    const double import_ms = watch.ms();
+    if (watcher.imported) {
+        watcher.imported(source.mesh);
+    }
+    SolidMesh solid = RELIEF_TRY(solidOf(whole, std::move(source), watcher));
+    BakeResult result = RELIEF_TRY(bakeFrom(whole, settings, std::move(solid), nodes.size(), watcher));
+    result.times.import_ms = import_ms;
+    return result;
+}
+
+Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid) {
+    const BakeSettings settings = RELIEF_TRY(checkedSettings(request, nullptr));
+    const BakeRequest whole = completed(request);
+    const auto threads = threadLimit(whole);
+    return bakeFrom(whole, settings, solid, 0, {});
+}
+
+Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh) {
+    static_cast<void>(RELIEF_TRY(settingsOf(request)));
+    return solidOf(request, SourceMesh{std::move(mesh)}, {});
+}
+
+Result<ErrorCurve> planErrors(const BakeRequest& request, const SolidMesh& solid, std::uint64_t bytes) {
+    const BakeSettings settings = RELIEF_TRY(settingsOf(request));
+    return planErrors(solid.mesh.mesh, settings.bake, bytes);
 }
 
 }  // namespace relief

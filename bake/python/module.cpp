@@ -15,10 +15,10 @@
 #include <optional>
 #include <string>
 
-#include "bake/director/director.h"
-#include "bake/director/mesh_check.h"
 #include "bake/ground/ground_bake.h"
 #include "bake/measure/worst_places.h"
+#include "bake/pipeline/bake.h"
+#include "bake/pipeline/mesh_check.h"
 #include "bake/python/interruptible.h"
 #include "bake/report/parts_report.h"
 #include "formats/base/stopwatch.h"

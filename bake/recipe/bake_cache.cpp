@@ -116,7 +116,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
             return entries;
         }
     } catch (const Json::exception&) {
-        // The kind of mistake does not matter: the file is written anew.
+        // The kind of error does not matter: the file is written anew.
     }
     return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
 }
@@ -155,8 +155,8 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
     }
     const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
-    return inFront(quotedPath(path),
-                   parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+    return withPrefix(quotedPath(path),
+                      parseBakeCache({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {

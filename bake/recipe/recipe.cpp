@@ -39,9 +39,9 @@ void refuseUnknown(const TomlValue& table, std::span<const std::string_view> kno
         if (std::ranges::find(known, key->str()) == known.end()) {
             const toml::source_position& at = key->source().begin;
             const std::string guess = didYouMean(key->str(), known);
-            throw TomlMistake{table.file().name + ":" + std::to_string(at.line) + ":" +
-                              std::to_string(at.column) + ": unknown key '" + cleanUtf8(key->str(), 80) +
-                              "'" + (guess.empty() ? "; known are " + listed(known) : guess)};
+            throw TomlError{table.file().name + ":" + std::to_string(at.line) + ":" +
+                            std::to_string(at.column) + ": unknown key '" + cleanUtf8(key->str(), 80) + "'" +
+                            (guess.empty() ? "; known are " + listed(known) : guess)};
         }
     }
 }

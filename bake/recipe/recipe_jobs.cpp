@@ -311,7 +311,7 @@ class Expander {
 Result<void> ownWorldFolder(const fs::path& folder, std::string_view option, FileGuard& files) {
     RELIEF_TRY(files.writes(FilesByEnding{folder, std::string(kColliderExtension)}, option));
     RELIEF_TRY(files.keeps(folder / kBakeCacheName, option));
-    return files.keeps(folder / kMistakeCurvesName, option);
+    return files.keeps(folder / kErrorCurvesName, option);
 }
 
 fs::path recipeFolder(const fs::path& recipe) {

@@ -19,8 +19,8 @@ inline constexpr std::size_t kRecipeJobsMax = 100'000;
 inline constexpr std::string_view kColliderExtension = ".relief";
 /// Beside the outputs: the inputs of each.
 inline constexpr const char* kBakeCacheName = ".relief-cache.json";
-/// Beside the containers of a level: how their mistakes grow with fewer bytes.
-inline constexpr const char* kMistakeCurvesName = ".relief-curves.json";
+/// Beside the containers of a level: how their errors grow with fewer bytes.
+inline constexpr const char* kErrorCurvesName = ".relief-curves.json";
 
 /// In RecipeJob::options of a world.
 inline constexpr const char* kWorldOption = "--world";

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/pipeline/bake.h"
-#include "bake/pipeline/budget_search.h"
+#include "bake/maps/bake_maps.h"
+#include "bake/maps/budget_search.h"
 #include "bake/recipe/depfile.h"
 #include "bake/repair/repair.h"
 #include "bake/report/collider_report.h"

@@ -154,7 +154,7 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
         return cure;
     }
     if (patches) {
-        // Cells are split where the mistakes are: no other part takes as much more.
+        // Cells are split where the errors are: no other part takes as much more.
         const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
         cure += cure.empty() ? "its patches' heights are " + lengthText(texel, collider.unit) + " apart; try "
                              : ", and try ";
@@ -244,7 +244,7 @@ std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const
 }
 
 std::optional<std::string> strayText(const SurfaceParts& parts, const std::string& unit) {
-    const Strays strays = straysOf(parts.parts);
+    const OutlierParts strays = straysOf(parts.parts);
     if (strays.parts.empty()) {
         return std::nullopt;
     }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "bake/maps/budget_search.h"
 #include "bake/measure/patch_cells.h"
-#include "bake/pipeline/budget_search.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -52,7 +52,7 @@ std::uint64_t plannedOf(std::uint64_t share) {
 
 class Sharer {
   public:
-    Sharer(std::uint64_t budget, std::span<BudgetShare> shares, const PlanMistakes& plan)
+    Sharer(std::uint64_t budget, std::span<BudgetShare> shares, const PlanErrors& plan)
         : budget_(budget), shares_(shares), plan_(plan), planned_(shares.size()), curves_(shares.size()) {}
 
     void run() {
@@ -82,7 +82,7 @@ class Sharer {
   private:
     void plan(std::size_t i) {
         planned_[i] = plannedOf(shares_[i].bytes);
-        const Result<MistakeCurve> curve = plan_(i, planned_[i]);
+        const Result<ErrorCurve> curve = plan_(i, planned_[i]);
         curves_[i].reset();
         if (curve && !curve->empty()) {
             curves_[i].emplace(*curve, shares_[i].weight);
@@ -115,7 +115,7 @@ class Sharer {
 
     std::uint64_t budget_;
     std::span<BudgetShare> shares_;
-    const PlanMistakes& plan_;
+    const PlanErrors& plan_;
     std::vector<std::uint64_t> planned_;  // bytes
     std::vector<std::optional<WorthCurve>> curves_;
 };
@@ -132,7 +132,7 @@ std::uint64_t roundDownToEighth(std::uint64_t bytes) {
     return best;
 }
 
-Result<void> shareByMistakes(std::uint64_t budget, std::span<BudgetShare> shares, const PlanMistakes& plan) {
+Result<void> shareByErrors(std::uint64_t budget, std::span<BudgetShare> shares, const PlanErrors& plan) {
     RELIEF_TRY(checkBudget(budget, shares.size()));
     if (shares.size() == 1) {
         shares[0].bytes = roundDownToEighth(budget);

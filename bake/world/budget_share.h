@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a level shares its bytes among its colliders: so that the next byte goes where it mends most.
 //
-// The mistakes of a mesh fall with its bytes along a curve. A small plan gives the beginning, a power law goes on from there.
+// The errors of a mesh fall with its bytes along a curve. A small plan gives the beginning, a power law goes on from there.
 // Shares are where a byte more mends the same in all of them,
 //
 //     weight · −d wrong / d bytes = worth,
@@ -32,17 +32,17 @@ inline constexpr std::uint64_t kSharePerPlan = 8;
 
 /// Plans trees of a mesh up to so many bytes, a power of two. Called from several threads. One that fails, or without trees,
 /// leaves its mesh an even share.
-using PlanMistakes = std::function<Result<MistakeCurve>(std::size_t mesh, std::uint64_t bytes)>;
+using PlanErrors = std::function<Result<ErrorCurve>(std::size_t mesh, std::uint64_t bytes)>;
 
 /// Plans each mesh for an even share, and those again whose shares become twice as large or more.
 /// \param shares  at least one, of which a single one takes all without a plan; weights are of wrong volumes.
 /// Errors: kUsage: the budget gives less than 2·kShareMin to each.
-[[nodiscard]] Result<void> shareByMistakes(std::uint64_t budget, std::span<BudgetShare> shares,
-                                           const PlanMistakes& plan);
+[[nodiscard]] Result<void> shareByErrors(std::uint64_t budget, std::span<BudgetShare> shares,
+                                         const PlanErrors& plan);
 
 /// Half evenly, half by weight: of maps without such a curve.
 /// \param shares  at least one; weights are areas in the world.
-/// Errors: as shareByMistakes.
+/// Errors: as shareByErrors.
 [[nodiscard]] Result<void> shareByArea(std::uint64_t budget, std::span<BudgetShare> shares);
 
 /// The largest 2^(k/8), rounded down, that is not above a number of at least 1.

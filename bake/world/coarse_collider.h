@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "bake/director/director.h"
+#include "bake/pipeline/bake.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 

@@ -13,15 +13,15 @@
 #include <numeric>
 #include <set>
 
-#include "bake/director/director.h"
 #include "bake/import/level_folder.h"
 #include "bake/measure/self_check.h"
+#include "bake/pipeline/bake.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/report/report_text.h"
 #include "bake/shape/shape_options.h"
 #include "bake/world/budget_share.h"
 #include "bake/world/coarse_collider.h"
-#include "bake/world/mistake_curves.h"
+#include "bake/world/error_curves.h"
 #include "bake/world/world_files.h"
 #include "formats/base/file_io.h"
 #include "formats/base/hash.h"
@@ -85,7 +85,7 @@ BakeRequest withoutImport(BakeRequest request) {
 
 /// Of wrong volume in the space of a mesh, without its bodies: what it is worth by the area to 3/4. By volume alone large
 /// meshes take nearly all, by area those that are small take too much.
-double mistakeWeight(double area) {
+double errorWeight(double area) {
     return area > 0.0 ? 1.0 / (std::sqrt(area) * std::sqrt(std::sqrt(area))) : 0.0;
 }
 
@@ -184,7 +184,7 @@ class WorldBaker {
             for (const LevelBody& body : level_.bodies) {
                 // Volume / area^(3/4), in the world.
                 shares[body.mesh].weight +=
-                    mistakeWeight(meshes_[body.mesh].area) * body.scale * std::sqrt(body.scale);
+                    errorWeight(meshes_[body.mesh].area) * body.scale * std::sqrt(body.scale);
             }
             RELIEF_TRY(shareKnowing(shares));
         } else {
@@ -201,23 +201,23 @@ class WorldBaker {
 
     /// By the curves of the meshes, which are kept for the next run.
     Result<void> shareKnowing(std::span<BudgetShare> shares) {
-        Result<MistakeCurves> known = loadMistakeCurves(request_.folder);
+        Result<ErrorCurves> known = loadErrorCurves(request_.folder);
         if (!known) {
             result_.warnings.push_back(known.error().message +
                                        "; the shares of the budget are planned again");
-            known = MistakeCurves{};
+            known = ErrorCurves{};
         }
-        MistakeCurves used;
+        ErrorCurves used;
         std::mutex mutex;
-        const auto plan = [&](std::size_t i, std::uint64_t bytes) -> Result<MistakeCurve> {
+        const auto plan = [&](std::size_t i, std::uint64_t bytes) -> Result<ErrorCurve> {
             const std::string key = curveKey(i, bytes);
             const auto found = known->find(key);
-            MistakeCurve curve = found != known->end() ? found->second : RELIEF_TRY(planMesh(i, bytes));
+            ErrorCurve curve = found != known->end() ? found->second : RELIEF_TRY(planMesh(i, bytes));
             const std::lock_guard lock(mutex);
             return used.insert_or_assign(key, std::move(curve)).first->second;
         };
-        RELIEF_TRY(shareByMistakes(*result_.budget, shares, plan));
-        return *known == used ? Result<void>() : saveMistakeCurves(request_.folder, used);
+        RELIEF_TRY(shareByErrors(*result_.budget, shares, plan));
+        return *known == used ? Result<void>() : saveErrorCurves(request_.folder, used);
     }
 
     [[nodiscard]] std::string curveKey(std::size_t mesh, std::uint64_t bytes) const {
@@ -227,11 +227,11 @@ class WorldBaker {
     }
 
     /// Keeps the solid for the bake.
-    [[nodiscard]] Result<MistakeCurve> planMesh(std::size_t mesh, std::uint64_t bytes) {
+    [[nodiscard]] Result<ErrorCurve> planMesh(std::size_t mesh, std::uint64_t bytes) {
         BakeRequest request = withoutImport(requests_[mesh]);
         request.budget = kSharePerPlan * bytes;  // of which shells are as thick
         SolidMesh solid = RELIEF_TRY(solidFor(request, mesh));
-        Result<MistakeCurve> curve = planMistakes(request, solid, bytes);
+        Result<ErrorCurve> curve = planErrors(request, solid, bytes);
         if (!solids_[mesh] && solid.suitsAnyBudget() && kept_triangles_ < kTrianglesKept) {
             kept_triangles_ += solid.mesh.mesh->triangles.size();
             solids_[mesh] = std::move(solid);

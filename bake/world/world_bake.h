@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/director/bake_request.h"
 #include "bake/measure/accuracy.h"
+#include "bake/pipeline/bake_request.h"
 #include "bake/recipe/depfile.h"
 #include "bake/report/parts_report.h"
 #include "bake/world/world_tiles.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/director/mesh_check.h"
 #include "bake/measure/part_accuracy.h"
+#include "bake/pipeline/mesh_check.h"
 #include "bake/world/world_places.h"
 #include "formats/base/result.h"
 #include "formats/container_limits.h"

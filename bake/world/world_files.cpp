@@ -219,7 +219,7 @@ Result<ReplacedWorld> replaceWorld(const fs::path& folder, World& world,
                                     "; it is replaced, without what was written into it by hand");
     }
     // A world that no reader would take must not be written: scales or places that floats do not hold.
-    const World read = RELIEF_TRY(inFront(name, parseWorld(worldText(world))));
+    const World read = RELIEF_TRY(withPrefix(name, parseWorld(worldText(world))));
     if (before) {
         keepBodies(world, read, *before, replaced.warnings);
     }

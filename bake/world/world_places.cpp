@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/maps/bake_maps.h"
 #include "bake/measure/worst_places.h"
 #include "bake/mesh/loops.h"
 #include "bake/mesh/triangle_plane.h"
-#include "bake/pipeline/bake.h"
 
 namespace relief {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kDistances = 40.0;
 constexpr double kLeast = 0.02;
 constexpr double kMost = 1.2;
 
-void fillSlice(const WorldPlaceQuestion& question, MistakesSlice& slice) {
+void fillSlice(const WorldPlaceQuery& question, VerdictSlice& slice) {
     const glm::dvec3 half(0.5 * slice.side);
     const glm::dvec3 low = glm::dvec3(slice.center) - half;
     const glm::dvec3 high = glm::dvec3(slice.center) + half;
@@ -37,7 +37,7 @@ void fillSlice(const WorldPlaceQuestion& question, MistakesSlice& slice) {
 
 }  // namespace
 
-WorldPlace worldPlace(const WorldPlaceQuestion& question, bool picture) {
+WorldPlace worldPlace(const WorldPlaceQuery& question, bool picture) {
     const PlacedMesh& own = question.level[question.body];
     const ClosestPoint closest = own.query->closest(glm::vec3(own.toObject(glm::dvec3(question.place))));
     WorldPlace place;
@@ -61,8 +61,8 @@ WorldPlace worldPlace(const WorldPlaceQuestion& question, bool picture) {
     if (picture) {
         const double longest = own.body->scale * double{own.query->mesh().bounds.longestSide()};
         place.slice =
-            mistakesSlice(question.place, place.normal,
-                          std::clamp(kDistances * place.distance, kLeast * longest, kMost * longest));
+            verdictSlice(question.place, place.normal,
+                         std::clamp(kDistances * place.distance, kLeast * longest, kMost * longest));
         fillSlice(question, *place.slice);
     }
     return place;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/picture/mistakes.h"
+#include "bake/images/verdict_slice.h"
 #include "bake/world/placed_mesh.h"
 #include "formats/fields/field.h"
 #include "formats/world/world_field.h"
@@ -31,10 +31,10 @@ struct WorldPlace {
     double distance = 0.0;   ///< from that, world units
     double texel = 0.0;      ///< side of the deciding body's texels there, world units; 0: no body decides
     WorldCause cause = WorldCause::kMesh;
-    std::optional<MistakesSlice> slice;
+    std::optional<VerdictSlice> slice;
 };
 
-struct WorldPlaceQuestion {
+struct WorldPlaceQuery {
     const std::vector<PlacedMesh>& level;
     const WorldField& field;
     std::size_t body = 0;  ///< of the level
@@ -43,6 +43,6 @@ struct WorldPlaceQuestion {
     double wrong = 0.0;  ///< percent of the body's points
 };
 
-[[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuestion& question, bool picture);
+[[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuery& question, bool picture);
 
 }  // namespace relief

@@ -170,7 +170,7 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
     const std::uint64_t points = accuracy->bodies.front().points;
     text += "\n" + percentText(accuracy->all.total()) +
             " of the points near the surface are on the wrong side (" +
-            percentText(accuracy->all.false_inside) + " inside by mistake, " +
+            percentText(accuracy->all.false_inside) + " inside by error, " +
             percentText(accuracy->all.false_outside) + " outside), of " + countText(points, "point") +
             " for each body\n" + verdictOf(*accuracy, field.world().unit).text + "\n";
     for (const LostParts& mesh : accuracy->lost) {

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "bake/director/director.h"
+#include "bake/pipeline/bake.h"
 #include "bake/world/world_bake.h"
 
 namespace relief {

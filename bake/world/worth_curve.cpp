@@ -19,14 +19,14 @@ constexpr double kPowerOver = 8.0;
 /// exp() of it is more than any budget.
 constexpr double kLogMost = 60.0;
 
-double slope(const MistakePoint& a, const MistakePoint& b) {
+double slope(const ErrorPoint& a, const ErrorPoint& b) {
     return (a.wrong - b.wrong) / (b.bytes - a.bytes);
 }
 
 /// The points with falling slopes between them.
-MistakeCurve hullOf(const MistakeCurve& curve) {
-    MistakeCurve hull;
-    for (const MistakePoint& point : curve) {
+ErrorCurve hullOf(const ErrorCurve& curve) {
+    ErrorCurve hull;
+    for (const ErrorPoint& point : curve) {
         while (hull.size() > 1 && slope(hull[hull.size() - 2], hull.back()) <= slope(hull.back(), point)) {
             hull.pop_back();
         }
@@ -35,11 +35,11 @@ MistakeCurve hullOf(const MistakeCurve& curve) {
     return hull;
 }
 
-double powerOf(const MistakeCurve& hull) {
+double powerOf(const ErrorCurve& hull) {
     if (hull.size() < 2) {
         return kPower;
     }
-    const MistakePoint& end = hull.back();
+    const ErrorPoint& end = hull.back();
     std::size_t from = 0;
     while (from + 2 < hull.size() && hull[from + 1].bytes * kPowerOver <= end.bytes) {
         ++from;
@@ -49,12 +49,12 @@ double powerOf(const MistakeCurve& hull) {
 
 }  // namespace
 
-WorthCurve::WorthCurve(const MistakeCurve& curve, double weight) : power_(kPower) {
-    const MistakeCurve hull = hullOf(curve);
+WorthCurve::WorthCurve(const ErrorCurve& curve, double weight) : power_(kPower) {
+    const ErrorCurve hull = hullOf(curve);
     for (std::size_t i = 1; i < hull.size(); ++i) {
         add(std::sqrt(hull[i - 1].bytes * hull[i].bytes), weight * slope(hull[i - 1], hull[i]));
     }
-    const MistakePoint& end = hull.back();
+    const ErrorPoint& end = hull.back();
     if (!(weight * end.wrong >= std::numeric_limits<double>::min())) {
         most_ = end.bytes;
         return;

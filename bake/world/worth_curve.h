@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mistakes of a mesh that a byte more mends, against the bytes that it has.
+// The errors of a mesh that a byte more mends, against the bytes that it has.
 #pragma once
 
 #include <limits>
@@ -9,12 +9,12 @@
 
 namespace relief {
 
-/// The slope of the convex hull of a curve of mistakes, on straight lines of logarithms, and beyond its end of the power law
+/// The slope of the convex hull of a curve of errors, on straight lines of logarithms, and beyond its end of the power law
 /// that it ends with.
 class WorthCurve {
   public:
-    /// \param curve  not empty. \param weight  of its mistakes, 0 or more.
-    WorthCurve(const MistakeCurve& curve, double weight);
+    /// \param curve  not empty. \param weight  of its errors, 0 or more.
+    WorthCurve(const ErrorCurve& curve, double weight);
 
     /// The bytes up to which each mends at least so much; they grow where the worth falls.
     /// \param log_worth  natural logarithm.
@@ -28,7 +28,7 @@ class WorthCurve {
     void add(double bytes, double worth);
 
     std::vector<Knot> knots_;                                // worth falls
-    double power_;                                           // mistakes go by bytes^-power beyond the last
+    double power_;                                           // errors go by bytes^-power beyond the last
     double most_ = std::numeric_limits<double>::infinity();  // bytes; more mend nothing
 };
 

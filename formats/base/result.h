@@ -70,7 +70,7 @@ inline void valueOf(Result<void>&& /*result*/) {}
 
 /// The same Result; an error's message with "WORDS: " in front.
 template <class T>
-[[nodiscard]] Result<T> inFront(const std::string& words, Result<T> result) {
+[[nodiscard]] Result<T> withPrefix(const std::string& words, Result<T> result) {
     if (!result) {
         result.error().message.insert(0, words + ": ");
     }

@@ -22,7 +22,7 @@
 
 namespace relief {
 
-/// The keys of a table in the order of the file, so that the first mistake is the one reported.
+/// The keys of a table in the order of the file, so that the first error is the one reported.
 inline std::vector<const toml::key*> keysInOrder(const toml::table& table) {
     std::vector<const toml::key*> keys;
     for (const auto& [key, node] : table) {

@@ -35,7 +35,7 @@ std::string placeIn(const TomlFile& file, const toml::source_region& region) {
                         : file.name;
 }
 
-/// Its mistakes as errors.
+/// Its errors as errors.
 Result<void> caught(const TomlFile& file, const std::function<void()>& read) {
     try {
         read();
@@ -43,8 +43,8 @@ Result<void> caught(const TomlFile& file, const std::function<void()>& read) {
     } catch (const toml::parse_error& error) {
         return fail(ErrorCode::kInvalidInput,
                     placeIn(file, error.source()) + ": not TOML: " + oneLine(error.description()));
-    } catch (const TomlMistake& mistake) {
-        return fail(ErrorCode::kInvalidInput, mistake.message);
+    } catch (const TomlError& error) {
+        return fail(ErrorCode::kInvalidInput, error.message);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
@@ -75,7 +75,7 @@ std::string TomlValue::full(std::string_view key) const {
 }
 
 void TomlValue::fail(const std::string& message) const {
-    throw TomlMistake{place() + ": " + message};
+    throw TomlError{place() + ": " + message};
 }
 
 void TomlValue::wrongType(std::string_view wanted) const {
@@ -276,10 +276,10 @@ void TableRules::refuseUnknown(const TomlValue& table) const {
     for (const toml::key* key : keysInOrder(*table.node().as_table())) {
         if (std::find(known.begin(), known.end(), key->str()) == known.end()) {
             const std::string hint = didYouMean(key->str(), known);
-            throw TomlMistake{placeIn(table.file(), key->source()) + ": unknown " +
-                              (table.name().empty() ? "table" : "key") + " '" +
-                              oneLine(table.full(key->str())) + "'" +
-                              (hint.empty() ? "; known are " + listed(known) : hint)};
+            throw TomlError{placeIn(table.file(), key->source()) + ": unknown " +
+                            (table.name().empty() ? "table" : "key") + " '" +
+                            oneLine(table.full(key->str())) + "'" +
+                            (hint.empty() ? "; known are " + listed(known) : hint)};
         }
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a table of a TOML file into a struct with fields() (formats/base/field.h). Unknown keys, wrong types, values out of
-// their range and keys that exclude each other are mistakes, each reported as "file:line:column: table.key …; the cure".
+// their range and keys that exclude each other are errors, each reported as "file:line:column: table.key …; the cure".
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct TomlFile {
 };
 
 /// Thrown by everything below where a value is wrong; readTomlFile() turns it into an Error.
-struct TomlMistake {
+struct TomlError {
     std::string message;
 };
 
@@ -93,7 +93,7 @@ void readValue(const TomlValue& from, FieldRef value, const FieldInfo& info);
 /// A member `place` of the struct becomes the place of the table.
 void readToml(const TomlValue& from, FieldRef value);
 
-/// A whole file. \param read  gets its top level, and may throw TomlMistake.
+/// A whole file. \param read  gets its top level, and may throw TomlError.
 /// Errors: kInvalidInput, with file, line and column.
 [[nodiscard]] Result<void> readTomlFile(std::string_view text, TomlFile file,
                                         const std::function<void(const TomlValue&)>& read);

@@ -31,7 +31,7 @@ std::string rangeText(const FieldRange& range) {
 }
 
 /// Thrown by everything below where a value is wrong; readJson() turns it into an Error.
-struct JsonMistake {
+struct JsonError {
     std::string message;
 };
 
@@ -65,8 +65,8 @@ class JsonValue {
 };
 
 void JsonValue::fail(const std::string& what) const {
-    throw JsonMistake{(place_.empty() ? "the document" : place_) + " " + what +
-                      (what.find(';') == std::string::npos ? "; mend it" : "")};
+    throw JsonError{(place_.empty() ? "the document" : place_) + " " + what +
+                    (what.find(';') == std::string::npos ? "; mend it" : "")};
 }
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {
@@ -231,8 +231,8 @@ Result<void> readJson(const nlohmann::json& json, FieldRef value) {
     try {
         readObject(JsonValue(json, ""), value);
         return {};
-    } catch (const JsonMistake& mistake) {
-        return invalidInput(mistake.message);
+    } catch (const JsonError& error) {
+        return invalidInput(error.message);
     }
 }
 

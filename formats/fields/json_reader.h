@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a JSON document into a struct with fields() (formats/base/field.h): the counterpart of jsonOf(). Unknown keys, wrong
-// types, numbers out of their range and required fields that are missing are mistakes, each reported as
+// types, numbers out of their range and required fields that are missing are errors, each reported as
 // "bodies[3].rotation must be …; the cure".
 #pragma once
 

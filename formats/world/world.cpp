@@ -123,8 +123,8 @@ std::string placeOf(const World& world, std::size_t collider, WorldDetail detail
 /// A container ready to be opened; links may not lead out of the world's folder.
 Result<fs::path> pathOf(const World& world, std::size_t collider, WorldDetail detail,
                         const fs::path& folder) {
-    return inFront(placeOf(world, collider, detail) + ".file",
-                   resolveInside(folder, fileOf(world.colliders[collider], detail).file, "world"));
+    return withPrefix(placeOf(world, collider, detail) + ".file",
+                      resolveInside(folder, fileOf(world.colliders[collider], detail).file, "world"));
 }
 
 template <class T>
@@ -207,11 +207,11 @@ const WorldFile& fileOf(const WorldCollider& collider, WorldDetail detail) {
 
 Result<World> loadWorldFile(const fs::path& path) {
     const auto bytes = RELIEF_TRY(readFile(path, kWorldBytesMax));
-    World world = RELIEF_TRY(
-        inFront(quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
+    World world = RELIEF_TRY(withPrefix(
+        quotedPath(path), parseWorld({reinterpret_cast<const char*>(bytes.data()), bytes.size()})));
     for (std::size_t i = 0; i < world.colliders.size(); ++i) {
         const auto check = [&](WorldDetail detail) {
-            return inFront(quotedPath(path), pathOf(world, i, detail, path.parent_path()));
+            return withPrefix(quotedPath(path), pathOf(world, i, detail, path.parent_path()));
         };
         static_cast<void>(RELIEF_TRY(check(WorldDetail::kFine)));
         if (world.colliders[i].coarse) {
@@ -229,7 +229,7 @@ Result<Collider> readWorldCollider(const World& world, std::size_t index, WorldD
     if (xxh3_128Hex(bytes) != from.hash) {
         return invalidInput(named + " has other contents than its hash has" + kBakeAgain);
     }
-    Collider collider = RELIEF_TRY(inFront(named, readContainer(bytes, limits)));
+    Collider collider = RELIEF_TRY(withPrefix(named, readContainer(bytes, limits)));
     if (!(collider.bounds == of.box)) {
         return invalidInput(named + " has another box than its min and max have" + kBakeAgain);
     }
@@ -245,7 +245,7 @@ Result<Collider> loadWorldCollider(const World& world, std::size_t index, WorldD
                                    const fs::path& folder, const ContainerLimits& limits) {
     const std::string place = placeOf(world, index, detail);
     const fs::path path = RELIEF_TRY(pathOf(world, index, detail, folder));
-    const auto bytes = RELIEF_TRY(inFront(place, readFile(path, containerSizeMax(limits))));
+    const auto bytes = RELIEF_TRY(withPrefix(place, readFile(path, containerSizeMax(limits))));
     return readWorldCollider(world, index, detail, bytes, limits);
 }
 
@@ -255,8 +255,8 @@ Result<LoadedWorld> loadWorld(const fs::path& path, const ContainerLimits& limit
     MaterialResponses known(loaded.world.materials);
     ContainerLimits left = limits;
     for (std::size_t i = 0; i < loaded.world.colliders.size(); ++i) {
-        Collider collider = RELIEF_TRY(
-            inFront(quotedPath(path), loadWorldCollider(loaded.world, i, detail, path.parent_path(), left)));
+        Collider collider = RELIEF_TRY(withPrefix(
+            quotedPath(path), loadWorldCollider(loaded.world, i, detail, path.parent_path(), left)));
         left.texel_bytes -= std::min(left.texel_bytes, collider.texelBytes());
         known.apply(collider.materials);
         loaded.colliders.push_back(std::move(collider));

@@ -106,7 +106,7 @@ Result<PlyHeader> takePointsHeader(std::string_view& text) {
 }
 
 Result<PointList> parsePly(std::string_view text, const std::string& name) {
-    const PlyHeader header = RELIEF_TRY(inFront(name, takePointsHeader(text)));
+    const PlyHeader header = RELIEF_TRY(withPrefix(name, takePointsHeader(text)));
     const PlyElement& vertices = header.elements.front();
     const PlyColumns columns(vertices, kNames);
     const auto once = [&](std::size_t first) {
@@ -121,7 +121,7 @@ Result<PointList> parsePly(std::string_view text, const std::string& name) {
     for (std::uint64_t i = 0; i < vertices.count; ++i) {
         Fields fields{};
         const std::string vertex = name + ": vertex " + std::to_string(i);
-        RELIEF_TRY(inFront(vertex, columns.read(numbers, fields)));
+        RELIEF_TRY(withPrefix(vertex, columns.read(numbers, fields)));
         if (numbers.isText() && !numbers.atLineEnd()) {
             return wrong(vertex,
                          numbers.where() + "more numbers than the header announces; write one vertex a line");

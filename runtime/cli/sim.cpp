@@ -178,7 +178,7 @@ void defineSim(CLI::App& app, SimCommand& command) {
     addMemoryOption(app, command.player.overrides.limits);
     const OptionRef check =
         addFlag(app, "--check", command.check,
-                "Only check the scene and what it names, without a GPU: one line, or the first mistake");
+                "Only check the scene and what it names, without a GPU: one line, or the first error");
     addWords(app, "--api", command.player.gpu.api,
              WordsFor<GlApi>{{"gl", GlApi::kGl33Core}, {"gles", GlApi::kGles30}},
              "gl for OpenGL 3.3 (default), gles for OpenGL ES 3.0");

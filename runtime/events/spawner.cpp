@@ -20,7 +20,7 @@ bool Spawner::heeds(const ParticleEvent& event) const {
                      settings_.material.value_or(event.material) == event.material;
 }
 
-EventOptions Spawner::heeded() const {
+EventOptions Spawner::eventOptions() const {
     const bool hits = settings_.on == SpawnOn::kCollision;
     return {.hits = hits,
             .deaths = !hits,
@@ -36,12 +36,12 @@ std::uint64_t Spawner::spawn(std::span<const ParticleEvent> events, std::span<co
         types.empty() ? 0.0F : types[std::min<std::size_t>(settings_.type, types.size() - 1)].radius;
     std::uint64_t left = std::min<std::uint64_t>(room, settings_.most);
     std::uint64_t refused = 0;
-    std::uint64_t heeded = 0;
+    std::uint64_t used = 0;
     for (const ParticleEvent& event : events) {
         if (!heeds(event)) {
             continue;
         }
-        if (++heeded > settings_.most) {  // nothing is drawn: a shorter list makes the same births
+        if (++used > settings_.most) {  // nothing is drawn: a shorter list makes the same births
             refused += settings_.count_min;
             continue;
         }

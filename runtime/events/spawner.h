@@ -71,7 +71,7 @@ class Spawner {
     }
 
     /// Exactly the events that it heeds, and as many of a step as it can use.
-    [[nodiscard]] EventOptions heeded() const;
+    [[nodiscard]] EventOptions eventOptions() const;
 
     [[nodiscard]] const SpawnSettings& settings() const { return settings_; }
 

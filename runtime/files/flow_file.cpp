@@ -21,7 +21,7 @@ Result<void> readNodes(const FlowFile& file, FlowField& flow) {
     if (file.components != 2 && file.components != 3) {
         return fail(ErrorCode::kUsage, name + ": a node has 2 or 3 components");
     }
-    RELIEF_TRY(inFront(name, checkFlowSize({file.size[0], file.size[1], file.size[2]})));
+    RELIEF_TRY(withPrefix(name, checkFlowSize({file.size[0], file.size[1], file.size[2]})));
     const std::size_t nodes = std::size_t{file.size[0]} * file.size[1] * file.size[2];
     const std::size_t expected = nodes * file.components * sizeof(float);
     const auto bytes = RELIEF_TRY(readFile(file.path, FlowField::kNodesMax * 3 * sizeof(float)));
@@ -65,7 +65,7 @@ Result<FlowField> load(const FlowFile& file) {
     flow.gain = file.gain;
     RELIEF_TRY(readNodes(file, flow));
     RELIEF_TRY(checkSpeeds(file, flow));
-    RELIEF_TRY(inFront(quotedPath(file.path), checkFlow(flow)));
+    RELIEF_TRY(withPrefix(quotedPath(file.path), checkFlow(flow)));
     return flow;
 }
 

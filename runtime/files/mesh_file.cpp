@@ -54,7 +54,7 @@ Result<PolygonMesh> readPolygons(std::span<const std::byte> bytes, std::string_v
 
 Result<NamedMesh> parseNamedMesh(std::span<const std::byte> bytes, std::string_view extension,
                                  const std::string& name) {
-    return inFront(name, readPolygons(bytes, extension).and_then(triangulated));
+    return withPrefix(name, readPolygons(bytes, extension).and_then(triangulated));
 }
 
 }  // namespace

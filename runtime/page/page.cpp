@@ -124,7 +124,7 @@ Result<void> checkSize(const Page& page) {
 Result<Json> dataOf(const Page& page) {
     Json shown = nullptr;
     if (page.collider != nullptr) {
-        shown = RELIEF_TRY(inFront(page.name, colliderJson(*page.collider)));
+        shown = RELIEF_TRY(withPrefix(page.name, colliderJson(*page.collider)));
     } else if (page.shows.empty()) {
         shown = base64(page.container);
     }

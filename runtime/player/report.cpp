@@ -54,7 +54,7 @@ void fields(FieldVisitor& visit, const PlayerReport& report) {
     visit("ms_per_step_median", report.ms_per_step_median, {"Median time of a step", "ms", kFromZero});
     visit("frames", report.frames_written, {"Pictures written"});
     visit("dumps", report.dumps_written, {"States written"});
-    visit("warnings", report.warnings, {"Probable mistakes, one line each"});
+    visit("warnings", report.warnings, {"Probable errors, one line each"});
 }
 
 }  // namespace relief

@@ -57,7 +57,7 @@ Result<CheckReport> checkScene(const PlayerOptions& options) {
     for (std::size_t i = 0; loaded.scene.stream && i < loaded.world.colliders.size(); ++i) {
         const std::optional<WorldFile>& coarse = loaded.world.colliders[i].coarse;
         if (coarse) {
-            static_cast<void>(RELIEF_TRY(inFront(
+            static_cast<void>(RELIEF_TRY(withPrefix(
                 loaded.scene.world_origin + ": world: " + quotedPath(world),
                 loadWorldCollider(loaded.world, i, WorldDetail::kFine, world.parent_path(), loaded.limits))));
             report.files.push_back(checkedFile(containerOf(loaded.scene, *coarse), "collider"));
@@ -123,7 +123,7 @@ void fields(FieldVisitor& visit, const CheckReport& report) {
     visit("bodies", report.world_bodies, {"Bodies of the world"});
     visit("maps", report.collider_maps, {"Maps of all colliders"});
     visit("files", report.files, {"The input and the files that it names"});
-    visit("warnings", report.warnings, {"Probable mistakes, one line each"});
+    visit("warnings", report.warnings, {"Probable errors, one line each"});
 }
 
 void fields(FieldVisitor& visit, const CheckFailure& failure) {

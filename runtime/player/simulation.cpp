@@ -115,9 +115,9 @@ Result<Simulation> Simulation::create(const LoadedScene& loaded, SimulationOptio
         made.points_.emplace();
     }
     RELIEF_TRY(watched(watchdog, "the shaders of colliders", [&] { return made.makeLive(loaded); }));
-    RELIEF_TRY(inFront(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
-                       watched(watchdog, "uploading the collider",
-                               [&] { return made.makeTextures(loaded, std::move(options.source)); })));
+    RELIEF_TRY(withPrefix(quotedPath(scene.world.empty() ? scene.colliders.front().path : scene.world),
+                          watched(watchdog, "uploading the collider",
+                                  [&] { return made.makeTextures(loaded, std::move(options.source)); })));
     auto particles = RELIEF_TRY(watched(watchdog, "the shaders of particles", [&] {
         return makeParticles(scene, made.textures(), options.path, sweep);
     }));
@@ -176,13 +176,13 @@ Result<void> Simulation::listHits(float min_speed, EventSink sink) {
     return setEvents();
 }
 
-std::vector<EventOptions> Simulation::heededLists() const {
+std::vector<EventOptions> Simulation::spawnEventLists() const {
     std::vector<EventOptions> lists;
     if (event_sink_ || spawners_.size() > kEventLists) {
         return lists;
     }
     for (const Spawner& spawner : spawners_) {
-        lists.push_back(spawner.heeded());
+        lists.push_back(spawner.eventOptions());
         lists.back().most = std::min(lists.back().most, kEventsMax);
     }
     return lists;
@@ -203,7 +203,7 @@ Result<void> Simulation::setEvents() {
     }
     options.hits = options.min_speed < kNone;
     options.min_speed = options.hits ? options.min_speed : 0.0F;
-    std::vector<EventOptions> lists = heededLists();
+    std::vector<EventOptions> lists = spawnEventLists();
     list_each_ = !lists.empty();
     if (!list_each_ && (options.hits || options.deaths)) {
         lists.push_back(options);
@@ -334,19 +334,19 @@ Result<void> Simulation::makeLive(const LoadedScene& loaded) {
         const LiveMesh& live = *loaded.live[i];
         const std::string& origin = loaded.scene.colliders[i].origin;
         auto collider = RELIEF_TRY(
-            inFront(origin + ": collider.mesh",
-                    LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames)));
+            withPrefix(origin + ": collider.mesh",
+                       LiveCollider::create(live.mesh.positions, trianglesOf(live.mesh), live.frames)));
         auto pass =
-            RELIEF_TRY(inFront(origin + ": collider.deform",
-                               WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals)));
+            RELIEF_TRY(withPrefix(origin + ": collider.deform",
+                                  WobblePass::create(live.wobble, live.mesh.positions, live.mesh.normals)));
         live_.push_back({i, std::move(collider), std::move(pass)});
     }
     for (std::size_t i = 0; i < loaded.played.size(); ++i) {
         if (const auto& played = loaded.played[i]) {
             auto collider = RELIEF_TRY(
-                inFront(loaded.scene.colliders[i].origin + ": collider.play",
-                        AnimatedCollider::create(
-                            played->mesh, {.resolution = played->play.resolution, .room = played->room})));
+                withPrefix(loaded.scene.colliders[i].origin + ": collider.play",
+                           AnimatedCollider::create(
+                               played->mesh, {.resolution = played->play.resolution, .room = played->room})));
             played_.push_back({i, std::move(collider)});
         }
     }
@@ -357,8 +357,8 @@ Result<void> Simulation::playClips(double time) {
     std::vector<MeshPose> poses;
     for (const PlayedBody& body : played_) {
         poses.push_back(body.pose ? *body.pose : loaded_->played[body.index]->poseAt(time));
-        RELIEF_TRY(inFront(scene_->colliders[body.index].origin + ": collider.play",
-                           body.collider.check(poses.back())));
+        RELIEF_TRY(withPrefix(scene_->colliders[body.index].origin + ": collider.play",
+                              body.collider.check(poses.back())));
     }
     for (std::size_t i = 0; i < played_.size(); ++i) {
         PlayedBody& body = played_[i];

@@ -150,7 +150,7 @@ class Simulation {
     /// Has the events listed that the scene's [[spawn]] and the sink need, if any.
     [[nodiscard]] Result<void> setEvents();
     /// A list for each of the scene's [[spawn]], no longer than it can use; none where there are too many, or a sink needs more.
-    [[nodiscard]] std::vector<EventOptions> heededLists() const;
+    [[nodiscard]] std::vector<EventOptions> spawnEventLists() const;
     void spawnFrom(const StepEvents& step);
     /// Until the events of at most so many steps are in flight.
     [[nodiscard]] Result<void> takeEvents(int in_flight);

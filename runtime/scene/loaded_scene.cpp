@@ -50,7 +50,7 @@ Result<Scene> openScene(const fs::path& input, const fs::path& root) {
 Result<Collider> openCollider(const SceneCollider& from, const ContainerLimits& limits) {
     auto collider = loadCollider(from.path, limits);
     return from.origin.empty() ? std::move(collider)
-                               : inFront(from.origin + ": collider.file", std::move(collider));
+                               : withPrefix(from.origin + ": collider.file", std::move(collider));
 }
 
 using Colliders = std::map<fs::path, std::shared_ptr<const Collider>>;
@@ -72,12 +72,12 @@ Result<PlayedMesh> openPlayed(const SceneCollider& from, const ContainerLimits& 
             return invalidInput(place + " has no animated mesh; bake it with --animated, or remove play");
         }
         file.mesh = std::make_shared<const AnimatedMesh>(
-            RELIEF_TRY(inFront(place, readAnimatedMesh(collider.animation))));
+            RELIEF_TRY(withPrefix(place, readAnimatedMesh(collider.animation))));
         file.extent = poseExtent(*file.mesh);
     }
     for (const SceneMaterialColor& material : from.materials) {
         RELIEF_TRY(
-            inFront(from.origin + ": collider.material", materialTriangles(*file.mesh, material.name)));
+            withPrefix(from.origin + ": collider.material", materialTriangles(*file.mesh, material.name)));
     }
     return loadPlayedMesh(from, file.mesh, file.extent);
 }
@@ -91,7 +91,7 @@ Result<void> openWorld(Scene& scene, LoadedScene& to, const ContainerLimits& lim
     auto read = loadWorld(scene.world, limits, scene.stream ? WorldDetail::kCoarse : WorldDetail::kFine);
     auto loaded =
         RELIEF_TRY(scene.world_origin.empty() ? std::move(read)
-                                              : inFront(scene.world_origin + ": world", std::move(read)));
+                                              : withPrefix(scene.world_origin + ": world", std::move(read)));
     for (Collider& collider : loaded.colliders) {
         responses.apply(collider.materials);
         to.world_colliders.push_back(std::make_shared<const Collider>(std::move(collider)));
@@ -264,8 +264,8 @@ Result<LoadedScene> loadAll(Scene scene, const fs::path& input, const SceneOverr
         loaded.colliders.push_back(std::move(read));
     }
     RELIEF_TRY(checkMaterials(scene, loaded));
-    loaded.scene = RELIEF_TRY(inFront(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
-    RELIEF_TRY(inFront(quotedPath(input), checkOverlap(loaded)));
+    loaded.scene = RELIEF_TRY(withPrefix(quotedPath(input), withDefaults(std::move(scene), loaded.bounds)));
+    RELIEF_TRY(withPrefix(quotedPath(input), checkOverlap(loaded)));
     loaded.emitters = RELIEF_TRY(makeEmitters(loaded.scene.emitters, loaded.meshes()));
     if (loaded.scene.flow) {
         auto flow = RELIEF_TRY(loadFlow(*loaded.scene.flow));

@@ -52,7 +52,7 @@ struct LoadedScene {
     std::vector<Emitter> emitters;  ///< those of the scene, which have given no birth yet
     SceneSweep sweep;
     std::vector<std::string>
-        warnings;  ///< of settings that are valid but probably mistakes: those of the sweep
+        warnings;  ///< of settings that are valid but probably errors: those of the sweep
 
     [[nodiscard]] SceneMeshes meshes() const { return {scene.colliders, colliders, live, played}; }
 };

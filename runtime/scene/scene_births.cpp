@@ -20,11 +20,11 @@ Result<EmitterSurface> surfaceOf(const AnimatedMesh& mesh, const MeshPose& pose,
                                  const SceneEmitter& emitter) {
     std::vector<float> weights;
     if (!emitter.group.empty()) {
-        weights = RELIEF_TRY(inFront("emitter.group", groupWeights(mesh, emitter.group)));
+        weights = RELIEF_TRY(withPrefix("emitter.group", groupWeights(mesh, emitter.group)));
     }
     std::vector<glm::uvec3> triangles = mesh.triangles;
     if (!emitter.material.empty()) {
-        triangles = RELIEF_TRY(inFront("emitter.material", materialTriangles(mesh, emitter.material)));
+        triangles = RELIEF_TRY(withPrefix("emitter.material", materialTriangles(mesh, emitter.material)));
     }
     return EmitterSurface::create(triangles, std::move(weights), posed(mesh, pose));
 }
@@ -86,23 +86,23 @@ Result<EmitterSurface> surfaceOf(const Collider& container, const SceneEmitter& 
     const ColliderSurface& surface = known[&container];
     std::vector<glm::uvec3> triangles = surface.triangles;
     if (!emitter.material.empty()) {
-        triangles = RELIEF_TRY(
-            inFront("emitter.material", materialTriangles(surface, container.materials, emitter.material)));
+        triangles = RELIEF_TRY(withPrefix("emitter.material",
+                                          materialTriangles(surface, container.materials, emitter.material)));
     }
     return EmitterSurface::create(triangles, {}, surface.positions);
 }
 
 Result<EmitterSurface> surfaceOf(const SceneEmitter& emitter, const SceneMeshes& meshes, Surfaces& known) {
     if (!emitter.mesh_file.empty()) {
-        return inFront(quotedPath(emitter.mesh_file),
-                       surfaceOf(RELIEF_TRY(loadNamedMesh(emitter.mesh_file)), emitter));
+        return withPrefix(quotedPath(emitter.mesh_file),
+                          surfaceOf(RELIEF_TRY(loadNamedMesh(emitter.mesh_file)), emitter));
     }
     const std::size_t i = *emitter.attach;
     const std::optional<PlayedMesh>& played = meshes.played[i];
-    return inFront(quotedPath(meshes.colliders[i].path),
-                   played           ? surfaceOf(*played->mesh, played->poseAt(0.0), emitter)
-                   : meshes.live[i] ? surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter)
-                                    : surfaceOf(*meshes.containers[i], emitter, known));
+    return withPrefix(quotedPath(meshes.colliders[i].path),
+                      played           ? surfaceOf(*played->mesh, played->poseAt(0.0), emitter)
+                      : meshes.live[i] ? surfaceOf(NamedMesh{meshes.live[i]->mesh, {}}, emitter)
+                                       : surfaceOf(*meshes.containers[i], emitter, known));
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
         EmitterSettings settings = emitter;
         if (emitter.shape == EmitterShape::kPoints) {
             const std::string key = emitter.points_origin + ": emitter.points";
-            settings.points = RELIEF_TRY(inFront(key, loadPointList(emitter.points_file)));
+            settings.points = RELIEF_TRY(withPrefix(key, loadPointList(emitter.points_file)));
             if (emitter.aim && !emitter.aim->direction && settings.points.normals.empty()) {
                 return fail(ErrorCode::kInvalidInput,
                             key + ": " + quotedPath(emitter.points_file) +
@@ -122,7 +122,7 @@ Result<std::vector<Emitter>> makeEmitters(std::span<const SceneEmitter> emitters
             }
         }
         if (emitter.shape == EmitterShape::kSurface) {
-            auto surface = RELIEF_TRY(inFront(emitter.place, surfaceOf(emitter, meshes, known)));
+            auto surface = RELIEF_TRY(withPrefix(emitter.place, surfaceOf(emitter, meshes, known)));
             settings.surface = BirthSurfaceValue(std::make_unique<EmitterSurface>(std::move(surface)));
         }
         RELIEF_TRY(Emitter::check(settings));

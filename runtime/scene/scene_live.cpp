@@ -15,7 +15,8 @@ namespace relief {
 Result<LiveMesh> loadLiveMesh(const SceneCollider& from) {
     const std::string place = from.origin + ": collider.mesh";
     LiveMesh out;
-    out.mesh = withNormals(RELIEF_TRY(inFront(place, loadPictureMesh(from.path))), std::numbers::pi_v<float>);
+    out.mesh =
+        withNormals(RELIEF_TRY(withPrefix(place, loadPictureMesh(from.path))), std::numbers::pi_v<float>);
     Bounds box;
     for (const glm::vec3& p : out.mesh.positions) {
         box.add(p);

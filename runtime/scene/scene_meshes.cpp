@@ -67,7 +67,7 @@ std::vector<Result<fs::path>> findFiles(const LoadedScene& loaded) {
         }
         const auto named = of_world.find(collider.path);
         const std::string name = named != of_world.end() ? named->second : collider.path.stem().string();
-        files[i] = inFront(originOf(scene), fileOf(scene.render.meshes, name));
+        files[i] = withPrefix(originOf(scene), fileOf(scene.render.meshes, name));
     }
     return files;
 }
@@ -189,7 +189,7 @@ Result<DrawnMeshes> loadDrawnMeshes(const LoadedScene& loaded) {
             known.try_emplace({file, color}, static_cast<std::uint32_t>(out.meshes.size()));
         if (is_new) {
             out.meshes.push_back(
-                colored(RELIEF_TRY(inFront(originOf(scene), loadPictureMesh(file))), collider));
+                colored(RELIEF_TRY(withPrefix(originOf(scene), loadPictureMesh(file))), collider));
         }
         if (collider.keys.empty()) {
             std::vector<Pose>& there = drawn[{collider.node, entry->second}];

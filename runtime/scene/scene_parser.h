@@ -20,7 +20,7 @@ class TomlValue;  // formats/config/toml_reader.h
 [[nodiscard]] Result<Scene> parseScene(std::string_view text, const std::filesystem::path& path,
                                        const std::filesystem::path& root = {});
 
-/// Reads the top level of a scene. Throws TomlMistake.
+/// Reads the top level of a scene. Throws TomlError.
 void readScene(const TomlValue& top, Scene& scene);
 
 /// Reads a file and parses it. Fails as readFile and parseScene do, and with kLimit above 1 MiB.

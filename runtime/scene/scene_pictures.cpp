@@ -23,13 +23,13 @@ tl::unexpected<Error> failAt(const std::string& origin, const char* key, const E
 Result<RgbaPicture> readAtlas(const Scene& scene) {
     const auto& render = scene.render;
     const std::string origin = render.atlas_origin + ": render.atlas";
-    const auto bytes = RELIEF_TRY(inFront(origin, readFile(render.atlas, kAtlasBytesMax)));
-    return inFront(origin, decodePng(bytes, quotedPath(render.atlas)));
+    const auto bytes = RELIEF_TRY(withPrefix(origin, readFile(render.atlas, kAtlasBytesMax)));
+    return withPrefix(origin, decodePng(bytes, quotedPath(render.atlas)));
 }
 
 Result<PictureMesh> readMesh(const Scene& scene, const Bounds& bounds) {
     const auto& render = scene.render;
-    auto mesh = RELIEF_TRY(inFront(render.mesh_origin + ": render.mesh", loadPictureMesh(render.mesh)));
+    auto mesh = RELIEF_TRY(withPrefix(render.mesh_origin + ": render.mesh", loadPictureMesh(render.mesh)));
     Bounds box;
     for (const std::uint32_t v : mesh.triangles) {
         box.add(mesh.positions[v]);
@@ -69,7 +69,7 @@ Result<std::unique_ptr<SpriteAtlas>> loadAtlas(const Scene& scene) {
     auto atlas = SpriteAtlas::create(picture.rgba, picture.width, picture.height, render.atlas_columns,
                                      render.atlas_rows);
     if (!atlas) {
-        // The picture does not suit the scene: not the caller's mistake but the file's.
+        // The picture does not suit the scene: not the caller's error but the file's.
         const ErrorCode code =
             atlas.error().code == ErrorCode::kUsage ? ErrorCode::kInvalidInput : atlas.error().code;
         return failAt(render.atlas_origin, "render.atlas", {code, atlas.error().message});
@@ -83,7 +83,7 @@ Result<std::unique_ptr<ColliderMesh>> loadColliderMesh(const Scene& scene, const
         return nullptr;
     }
     const auto mesh = RELIEF_TRY(readMesh(scene, bounds));
-    auto drawn = RELIEF_TRY(inFront(render.mesh_origin + ": render.mesh", ColliderMesh::create(mesh)));
+    auto drawn = RELIEF_TRY(withPrefix(render.mesh_origin + ": render.mesh", ColliderMesh::create(mesh)));
     return std::make_unique<ColliderMesh>(std::move(drawn));
 }
 

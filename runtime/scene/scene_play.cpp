@@ -60,7 +60,7 @@ Result<PlayedMesh> loadPlayedMesh(const SceneCollider& from, std::shared_ptr<con
     RELIEF_TRY(changeClip(played, from));
     played.room = played.play.room * extent.room;
     played.frames = RELIEF_TRY(
-        inFront(from.origin + ": collider.play", animatedFrames(played.room, played.play.resolution)));
+        withPrefix(from.origin + ": collider.play", animatedFrames(played.room, played.play.resolution)));
     played.frames.bounds = extent.box;
     return played;
 }

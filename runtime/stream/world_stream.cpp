@@ -343,8 +343,8 @@ Result<std::unique_ptr<WorldStream>> WorldStream::open(const LoadedWorld& coarse
         colliders.push_back(&collider);
     }
     auto source = RELIEF_TRY(makeFileSource(coarse.world, path.parent_path(), limits));
-    return inFront(quotedPath(path),
-                   create(coarse.world, worldBodies(coarse), colliders, std::move(source), options));
+    return withPrefix(quotedPath(path),
+                      create(coarse.world, worldBodies(coarse), colliders, std::move(source), options));
 }
 
 const WorldTextures& WorldStream::textures() const {

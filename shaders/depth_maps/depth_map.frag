@@ -38,7 +38,7 @@ float insideTriangle(float depth) {
     return depth >= low && depth <= high ? depth : depth > high ? high : low;
 }
 
-// The plane through the surface point on the centre's ray (bake/texels/plane_fit.cpp with one ray a texel), packed normal and
+// The plane through the surface point on the centre's ray (bake/named_maps/plane_fit.cpp with one ray a texel), packed normal and
 // code of depth: pushed towards the viewer to the next code, and facing the viewer where the plane is too steep to be stored.
 uvec2 stored(uint normal, float depth) {
     float u = u_far ? 1.0 - depth : depth;  // from where the ray starts

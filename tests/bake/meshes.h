@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/maps/bake_maps.h"
 #include "bake/mesh/mesh.h"
 #include "bake/mesh/mesh_query.h"
-#include "bake/pipeline/bake.h"
 #include "tests/formats/rotation.h"
 #include "tests/results.h"
 #include "tests/temporary_folder.h"

@@ -133,7 +133,7 @@ bakes 'box.relief ' consumer/box.obj
 bakes 'bunny.relief ' consumer/bunny.obj
 bakes 'box.relief ' consumer/box.mtl
 
-# Mistakes are reported when the project is configured.
+# Errors are reported when the project is configured.
 refused() { # PATTERN LINES
     mkdir -p wrong
     printf 'cmake_minimum_required(VERSION 3.25)\nproject(wrong LANGUAGES CXX)\n%s\n' "$2" >wrong/CMakeLists.txt

@@ -59,7 +59,7 @@ C
 # shellcheck disable=SC2046
 cc -std=c99 engine.c in_your_engine.md.d/snow.o -o engine $(pkg-config --cflags --libs relief egl)
 ./engine 2>said || die "the engine's page fails: $(cat said)"
-grep -q 'no such file' said || die "a mistake is not told: $(cat said)"
+grep -q 'no such file' said || die "an error is not told: $(cat said)"
 
 follow in_your_build.md
 [ "$(find in_your_build.md.d/baked -name '*.relief')" = in_your_build.md.d/baked/meshes/bunny.relief ] || die "the recipe baked $(find in_your_build.md.d)"

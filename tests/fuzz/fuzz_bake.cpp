@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "bake/maps/bake_maps.h"
 #include "bake/mesh/mesh_query.h"
-#include "bake/pipeline/bake.h"
 #include "bake/repair/winding.h"
 #include "bake/shape/shape.h"
 #include "tests/fuzz/target.h"

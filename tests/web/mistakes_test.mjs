@@ -10,7 +10,7 @@ import { libraryPage } from "./lib/library.mjs";
 import { run, scratch } from "./lib/native.mjs";
 
 // What is done (with collider, gpu, system, made for each), and what the sentence says.
-const kMistakes = {
+const kErrors = {
     // loading
     "relief.load('/files/nothing.relief')": /nothing\.relief: the server answers 404/,
     "relief.load('/page.html')": /page\.html: the server sends a web page, no collider/,
@@ -90,7 +90,7 @@ const kMistakes = {
     "(system.dispose(), system.info)": /this system is disposed of/,
 };
 
-test("each mistake has its sentence", { timeout: 60_000 }, async (t) => {
+test("each error has its sentence", { timeout: 60_000 }, async (t) => {
     const folder = scratch(t);
     bakeCube(folder);
     run("relief", "bake", path.join(folder, "cube.obj"), "-q", "-o", path.join(folder, "patches.relief"), "--map", "patches:bytes=4kB");
@@ -98,19 +98,19 @@ test("each mistake has its sentence", { timeout: 60_000 }, async (t) => {
     writeFileSync(path.join(folder, "cut.relief"), whole.subarray(0, 9000));
     writeFileSync(path.join(folder, "noise.relief"), whole.map((byte, i) => (byte * 31 + i) & 255));
     const { page, said } = await libraryPage(t, folder);
-    const answers = await page.evaluate(async (mistakes) => {
+    const answers = await page.evaluate(async (errors) => {
         const eye = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
         const answers = {};
-        for (const mistake of mistakes) {
+        for (const error of errors) {
             const collider = await relief.load("/files/cube.relief");
             const gpu = new relief.GpuCollider(gl, collider);
             const system = new relief.ParticleSystem(gl, { collider, scene: { particles: { capacity: 256 } } });
             try {
-                await new Function("relief", "collider", "gpu", "system", "eye", `return ${mistake};`)(
+                await new Function("relief", "collider", "gpu", "system", "eye", `return ${error};`)(
                     relief, collider, gpu, system, eye);
-                answers[mistake] = ["nothing", "no error"];
+                answers[error] = ["nothing", "no error"];
             } catch (error) {
-                answers[mistake] = [error instanceof relief.ReliefError ? "ReliefError" : error.name, error.message];
+                answers[error] = [error instanceof relief.ReliefError ? "ReliefError" : error.name, error.message];
             }
             gpu.dispose();
             system.dispose();
@@ -121,13 +121,13 @@ test("each mistake has its sentence", { timeout: 60_000 }, async (t) => {
         system.step(0);
         system.step();
         return { answers, error: gl.getError(), alive: system.info.alive, time: system.info.time };
-    }, Object.keys(kMistakes));
-    for (const [mistake, expected] of Object.entries(kMistakes)) {
-        const [name, message] = answers.answers[mistake];
-        t.diagnostic(`${mistake}: ${message}`);
-        assert.equal(name, "ReliefError", `${mistake}: ${message}`);
-        assert.match(message, expected, mistake);
-        assert.ok(message.length < 240 && !/\n|\/scene\d/.test(message), `${mistake}: ${message}`);
+    }, Object.keys(kErrors));
+    for (const [error, expected] of Object.entries(kErrors)) {
+        const [name, message] = answers.answers[error];
+        t.diagnostic(`${error}: ${message}`);
+        assert.equal(name, "ReliefError", `${error}: ${message}`);
+        assert.match(message, expected, error);
+        assert.ok(message.length < 240 && !/\n|\/scene\d/.test(message), `${error}: ${message}`);
     }
     assert.equal(answers.error, 0, "a GL error");
     assert.ok(answers.alive > 0 && answers.time > 0, "afterwards all works");

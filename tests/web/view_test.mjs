@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of `relief view`: opened from disk with a bunny in it, each of its features once, and everything that may be
-// given to it by mistake. Nothing may be said on the console, and no GL error may be left.
+// given to it by error. Nothing may be said on the console, and no GL error may be left.
 import assert from "node:assert/strict";
 import path from "node:path";
 import test from "node:test";
@@ -142,7 +142,7 @@ rate = 5000
     assert.deepEqual(said, []);
 });
 
-test("what is given by mistake ends in a sentence, and the page goes on", { timeout: 300_000 }, async (t) => {
+test("what is given by error ends in a sentence, and the page goes on", { timeout: 300_000 }, async (t) => {
     const folder = scratch(t);
     const file = bake(folder);
     const made = path.join(folder, "bunny.html");

@@ -95,7 +95,7 @@ TEST_F(GroundChecks, HolesAreOutside) {
     EXPECT_LT(right.near.wrong.total(), 0.5);
     EXPECT_LT(right.anywhere.total(), 0.2);
     EXPECT_EQ(right.near.missing, 0U);
-    // Ground where the map has holes is inside by mistake anywhere, and holes where it has ground are missing.
+    // Ground where the map has holes is inside by error anywhere, and holes where it has ground are missing.
     write("whole.raw", 100, 100, hills);
     const WorldField filled = baked("whole.raw", spec(""));
     const GroundAccuracy more = check("holed.raw", "hole=0", filled);

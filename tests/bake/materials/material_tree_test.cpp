@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "bake/director/director.h"
 #include "bake/mesh/area_table.h"
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/surface_sampler.h"
+#include "bake/pipeline/bake.h"
 #include "formats/container.h"
 #include "formats/patch_tree.h"
 #include "tests/bake/meshes.h"

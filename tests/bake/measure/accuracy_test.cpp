@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The yardstick against closed forms: truth, the shares that it finds for fields whose mistakes are known,
+// The yardstick against closed forms: truth, the shares that it finds for fields whose errors are known,
 // the distance volume that colliders are compared with, and the report.
 #include "bake/measure/accuracy.h"
 
@@ -120,7 +120,7 @@ class AccuracyOfASphere : public ::testing::Test {
     }
 };
 
-TEST_F(AccuracyOfASphere, APerfectFieldHasNoMistakes) {
+TEST_F(AccuracyOfASphere, APerfectFieldHasNoErrors) {
     const FieldAccuracy accuracy = measureField(samples(), grown(0.0));
     EXPECT_EQ(accuracy.near.total() + accuracy.uniform.total(), 0.0);
     EXPECT_EQ(accuracy.distance_p99, 0.0);

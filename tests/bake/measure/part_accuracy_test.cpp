@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each part by its own size, against fields whose mistakes are known: a field that forgets a pillar, one that is right, one
+// Each part by its own size, against fields whose errors are known: a field that forgets a pillar, one that is right, one
 // that makes a sheet thicker than anybody asked for.
 #include "bake/measure/part_accuracy.h"
 

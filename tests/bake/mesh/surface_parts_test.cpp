@@ -20,7 +20,7 @@ TEST(SurfaceParts, AStrayIsFarAndSmall) {
     const SurfacePart body = part(glm::vec3(-5.0F), glm::vec3(5.0F), 600.0);
     const SurfacePart knob = part(glm::vec3(5.0F), glm::vec3(6.0F), 0.1);
     const SurfacePart stray = part(glm::vec3(1e6F, 0.0F, 0.0F), glm::vec3(1e6F, 1.0F, 1.0F), 0.5);
-    const Strays found = straysOf({stray, body, knob});
+    const OutlierParts found = straysOf({stray, body, knob});
     EXPECT_EQ(found.parts, std::vector<std::uint32_t>({0}));
     EXPECT_EQ(found.rest.max, glm::vec3(6.0F));
 

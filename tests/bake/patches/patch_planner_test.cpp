@@ -102,9 +102,9 @@ double wrongVolume(const MeshQuery& query, const DepthMap& map, int points) {
     return size.x * size.y * size.z * wrong / points;
 }
 
-TEST(PatchPlanner, ItsCurveHasTheMistakesOfTheTreesThatItBakes) {
+TEST(PatchPlanner, ItsCurveHasTheErrorsOfTheTreesThatItBakes) {
     const MeshQuery query = queryOf(makeTorusMesh(1.0, 0.35, 48, 32));
-    const MistakeCurve curve = planMistakes(query, {.bytes = 20'000});
+    const ErrorCurve curve = planErrors(query, {.bytes = 20'000});
     ASSERT_GE(curve.size(), 3U);
     for (std::size_t i = 1; i < curve.size(); ++i) {
         EXPECT_GT(curve[i].bytes, curve[i - 1].bytes);
@@ -117,7 +117,7 @@ TEST(PatchPlanner, ItsCurveHasTheMistakesOfTheTreesThatItBakes) {
         }
     }
     EXPECT_GT(curve.back().bytes, 12'000.0);
-    EXPECT_TRUE(onThreads(1, [&] { return planMistakes(query, {.bytes = 20'000}); }) == curve);
+    EXPECT_TRUE(onThreads(1, [&] { return planErrors(query, {.bytes = 20'000}); }) == curve);
 }
 
 TEST(CellColumns, AgreeWithRaysThroughTheMesh) {
@@ -252,13 +252,13 @@ TEST(PatchPlanner, ThinWallsAndNarrowGapsAreWhole) {
     }
 }
 
-TEST(PatchPlanner, BallsMistakesFallWithTheBytes) {
+TEST(PatchPlanner, BallsErrorsFallWithTheBytes) {
     const MeshQuery query = queryOf(makeIcosphere({0, 0, 0}, 1.0, 5));
     double before = 100.0;
     for (const std::uint64_t bytes : {4'000ULL, 16'000ULL, 64'000ULL, 256'000ULL}) {
         const double wrong = wrongPercent(query, checked(query, bytes), 40'000);
         // A cell has the square of its size of surface, and a height's error goes by that square: four times the bytes make a
-        // quarter of the mistakes, until the triangles' edges show.
+        // quarter of the errors, until the triangles' edges show.
         EXPECT_LT(wrong, 0.5 * before) << bytes;
         before = wrong;
     }

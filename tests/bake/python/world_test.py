@@ -88,7 +88,7 @@ def test_a_simulation_plays_it(folder):
         assert len(simulation.positions) > 0
 
 
-def test_mistakes_are_exceptions(folder, world, tmp_path):
+def test_errors_are_exceptions(folder, world, tmp_path):
     with pytest.raises(relief.FileError, match="none.json"):
         relief.World(tmp_path / "none.json")
     with pytest.raises(relief.InputError, match="is no world"):

@@ -67,7 +67,7 @@ TEST(Recipe, DefaultsThatDoNotGoWithAnAssetAreNoneOfIt) {
           {false, {"--budget=1MB", "--compress=1"}},
           {false, {"--compress=1", "--paper"}},
           {false, {"--compress=1"}}}},
-        // Otherwise defaults for meshes would shrink a level to the bytes of one, or be a mistake beside a height map.
+        // Otherwise defaults for meshes would shrink a level to the bytes of one, or be an error beside a height map.
         {"[defaults]\noutput = '{stem}/world.json'\nmax-error = 1\nmap = 'float'\n"
          "prefer = 'inside'\ncompress = 3\n[[asset]]\nmesh = 'a'\n[[asset]]\nmesh = 'b'\nbudget = '4MB'\n"
          "[[asset]]\nmesh = 'c'\noutput = 'c.relief'\n[[asset]]\nmesh = 'd'\nheights = 'low=0'\n"
@@ -196,7 +196,7 @@ TEST_F(RecipeJobsTest, FindsFilesInOrderAndNamesTheirOutputs) {
     EXPECT_EQ(required(elsewhere).jobs[0].output_path, folder_ / "out/hill.relief");
 }
 
-TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAMistake) {
+TEST_F(RecipeJobsTest, APatternThatMatchesNothingIsAError) {
     fails("[[asset]]\nmesh = 'rock/*.obj'\noutput = '{stem}.relief'\n", "'rock/*.obj' matches no file");
     fails("[[asset]]\nmesh = 'rocks'\noutput = '{stem}.relief'\n", "'rocks' matches no file");
     const auto found =

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
+#include "bake/maps/budget_search.h"
 #include "bake/measure/accuracy.h"
 #include "bake/mesh/surface_sampler.h"
-#include "bake/pipeline/budget_search.h"
 #include "tests/bake/points.h"
 #include "tests/bake/shaped.h"
 #include "tests/bake/voxels.h"

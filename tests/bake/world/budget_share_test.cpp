@@ -38,11 +38,11 @@ std::vector<std::uint64_t> byArea(std::uint64_t budget, const std::vector<double
     return bytesOf(shares);
 }
 
-/// Mistakes against bytes in closed form.
-using Mistakes = std::function<double(double bytes)>;
+/// Errors against bytes in closed form.
+using Errors = std::function<double(double bytes)>;
 
-Mistakes powerLaw(double mistakes, double power) {
-    return [=](double bytes) { return mistakes * std::pow(bytes, -power); };
+Errors powerLaw(double errors, double power) {
+    return [=](double bytes) { return errors * std::pow(bytes, -power); };
 }
 
 /// Shares by curves, of which plans have some points; and what was planned.
@@ -50,19 +50,18 @@ struct Shared {
     std::vector<std::uint64_t> bytes;
     std::vector<std::vector<std::uint64_t>> planned;
 };
-Shared byMistakes(std::uint64_t budget, const std::vector<Mistakes>& meshes,
-                  std::vector<double> weights = {}) {
+Shared byErrors(std::uint64_t budget, const std::vector<Errors>& meshes, std::vector<double> weights = {}) {
     weights.resize(meshes.size(), 1.0);
     std::vector<BudgetShare> shares = sharesOf(weights);
     Shared shared;
     shared.planned.resize(meshes.size());
     EXPECT_TRUE(
-        shareByMistakes(budget, shares, [&](std::size_t mesh, std::uint64_t bytes) -> Result<MistakeCurve> {
+        shareByErrors(budget, shares, [&](std::size_t mesh, std::uint64_t bytes) -> Result<ErrorCurve> {
             shared.planned[mesh].push_back(bytes);  // each mesh by one thread at a time
             if (!meshes[mesh]) {
                 return fail(ErrorCode::kFailure, "no solid");
             }
-            MistakeCurve curve;
+            ErrorCurve curve;
             for (double at = 1000.0; at <= static_cast<double>(bytes); at *= 1.7) {
                 const double wrong = meshes[mesh](at);
                 if (curve.empty() || wrong < curve.back().wrong) {
@@ -89,7 +88,7 @@ TEST(BudgetShares, HalfIsByAreaAndHalfIsEven) {
     const std::vector<std::uint64_t> bytes = byArea(1 << 20, {3.0, 1.0});
     EXPECT_EQ(bytes[0], roundDownToEighth((1 << 18) + (1 << 17) * 3));
     EXPECT_EQ(bytes[1], roundDownToEighth((1 << 18) + (1 << 17)));
-    EXPECT_EQ(byMistakes(1 << 20, {powerLaw(1.0, 0.7)}).bytes, std::vector<std::uint64_t>{1 << 20})
+    EXPECT_EQ(byErrors(1 << 20, {powerLaw(1.0, 0.7)}).bytes, std::vector<std::uint64_t>{1 << 20})
         << "all to one";
     EXPECT_EQ(byArea(1 << 20, {0.0, 0.0}), (std::vector<std::uint64_t>(2, 1 << 18))) << "no area at all";
 }
@@ -108,20 +107,20 @@ TEST(BudgetShares, SmallPartsOfALargeLevelKeepTheirHalf) {
     EXPECT_EQ(after, bytes);
 }
 
-TEST(BudgetShares, ByMistakesEachByteMendsAsMuch) {
+TEST(BudgetShares, ByErrorsEachByteMendsAsMuch) {
     // Of the least w·c·b^-p in sum, with one power, shares are as (w·c)^(1 / (1 + p)).
-    const std::vector<double> mistakes = {1.0, 2.0, 4.0, 1.0};
+    const std::vector<double> errors = {1.0, 2.0, 4.0, 1.0};
     const std::vector<double> weights = {1.0, 1.0, 1.0, 8.0};
     for (const double power : {0.5, 0.73, 1.0}) {
-        std::vector<Mistakes> meshes;
+        std::vector<Errors> meshes;
         double sum = 0.0;
-        for (std::size_t i = 0; i < mistakes.size(); ++i) {
-            meshes.push_back(powerLaw(mistakes[i], power));
-            sum += std::pow(weights[i] * mistakes[i], 1.0 / (1.0 + power));
+        for (std::size_t i = 0; i < errors.size(); ++i) {
+            meshes.push_back(powerLaw(errors[i], power));
+            sum += std::pow(weights[i] * errors[i], 1.0 / (1.0 + power));
         }
-        const std::vector<std::uint64_t> bytes = byMistakes(4'000'000, meshes, weights).bytes;
+        const std::vector<std::uint64_t> bytes = byErrors(4'000'000, meshes, weights).bytes;
         for (std::size_t i = 0; i < bytes.size(); ++i) {
-            const double best = 4e6 * std::pow(weights[i] * mistakes[i], 1.0 / (1.0 + power)) / sum;
+            const double best = 4e6 * std::pow(weights[i] * errors[i], 1.0 / (1.0 + power)) / sum;
             // Half of an eighth of an octave below, on the mean, and half of one for the curves.
             EXPECT_NEAR(std::log2(static_cast<double>(bytes[i]) / best), -1.0 / 16.0, 1.0 / 8.0)
                 << power << " " << i;
@@ -131,11 +130,11 @@ TEST(BudgetShares, ByMistakesEachByteMendsAsMuch) {
     }
 }
 
-TEST(BudgetShares, OfAMeshWithoutMistakesTheOthersGetWhatItLeaves) {
+TEST(BudgetShares, OfAMeshWithoutErrorsTheOthersGetWhatItLeaves) {
     // A box is exact with 3000 bytes.
-    const Mistakes box = [](double bytes) { return bytes < 3000.0 ? 1.0 : 0.0; };
-    const Mistakes rock = powerLaw(1.0, 0.73);
-    const std::vector<std::uint64_t> bytes = byMistakes(800'000, {box, box, box, rock}).bytes;
+    const Errors box = [](double bytes) { return bytes < 3000.0 ? 1.0 : 0.0; };
+    const Errors rock = powerLaw(1.0, 0.73);
+    const std::vector<std::uint64_t> bytes = byErrors(800'000, {box, box, box, rock}).bytes;
     EXPECT_LE(bytes[0], 25'000U) << "an eighth of an even share";
     EXPECT_EQ(bytes[0], bytes[1]);
     EXPECT_GT(bytes[3], 650'000U);
@@ -144,20 +143,20 @@ TEST(BudgetShares, OfAMeshWithoutMistakesTheOthersGetWhatItLeaves) {
 
 TEST(BudgetShares, NoMeshIsLost) {
     const std::vector<std::uint64_t> bytes =
-        byMistakes(8'000'000, {powerLaw(1e9, 0.7), powerLaw(1e-9, 0.7), powerLaw(1.0, 0.7)}).bytes;
+        byErrors(8'000'000, {powerLaw(1e9, 0.7), powerLaw(1e-9, 0.7), powerLaw(1.0, 0.7)}).bytes;
     EXPECT_GE(bytes[1], roundDownToEighth(8'000'000 / 3 / 8));
     EXPECT_GT(bytes[0], 7'000'000U);
-    EXPECT_GE(byMistakes(2 * 2 * kShareMin, {powerLaw(1e9, 0.7), powerLaw(1.0, 0.7)}).bytes[1], kShareMin);
+    EXPECT_GE(byErrors(2 * 2 * kShareMin, {powerLaw(1e9, 0.7), powerLaw(1.0, 0.7)}).bytes[1], kShareMin);
 }
 
 TEST(BudgetShares, WhatGetsFarMoreIsPlannedAgain) {
     // From 50 kB on, more bytes mend next to nothing, which a plan of an eighth of an even share does not see.
-    const Mistakes knee = [](double bytes) {
+    const Errors knee = [](double bytes) {
         return 1e3 * std::pow(std::min(bytes, 5e4), -0.7) - 1e-9 * bytes;
     };
-    std::vector<Mistakes> meshes(20, powerLaw(1.0, 0.7));
+    std::vector<Errors> meshes(20, powerLaw(1.0, 0.7));
     meshes[7] = knee;
-    const Shared shared = byMistakes(4'000'000, meshes);
+    const Shared shared = byErrors(4'000'000, meshes);
     EXPECT_EQ(shared.planned[0], std::vector<std::uint64_t>{16'384});
     EXPECT_GT(shared.planned[7].size(), 1U);
     EXPECT_GT(shared.bytes[7], 40'000U);
@@ -171,7 +170,7 @@ TEST(BudgetShares, WhatGetsFarMoreIsPlannedAgain) {
 
 TEST(BudgetShares, AMeshThatCannotBePlannedHasAnEvenShare) {
     const std::vector<std::uint64_t> bytes =
-        byMistakes(1 << 20, {powerLaw(1.0, 0.7), {}, powerLaw(100.0, 0.7), powerLaw(1.0, 0.7)}).bytes;
+        byErrors(1 << 20, {powerLaw(1.0, 0.7), {}, powerLaw(100.0, 0.7), powerLaw(1.0, 0.7)}).bytes;
     EXPECT_EQ(bytes[1], 1U << 18U);
     EXPECT_LE(sumOf(bytes), 1U << 20U);
     EXPECT_GT(bytes[2], bytes[0]);
@@ -184,9 +183,9 @@ TEST(BudgetShares, TooFewBytesAreRefusedWithTheLeastThatWouldDo) {
     EXPECT_EQ(shared.error().code, ErrorCode::kUsage);
     EXPECT_NE(shared.error().message.find("at least 819200"), std::string::npos) << shared.error().message;
     EXPECT_TRUE(shareByArea(819'200, shares));
-    const PlanMistakes none = [](std::size_t, std::uint64_t) { return MistakeCurve(); };
-    EXPECT_EQ(shareByMistakes(819'199, shares, none).error().message, shared.error().message);
-    EXPECT_TRUE(shareByMistakes(819'200, shares, none));
+    const PlanErrors none = [](std::size_t, std::uint64_t) { return ErrorCurve(); };
+    EXPECT_EQ(shareByErrors(819'199, shares, none).error().message, shared.error().message);
+    EXPECT_TRUE(shareByErrors(819'200, shares, none));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "bake/director/director.h"
+#include "bake/pipeline/bake.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/points.h"
 #include "tests/seeds.h"

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "bake/world/mistake_curves.h"
+#include "bake/world/error_curves.h"
 #include "formats/base/portable_math.h"
 #include "tests/bake/world/level_bakes.h"
 
@@ -85,25 +85,25 @@ TEST_F(LevelShares, ASecondRunPlansAndBakesOnlyWhatChanged) {
     EXPECT_EQ(bake("w").countOf(WorldColliderState::kUpToDate), 4U);
     EXPECT_TRUE(filesOf("w") == files);
     // It shares by the curves that are there: with all of them alike, evenly but for the meshes' areas.
-    MistakeCurves curves = required(loadMistakeCurves(folder_.path() / "w"));
+    ErrorCurves curves = required(loadErrorCurves(folder_.path() / "w"));
     EXPECT_GE(curves.size(), 4U);
     for (auto& [key, curve] : curves) {
         curve = {{1000.0, 1.0}, {2000.0, 0.6}};
     }
-    ASSERT_TRUE(saveMistakeCurves(folder_.path() / "w", curves));
+    ASSERT_TRUE(saveErrorCurves(folder_.path() / "w", curves));
     std::map<std::string, std::uint64_t> alike = sharesOf(bake("w"));
     EXPECT_EQ(alike["box"], alike["ball"]);
     // Without them, or with others than curves, they are planned again, to the same bytes.
     for (const char* text : {"", "{}"}) {
         if (*text == '\0') {
-            fs::remove(folder_.path() / "w" / kMistakeCurvesName);
+            fs::remove(folder_.path() / "w" / kErrorCurvesName);
         } else {
-            folder_.write(std::string("w/") + kMistakeCurvesName, text);
+            folder_.write(std::string("w/") + kErrorCurvesName, text);
         }
         const WorldBakeResult again = bake("w");
         EXPECT_EQ(sharesOf(again), shares);
         EXPECT_EQ(again.warnings.empty(), *text == '\0');
-        EXPECT_TRUE(filesOf("w")[kMistakeCurvesName] == files.at(kMistakeCurvesName));
+        EXPECT_TRUE(filesOf("w")[kErrorCurvesName] == files.at(kErrorCurvesName));
     }
     // A mesh that changes is baked, and few others.
     writeLevel(0.203);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table read into a struct: every form of a value, and every mistake with its place and its cure.
+// A table read into a struct: every form of a value, and every error with its place and its cure.
 #include "formats/config/toml_reader.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ Result<Thing> read(const std::string& text) {
     return thing;
 }
 
-std::string mistake(const std::string& text) {
+std::string error(const std::string& text) {
     const auto thing = read(text);
     return thing ? "" : thing.error().message;
 }
@@ -97,33 +97,32 @@ TEST(TomlReader, EveryForm) {
     EXPECT_FALSE(read("")->has_speed);
 }
 
-TEST(TomlReader, Mistakes) {
-    EXPECT_EQ(mistake("fomr = \"box\"\nradius = 9\n"),
+TEST(TomlReader, Errors) {
+    EXPECT_EQ(error("fomr = \"box\"\nradius = 9\n"),
               "f.toml:1:1: unknown table 'fomr'; did you mean 'form'?");
-    EXPECT_EQ(mistake("radius = 9\n"), "f.toml:1:10: radius = 9 is out of range; choose 0 to 5");
-    EXPECT_EQ(mistake("radius = \"1\"\n"), "f.toml:1:10: radius must be a number");
-    EXPECT_EQ(mistake("form = \"bal\"\n"), "f.toml:1:8: form = 'bal' is unknown; did you mean 'ball'?");
-    EXPECT_EQ(mistake("form = \"box\"\n"), "f.toml:1:8: form = \"box\" needs side beside it");
-    EXPECT_EQ(mistake("side = [1, 1, 1]\nradius = 2\n"),
+    EXPECT_EQ(error("radius = 9\n"), "f.toml:1:10: radius = 9 is out of range; choose 0 to 5");
+    EXPECT_EQ(error("radius = \"1\"\n"), "f.toml:1:10: radius must be a number");
+    EXPECT_EQ(error("form = \"bal\"\n"), "f.toml:1:8: form = 'bal' is unknown; did you mean 'ball'?");
+    EXPECT_EQ(error("form = \"box\"\n"), "f.toml:1:8: form = \"box\" needs side beside it");
+    EXPECT_EQ(error("side = [1, 1, 1]\nradius = 2\n"),
               "f.toml:2:10: radius does nothing for form = \"box\"; remove it, or choose form = \"ball\"");
-    EXPECT_EQ(mistake("count = [4, 2]\n"), "f.toml:1:9: count has its least above its most; swap them");
-    EXPECT_EQ(mistake("range = [4]\n"), "f.toml:1:9: range must be two numbers [low, high]");
-    EXPECT_EQ(mistake("speed = 1\n"),
+    EXPECT_EQ(error("count = [4, 2]\n"), "f.toml:1:9: count has its least above its most; swap them");
+    EXPECT_EQ(error("range = [4]\n"), "f.toml:1:9: range must be two numbers [low, high]");
+    EXPECT_EQ(error("speed = 1\n"),
               "f.toml:1:9: speed does nothing without axis; give that too, or remove this");
-    EXPECT_EQ(mistake("axis = [1, 0, 0]\nspeed = 0\n"),
+    EXPECT_EQ(error("axis = [1, 0, 0]\nspeed = 0\n"),
               "f.toml:2:9: speed does nothing as 0; raise it or remove it");
-    EXPECT_EQ(mistake("axis = [0, 0, 0]\n"), "f.toml:1:8: axis has no direction; give one, as [0, 1, 0]");
-    EXPECT_EQ(mistake("heavy = 0\ncount = 1\n"),
-              "f.toml:1:9: heavy and count exclude each other; remove one");
-    EXPECT_EQ(mistake("[[part]]\n"), "f.toml:1:1: part.weight is missing; give it: Weight, kg");
-    EXPECT_EQ(mistake("heavy = 1\n[[part]]\nweight = 1\n"),
+    EXPECT_EQ(error("axis = [0, 0, 0]\n"), "f.toml:1:8: axis has no direction; give one, as [0, 1, 0]");
+    EXPECT_EQ(error("heavy = 0\ncount = 1\n"), "f.toml:1:9: heavy and count exclude each other; remove one");
+    EXPECT_EQ(error("[[part]]\n"), "f.toml:1:1: part.weight is missing; give it: Weight, kg");
+    EXPECT_EQ(error("heavy = 1\n[[part]]\nweight = 1\n"),
               "f.toml:1:9: heavy = 1 is none of the 1 parts; the first is 0");
-    EXPECT_EQ(mistake("[[part]]\nweight = 1\n[[part]]\nweight = 2\n"),
+    EXPECT_EQ(error("[[part]]\nweight = 1\n[[part]]\nweight = 2\n"),
               "f.toml:4:10: part.weight is above the first; order the parts");
-    EXPECT_EQ(mistake("part = [{ weight = 1 }, { weight = 1 }, { weight = 1 }]\n"),
+    EXPECT_EQ(error("part = [{ weight = 1 }, { weight = 1 }, { weight = 1 }]\n"),
               "f.toml:1:41: there are 3 of [[part]], more than 2; remove some");
-    EXPECT_EQ(mistake("file = \"../a\"\n").substr(0, 22), "f.toml:1:8: file = '..");
-    EXPECT_NE(mistake("form = \n").find("f.toml:1:"), std::string::npos);
+    EXPECT_EQ(error("file = \"../a\"\n").substr(0, 22), "f.toml:1:8: file = '..");
+    EXPECT_NE(error("form = \n").find("f.toml:1:"), std::string::npos);
 }
 
 }  // namespace

@@ -309,7 +309,7 @@ TEST_F(CApi, AFailureIsHandedOnWithItsCause) {
     relief_collider* collider = relief_collider_load(kMissing);
     relief_textures* textures = relief_textures_create(collider);
     relief_particles* particles = relief_particles_create(textures, &stage_.options);
-    EXPECT_EQ(particles, nullptr) << "particles that collide with nothing, by mistake";
+    EXPECT_EQ(particles, nullptr) << "particles that collide with nothing, by error";
     EXPECT_EQ(relief_particles_spawn(particles, stage_.births, kItems), 0U);
     EXPECT_EQ(relief_particles_step(particles, 0.01F), -1);
     EXPECT_EQ(relief_picture_create(textures, collider), nullptr);

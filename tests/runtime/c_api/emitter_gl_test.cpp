@@ -115,7 +115,7 @@ TEST_F(CApiEmitter, DustComesOffACollider) {
     expectError("material: ");
 }
 
-TEST_F(CApiEmitter, MistakesOfEmittersAreNamed) {
+TEST_F(CApiEmitter, ErrorsOfEmittersAreNamed) {
     relief_emitter_options& options = stage_.emitter_options;
     const auto refused = [&](const char* group, const char* material, const std::string& what) {
         EXPECT_EQ(relief_emitter_create(stage_.animation, group, material, &options), nullptr) << what;

@@ -135,7 +135,7 @@ TEST(Spawner, AListOfWhatItHeedsMayBeShort) {
     SpawnSettings settings{.of = 1, .min_speed = 2.0F, .material = 4, .count_max = 3, .most = 20};
     Spawner by_all(settings, 9);
     Spawner by_few(settings, 9);
-    const EventOptions heeded = by_all.heeded();
+    const EventOptions heeded = by_all.eventOptions();
     EXPECT_EQ(heeded, (EventOptions{.min_speed = 2.0F, .most = 20, .type = 1, .material = 4}));
     for (std::uint32_t step = 0; step < 5; ++step) {
         std::vector<ParticleEvent> all;
@@ -164,7 +164,7 @@ TEST(Spawner, AListOfWhatItHeedsMayBeShort) {
     }
     settings.on = SpawnOn::kDeath;
     settings.material.reset();
-    EXPECT_EQ(Spawner(settings, 9).heeded(),
+    EXPECT_EQ(Spawner(settings, 9).eventOptions(),
               (EventOptions{.hits = false, .deaths = true, .most = 20, .type = 1}));
 }
 

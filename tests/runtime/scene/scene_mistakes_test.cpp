@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes in a scene's text, with their line and column. Ranges, types of values and unknown keys are the reader's
+// Errors in a scene's text, with their line and column. Ranges, types of values and unknown keys are the reader's
 // (toml_reader_test.cpp); these are the scene's own rules.
 #include <gtest/gtest.h>
 
@@ -9,22 +9,22 @@
 namespace relief {
 namespace {
 
-TEST(SceneMistakes, OfTheFile) {
-    expectMistakes("", {{"", "1:1", "collider.file"},
-                        {"[[collider]]\nfile = \"a\"\n[[collider]]\n", "3:1", "collider.file"},
-                        {"[collider]\nfile = \"\"\n", "2:8", "file"},
-                        {"[collider]\nfile = \"a\\u0000b\"\n", "2:8", "zero byte"},
-                        {"[collider]\nfile = \"/z/a.relief\"\n", "2:8", "'/z/a.relief'"},
-                        {"[collider]\nfile = \"b/../../dirt/a\"\n", "2:8", "'b/../../dirt/a'"},
-                        {"collider = []\n", "1:12", "collider"},
-                        {"emitter = [{}, 1]\n" + kSceneHead, "1:11", "emitter"},
-                        {"steps = 4\n" + kSceneHead, "1:1", "'steps'"},
-                        // The first mistake of the file is the one that is reported.
-                        {kSceneHead + "[time]\nzeta = 1\nalpha = 1\n", "4:1", "'time.zeta'"},
-                        {kSceneHead + "[attractor]\nstrength = 1\n", "3:1", "[[attractor]]"}});
+TEST(SceneErrors, OfTheFile) {
+    expectErrors("", {{"", "1:1", "collider.file"},
+                      {"[[collider]]\nfile = \"a\"\n[[collider]]\n", "3:1", "collider.file"},
+                      {"[collider]\nfile = \"\"\n", "2:8", "file"},
+                      {"[collider]\nfile = \"a\\u0000b\"\n", "2:8", "zero byte"},
+                      {"[collider]\nfile = \"/z/a.relief\"\n", "2:8", "'/z/a.relief'"},
+                      {"[collider]\nfile = \"b/../../dirt/a\"\n", "2:8", "'b/../../dirt/a'"},
+                      {"collider = []\n", "1:12", "collider"},
+                      {"emitter = [{}, 1]\n" + kSceneHead, "1:11", "emitter"},
+                      {"steps = 4\n" + kSceneHead, "1:1", "'steps'"},
+                      // The first error of the file is the one that is reported.
+                      {kSceneHead + "[time]\nzeta = 1\nalpha = 1\n", "4:1", "'time.zeta'"},
+                      {kSceneHead + "[attractor]\nstrength = 1\n", "3:1", "[[attractor]]"}});
 }
 
-TEST(SceneMistakes, OfTheSyntax) {
+TEST(SceneErrors, OfTheSyntax) {
     for (const auto& [text, line] : {std::pair<std::string, int>{"[collider\n", 1},
                                      {kSceneHead + "[time]\ndt = \n", 4},
                                      {kSceneHead + "[time]\ndt = 1\ndt = 1\n", 5},
@@ -37,7 +37,7 @@ TEST(SceneMistakes, OfTheSyntax) {
     }
 }
 
-TEST(SceneMistakes, OfNumbersOfTables) {
+TEST(SceneErrors, OfNumbersOfTables) {
     for (const auto& [table, count, line] :
          {std::tuple{"[[attractor]]\nposition = [0, 0, 0]\nstrength = 1\nradius = 1\n", 9U, 35U},
           {"[[type]]\n", 17U, 19U},
@@ -47,8 +47,7 @@ TEST(SceneMistakes, OfNumbersOfTables) {
         for (unsigned i = 0; i < count; ++i) {
             text += table;
         }
-        expectMistakes(kSceneHead,
-                       {{text, std::to_string(line) + ":1", "there are " + std::to_string(count)}});
+        expectErrors(kSceneHead, {{text, std::to_string(line) + ":1", "there are " + std::to_string(count)}});
     }
     std::string many;
     for (std::size_t i = 0; i <= WorldTextures::kBodiesMax; ++i) {
@@ -57,18 +56,18 @@ TEST(SceneMistakes, OfNumbersOfTables) {
     EXPECT_FALSE(sceneOf(many)) << "more bodies than a step takes";
 }
 
-TEST(SceneMistakes, OfTimeAndFrames) {
-    expectMistakes(kSceneHead, {{"[time]\ndt = 1e-5\nprewarm = 101\n", "5:11", "time.dt"},
-                                {"[render]\nfirst = 5\nlast = 4\n", "5:8", "render.first"},
-                                {"[render]\nfirst = 301\n", "4:9", "choose 0 to 300"},
-                                {"[render]\nlast = 301\n", "4:8", "choose 0 to 300"},
-                                {"[render]\nsort_frames = 1\n", "4:15", "2 to 200"}});
+TEST(SceneErrors, OfTimeAndFrames) {
+    expectErrors(kSceneHead, {{"[time]\ndt = 1e-5\nprewarm = 101\n", "5:11", "time.dt"},
+                              {"[render]\nfirst = 5\nlast = 4\n", "5:8", "render.first"},
+                              {"[render]\nfirst = 301\n", "4:9", "choose 0 to 300"},
+                              {"[render]\nlast = 301\n", "4:8", "choose 0 to 300"},
+                              {"[render]\nsort_frames = 1\n", "4:15", "2 to 200"}});
 }
 
-TEST(SceneMistakes, OfTheAir) {
+TEST(SceneErrors, OfTheAir) {
     const std::string flow =
         "[flow]\nraw = \"a.raw\"\nsize = [1, 1, 1]\nbox_min = [0, 0, 0]\nbox_max = [1, 2, 3]\n";
-    expectMistakes(
+    expectErrors(
         kSceneHead,
         {{"[forces]\nwind = [1, 0, 0]\ndrag = 0\n", "4:8", "forces.drag"},
          {"[forces]\nviscosity = 0\nwind = [1, 0, 0]\n", "5:8", "forces.viscosity"},
@@ -87,101 +86,99 @@ TEST(SceneMistakes, OfTheAir) {
           "vortex.axis"}});
 }
 
-TEST(SceneMistakes, OfPlacesAndWaysOfColliders) {
+TEST(SceneErrors, OfPlacesAndWaysOfColliders) {
     const std::string key = "[[collider.key]]\ntime = 1\n";
-    expectMistakes(kSceneHead, {{"axis = [0, 1, 0]\n", "3:8", "collider.angle"},
-                                {"axis = [0, 0, 0]\nangle = 3\n", "3:8", "collider.axis"},
-                                {key, "3:1", "collider.key"},
-                                {key + key, "6:8", "does not rise"},
-                                {key + "axis = [1, 0, 0]\n" + key, "5:8", "collider.key.angle"},
-                                {key + "scale = 2\n" + key, "5:1", "collider.key.scale"}});
+    expectErrors(kSceneHead, {{"axis = [0, 1, 0]\n", "3:8", "collider.angle"},
+                              {"axis = [0, 0, 0]\nangle = 3\n", "3:8", "collider.axis"},
+                              {key, "3:1", "collider.key"},
+                              {key + key, "6:8", "does not rise"},
+                              {key + "axis = [1, 0, 0]\n" + key, "5:8", "collider.key.angle"},
+                              {key + "scale = 2\n" + key, "5:1", "collider.key.scale"}});
 }
 
-TEST(SceneMistakes, OfCollidersThatDeformOrPlay) {
+TEST(SceneErrors, OfCollidersThatDeformOrPlay) {
     const std::string wobble = "deform = { amplitude = 40, frequency = 1 }\n";
-    expectMistakes(
+    expectErrors(
         "", {{"[collider]\nmesh = \"a.obj\"\n", "2:8", "collider.deform"},
              {"[collider]\nmesh = \"a.obj\"\nfile = \"b.relief\"\n" + wobble, "2:8", "exclude each other"},
              {"[collider]\nmesh = \"a.obj\"\ndeform = { amplitude = 1 }\n", "3:10", "frequency"},
              {"[collider]\nmesh = \"a.obj\"\n" + wobble + "[render]\nmesh = \"b.obj\"\n", "5:8",
               "collider.mesh"}});
-    expectMistakes(kSceneHead, {{wobble, "3:10", "collider.mesh"},
-                                {"resolution = 64\n", "3:14", "collider.mesh"},
-                                {"[[collider.material]]\nname = \"a\"\ncolor = [1, 1, 1]\n", "3:1", "play"}});
+    expectErrors(kSceneHead, {{wobble, "3:10", "collider.mesh"},
+                              {"resolution = 64\n", "3:14", "collider.mesh"},
+                              {"[[collider.material]]\nname = \"a\"\ncolor = [1, 1, 1]\n", "3:1", "play"}});
 }
 
-TEST(SceneMistakes, OfCollidersOfAWorld) {
-    expectMistakes("", {{"[[collider]]\nnode = \"door\"\n", "2:8", "world"},
-                        {"world = \"/etc/world.json\"\n", "1:9", "world"}});
-    expectMistakes("world = \"w.json\"\n[collider]\nnode = ",
-                   {{"\"door\"\nfriction = 0\n", "4:12", "collider.friction"},
-                    {"\"\"\n", "3:8", "collider.node"},
-                    {"\"door\"\n[[collider.key]]\ntime = 1\n", "4:1", "collider.key"}});
+TEST(SceneErrors, OfCollidersOfAWorld) {
+    expectErrors("", {{"[[collider]]\nnode = \"door\"\n", "2:8", "world"},
+                      {"world = \"/etc/world.json\"\n", "1:9", "world"}});
+    expectErrors("world = \"w.json\"\n[collider]\nnode = ",
+                 {{"\"door\"\nfriction = 0\n", "4:12", "collider.friction"},
+                  {"\"\"\n", "3:8", "collider.node"},
+                  {"\"door\"\n[[collider.key]]\ntime = 1\n", "4:1", "collider.key"}});
 }
 
-TEST(SceneMistakes, OfTypesAndMaterials) {
-    expectMistakes(kSceneHead,
-                   {{"[[type]]\nname = \"\"\n", "4:8", "type.name"},
-                    {"[[type]]\nname = \"a\"\n[[type]]\nname = \"a\"\n", "6:8", "type"},
-                    {"[[type]]\nstretch = 0.1\n", "4:11", "render.sprite"},
-                    {"[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "material"},
-                    {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
-    expectMistakes(
-        "[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
-        {{"[[type]]\ncollides = 0\n", "6:12", "numbers of colliders"},
-         {"[[type]]\ncollides = [2]\n", "6:13", "choose 0 to 1"},
-         {"[[type]]\ncollides = [1.5]\n", "6:13", "numbers of colliders"},
-         {"[[type]]\ncollides = [\"floor\"]\n", "6:13", "ground"},
-         {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "takes away"}});
+TEST(SceneErrors, OfTypesAndMaterials) {
+    expectErrors(kSceneHead, {{"[[type]]\nname = \"\"\n", "4:8", "type.name"},
+                              {"[[type]]\nname = \"a\"\n[[type]]\nname = \"a\"\n", "6:8", "type"},
+                              {"[[type]]\nstretch = 0.1\n", "4:11", "render.sprite"},
+                              {"[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "6:8", "material"},
+                              {"[[spawn]]\non = \"death\"\nmaterial = \"a\"\n", "5:12", "collision"}});
+    expectErrors("[[collider]]\nfile = \"a.relief\"\n[[collider]]\nfile = \"b.relief\"\n",
+                 {{"[[type]]\ncollides = 0\n", "6:12", "numbers of colliders"},
+                  {"[[type]]\ncollides = [2]\n", "6:13", "choose 0 to 1"},
+                  {"[[type]]\ncollides = [1.5]\n", "6:13", "numbers of colliders"},
+                  {"[[type]]\ncollides = [\"floor\"]\n", "6:13", "ground"},
+                  {"[ground]\nenabled = false\n[[type]]\ncollides = [\"ground\"]\n", "8:13", "takes away"}});
 }
 
-TEST(SceneMistakes, OfLooksAndPictures) {
+TEST(SceneErrors, OfLooksAndPictures) {
     const std::string mesh = "[render]\nmesh = \"m.obj\"\n";
     const std::string atlas = "[render]\natlas = \"a.png\"\natlas_cells = [2, 2]\n";
     std::string keys;
     for (int i = 0; i < 256; ++i) {
         keys += (i > 0 ? ", [0." : "[0.") + std::to_string(1000 + i) + ", 1]";
     }
-    expectMistakes(kSceneHead,
-                   {{"scale = 2\n" + mesh, "5:8", "render.mesh"},
-                    {"angle = 90\n" + mesh, "5:8", "render.mesh"},
-                    {"position = [0, 1, 0]\n" + mesh, "5:8", "render.mesh"},
-                    {"[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\n" + mesh, "8:8", "render.mesh"},
-                    {mesh + "meshes = \"m\"\n", "5:10", "render.mesh"},
-                    {"[render]\natlas_cells = [1, 1]\n", "4:15", "render.atlas"},
-                    {"[render]\natlas = \"a.png\"\n", "4:9", "[[type]]"},
-                    {"[[type]]\ncell = 0\n", "4:8", "render.atlas"},
-                    {atlas + "[[type]]\ncell = 4\n", "7:8", "0 to 3"},
-                    {"[[type]]\nsize = []\n", "4:8", "type.size"},
-                    {"[[type]]\nsize = [0, 1]\n", "4:8", "type.size"},
-                    {"[[type]]\nsize = [[0, 1], 2]\n", "4:17", "type.size"},
-                    {"[[type]]\nsize = [[0, 1, 2]]\n", "4:9", "type.size"},
-                    {"[[type]]\nsize = [[0, 1], [0, 2]]\n", "4:18", "do not rise"},
-                    {"[[type]]\nsize = [[0, 1], [1.5, 2]]\n", "4:18", "choose 0 to 1"},
-                    {"[[type]]\nsize = [" + keys + "]\n", "4:8", "255"},
-                    {"[[type]]\nopacity = [[0, 1], [1, 2]]\n", "4:24", "choose 0 to 1"},
-                    {"[[type]]\ncolor = [1, 1]\n", "4:9", "[r, g, b]"},
-                    {"[[type]]\ncolor = [[0, 1, 1]]\n", "4:10", "[r, g, b]"},
-                    {"[render]\nfog = 5\n", "4:7", "render.meshes"},
-                    {"[render]\n[[render.weather]]\nsnow = 1\n", "4:1", "render.meshes"},
-                    {"[render]\nmeshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
-                     "8:8", "does not rise"}});
+    expectErrors(kSceneHead,
+                 {{"scale = 2\n" + mesh, "5:8", "render.mesh"},
+                  {"angle = 90\n" + mesh, "5:8", "render.mesh"},
+                  {"position = [0, 1, 0]\n" + mesh, "5:8", "render.mesh"},
+                  {"[[collider.key]]\ntime = 0\n[[collider.key]]\ntime = 1\n" + mesh, "8:8", "render.mesh"},
+                  {mesh + "meshes = \"m\"\n", "5:10", "render.mesh"},
+                  {"[render]\natlas_cells = [1, 1]\n", "4:15", "render.atlas"},
+                  {"[render]\natlas = \"a.png\"\n", "4:9", "[[type]]"},
+                  {"[[type]]\ncell = 0\n", "4:8", "render.atlas"},
+                  {atlas + "[[type]]\ncell = 4\n", "7:8", "0 to 3"},
+                  {"[[type]]\nsize = []\n", "4:8", "type.size"},
+                  {"[[type]]\nsize = [0, 1]\n", "4:8", "type.size"},
+                  {"[[type]]\nsize = [[0, 1], 2]\n", "4:17", "type.size"},
+                  {"[[type]]\nsize = [[0, 1, 2]]\n", "4:9", "type.size"},
+                  {"[[type]]\nsize = [[0, 1], [0, 2]]\n", "4:18", "do not rise"},
+                  {"[[type]]\nsize = [[0, 1], [1.5, 2]]\n", "4:18", "choose 0 to 1"},
+                  {"[[type]]\nsize = [" + keys + "]\n", "4:8", "255"},
+                  {"[[type]]\nopacity = [[0, 1], [1, 2]]\n", "4:24", "choose 0 to 1"},
+                  {"[[type]]\ncolor = [1, 1]\n", "4:9", "[r, g, b]"},
+                  {"[[type]]\ncolor = [[0, 1, 1]]\n", "4:10", "[r, g, b]"},
+                  {"[render]\nfog = 5\n", "4:7", "render.meshes"},
+                  {"[render]\n[[render.weather]]\nsnow = 1\n", "4:1", "render.meshes"},
+                  {"[render]\nmeshes = \"m\"\n[[render.weather]]\ntime = 1\n[[render.weather]]\ntime = 1\n",
+                   "8:8", "does not rise"}});
 }
 
-TEST(SceneMistakes, OfTheCamera) {
+TEST(SceneErrors, OfTheCamera) {
     const std::string key = "[[camera.key]]\ntime = 1\neye = [1, 2, 3]\n";
-    expectMistakes(kSceneHead, {{"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "4:7", "camera.target"},
-                                {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "aside"},
-                                {key + key, "7:8", "does not rise"},
-                                {key + "target = [1, 0, 3]\n", "5:7", "aside"},
-                                {key + "target = [1, 2, 3]\n", "5:7", "aside"},
-                                {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"}});
+    expectErrors(kSceneHead, {{"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", "4:7", "camera.target"},
+                              {"[camera]\neye = [1, 9, 1]\ntarget = [1, 1, 1]\n", "4:7", "aside"},
+                              {key + key, "7:8", "does not rise"},
+                              {key + "target = [1, 0, 3]\n", "5:7", "aside"},
+                              {key + "target = [1, 2, 3]\n", "5:7", "aside"},
+                              {"[camera]\neye = [1, 2, 3]\n" + key, "4:7", "exclude each other"}});
 }
 
-TEST(SceneMistakes, OfEmitters) {
+TEST(SceneErrors, OfEmitters) {
     const std::string sphere = "shape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n";
     const std::string key = "[[emitter.key]]\ntime = 1\n";
-    expectMistakes(
+    expectErrors(
         kSceneHead + "[emitter]\n",
         {{"rate = 0\n", "4:8", "emitter.rate"},
          {"burst = 10\n[particles]\ncapacity = 9\n", "4:9", "particles.capacity"},
@@ -212,34 +209,34 @@ TEST(SceneMistakes, OfEmitters) {
          {"velocity = [1, 0, 0]\ndirection = [0, 1, 0]\n", "4:12", "exclude each other"}});
 }
 
-TEST(SceneMistakes, OfNamesOfTypes) {
+TEST(SceneErrors, OfNamesOfTypes) {
     const std::string types = "[[type]]\nname = \"snow\"\n[[type]]\nname = \"smoke\"\n";
-    expectMistakes(kSceneHead + "[emitter]\n", {{"type = 16\n", "4:8", "out of range"},
-                                                {"type = 1.5\n", "4:8", "whole number or the name"},
-                                                {"type = \"\"\n", "4:8", "empty name"},
-                                                {"type = \"smoke\"\n", "4:8", "unknown"},
-                                                {"type = \"smok\"\n" + types, "4:8", "'smoke'"},
-                                                {"type = 2\n" + types, "4:8", "2 types"}});
-    expectMistakes(kSceneHead + types + "[[spawn]]\n",
-                   {{"on = \"death\"\ntype = 2", "9:8", "2 types"},
-                    {"on = \"death\"\nmin_speed = 1", "9:13", "does nothing"},
-                    {"on = \"death\"\ncone = 10", "9:8", "does nothing"}});
+    expectErrors(kSceneHead + "[emitter]\n", {{"type = 16\n", "4:8", "out of range"},
+                                              {"type = 1.5\n", "4:8", "whole number or the name"},
+                                              {"type = \"\"\n", "4:8", "empty name"},
+                                              {"type = \"smoke\"\n", "4:8", "unknown"},
+                                              {"type = \"smok\"\n" + types, "4:8", "'smoke'"},
+                                              {"type = 2\n" + types, "4:8", "2 types"}});
+    expectErrors(kSceneHead + types + "[[spawn]]\n",
+                 {{"on = \"death\"\ntype = 2", "9:8", "2 types"},
+                  {"on = \"death\"\nmin_speed = 1", "9:13", "does nothing"},
+                  {"on = \"death\"\ncone = 10", "9:8", "does nothing"}});
 }
 
-TEST(SceneMistakes, OfSurfacesThatGiveBirth) {
-    expectMistakes(kSceneHead + "[[emitter]]\n",
-                   {{"shape = \"surface\"\n", "4:9", "emitter.attach"},
-                    {"group = \"Head\"\n", "4:9", "emitter.shape"},
-                    {"point = [0, 0, 0]\ntouching = { within = 1 }\n", "5:12", "emitter.shape"}});
-    expectMistakes(kSceneHead + "[[emitter]]\nshape = \"surface\"\nattach = 0\n",
-                   {{"group = \"\"\n", "6:9", "emitter.group"},
-                    {"material = \"\"\n", "6:12", "emitter.material"},
-                    {"center = [0, 0, 0]\n", "6:10", "emitter.center"},
-                    {"[[emitter.key]]\ntime = 0\n[[emitter.key]]\ntime = 1\n", "6:1", "emitter.mesh"},
-                    {"touching = { within = 1, material = 3 }\n", "6:37", "list of names"},
-                    {"touching = { within = 1, material = [\"earth\", 3] }\n", "6:47", "list of names"},
-                    {"touching = { within = 1, material = [] }\n", "6:37", "has no name"},
-                    {"touching = { within = 1, material = \"\" }\n", "6:37", "an empty one"}});
+TEST(SceneErrors, OfSurfacesThatGiveBirth) {
+    expectErrors(kSceneHead + "[[emitter]]\n",
+                 {{"shape = \"surface\"\n", "4:9", "emitter.attach"},
+                  {"group = \"Head\"\n", "4:9", "emitter.shape"},
+                  {"point = [0, 0, 0]\ntouching = { within = 1 }\n", "5:12", "emitter.shape"}});
+    expectErrors(kSceneHead + "[[emitter]]\nshape = \"surface\"\nattach = 0\n",
+                 {{"group = \"\"\n", "6:9", "emitter.group"},
+                  {"material = \"\"\n", "6:12", "emitter.material"},
+                  {"center = [0, 0, 0]\n", "6:10", "emitter.center"},
+                  {"[[emitter.key]]\ntime = 0\n[[emitter.key]]\ntime = 1\n", "6:1", "emitter.mesh"},
+                  {"touching = { within = 1, material = 3 }\n", "6:37", "list of names"},
+                  {"touching = { within = 1, material = [\"earth\", 3] }\n", "6:47", "list of names"},
+                  {"touching = { within = 1, material = [] }\n", "6:37", "has no name"},
+                  {"touching = { within = 1, material = \"\" }\n", "6:37", "an empty one"}});
 }
 
 }  // namespace

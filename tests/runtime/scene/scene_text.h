@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes written in tests, and mistakes in them.
+// Scenes written in tests, and errors in them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -52,15 +52,15 @@ void expectErrorOf(const Result<T>& result, const std::string& place, const std:
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-struct SceneMistake {
+struct SceneError {
     std::string text;
     std::string place;  ///< line and column of its error, "3:1"
-    std::string names;  ///< the key, or what else tells it from other mistakes at that place
+    std::string names;  ///< the key, or what else tells it from other errors at that place
 };
 
 /// Each text after the head is no scene, which is said in one line.
-inline void expectMistakes(const std::string& head, const std::vector<SceneMistake>& mistakes) {
-    for (const auto& [text, place, names] : mistakes) {
+inline void expectErrors(const std::string& head, const std::vector<SceneError>& errors) {
+    for (const auto& [text, place, names] : errors) {
         SCOPED_TRACE(head + text);
         expectErrorOf(sceneOf(head + text), "dir/scene.toml:" + place + ": ", names);
     }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small part of a plane, coloured by where a collider is right and where it is wrong.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/base/result.h"
+
+namespace relief {
+
+enum class SideVerdict : std::uint8_t { kInside, kOutside, kFalseInside, kFalseOutside };
+
+/// A square of samples across an axis.
+struct VerdictSlice {
+    int axis = 2;
+    /// The axes that run to the right and upwards: (z, y) across x, (x, z) across y, (x, y) across z.
+    int right = 0;
+    int up = 1;
+    glm::vec3 center{0.0F};             ///< the place that it is about
+    double side = 0.0;                  ///< its length along either axis
+    std::uint32_t size = 0;             ///< samples along a side
+    std::vector<SideVerdict> verdicts;  ///< row by row from the lowest
+
+    [[nodiscard]] glm::dvec3 point(std::uint32_t x, std::uint32_t y) const;
+    [[nodiscard]] SideVerdict at(std::uint32_t x, std::uint32_t y) const {
+        return verdicts[std::size_t{y} * size + x];
+    }
+};
+
+/// Through a place, and across its surface: of the three axes the one that its normal is least along.
+[[nodiscard]] VerdictSlice verdictSlice(const glm::vec3& center, const glm::vec3& normal, double side);
+
+/// A PNG: the verdicts, the true surface, a ring round the place, a scale and a legend. The same slice gives the same bytes.
+/// \param unit  of lengths: "m", or "" for object units
+/// Errors: kFailure with Cairo's message.
+[[nodiscard]] Result<std::vector<std::byte>> drawVerdicts(const VerdictSlice& slice, const std::string& unit);
+
+}  // namespace relief

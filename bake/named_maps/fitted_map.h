@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map of supporting planes (plane_fit.h): traces the footprint of every texel and fits a plane to it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bake/mesh/mesh.h"
+#include "bake/named_maps/fitted_end.h"
+#include "bake/named_maps/ray_scene.h"
+#include "bake/views/view.h"
+#include "formats/depth_map.h"
+
+namespace relief {
+
+/// The unit normals of all triangles, for the fits of all maps.
+class TriangleNormals {
+  public:
+    explicit TriangleNormals(const TriangleMesh& mesh);
+    [[nodiscard]] const glm::dvec3& operator[](std::uint32_t triangle) const { return normals_[triangle]; }
+
+  private:
+    std::vector<glm::dvec3> normals_;
+};
+
+/// Bakes one map with Decode::kPlane, on all cores of the current arena; the same for any number of them.
+/// \param rowsDone  called with the number of texel rows finished, from several threads at once.
+/// \param covered   out: texels with a surface.
+[[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
+                                     const FittedMapOptions& options, std::uint64_t& covered,
+                                     const std::function<void(std::uint32_t)>& rowsDone);
+
+}  // namespace relief

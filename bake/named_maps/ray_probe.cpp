@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake/named_maps/ray_probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formats/depth_map.h"
+
+namespace relief {
+namespace {
+
+/// Offset of the rays beside one that may have slipped through, and the distance from it within which a triangle counts as
+/// met. In Embree's units, where the mesh is one to two long and floats are 6e-8 apart.
+constexpr double kBeside = 0x1p-17;
+constexpr double kTouching = 1e-6;
+constexpr int kBesideRays = 8;
+
+/// Sines and cosines of these rays' places: the first two on opposite sides, none along an edge of a grid.
+constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
+                                                                               {-0.2588, -0.9659},
+                                                                               {0.9877, -0.1564},
+                                                                               {0.6018, -0.7986},
+                                                                               {0.8090, 0.5878},
+                                                                               {-0.7660, -0.6428},
+                                                                               {-0.9945, 0.1045},
+                                                                               {-0.6428, 0.7660}}};
+
+}  // namespace
+
+RayProbe::RayProbe(const RayScene& scene, const View& view, RayEnd end)
+    : scene_(scene),
+      view_(view),
+      end_(end),
+      may_start_inside_(raysMayStartInside(scene, view, end)),
+      planes_(scene.mesh(), view) {}
+
+RayProbe::Segment RayProbe::segmentOf(const TexelRay& ray) const {
+    const double depth_max = view_.depthMax(ray);
+    const bool from_point = view_.projection() == Projection::kCube && end_ == RayEnd::kNear;
+    const double slack = from_point ? 0.0 : kDepthSlack;
+    if (end_ == RayEnd::kNear) {
+        return {ray.origin - slack * ray.direction, ray.direction, depth_max + 2.0 * slack};
+    }
+    const double back = view_.projection() == Projection::kCube ? 0.0 : slack;
+    return {ray.origin + (depth_max + slack) * ray.direction, -ray.direction, depth_max + slack + back};
+}
+
+Hit RayProbe::hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle) {
+    SeenPlane& plane = known_planes_[triangle % kKnownPlanes];
+    if (plane.triangle != triangle) {
+        plane = planes_.of(triangle);
+    }
+    const auto [depth, along] = planes_.at(plane, face, x, y);
+    const double most = view_.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0;
+    return {static_cast<float>(std::clamp(depth, 0.0, most)), triangle, isFromBehind(along)};
+}
+
+Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
+    const RTCRayHit query = traced(segmentOf(view_.ray(face, x, y)));
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return {};
+    }
+    const Hit hit = hitOf(face, x, y, query.hit.primID);
+    // A ray is doubted only where none from free space can get: at the inner side of a closed mesh.
+    return scene_.closed() && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
+}
+
+RTCRayHit RayProbe::traced(const Segment& segment) const {
+    RTCRayHit query = rayHit(scene_.tree().toLocal(segment.origin), segment.direction * scene_.tree().scale,
+                             static_cast<float>(segment.length));
+    RayQuery().intersect(scene_.tree().scene.get(), query);
+    return query;
+}
+
+std::uint32_t RayProbe::bestFacing(std::span<const std::uint32_t> triangles,
+                                   const glm::dvec3& direction) const {
+    std::uint32_t best = triangles.front();
+    double best_score = -2.0;
+    for (const std::uint32_t triangle : triangles) {
+        const double score = facingScore(scene_.mesh(), triangle, scene_.winding(), direction);
+        if (score > best_score || (score == best_score && triangle < best)) {
+            best = triangle;
+            best_score = score;
+        }
+    }
+    return best;
+}
+
+Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
+    const Segment segment = segmentOf(view_.ray(face, x, y));
+    const EmbreeMesh& tree = scene_.tree();
+    const glm::dvec3 direction = segment.direction * tree.scale;
+    const double length = relief::length(direction);
+    const glm::dvec3 along = direction / length;
+    const glm::dvec3 other = std::abs(along.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 right = unit(cross(along, other));
+    const glm::dvec3 up = cross(right, along);
+
+    // The nearest triangle that is touched, and all others that meet it there.
+    std::array<std::uint32_t, kBesideRays> touched{};
+    std::array<float, kBesideRays> where{};
+    std::size_t count = 0;
+    float nearest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < kBesideDirections.size(); ++i) {
+        if (i == 2 && count == 0) {
+            return hit;  // beside a silhouette, as nearly all doubted hits
+        }
+        const auto& [sine, cosine] = kBesideDirections[i];
+        Segment shifted = segment;
+        shifted.origin += (kBeside / tree.scale) * (cosine * right + sine * up);
+        const RTCRayHit query = traced(shifted);
+        if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+            touches((segment.origin - tree.center) * tree.scale, right, up, query.hit.primID)) {
+            touched[count] = query.hit.primID;
+            where[count++] = query.ray.tfar;
+            nearest = std::min(nearest, query.ray.tfar);
+        }
+    }
+    if (count == 0) {
+        return hit;
+    }
+    // Beside the ray, triangles are met a little sooner or later than on it.
+    const float tie = static_cast<float>(64.0 * kBeside / length);
+    std::size_t as_near = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (where[i] <= nearest + tie) {
+            touched[as_near++] = touched[i];
+        }
+    }
+    // A ray that starts in the solid counts where it leaves it, which is `hit`.
+    if (may_start_inside_ &&
+        scene_.inside(segment.origin + 0.5 * static_cast<double>(nearest) * segment.direction)) {
+        return hit;
+    }
+    const std::uint32_t best = bestFacing(std::span(touched).first(as_near), segment.direction);
+    const Hit found = hitOf(face, x, y, best);
+    const bool before =
+        hit.empty() || (end_ == RayEnd::kNear ? found.depth() < hit.depth() : found.depth() > hit.depth());
+    return before ? found : hit;
+}
+
+bool RayProbe::touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
+                       std::uint32_t triangle) const {
+    double x[3];
+    double y[3];
+    for (int i = 0; const glm::vec3& corner : cornersOf(scene_.mesh(), triangle)) {
+        const glm::dvec3 p = scene_.tree().toLocal(corner) - origin;
+        x[i] = dot(p, right);
+        y[i++] = dot(p, up);
+    }
+    int sides = 0;
+    double closest = std::numeric_limits<double>::max();
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const double ex = x[j] - x[i];
+        const double ey = y[j] - y[i];
+        const double side = ex * y[i] - ey * x[i];
+        sides += side > 0.0 ? 1 : side < 0.0 ? -1 : 0;
+        const double square = ex * ex + ey * ey;
+        const double along = square > 0.0 ? std::clamp(-(x[i] * ex + y[i] * ey) / square, 0.0, 1.0) : 0.0;
+        const double dx = x[i] + along * ex;
+        const double dy = y[i] + along * ey;
+        closest = std::min(closest, std::sqrt(dx * dx + dy * dy));
+    }
+    return std::abs(sides) == 3 || closest <= kTouching;
+}
+
+}  // namespace relief

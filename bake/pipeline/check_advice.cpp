@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+
+#include "bake/measure/accuracy.h"
+#include "bake/pipeline/bake.h"
+#include "bake/pipeline/mesh_check.h"
+#include "bake/report/report_text.h"
+#include "formats/base/text.h"
+
+namespace relief {
+namespace {
+
+/// Bakes of meshes and budgets beyond these take more than a few seconds, and are not tried.
+constexpr std::uint64_t kTrialTrianglesMax = 200'000;
+constexpr std::uint64_t kTrialBytesMax = 2'500'000;
+/// Points near the surface that a trial is measured at.
+constexpr std::uint32_t kTrialSamplesMax = 50'000;
+/// At most this share of the wrong points is left by an option that helps.
+constexpr double kHelps = 0.9;
+
+/// With four digits, so that commands stay short.
+float rounded(double value) {
+    return parseFloat(shortNumber(value)).value_or(static_cast<float>(value));
+}
+
+class Advisor {
+  public:
+    Advisor(const MeshCheck& run, const std::string& mesh_file, const std::string& output)
+        : run_(run),
+          output_(output),
+          patches_(run.recorded.request),
+          closes_(patches_.holes == Holes::kClose) {
+        const TruthSamples& truth = run.judged().samples;
+        truth_.options = truth.options;
+        truth_.options.samples = std::min(truth_.options.samples, kTrialSamplesMax);
+        truth_.longest_side = truth.longest_side;
+        truth_.near.assign(truth.near.begin(), truth.near.begin() + truth_.options.samples);
+        patches_.mesh = mesh_file;
+        patches_.map.clear();
+        patches_.texel.reset();
+        patches_.holes = Holes::kClose;
+        patches_.resolution.reset();
+        patches_.budget = roundBudget(run.collider.texelBytes());
+        if (!closes_) {
+            // Its maps follow --resolution, not a budget.
+            patches_.budget = std::min(*patches_.budget, kBudgetDefault);
+        }
+        // A default thickness follows the budget of the next bake.
+        if (patches_.thickness && patches_.thickness->by_part) {
+            patches_.thickness.reset();
+        }
+        if (patches_.voids == VoidsAs::kFull) {
+            patches_.voids.reset();  // the default
+        }
+    }
+
+    std::vector<Advice> run() {
+        const bool sheet = any({WrongCause::kSheet});
+        const bool open = any({WrongCause::kOpen});
+        // They mend most of what other maps do wrong, and cost each step no more.
+        if (!run_.collider.hasPatches() && closes_ && !run_.places.empty()) {
+            tryBudget(*patches_.budget, "patches of as many bytes");
+        }
+        if (closes_ && any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
+            tryBudget(roundBudget(2 * run_.collider.texelBytes()), "patches of twice the bytes");
+        }
+        if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
+            tryThicker();
+        }
+        if ((open || sheet) && !repaired()) {
+            trySolid();
+            if (std::none_of(advice_.begin(), advice_.end(), [](const Advice& advice) {
+                    return advice.helps && *advice.wrong_percent <= kGoodPercent;
+                })) {
+                BakeRequest wrapped = patches_;
+                wrapped.repair.method = "wrap";
+                advice_.push_back({commandLine(wrapped, output_), "a closed surface wrapped round the mesh",
+                                   std::nullopt, "wrapping takes up to a minute", false});
+            }
+        }
+        std::stable_sort(advice_.begin(), advice_.end(),
+                         [](const Advice& a, const Advice& b) { return rank(a) < rank(b); });
+        return std::move(advice_);
+    }
+
+  private:
+    [[nodiscard]] bool any(std::initializer_list<WrongCause> causes) const {
+        return std::any_of(run_.places.begin(), run_.places.end(), [&](const WorstPlace& place) {
+            return std::find(causes.begin(), causes.end(), place.cause) != causes.end();
+        });
+    }
+    static double rank(const Advice& advice) {
+        const double untried = 200.0;
+        return !advice.wrong_percent ? untried : *advice.wrong_percent + (advice.helps ? 0.0 : 2.0 * untried);
+    }
+    [[nodiscard]] bool repaired() const { return !patches_.repair.method.empty(); }
+
+    /// The reason why a bake is not tried; empty: it is.
+    [[nodiscard]] std::string tooMuch(std::uint64_t bytes) const {
+        if (!run_.recorded.understood) {
+            return "the collider's record of its options is not understood";
+        }
+        const std::size_t triangles = run_.baked->triangles.size();
+        if (triangles > kTrialTrianglesMax) {
+            return std::to_string(triangles) + " triangles would take more than a few seconds";
+        }
+        return bytes > kTrialBytesMax ? bytesWord(bytes) + " would take more than a few seconds" : "";
+    }
+
+    /// Percent of the points near the surface.
+    static Result<double> wrongOf(const BakeRequest& request, const PreparedMesh& solid,
+                                  const TruthSamples& truth) {
+        const Baked baked = RELIEF_TRY(bakeSolid(request, solid));
+        return measureField(truth, fieldOf(baked.collider)).near.total();
+    }
+    [[nodiscard]] Result<double> wrongOf(const BakeRequest& request) const {
+        return wrongOf(request, run_.baked, truth_);
+    }
+    /// Of another solid, against that solid.
+    [[nodiscard]] Result<double> wrongOfSolid(const BakeRequest& request) const {
+        const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, run_.imported));
+        const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
+        return wrongOf(request, shaped.mesh, sampleTruth(query, truth_.options));
+    }
+
+    /// Tries, and advises if it could be tried or is too much to be.
+    void attempt(const BakeRequest& request, const char* about, std::uint64_t bytes, bool same_solid) {
+        const std::string command = commandLine(request, output_);
+        const std::string too_much = tooMuch(bytes);
+        if (!too_much.empty()) {
+            advice_.push_back({command, about, std::nullopt, too_much, false});
+        } else if (const Result<double> wrong = same_solid ? wrongOf(request) : wrongOfSolid(request)) {
+            advice_.push_back({command, about, *wrong, "", *wrong <= kHelps * run_.wrongPercent()});
+        }
+    }
+
+    void tryBudget(std::uint64_t budget, const char* about) {
+        BakeRequest request = patches_;
+        request.budget = budget;
+        attempt(request, about, budget, !(run_.shape.default_thickness > 0.0) || repaired());
+    }
+
+    /// A bake without --holes keep.
+    void trySolid() {
+        if (!closes_) {
+            attempt(patches_, "holes closed, and sheets made shells", *patches_.budget, false);
+        }
+    }
+
+    void tryThicker() {
+        if (!repaired()) {
+            BakeRequest request = patches_;
+            request.thickness = Thickness{double{rounded(2.0 * run_.shape.thickness)}, false};
+            attempt(request, "sheets twice as thick", *request.budget, false);
+        }
+    }
+
+    const MeshCheck& run_;
+    const std::string& output_;
+    BakeRequest patches_;  // the recorded bake as patches of as many bytes, its holes closed
+    bool closes_;          // the recorded bake, its holes
+    TruthSamples truth_;   // only near the surface, and fewer
+    std::vector<Advice> advice_;
+};
+
+}  // namespace
+
+std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file, const std::string& output) {
+    // No maps help where floats are too coarse.
+    return floatsLimit(*run.mesh, run.wrongPercent()) ? std::vector<Advice>()
+                                                      : Advisor(run, mesh_file, output).run();
+}
+
+}  // namespace relief

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report of `relief check --mesh --json`.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bake/pipeline/mesh_check.h"
+#include "bake/report/bake_report.h"
+#include "bake/report/check_report.h"
+#include "bake/report/parts_report.h"
+
+namespace relief {
+
+struct MeshCheckReport {
+    const MeshCheck& run = kNone<MeshCheck>;
+    std::string file;                     ///< name of the collider
+    std::optional<float> max_error = {};  ///< percent
+
+    /// The grade; in the text, with `max_error`, whether that is kept by the mesh as it came.
+    [[nodiscard]] Verdict verdict() const;
+};
+
+void fields(FieldVisitor& visit, const MeshCheckReport& report);
+
+}  // namespace relief

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bake/world/error_curves.h"
+
+#include <cmath>
+#include <span>
+#include <system_error>
+
+#include "formats/base/file_io.h"
+#include "formats/fields/json_value.h"
+#include "formats/fields/strict_json.h"
+
+namespace relief {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFormat = "relief-curves";
+constexpr int kVersion = 1;
+constexpr std::uint64_t kFileBytesMax = std::uint64_t{256} << 20;
+constexpr JsonLimits kLimits{.depth = 3, .values = 8'000'000};
+
+/// \return nullopt: it is no curve.
+template <class Values>
+std::optional<ErrorCurve> curveOf(const Values& values) {
+    if (!values.is_array() || values.empty() || values.size() % 2 != 0) {
+        return std::nullopt;
+    }
+    ErrorCurve curve;
+    for (std::size_t i = 0; i < values.size(); i += 2) {
+        if (!values[i].is_number() || !values[i + 1].is_number()) {
+            return std::nullopt;
+        }
+        const ErrorPoint point{values[i].template get<double>(), values[i + 1].template get<double>()};
+        const bool first = curve.empty();
+        if (!(point.bytes > (first ? 0.0 : curve.back().bytes)) || !(point.wrong >= 0.0) ||
+            !std::isfinite(point.bytes) || !std::isfinite(point.wrong) ||
+            (!first && point.wrong >= curve.back().wrong)) {
+            return std::nullopt;
+        }
+        curve.push_back(point);
+    }
+    return curve;
+}
+
+}  // namespace
+
+Result<ErrorCurves> parseErrorCurves(std::string_view text) {
+    const auto json = RELIEF_TRY(parseStrictJson(text, kLimits));
+    const auto member = [&](const char* name) { return json.is_object() ? json.find(name) : json.end(); };
+    const auto format = member("format");
+    const auto version = member("version");
+    const auto curves = member("curves");
+    if (format == json.end() || *format != kFormat || version == json.end() || *version != kVersion ||
+        curves == json.end() || !curves->is_object()) {
+        return fail(ErrorCode::kInvalidInput, "its contents are not those of a file of curves");
+    }
+    ErrorCurves all;
+    for (const auto& [key, values] : curves->items()) {
+        std::optional<ErrorCurve> curve = curveOf(values);
+        if (!curve) {
+            return fail(ErrorCode::kInvalidInput, "it has a curve that does not fall");
+        }
+        all.emplace(key, std::move(*curve));
+    }
+    return all;
+}
+
+std::string errorCurvesText(const ErrorCurves& curves) {
+    Json by_key = Json::object();
+    for (const auto& [key, curve] : curves) {
+        Json values = Json::array();
+        for (const ErrorPoint& point : curve) {
+            values.push_back(point.bytes);
+            values.push_back(point.wrong);
+        }
+        by_key[key] = std::move(values);
+    }
+    return jsonLine({{"format", kFormat}, {"version", kVersion}, {"curves", std::move(by_key)}});
+}
+
+Result<ErrorCurves> loadErrorCurves(const fs::path& folder) {
+    const fs::path path = folder / kErrorCurvesName;
+    std::error_code error;
+    const fs::file_status status = fs::symlink_status(path, error);
+    if (!fs::exists(status)) {
+        return ErrorCurves{};
+    }
+    if (!fs::is_regular_file(status)) {
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
+    }
+    const auto bytes = RELIEF_TRY(readFile(path, kFileBytesMax));
+    return withPrefix(quotedPath(path),
+                      parseErrorCurves({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+}
+
+Result<void> saveErrorCurves(const fs::path& folder, const ErrorCurves& curves) {
+    const fs::path path = folder / kErrorCurvesName;
+    std::error_code error;
+    if (fs::is_symlink(fs::symlink_status(path, error)) && !fs::remove(path, error)) {
+        return fail(ErrorCode::kIo,
+                    "cannot replace the link " + quotedPath(path) + ": " + error.message() + "; remove it");
+    }
+    const std::string text = errorCurvesText(curves);
+    return writeFile(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace relief
