@@ -4,6 +4,7 @@ import base64
 import hashlib
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import zipfile
@@ -13,6 +14,7 @@ import pytest
 BUILD = pathlib.Path(os.environ["RELIEF_BIN"]).parent
 SOURCE = pathlib.Path(os.environ["RELIEF_SOURCE"])
 BUNNY = "/usr/share/glmark2/models/bunny.obj"
+VERSION = re.search(r"project\(Relief VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text())[1]
 # Neither this build nor an index of packages is to be found.
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | {
     "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_NO_CACHE_DIR": "1"}
@@ -34,6 +36,7 @@ def test_it_bakes_and_checks_from_anywhere(python, tmp_path):
     program = tmp_path / "program.py"
     program.write_text(f'''
 import pathlib
+import re
 import relief
 home = pathlib.Path(relief.__file__).parent
 assert home.is_relative_to({str(python.parents[1])!r}), home
@@ -52,7 +55,7 @@ print(sorted(path.name for path in home.iterdir() if path.is_file()))
 def test_pip_knows_it_and_takes_it_away(python):
     pip = [python, "-m", "pip"]
     shown = subprocess.run([*pip, "show", "-f", "relief"], check=True, env=ENVIRONMENT, capture_output=True, text=True).stdout
-    assert "Version: 0.1.0" in shown and "Requires: numpy" in shown and "relief/relief-import" in shown
+    assert f"Version: {VERSION}" in shown and "Requires: numpy" in shown and "relief/relief-import" in shown
     subprocess.run([*pip, "uninstall", "-q", "-y", "relief"], check=True, env=ENVIRONMENT)
     assert not list(python.parents[1].rglob("relief*"))
 
@@ -67,15 +70,16 @@ def test_wheels_are_sound_and_always_the_same(tmp_path):
     for folder in (tmp_path / "a", tmp_path / "b"):
         folder.mkdir()
         names.append(build_wheel.build_wheel(folder, {"build-dir": str(BUILD)}))
-    assert names[0] == names[1] == "relief-0.1.0-cp311-cp311-linux_x86_64.whl"
+    assert names[0] == names[1] == f"relief-{VERSION}-cp311-cp311-linux_x86_64.whl"
     assert (tmp_path / "a" / names[0]).read_bytes() == (tmp_path / "b" / names[0]).read_bytes()
+    record = f"relief-{VERSION}.dist-info/RECORD"
     with zipfile.ZipFile(tmp_path / "a" / names[0]) as wheel:
-        rows = dict(row.split(",", 1) for row in wheel.read("relief-0.1.0.dist-info/RECORD").decode().splitlines())
+        rows = dict(row.split(",", 1) for row in wheel.read(record).decode().splitlines())
         assert rows.keys() == set(wheel.namelist())
         for name, row in rows.items():
             data = wheel.read(name)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
-            assert row == (f"sha256={digest},{len(data)}" if name != "relief-0.1.0.dist-info/RECORD" else ",")
+            assert row == (f"sha256={digest},{len(data)}" if name != record else ",")
     with pytest.raises(SystemExit, match="no _relief.* was built"):
         broken = tmp_path / "broken"
         broken.mkdir()

@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Makes a release: scripts/release.sh VERSION
+#
+# Sets the version in CMakeLists.txt and in the pages that quote it, commits and tags v<VERSION>, builds the artefacts, and
+# writes them with SHA256SUMS to out/release/<VERSION>: source archive, Debian packages, Python wheel, npm package, and the
+# page that plays scenes. CHANGELOG.md needs a heading of that version. Pushes nothing.
+#
+# If the tag exists on HEAD, only builds the artefacts: a build that failed can be repeated.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+die() {
+    echo "release.sh: $*" >&2
+    exit 1
+}
+
+version=${1:-}
+[[ $version =~ ^[0-9]+\.[0-9]+\.[0-9]+$ ]] || die "usage: scripts/release.sh VERSION, such as 0.2.0"
+[ -z "$(git status --porcelain)" ] || die "the working tree has changes; commit them first"
+grep -q "^## $version\$" CHANGELOG.md || die "CHANGELOG.md has no heading '## $version'; write it first"
+
+tag=v$version
+if tagged=$(git rev-parse -q --verify "refs/tags/$tag^{commit}"); then
+    [ "$tagged" = "$(git rev-parse HEAD)" ] || die "$tag is another commit; check it out, or choose another version"
+else
+    old=$(sed -n 's/^project(Relief VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+    sed -i "s/^project(Relief VERSION $old/project(Relief VERSION $version/" CMakeLists.txt
+    sed -i "s/find_package(Relief ${old%.*} /find_package(Relief ${version%.*} /" README.md scripts/install/README.md
+    sed -i "/relief_version/s/\"$old\"/\"$version\"/" runtime/c_api/relief.h
+    [ "$old" = "$version" ] || git commit -qam "release: set the version to $version"
+    git tag -a "$tag" -m "Relief $version"
+fi
+
+out=out/release/$version
+rm -rf "$out"
+mkdir -p "$out"
+SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
+export SOURCE_DATE_EPOCH
+
+git archive --prefix="relief-$version/" -o "$out/relief-$version.tar.gz" HEAD
+
+scripts/build.sh web >/dev/null
+cp build/web/bin/view.html "$out/relief-player-$version.html"
+npm pack --silent --pack-destination "$out" ./out/npm >/dev/null
+
+scripts/setup.sh dpkg-dev
+scripts/build.sh packages >/dev/null
+rm -rf build/packages/deb
+cpack --preset packages >/dev/null
+cp build/packages/deb/*.deb "$out/"
+
+python3 - "$out" <<'P'
+import sys
+sys.path.insert(0, "bake/python")
+import build_wheel
+build_wheel.build_wheel(sys.argv[1], {"build-dir": "build/packages"})
+P
+
+(cd "$out" && sha256sum -- * >SHA256SUMS)
+echo "$PWD/$out"
+ls -l "$out"
