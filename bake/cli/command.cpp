@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"

@@ -11,9 +11,8 @@
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/command_world.h"
 #include "bake/pipeline/bake.h"
-#include "bake/pipeline/bake_json.h"
 #include "bake/report/bake_report.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/container.h"
@@ -95,8 +94,7 @@ Result<void> report(const BakeCommand& command, const BakeResult& result, std::s
         return printOut(jsonTextOf(BakeJson{result, info, command.output, command.outputs.compress}));
     }
     if (!command.common.quiet) {
-        std::fputs(bakeText(result.summary(command.common.verbose), command.output, bytes.size()).c_str(),
-                   stderr);
+        std::fputs(bakeText(result, command.output, bytes.size(), command.common.verbose).c_str(), stderr);
     }
     return {};
 }

@@ -7,8 +7,8 @@
 #include <array>
 #include <cstdio>
 
-#include "bake/ground/ground_report.h"
 #include "bake/import/import_format.h"
+#include "bake/report/ground_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"

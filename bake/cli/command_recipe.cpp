@@ -18,7 +18,7 @@
 #include "bake/recipe/child_process.h"
 #include "bake/recipe/recipe_run.h"
 #include "bake/report/recipe_report.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "bake/world/world_bake.h"
 #include "formats/base/file_io.h"
 #include "formats/base/stopwatch.h"

@@ -8,8 +8,8 @@
 #include <span>
 
 #include "bake/cli/command.h"
-#include "bake/pipeline/mesh_check_report.h"
-#include "bake/report/parts_report.h"
+#include "bake/report/mesh_check_report.h"
+#include "bake/verdict/parts_report.h"
 #include "formats/base/file_io.h"
 #include "formats/base/result.h"
 #include "formats/base/text.h"

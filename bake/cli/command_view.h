@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/pipeline/mesh_check.h"
-#include "bake/world/world_report.h"
+#include "bake/report/world_report.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
 #include "runtime/command_line/option_values.h"

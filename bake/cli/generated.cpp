@@ -2,13 +2,13 @@
 #include "bake/cli/command.h"
 #include "bake/cli/command_recipe.h"
 #include "bake/cli/world_info.h"
-#include "bake/ground/ground_report.h"
-#include "bake/pipeline/bake_json.h"
-#include "bake/pipeline/mesh_check_report.h"
+#include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
+#include "bake/report/ground_report.h"
 #include "bake/report/inspect_report.h"
+#include "bake/report/mesh_check_report.h"
 #include "bake/report/recipe_report.h"
-#include "bake/world/world_report.h"
+#include "bake/report/world_report.h"
 #include "formats/fields/json.h"
 
 namespace relief {

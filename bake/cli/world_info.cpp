@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 

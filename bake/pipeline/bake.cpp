@@ -8,7 +8,7 @@
 
 #include "bake/materials/material_tree.h"
 #include "bake/pipeline/stages.h"
-#include "bake/report/parts_report.h"
+#include "bake/verdict/parts_report.h"
 #include "formats/animation/animated_mesh.h"
 #include "formats/base/stopwatch.h"
 
@@ -142,11 +142,6 @@ std::optional<Verdict> BakeResult::verdict() const {
     return wrong ? std::optional(
                        verdictOf(wrong->total(), part_accuracy.value_or(PartsAccuracy{}), mesh.mesh->unit))
                  : std::nullopt;
-}
-
-BakeSummary BakeResult::summary(bool verbose) const {
-    return {*mesh.mesh, baked,     patches,         times,   mesh.report,
-            shape,      verdict(), unused_vertices, verbose, animated ? &*animated : nullptr};
 }
 
 int BakeResult::threads() const {

@@ -12,12 +12,20 @@
 #include "bake/pipeline/bake_request.h"
 #include "bake/pipeline/stages.h"
 #include "bake/recipe/depfile.h"
-#include "bake/report/bake_report.h"
+#include "bake/verdict/parts_report.h"
 #include "formats/base/result.h"
 
 namespace relief {
 
-/// The solid that was baked, the collider, and what the stages found out.
+struct BakeTimes {
+    double import_ms = 0.0;
+    double search_ms = 0.0;  ///< of --max-error: all its bakes and measurements
+    double check_ms = 0.0;   ///< of a bake that measures itself
+    double write_ms = 0.0;
+    double total_ms = 0.0;
+};
+
+/// The solid that was baked, the collider, and the results of the stages.
 struct BakeResult : SolidMesh {
     BakeRequest request;
     BakeSettings settings;  ///< in effect
@@ -31,8 +39,6 @@ struct BakeResult : SolidMesh {
 
     /// Nothing if it is not measured.
     [[nodiscard]] std::optional<Verdict> verdict() const;
-    /// For bakeText. Valid as long as the result.
-    [[nodiscard]] BakeSummary summary(bool verbose) const;
     /// --threads, or those of the machine.
     [[nodiscard]] int threads() const;
 };

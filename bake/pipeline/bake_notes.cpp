@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "bake/pipeline/stages.h"
-#include "bake/report/parts_report.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/parts_report.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -5,7 +5,7 @@
 #include "bake/measure/accuracy.h"
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/mesh_check.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/maps/budget_search.h"
 #include "bake/pipeline/stages.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/stopwatch.h"
 #include "formats/patch_tree.h"
 

@@ -15,8 +15,8 @@
 #include "bake/mesh/mesh_query.h"
 #include "bake/mesh/prepared_mesh.h"
 #include "bake/pipeline/bake_request.h"
-#include "bake/report/check_report.h"
 #include "bake/shape/shape.h"
+#include "bake/verdict/check_report.h"
 #include "formats/base/result.h"
 #include "formats/collider.h"
 

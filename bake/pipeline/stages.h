@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "bake/maps/budget_search.h"
 #include "bake/materials/material_tree.h"
 #include "bake/measure/self_check.h"
 #include "bake/pipeline/bake_request.h"
-#include "bake/report/bake_report.h"
+#include "bake/repair/repair.h"
+#include "bake/shape/shape.h"
 #include "formats/animation/animated_mesh.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"
@@ -66,6 +68,17 @@ struct SolidMesh {
 /// The solid of a mesh that has been wound outwards: the mesh itself with --holes keep.
 /// Errors: those of parseShapeOptions and shapeMesh.
 [[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
+
+/// Patches for a budget, a texel or an error.
+struct PatchesReport {
+    std::optional<std::uint64_t> budget;  ///< bytes; not of --texel without --budget
+    std::uint64_t bytes = 0;              ///< on the GPU
+    double texel = 0.0;                   ///< object units: least distance of two heights
+    std::optional<float> wanted_texel;    ///< --texel, object units
+    std::optional<double> max_error;      ///< percent; of --max-error, as are the next two
+    double wrong_percent = 0.0;           ///< measured
+    std::vector<BudgetTry> tries;
+};
 
 struct BakedMaps {
     Baked baked = {};

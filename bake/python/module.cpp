@@ -20,7 +20,7 @@
 #include "bake/pipeline/bake.h"
 #include "bake/pipeline/mesh_check.h"
 #include "bake/python/interruptible.h"
-#include "bake/report/parts_report.h"
+#include "bake/verdict/parts_report.h"
 #include "formats/base/stopwatch.h"
 #include "formats/base/text.h"
 #include "formats/container.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/animation/mesh_parts.h"
 #include "formats/collider.h"
 #include "formats/container.h"

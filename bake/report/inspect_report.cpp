@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bake/report/inspect_report.h"
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 
 namespace relief {
 namespace {

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <span>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/file_io.h"
 #include "formats/base/text.h"
 #include "formats/fields/json.h"

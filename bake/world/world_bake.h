@@ -16,7 +16,7 @@
 #include "bake/measure/accuracy.h"
 #include "bake/pipeline/bake_request.h"
 #include "bake/recipe/depfile.h"
-#include "bake/report/parts_report.h"
+#include "bake/verdict/parts_report.h"
 #include "bake/world/world_tiles.h"
 #include "formats/base/file_guard.h"
 #include "formats/base/result.h"

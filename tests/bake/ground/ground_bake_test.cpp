@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "bake/ground/ground_report.h"
+#include "bake/report/ground_report.h"
 #include "tests/bake/ground/height_grids.h"
 #include "tests/bake/threads.h"
 #include "tests/seeds.h"

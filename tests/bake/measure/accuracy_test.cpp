@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bench/distance_volume.h"
-#include "bake/report/check_report.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/check_report.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/text.h"
 #include "formats/fields/json_value.h"
 #include "tests/bake/meshes.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "bake/report/parts_report.h"
+#include "bake/verdict/parts_report.h"
 #include "tests/bake/meshes.h"
 #include "tests/bake/shaped.h"
 #include "tests/bake/threads.h"

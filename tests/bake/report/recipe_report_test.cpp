@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "tests/temporary_folder.h"
 
 namespace relief {

@@ -2,7 +2,7 @@
 // Worlds measured against their levels, of which a thin part is lost.
 #include "bake/world/world_check.h"
 
-#include "bake/world/world_report.h"
+#include "bake/report/world_report.h"
 #include "tests/bake/world/level_bakes.h"
 
 namespace relief::test {

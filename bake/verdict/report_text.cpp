@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 
 #include <algorithm>
 #include <cstdio>

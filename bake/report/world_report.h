@@ -8,8 +8,8 @@
 
 #include "bake/report/bake_report.h"
 #include "bake/report/collider_report.h"
-#include "bake/report/parts_report.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/parts_report.h"
+#include "bake/verdict/report_text.h"
 #include "bake/world/world_bake.h"
 #include "bake/world/world_check.h"
 #include "formats/fields/field.h"

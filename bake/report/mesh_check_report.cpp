@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/pipeline/mesh_check_report.h"
+#include "bake/report/mesh_check_report.h"
 
 namespace relief {
 

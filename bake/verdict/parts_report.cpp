@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/report/parts_report.h"
+#include "bake/verdict/parts_report.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <span>
 
 #include "bake/measure/worst_places.h"
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/ground/ground_report.h"
+#include "bake/report/ground_report.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 
 namespace relief {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/world/world_report.h"
+#include "bake/report/world_report.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bake/report/check_report.h"
+#include "bake/verdict/check_report.h"
 #include "formats/base/text.h"
 #include "formats/fields/text.h"
 

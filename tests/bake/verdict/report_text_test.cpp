@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 
 #include <gtest/gtest.h>
 
-#include "bake/report/parts_report.h"
+#include "bake/verdict/parts_report.h"
 #include "tests/formats/analytic_shapes.h"
 
 namespace relief {

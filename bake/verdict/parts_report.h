@@ -8,7 +8,7 @@
 
 #include "bake/measure/part_accuracy.h"
 #include "bake/mesh/surface_parts.h"
-#include "bake/report/check_report.h"
+#include "bake/verdict/check_report.h"
 #include "formats/collider.h"
 
 namespace relief {

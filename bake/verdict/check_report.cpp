@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bake/report/check_report.h"
+#include "bake/verdict/check_report.h"
 
 #include <glm/geometric.hpp>
 
-#include "bake/report/report_text.h"
+#include "bake/verdict/report_text.h"
 #include "formats/base/text.h"
 
 namespace relief {

@@ -7,8 +7,8 @@
 
 #include "bake/pipeline/mesh_check.h"
 #include "bake/report/bake_report.h"
-#include "bake/report/check_report.h"
-#include "bake/report/parts_report.h"
+#include "bake/verdict/check_report.h"
+#include "bake/verdict/parts_report.h"
 
 namespace relief {
 
