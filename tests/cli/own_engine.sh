@@ -72,7 +72,7 @@ O
 "$relief" bake box.obj -q -o box.relief --map front-back:dir=-z,size=6x4
 "$relief" export box.relief --gpu box -q
 python3 - "$RELIEF_SOURCE/runtime/layout/LAYOUT.md" <<'P' || die "the example of LAYOUT.md is another"
-import json, struct, sys
+import itertools, json, struct, sys
 block = open('box/block.bin', 'rb').read()
 said = json.load(open('box/gpu.json'))
 number = lambda x: format(x, '.7g')
@@ -88,8 +88,11 @@ texture = said['textures'][2]
 lines.append('{sampler}: {width} x {height} texels'.format(**texture))
 texels = open('box/' + texture['file'], 'rb').read()
 assert len(texels) == texture['bytes'] and said['block']['bytes'] == len(block)
-for i in range(texture['width'] * texture['height']):
-    lines.append(f'{i}: ' + ' '.join(map(str, struct.unpack_from('<4H', texels, 8 * i))))
+at = 0
+for texel, run in itertools.groupby(struct.iter_unpack('<4H', texels)):
+    first, at = at, at + len(list(run))
+    lines.append(f'{first}-{at - 1}: ' + ' '.join(map(str, texel)))
+assert at == texture['width'] * texture['height']
 page = open(sys.argv[1]).read()
 example = page.split('<!-- layout:example -->\n```\n')[1].split('```')[0].splitlines()
 for is_, should in zip(lines, example):
