@@ -174,7 +174,7 @@ def patches():
     curve = blob((left + 138, top + 142), 108.0, [(5.5, 0.40, 0.38)])
 
     def directions(x, y, size):
-        """Of the curve's outward normals in a cell, relative to the first one; and that one."""
+        """Directions of the outward normals in a cell, relative to the first one; and the first one."""
         angles = [math.atan2(a[0] - b[0], b[1] - a[1]) for a, b in zip(curve, curve[1:] + curve[:1])
                   if x <= a[0] < x + size and y <= a[1] < y + size]
         return [math.remainder(angle - angles[0], math.tau) for angle in angles], angles[0] if angles else 0.0
