@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXR images of one channel, row by row.
+// Reads single-channel EXR images row by row.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,9 @@
 
 namespace relief {
 
+/// Opens an EXR image.
 /// \param bytes  untrusted; must outlive the rows.
-/// Errors, without the file's name: kInvalidInput (OpenEXR's words), kUnsupported (several channels or parts).
+/// Errors, without the file name: kInvalidInput (OpenEXR's message), kUnsupported (several channels or parts).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openExrRows(std::span<const std::byte> bytes);
 
 }  // namespace relief

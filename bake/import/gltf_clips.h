@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The animations of a glTF file as clips of an animated mesh. Errors name a place in the document, and no file.
+// Reads the animations of a glTF file as clips of an animated mesh. Errors name the place in the document, not the
+// file.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +15,10 @@
 
 namespace relief {
 
-/// Adds every animation that moves a node of the mesh, with a name that no other clip has. Left out with a warning: those of
-/// no length, or that move none of its nodes.
-/// \param mesh   its nodes are complete. \param nodes  the mesh's node of each node of the file, if it has one.
+/// Adds every animation that moves a node of the mesh, under a unique name. Skips animations of zero length and
+/// animations that move none of its nodes, with a warning.
+/// \param mesh   its nodes are complete.
+/// \param nodes  for each node of the file, the node of the mesh, or nullopt.
 /// Errors: kInvalidInput, kLimit, kUnsupported.
 [[nodiscard]] Result<void> readGltfClips(const GltfValue& document, GltfBuffers& buffers,
                                          const std::vector<std::optional<std::uint32_t>>& nodes,

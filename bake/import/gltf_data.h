@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes of a glTF file, and the numbers in them: the chunks of a GLB, the buffers in it, in the JSON or beside it, and
-// accessors, sparse and quantised ones too. Errors name a place in the document, and no file.
+// Reads the binary data of a glTF file: GLB chunks, buffers (embedded, as data URIs, or in separate files), and
+// accessors, including sparse and quantized ones. Errors name the place in the document, not the file.
 #pragma once
 
 #include <cstddef>
@@ -20,40 +20,43 @@
 
 namespace relief {
 
-/// The contents of a file, borrowed.
+/// The chunks of a file, borrowed.
 struct GltfChunks {
     std::string_view json;
-    std::optional<std::span<const std::byte>> binary;  ///< of a GLB
-    std::vector<std::string> warnings;                 ///< without the file's name
+    std::optional<std::span<const std::byte>> binary;  ///< the BIN chunk of a GLB
+    std::vector<std::string> warnings;                 ///< without the file name
 };
 
-/// Takes a GLB apart; any other file is JSON. Errors: kInvalidInput, kUnsupported (another version).
+/// Splits a GLB into its chunks; any other file is JSON. Errors: kInvalidInput, kUnsupported (another GLB version).
 [[nodiscard]] Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes);
 
-/// A file, taken apart and parsed; borrows its bytes.
+/// A parsed file; borrows its bytes.
 struct GltfDocument {
     GltfChunks chunks;
-    std::shared_ptr<const nlohmann::json> json;  ///< an object
+    std::shared_ptr<const nlohmann::json> json;  ///< always an object
 };
-/// Errors: those of gltfChunks and parseGltfJson.
+/// Splits and parses a file. Errors: those of gltfChunks and parseGltfJson.
 [[nodiscard]] Result<GltfDocument> openGltf(std::span<const std::byte> bytes);
 
-/// The bytes that a data URI holds. \param uri  "data:…". Errors, without a place: kInvalidInput.
+/// Decodes a data URI.
+/// \param uri  "data:…".
+/// Errors, without a place: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::byte>> dataUriBytes(std::string_view uri);
 
-/// Of a bufferView.
+/// The bytes of a bufferView.
 struct GltfView {
     std::span<const std::byte> bytes;
-    std::optional<std::uint64_t> stride;  ///< bytes, more than 0
+    std::optional<std::uint64_t> stride;  ///< bytes between elements, above 0
 };
 
-/// Buffers are read, and compressed views unpacked, when a view is first used.
+/// Reads buffers and unpacks compressed views on first use.
 class GltfBuffers {
   public:
-    /// All is borrowed.
+    /// Borrows both arguments.
     GltfBuffers(const GltfChunks& chunks, ImportFiles& files) : chunks_(chunks), files_(files) {}
 
-    /// The view that `from` names by its bufferView. Errors: kInvalidInput, kUnsupported (a compression).
+    /// Returns the view that the member `bufferView` of `from` references. Errors: kInvalidInput, kUnsupported (a
+    /// compression).
     [[nodiscard]] Result<GltfView> view(const GltfValue& from);
 
   private:
@@ -62,25 +65,27 @@ class GltfBuffers {
 
     const GltfChunks& chunks_;
     ImportFiles& files_;
-    std::map<std::uint64_t, std::vector<std::byte>> read_;      // buffers
-    std::map<std::uint64_t, std::vector<std::byte>> unpacked_;  // views (EXT_meshopt_compression)
+    std::map<std::uint64_t, std::vector<std::byte>> read_;      // by buffer index
+    std::map<std::uint64_t, std::vector<std::byte>> unpacked_;  // by view index (EXT_meshopt_compression)
 };
 
 enum class GltfUse : std::uint8_t {
-    kPositions,  ///< glm::vec3, of floats or whole numbers of 8 or 16 bits (KHR_mesh_quantization)
+    kPositions,  ///< glm::vec3, from floats or 8- or 16-bit integers (KHR_mesh_quantization)
     kIndices,    ///< std::uint32_t
-    kJoints,     ///< glm::vec4 of whole numbers
+    kJoints,     ///< glm::vec4, from integers
     kWeights,    ///< glm::vec4
     kMatrices,   ///< glm::mat4
-    kVectors,    ///< glm::vec3 of floats
-    kRotations,  ///< glm::vec4: of floats, or normalized whole numbers of 8 or 16 bits
-    kDeltas,     ///< as positions; those of an accessor without data are 0
+    kVectors,    ///< glm::vec3, from floats
+    kRotations,  ///< glm::vec4, from floats or normalized 8- or 16-bit integers
+    kDeltas,     ///< as kPositions; 0 for an accessor without data
     kTimes,      ///< float
-    kMorphs,     ///< float, or normalized whole numbers of 8 or 16 bits
+    kMorphs,     ///< float, or normalized 8- or 16-bit integers
 };
 
-/// The elements of an accessor. Floats may be no numbers.
-/// \tparam T  of the use. \param count_max  more is an error. Errors: kInvalidInput, kUnsupported, kLimit.
+/// Reads the elements of an accessor. Floats may be NaN or infinite.
+/// \tparam T  the type that `use` lists.
+/// \param count_max  more elements are an error.
+/// Errors: kInvalidInput, kUnsupported, kLimit.
 template <class T>
 [[nodiscard]] Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use,
                                                   GltfBuffers& buffers, std::uint64_t count_max);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON of a glTF file: read strictly, and values that know where they stand. Errors here name a place in the document,
-// as "meshes[0].primitives[2].mode", and no file.
+// Parses the JSON of a glTF file strictly, into values that track their position. Errors name the place in the
+// document, such as "meshes[0].primitives[2].mode", not the file.
 #pragma once
 
 #include <cstddef>
@@ -16,45 +16,44 @@
 
 namespace relief {
 
-/// parseStrictJson(), but spaces and zeros may follow.
+/// Parses like parseStrictJson(), but accepts trailing spaces and zeros.
 [[nodiscard]] Result<nlohmann::json> parseGltfJson(std::string_view text);
 
-/// An object of the document. A member that is there but of another type than asked for is an error (kInvalidInput), and so
-/// is null.
+/// An object of the document. A member of the wrong type, including null, is an error (kInvalidInput).
 class GltfValue {
   public:
-    /// \param document  an object; borrowed.
+    /// Borrows the document. \param document  an object.
     explicit GltfValue(const nlohmann::json& document) : document_(&document), json_(&document) {}
 
-    /// "PATH WHAT". \param code  kInvalidInput by default.
+    /// Returns the error "PATH WHAT".
     [[nodiscard]] tl::unexpected<Error> wrong(const std::string& what,
                                               ErrorCode code = ErrorCode::kInvalidInput) const;
 
     [[nodiscard]] bool has(const char* name) const;
-    /// Its place in the list that it is of.
+    /// Index in its parent list.
     [[nodiscard]] std::uint64_t index() const { return index_; }
 
-    /// bool, std::uint64_t, std::string, or a vector of float or these; nullopt where there is none.
+    /// Reads a member: bool, std::uint64_t, std::string, or a vector of float or of these; nullopt if it is missing.
     template <class T>
     [[nodiscard]] Result<std::optional<T>> get(const char* name) const;
-    /// \param otherwise  where there is none.
+    /// Reads a member, or returns `otherwise` if it is missing.
     template <class T>
     [[nodiscard]] Result<T> get(const char* name, T otherwise) const {
         return RELIEF_TRY(get<T>(name)).value_or(std::move(otherwise));
     }
-    /// Errors: also where there is none.
+    /// Reads a whole number. Errors: also if it is missing.
     [[nodiscard]] Result<std::uint64_t> number(const char* name) const;
-    /// A list of `count` numbers; empty where there is none.
+    /// Reads a list of exactly `count` numbers; empty if it is missing.
     [[nodiscard]] Result<std::vector<float>> numbers(const char* name, std::size_t count) const;
 
     [[nodiscard]] Result<std::optional<GltfValue>> object(const char* name) const;
-    /// A list of objects; empty where there is none.
+    /// Reads a list of objects; empty if it is missing.
     [[nodiscard]] Result<std::vector<GltfValue>> objects(const char* name) const;
-    /// The object in a list of the document that a member names by its number; nullopt where there is no member.
+    /// Resolves the index in `member` to an object of the document's `list`; nullopt if the member is missing.
     [[nodiscard]] Result<std::optional<GltfValue>> named(const char* member, const char* list) const;
-    /// Errors: also where there is no member.
+    /// Resolves the index in `member`. Errors: also if it is missing.
     [[nodiscard]] Result<GltfValue> needed(const char* member, const char* list) const;
-    /// The index'th of a list of the document. \param member  of this object, that names it.
+    /// Returns entry `index` of the document's `list`. \param member  the member that holds the index, for messages.
     [[nodiscard]] Result<GltfValue> at(std::uint64_t index, const char* list, const char* member) const;
 
   private:
@@ -64,7 +63,7 @@ class GltfValue {
 
     const nlohmann::json* document_;
     const nlohmann::json* json_;
-    std::string path_;  // "" for the document
+    std::string path_;  // "" for the document itself
     std::uint64_t index_ = 0;
 };
 

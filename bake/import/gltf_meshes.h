@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes and skins of a glTF file: triangles, positions, joints and morph targets. Errors name a place in the document, and
-// no file.
+// Reads the meshes and skins of a glTF file: triangles, positions, joint weights and morph targets. Errors name the
+// place in the document, not the file.
 #pragma once
 
 #include <cstddef>
@@ -20,44 +20,45 @@
 
 namespace relief {
 
-/// A joint that moves a vertex.
+/// A joint that moves a vertex, and its weight.
 struct GltfInfluence {
-    std::uint32_t joint;  ///< of the skin; not checked
-    float weight;         ///< 0 or more
+    std::uint32_t joint;  ///< index into the skin; not validated
+    float weight;         ///< not negative
 };
 
-/// The joints of a primitive's vertices.
+/// The joint influences of a primitive's vertices.
 struct GltfInfluences {
     std::size_t per_vertex = 0;
-    std::vector<GltfInfluence> all;  ///< per_vertex for each vertex, whose weights have a sum above 0
+    std::vector<GltfInfluence> all;  ///< per_vertex entries for each vertex; their weights sum to more than 0
 };
 
 struct GltfPrimitive {
-    ScenePart part;  ///< of positions that triangles use
+    ScenePart part;  ///< contains only positions that triangles use
     std::optional<GltfInfluences> influences{};
-    std::vector<std::vector<glm::vec3>> targets{};  ///< how far each moves a position; empty: it moves none
+    /// per target, an offset for each position; empty if the target moves none
+    std::vector<std::vector<glm::vec3>> targets{};
 };
 
 struct GltfMesh {
-    std::vector<GltfPrimitive> primitives;  ///< those with triangles
+    std::vector<GltfPrimitive> primitives;  ///< only those with triangles
 };
 
 struct GltfSkin {
     std::vector<std::uint32_t> nodes;
-    std::vector<Transform> binds;  ///< inverseBindMatrices, one a node
+    std::vector<Transform> binds;  ///< inverseBindMatrices, one per node
 };
 
-/// Errors: kInvalidInput, kLimit, kUnsupported. \param document  whose nodes exist.
+/// Reads a skin and checks that its nodes exist. Errors: kInvalidInput, kLimit, kUnsupported.
 [[nodiscard]] Result<GltfSkin> readGltfSkin(const GltfValue& skin, GltfBuffers& buffers);
 
-/// Whether the skin has every joint that moves a vertex. Errors: kInvalidInput. \param mesh, skin  for messages.
+/// Checks that the skin has every joint that moves a vertex. \param mesh, skin  for messages. Errors: kInvalidInput.
 [[nodiscard]] Result<void> checkJoints(const GltfInfluences& influences, const GltfSkin& joints,
                                        const GltfValue& mesh, const GltfValue& skin);
 
-/// Meshes, each read once.
+/// Reads each mesh once.
 class GltfMeshes {
   public:
-    /// \param triangle_max  of all meshes together. \param buffers, warnings  borrowed.
+    /// Borrows `buffers` and `warnings`. \param triangle_max  limit for all meshes together.
     GltfMeshes(std::uint64_t triangle_max, GltfBuffers& buffers, std::vector<std::string>& warnings)
         : triangle_max_(triangle_max), buffers_(buffers), warnings_(warnings) {}
 
@@ -65,14 +66,14 @@ class GltfMeshes {
         bool joints = false;
         bool targets = false;
     };
-    /// \return borrowed; the same for every call with that mesh, whatever it needs then.
+    /// Reads a mesh. \return borrowed; repeated calls return the first result, whatever `needs` is.
     [[nodiscard]] Result<const GltfMesh*> read(const GltfValue& mesh, Needs needs);
 
-    /// Of what was read, of all `meshes` of the file.
+    /// Counts the contents read so far. \param meshes  number of meshes in the file.
     [[nodiscard]] MeshParts counts(std::size_t meshes) const;
 
   private:
-    /// Identifies the vertices of an accessor: exporters make many accessors of one view.
+    /// Identifies vertex data: exporters write many accessors for the same view.
     using Key = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, bool, std::uint64_t>;
     struct Vertices {
         std::vector<glm::vec3> positions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_meshopt_compression: what a buffer view of a glTF file holds, unpacked by meshoptimizer.
+// Decompresses buffer views of a glTF file that use EXT_meshopt_compression.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,11 @@
 
 namespace relief {
 
-/// \param extension  of a buffer view. \param packed  the bytes that it names; may be hostile.
-/// \param size  bytes of the buffer view.
-/// Errors: kInvalidInput, kUnsupported (a mode or a filter).
+/// Decompresses a buffer view.
+/// \param extension  the extension object of the buffer view.
+/// \param packed     the bytes that it references; untrusted.
+/// \param size       bytes of the unpacked view.
+/// Errors: kInvalidInput, kUnsupported (a mode or filter).
 [[nodiscard]] Result<std::vector<std::byte>> unpackMeshopt(const GltfValue& extension,
                                                            std::span<const std::byte> packed,
                                                            std::uint64_t size);

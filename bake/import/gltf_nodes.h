@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a glTF file: the trees that they form, their transforms, and those that its scene shows. Errors name a place in
-// the document, and no file.
+// Reads the nodes of a glTF file: hierarchy, transforms and visibility. Errors name the place in the document, not the
+// file.
 #pragma once
 
 #include <cstdint>
@@ -17,59 +17,64 @@
 
 namespace relief {
 
-/// Of EXT_mesh_gpu_instancing, in a whole file.
+/// Limit of EXT_mesh_gpu_instancing instances in a file.
 inline constexpr std::uint64_t kGltfInstancesMax = 1'000'000;
 
-/// To the parent: first scaled, then turned, then moved; or a matrix.
+/// A transform to the parent: scale, then rotation, then translation; or a matrix.
 struct GltfPlacement {
     glm::vec3 translation{0.0F};
     glm::vec4 rotation{0.0F, 0.0F, 0.0F,
-                       1.0F};  ///< x, y, z, w; a unit quaternion, but for the rounding of bytes
+                       1.0F};  ///< x, y, z, w; a unit quaternion, up to rounding of normalized integers
     glm::vec3 scale{1.0F};
-    bool matrix = false;  ///< in place of these
+    bool matrix = false;  ///< `transform` replaces the members above
     Transform transform{};
 };
 
 struct GltfNode {
     GltfValue place;
-    std::string name{};  ///< as the file has it
+    std::string name{};  ///< as stored in the file
     GltfPlacement at{};
     std::optional<std::uint32_t> parent{};
     std::vector<std::uint32_t> children{};
     std::optional<GltfValue> mesh{};
     std::optional<GltfValue> skin{};
-    Shown shown = Shown::kYes;  ///< KHR_node_visibility, MSFT_lod
+    Shown shown = Shown::kYes;  ///< from KHR_node_visibility and MSFT_lod
 };
 
-/// The response of a node's surface by KHR_physics_rigid_bodies: that of its physics material. A share above 1 counts as 1.
-/// \param warnings  receives one line, once, on combine modes. Errors: kInvalidInput.
+/// Returns the surface response of a node: its physics material in KHR_physics_rigid_bodies. Values above 1 count as 1.
+/// \param warnings  receives at most one line about combine modes.
+/// Errors: kInvalidInput.
 [[nodiscard]] Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document,
                                                                const GltfNode& node,
                                                                std::vector<std::string>& warnings);
 
-/// Version and extensions. \param warnings  receives those of optional extensions. Errors: kInvalidInput, kUnsupported.
+/// Checks version and extensions. \param warnings  receives unsupported optional extensions. Errors: kInvalidInput,
+/// kUnsupported.
 [[nodiscard]] Result<void> checkGltf(const GltfValue& document, std::vector<std::string>& warnings);
 
-/// All nodes, by their index. Errors: kInvalidInput, also where they form no trees, or where levels of detail lead back to
-/// their node and are not kept.
+/// Reads all nodes, in file order. Errors: kInvalidInput, also if the nodes do not form trees, or if levels of detail
+/// that are not kept lead back to their node.
 [[nodiscard]] Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs hidden);
 
-/// The roots of the scene that the file shows, the first by default. Errors: kInvalidInput.
+/// Returns the root nodes of the default scene, or of the first one. Errors: kInvalidInput.
 [[nodiscard]] Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document,
                                                            const std::vector<GltfNode>& nodes);
 
-/// The roots and all below them, each before its children, in the order in which the scene shows them.
+/// Returns the roots and all their descendants in depth-first order, parents first.
 [[nodiscard]] std::vector<std::uint32_t> nodesBelow(const std::vector<std::uint32_t>& roots,
                                                     const std::vector<GltfNode>& nodes);
 
-/// The transform of a node with all above it.
+/// The node's transform to scene space.
 [[nodiscard]] Transform transformInScene(const std::vector<GltfNode>& nodes, std::uint32_t index);
 
-/// \param m  16 numbers, by columns. \return nullopt if its last row is not 0 0 0 1.
+/// Converts a matrix.
+/// \param m  16 numbers, column-major.
+/// \return nullopt if the last row is not 0 0 0 1.
 [[nodiscard]] std::optional<Transform> affineOf(const float* m);
 
-/// The places of a node's mesh below the node, in its own place (EXT_mesh_gpu_instancing).
-/// \param left  how many there may still be in the file; fewer afterwards. \return nullopt where there are none.
+/// Reads the transforms of a node's instances, relative to the node (EXT_mesh_gpu_instancing).
+/// \param left  instances still allowed in the file; decremented.
+/// \return nullopt if the node is not instanced.
 [[nodiscard]] Result<std::optional<std::vector<Transform>>> gltfInstances(const GltfNode& node,
                                                                           GltfBuffers& buffers,
                                                                           std::uint64_t& left);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of heights row by row, PNG and EXR, decoded by a process of their own, as meshes are imported.
+// Reads height map images (PNG and EXR) row by row, decoded in a worker process like meshes.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,21 @@
 namespace relief {
 
 [[nodiscard]] bool isPng(std::span<const std::byte> bytes);
-/// Whether the bytes begin as those of a PNG or an EXR do.
+/// Whether the bytes start with a PNG or EXR signature.
 [[nodiscard]] bool isImage(std::span<const std::byte> bytes);
 
-/// Decodes in a worker (the program relief-import), within limits of memory and time and without rights, a few rows ahead. Rows
-/// are as untrusted as the image.
+/// Decodes an image in a worker (the program relief-import), sandboxed, with limits on memory and time. The worker
+/// decodes a few rows ahead. Rows are untrusted.
 /// \param image  sharedBytes() of the file, borrowed during the call.
-/// Errors, without the file's name: those of openImageRows; kInvalidInput (the importer crashed), kLimit (memory, or time that
-/// was spent or waited for), kFailure (the worker could not be started, or was killed from outside); of rows, too.
+/// Errors, without the file name, also of rows: those of openImageRows; kInvalidInput (the importer crashed), kLimit
+/// (memory, processor time or wall time exceeded), kFailure (the worker could not be started, or was killed from
+/// outside).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openImageRowsInWorker(int image,
                                                                         const ImportLimits& limits);
 
-/// Decodes in this process, which a hostile image may crash. In the library bake_assimp.
+/// Decodes an image in this process, which a hostile image may crash; defined in the library bake_assimp.
 /// \param bytes  isImage(); must outlive the rows.
-/// Errors, without the file's name: those of openPngRows and openExrRows.
+/// Errors, without the file name: those of openPngRows and openExrRows.
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openImageRows(std::span<const std::byte> bytes);
 
 }  // namespace relief

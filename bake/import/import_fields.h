@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options and limits of an import as fields: of the verbs that read a mesh, and between the importer's two programs.
+// Describes import options and limits as fields: options of the verbs that read a mesh, and arguments of relief-import.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace relief {
 
-/// Without names, which are options of their own.
+/// Excludes `names`, which have options of their own.
 void fields(FieldVisitor& visit, ImportOptions& options);
 
 void fields(FieldVisitor& visit, ImportLimits& limits);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that an import may read: the mesh, from memory, and regular files below its folder. No other path can be
-// reached: the kernel resolves each beneath the folder (openat2).
+// Gives an import access to its files: the mesh in memory, and regular files below the mesh's folder. The kernel
+// resolves each path beneath that folder (openat2), so no other file can be reached.
 #pragma once
 
 #include <cstddef>
@@ -16,34 +16,34 @@
 
 namespace relief {
 
-/// Limit of all files of a mesh together, in bytes.
+/// Limit on the total size of a mesh's files, in bytes.
 inline constexpr std::uint64_t kImportBytesMax = std::uint64_t{4} << 30;
 
 class ImportFiles {
   public:
-    /// \param folder  descriptor of the mesh's folder, borrowed; -1 for none: then only the mesh can be read.
-    /// \param name    the mesh's file name in it.
-    /// \param bytes   the mesh's contents, borrowed.
+    /// \param folder  descriptor of the mesh's folder, borrowed; -1: only the mesh can be read.
+    /// \param name    file name of the mesh in that folder.
+    /// \param bytes   contents of the mesh, borrowed.
     ImportFiles(int folder, std::string name, std::span<const std::byte> bytes)
         : folder_(folder), name_(std::move(name)), bytes_(bytes), left_(kImportBytesMax - bytes.size()) {}
 
     [[nodiscard]] bool isMesh(std::string_view path) const;
     [[nodiscard]] std::span<const std::byte> meshBytes() const { return bytes_; }
 
-    /// \return true for a regular file below the folder; nothing is read.
+    /// Returns true for a regular file below the folder, without reading it.
     [[nodiscard]] bool exists(std::string_view path);
 
-    /// The contents, recorded in read(). nullopt, recorded in refused(): no regular file below the folder, or beyond the
-    /// limit of all files.
+    /// Reads a file and records it in read(). Returns nullopt and records it in refused() if it is not a regular file
+    /// below the folder, or if it exceeds the total limit.
     [[nodiscard]] std::optional<std::vector<std::byte>> open(std::string_view path);
 
-    /// The XXH3-128 of each file that was read, without the mesh itself, by its path below the folder.
+    /// XXH3-128 of each file read except the mesh, by path below the folder.
     [[nodiscard]] const std::map<std::string, std::string>& read() const { return read_; }
-    /// Names that could not be opened, with the reason; the first few, each once.
+    /// Paths that could not be opened, with the reason; the first few, without duplicates.
     [[nodiscard]] const std::vector<std::string>& refused() const { return refused_; }
 
   private:
-    /// \return an empty one with `why`.
+    /// Returns an empty descriptor and sets `why` on failure.
     Descriptor openBeneath(const std::string& path, std::string& why) const;
     void refuse(std::string_view path, const std::string& why);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formats of mesh files as a table, and the format of a file by its first bytes, whatever its name.
+// Lists the mesh formats in a table, and detects a file's format from its first bytes.
 #pragma once
 
 #include <array>
@@ -12,32 +12,33 @@
 
 namespace relief {
 
-/// The code that reads a format (mesh_import.cpp).
+/// The reader of a format (mesh_import.cpp).
 enum class MeshReader : std::uint8_t { kAssimp, kAc3d, kGltf, kObj, kOff, kPly, kStl };
 
-/// How assimp treats the units and axes of a file (import_assimp.cpp).
+/// How assimp converts the units and axes of a format (import_assimp.cpp).
 enum class AssimpFrame : std::uint8_t {
     kAsIs,
-    kMirrored,  ///< assimp has negated z
+    kMirrored,  ///< assimp negates z
     k3ds,
     kDae,
     kFbx,
 };
 
-/// One format of mesh files; a new one is a row of kRows (import_format.cpp), and a reader if assimp does not read it.
+/// A mesh format. To add one, add a row to kRows (import_format.cpp), and a reader unless assimp reads the format.
 struct MeshFormat {
-    std::string_view extension;  ///< lower case, without its dot
+    std::string_view extension;  ///< lower case, without the dot
     MeshReader reader = MeshReader::kAssimp;
     AssimpFrame frame = AssimpFrame::kAsIs;
-    std::array<std::string_view, 2> signatures{};  ///< first bytes, unique to the format
-    bool whole = false;                            ///< refers to no other files
+    std::array<std::string_view, 2> signatures{};  ///< leading bytes that are unique to the format
+    bool whole = false;                            ///< never references other files
 };
 
-/// \param extension  in any case, without its dot. \return nullptr: there is no such format.
+/// Looks up a format. \param extension  in any case, without the dot. \return nullptr if unknown.
 [[nodiscard]] const MeshFormat* meshFormat(std::string_view extension);
 
-/// The extension of the format whose signature the file begins with. nullopt: there is none, or it is that of `extension`.
-/// \param extension  lower case, without its dot.
+/// Returns the extension of the format whose signature the file starts with; nullopt if there is none, or if it matches
+/// `extension`.
+/// \param extension  lower case, without the dot.
 [[nodiscard]] std::optional<std::string> otherFormat(std::string_view extension,
                                                      std::span<const std::byte> bytes);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program relief-import at work on one file: started within limits, and how it ended in words.
+// Runs relief-import on one file within limits, and reports how it ended.
 #pragma once
 
 #include <array>
@@ -18,30 +18,32 @@
 
 namespace relief {
 
-/// Empty on failure, with errno.
+/// Creates a memfd. Returns an empty descriptor on failure, with errno set.
 [[nodiscard]] Descriptor memoryFile(std::uint64_t size);
-/// A sealed copy of a file's bytes for the worker. Empty on failure, with errno.
+/// Creates a sealed memfd with a copy of a file's bytes. Returns an empty descriptor on failure, with errno set.
 [[nodiscard]] Descriptor sharedBytes(std::span<const std::byte> bytes);
 
-/// Errors are without the file's name.
+/// A worker process. Errors omit the file name.
 class ImportProcess {
   public:
-    /// \param noun     what the file is, for messages: "mesh".
-    /// \param smaller  what helps if it is too large: "simplify the mesh".
+    /// \param noun     the kind of file, for messages: "mesh".
+    /// \param smaller  the cure for a file that is too large: "simplify the mesh".
     ImportProcess(const char* noun, const char* smaller, const ImportLimits& limits)
         : noun_(noun), smaller_(smaller), limits_(limits), left_(std::chrono::seconds(limits.seconds)) {}
 
-    /// Errors: kUsage.
+    /// Validates the limits. Errors: kUsage.
     [[nodiscard]] Result<void> checkLimits() const;
+    /// Starts the worker.
     /// \param kind   a word of ImportKind, or kImportImage.
-    /// \param more   arguments behind it.
-    /// \param files  for kImportMeshFd and the numbers behind it; -1: none, /dev/null.
+    /// \param more   further arguments.
+    /// \param files  descriptors to pass as kImportMeshFd and the following numbers; -1: /dev/null.
     /// Errors: kFailure.
     [[nodiscard]] Result<void> start(const std::string& path, std::string_view kind,
                                      const std::vector<std::string>& more, const std::array<int, 4>& files);
-    /// Waits for events of poll(). Errors: kLimit: all waits together have lasted as long as the limits allow.
+    /// Waits for poll() events. Errors: kLimit (the total time of all waits reached the limit).
     [[nodiscard]] Result<void> await(int pipe, short events);
-    /// Waits for its end. \param begun  it has written its first byte. Errors: it ended otherwise than after a whole answer.
+    /// Waits for the worker to end. \param begun  the worker has written its first byte. Errors: the worker ended
+    /// without a complete answer.
     [[nodiscard]] Result<void> finish(bool begun);
 
     [[nodiscard]] const ImportLimits& limits() const { return limits_; }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
+// Defines the protocol between importMeshInWorker and the program relief-import: descriptors, arguments and exit codes.
 //
 //     relief-import PATH MEMORY SECONDS TRIANGLES KIND [FIELD VALUE]… names [NAME…]
 //
-// PATH is the mesh as the user named it (for messages, its name and extension); MEMORY in bytes; TRIANGLES as
-// ImportLimits; KIND a word of ImportKind; FIELD and VALUE as fields() of ImportOptions has them; each NAME one of ImportOptions::names.
-// Nothing is read from standard input or written to standard output.
+// PATH is the mesh as the user named it; it provides the extension, and the name for messages. MEMORY is in bytes.
+// TRIANGLES is ImportLimits::triangles. KIND is a word of ImportKind. FIELD and VALUE follow fields() of ImportOptions.
+// Each NAME is an entry of ImportOptions::names. The worker does not use standard input or output.
 //
-// For an image, KIND is kImportImage and the result is a pipe, which is kImportAliveFd as well. Behind the first byte it gets an
-// ImageSize and then each row, floats, each behind a u32 that is 0. Any other u32 is an ErrorCode, behind which the length of the
-// error's text, a u32, and the text are the last. The byte order is the machine's.
+// For an image, KIND is kImportImage, and one pipe serves as result and as kImportAliveFd. After the first byte, the
+// pipe carries an ImageSize and then each row as floats; a u32 of 0 precedes each of these. Any other u32 is an
+// ErrorCode; the length of the error text (u32) and the text follow and end the stream. Byte order is native.
 #pragma once
 
 #include <fcntl.h>
@@ -20,7 +20,7 @@
 
 namespace relief {
 
-inline constexpr std::string_view kImportNamesFollow = "names";  ///< the end of the fields
+inline constexpr std::string_view kImportNamesFollow = "names";  ///< ends the list of fields
 
 inline constexpr std::string_view kImportImage = "image";
 
@@ -30,22 +30,23 @@ struct ImageSize {
     std::uint64_t most = 0;  ///< SampleRows::most()
 };
 
-inline constexpr int kImportMeshFd = 3;    ///< the file's bytes, sealed, memfd
-inline constexpr int kImportFolderFd = 4;  ///< its folder, O_PATH; /dev/null if there is none
+inline constexpr int kImportMeshFd = 3;    ///< memfd with the file's bytes, sealed
+inline constexpr int kImportFolderFd = 4;  ///< folder of the mesh, O_PATH; /dev/null if there is none
 inline constexpr int kImportResultFd =
-    5;  ///< memfd, large enough for any message; cut to size and sealed. Or a pipe
-/// A pipe's writing end: gets a byte when the worker starts, before it reads anything; closes as it ends.
+    5;  ///< memfd, large enough for any message, then truncated and sealed; or a pipe
+/// Write end of a pipe. The worker writes one byte when it starts, before it reads anything, and closes the pipe when
+/// it ends.
 inline constexpr int kImportAliveFd = 6;
 
-inline constexpr int kImportExitMessage = 0;     ///< the message is complete: a mesh or an error
-inline constexpr int kImportExitMemory = 10;     ///< the memory limit is reached
+inline constexpr int kImportExitMessage = 0;     ///< the message, a mesh or an error, is complete
+inline constexpr int kImportExitMemory = 10;     ///< the memory limit was reached
 inline constexpr int kImportExitArguments = 11;  ///< invalid arguments, or the parent has ended
-inline constexpr int kImportExitTooLarge = 12;   ///< the message is larger than the memory for it
-/// Plus the errno of a system call that failed.
+inline constexpr int kImportExitTooLarge = 12;   ///< the message exceeds the result memory
+/// Plus the errno of the system call that failed.
 inline constexpr int kImportExitErrno = 128;
 
-/// Allocates the first bytes of a memfd now: touching a page that cannot be allocated raises SIGBUS.
-/// \return 0 or an errno: ENOSPC and ENOMEM where the system has no more.
+/// Allocates the first bytes of a memfd now; otherwise a page that cannot be allocated raises SIGBUS on access.
+/// \return 0, or an errno: ENOSPC or ENOMEM if the system is out of memory.
 [[nodiscard]] inline int reserveMemory(int file, std::uint64_t bytes) {
     while (bytes != 0 && ::fallocate(file, 0, 0, static_cast<off_t>(bytes)) != 0) {
         if (errno != EINTR) {
@@ -55,7 +56,7 @@ inline constexpr int kImportExitErrno = 128;
     return 0;
 }
 
-/// Seals a memfd; none of its pages may be mapped for writing. \return 0 or an errno.
+/// Seals a memfd; no writable mapping may exist. \return 0 or an errno.
 [[nodiscard]] inline int addSeals(int file, int seals) {
     return ::fcntl(file, F_ADD_SEALS, seals) == 0 ? 0 : errno;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of single formats, without those that the runtime has too (formats/polygons) and glTF's.
-// Errors name the line of a text, but not the file: kInvalidInput, kLimit, kUnsupported.
+// Declares the readers of single formats, except glTF's parts and those that the runtime shares (formats/polygons).
+// Errors name the line of a text file, not the file: kInvalidInput, kLimit, kUnsupported.
 #pragma once
 
 #include <cstddef>
@@ -13,41 +13,42 @@
 
 namespace relief {
 
-/// OFF, the Object File Format of Geomview, as text.
+/// Reads OFF (Object File Format of Geomview), as text.
 ///
-/// Reads the header OFF, with the prefixes ST, C and N or without it, and the counts of vertices, faces and, if it is there,
-/// edges. Vertices and faces may span several lines. The rest of their last line, mostly colours, is skipped. Several may share
-/// a line if that gives the announced counts: faces without colours, and vertices with as many numbers behind their
-/// coordinates as the header has letters for.
+/// The header OFF is optional and may have the prefixes ST, C and N. The counts of vertices, faces and, optionally,
+/// edges follow. Vertices and faces may span several lines. The rest of their last line, usually colours, is skipped.
+/// Several vertices or faces may share a line if this matches the counts in the header. Such faces have no colours, and
+/// such vertices have as many numbers after their coordinates as the prefixes require.
 [[nodiscard]] Result<PolygonMesh> readOff(std::span<const std::byte> bytes);
 
-/// STL, as text and binary.
+/// Reads STL, as text or binary.
 ///
-/// Text begins with "solid" and the rest of its line; then words in any case and over any lines. Several solids may follow each other, and a triangle has
-/// the first word of its solid's name. Normals are not looked at. A file that is at least as long as the count of its
-/// header needs is binary, whatever it begins with; a warning counts the bytes behind its last triangle.
+/// Text starts with a line that begins with "solid"; keywords are case-insensitive, and line breaks are free. A file
+/// may contain several solids; a triangle gets the first word of its solid's name. Normals are ignored. A file that is
+/// at least as long as its header's triangle count requires is binary, regardless of its first bytes; bytes after the
+/// last triangle cause a warning.
 [[nodiscard]] Result<PolygonMesh> readStl(std::span<const std::byte> bytes);
 
-/// AC3D, as text, with the triangle strips, normals and several textures that TORCS adds to it.
+/// Reads AC3D, as text, including TORCS's extensions: triangle strips, normals and multiple textures.
 ///
-/// An object is a node, its kids are below it, and its surfaces have a part for each material. Lines are left out, and
-/// subdivisions not made, both with a warning. `data` may be anything.
+/// Each object becomes a node with its kids below it; its surfaces become one part per material. Lines are skipped and
+/// subdivision is not applied, both with a warning. The contents of `data` are ignored.
 [[nodiscard]] Result<ImportScene> readAc3d(const ImportJob& job);
 
-/// All other formats, by assimp. Throws std::bad_alloc.
+/// Reads all other formats with assimp. Throws std::bad_alloc.
 [[nodiscard]] Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job,
                                                  ImportFiles& files);
 
-/// glTF 2.0, as text and binary; not by assimp, which accepts invalid files.
+/// Reads glTF 2.0, as text or binary, without assimp, which accepts invalid files.
 ///
-/// Everything that the triangles of the shown scene depend on must conform to the specification: version,
-/// required extensions, JSON without equal keys, buffers (percent-encoded, base64, of their length), accessors (sparse ones,
-/// KHR_mesh_quantization), instances (EXT_mesh_gpu_instancing), indices, modes, transforms, trees of nodes, skins. Skinned meshes
-/// have the pose of the nodes; morph targets are left out; both with a warning.
+/// Everything that the triangles of the shown scene depend on must conform to the specification: version, required
+/// extensions, JSON without duplicate keys, buffers (percent-encoded, base64, length), accessors (sparse,
+/// KHR_mesh_quantization), instances (EXT_mesh_gpu_instancing), indices, modes, transforms, node hierarchy, skins.
+/// Skinned meshes get the pose of the nodes, and morph targets are ignored, both with a warning.
 [[nodiscard]] Result<ImportScene> readGltf(const ImportJob& job, ImportFiles& files);
 
-/// TriangleMesh::animation of a glTF file, for jobs of kAnimated and kClips, with unit and warnings. Reads what readGltf() does,
-/// and also morph targets and animations; which of them become part of the mesh is said in animated_import.h.
+/// Reads TriangleMesh::animation of a glTF file, with unit and warnings, for jobs of kAnimated and kClips. Reads the
+/// same data as readGltf(), plus morph targets and animations; animated_import.h defines which of them the mesh keeps.
 [[nodiscard]] Result<TriangleMesh> readAnimatedGltf(const ImportJob& job, ImportFiles& files);
 
 }  // namespace relief

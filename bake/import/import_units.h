@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units of length and axes of mesh files, and their conversion to metres and +Y up.
+// Converts units of length and axes of mesh files to metres and +Y up.
 #pragma once
 
 #include <array>
@@ -22,55 +22,56 @@ enum class UpAxis : std::uint8_t { kPlusX, kMinusX, kPlusY, kMinusY, kPlusZ, kMi
 template <>
 inline constexpr std::array<std::string_view, 6> kWordsOf<UpAxis>{"+x", "-x", "+y", "-y", "+z", "-z"};
 
-/// The words of --unit.
+/// The values of --unit.
 inline constexpr std::array<std::string_view, 8> kLengthUnits{"m", "cm", "mm", "um", "km", "in", "ft", "yd"};
 
-/// \return the metres in one of the unit, or nullopt for another word.
+/// Returns the length of a unit in metres; nullopt if the unit is unknown.
 [[nodiscard]] std::optional<double> metresPer(std::string_view unit);
 
-/// The rotation (exact: of 0, 1 and −1) that carries `up` to +Y: a quarter turn about the z axis from ±x and
-/// about the x axis from ±z, half a turn about x from −y.
+/// Returns the rotation that maps `up` to +Y, exactly (its entries are 0, 1 and −1): a quarter turn about z for ±x, a
+/// quarter turn about x for ±z, and a half turn about x for −y.
 [[nodiscard]] glm::dmat3 turnUpwards(UpAxis up);
 
-/// Lengths and axes of a file, as it states them.
+/// Units and axes as a file states them.
 struct SourceFrame {
-    std::optional<double> metres;  ///< in one unit of the file
+    std::optional<double> metres;  ///< per unit of the file
     std::optional<UpAxis> up;
-    /// The file's axes are left-handed, and its z is ours turned round.
+    /// The file's coordinates are left-handed: its z is negated.
     bool mirrored = false;
-    /// An invalid length or axis of the file, each as a clause: "its unit is -1 m". "": none.
+    /// An invalid unit or axis in the file, as a clause: "its unit is -1 m". "": none.
     std::string unit_fault{};
     std::string up_fault{};
 };
 
-/// Fails where the frame has a fault for which the caller gives no replacement.
-/// Errors: kInvalidInput, without the file's name, with the option that is the cure.
+/// Fails if the frame is invalid in a part that the caller does not override.
+/// Errors, without the file name: kInvalidInput, naming the option to use.
 [[nodiscard]] Result<void> checkFrame(const SourceFrame& source, std::string_view unit,
                                       std::optional<UpAxis> up);
 
-/// How to bring positions of that frame into metres and +Y up.
+/// The conversion from a frame to metres and +Y up.
 struct FrameChange {
     double scale = 1.0;
     glm::dmat3 turn{1.0};
-    std::string unit;  ///< "m", or "" if it is unknown
-    /// Of overrides by the caller; each without the file's name.
+    std::string unit;  ///< "m", or "" if unknown
+    /// About overrides by the caller; without the file name.
     std::vector<std::string> warnings;
 };
 
-/// \param unit  one of kLengthUnits, or "" for the file's own.
-/// \param up    nullopt for the file's own.
+/// Computes the conversion.
+/// \param unit  one of kLengthUnits, or "" for the file's unit.
+/// \param up    nullopt for the file's axis.
 [[nodiscard]] FrameChange changeOf(const SourceFrame& source, std::string_view unit,
                                    std::optional<UpAxis> up);
 
-/// The UnitScaleFactor of an FBX file, binary or text, of any type of number.
+/// The UnitScaleFactor of an FBX file, binary or text, of any numeric type.
 struct FbxUnit {
-    std::string text;             ///< as in the file
-    std::optional<double> value;  ///< nullopt: it is no finite number
+    std::string text;             ///< as stored in the file
+    std::optional<double> value;  ///< nullopt if it is not a finite number
 };
-/// \return nullopt: there is none.
+/// Reads the unit. \return nullopt if there is none.
 [[nodiscard]] std::optional<FbxUnit> fbxUnit(std::span<const std::byte> document);
 
-/// The frame in the <asset> of a COLLADA document of any encoding; metres and +y by default.
+/// Reads the <asset> element of a COLLADA document in any encoding. Defaults: metres and +Y.
 [[nodiscard]] SourceFrame colladaFrame(std::span<const std::byte> document);
 
 }  // namespace relief

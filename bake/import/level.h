@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A level: each different mesh of a file once, however many nodes place it.
+// Imports a level: each distinct mesh of a file once, with all the nodes that place it.
 #pragma once
 
 #include <cstdint>
@@ -21,28 +21,29 @@ inline constexpr std::size_t kLevelMeshesMax = 4096;
 inline constexpr std::size_t kLevelBodiesMax = 65'536;
 
 struct Level {
-    std::string name;  ///< of the file
+    std::string name;  ///< file name
     std::string unit;  ///< "m" or ""
-    /// As finishMesh leaves them, each in its own space; content_hash is that of their positions and triangles. No two are
-    /// equal, marks included.
+    /// After finishMesh(), each in its own space. `content_hash` covers positions and triangles. No two are equal,
+    /// including their marks.
     std::vector<TriangleMesh> meshes;
-    std::vector<LevelBody> bodies;          ///< in the order of the file; every mesh has one at least
-    std::vector<std::string> dependencies;  ///< as those of a TriangleMesh, with their hashes
+    std::vector<LevelBody> bodies;          ///< in file order; every mesh has at least one
+    std::vector<std::string> dependencies;  ///< as in TriangleMesh
     std::vector<std::string> dependency_hashes;
     std::vector<std::string> warnings;
 };
 
-/// XXH3-128 of its materials, and of which triangle has which.
+/// XXH3-128 of the materials and of their assignment to triangles.
 [[nodiscard]] std::string materialHash(const TriangleMesh& mesh);
 
-/// Whether not all of their surface is of one name.
+/// Whether the surfaces have more than one material name.
 [[nodiscard]] bool hasSeveralMaterials(std::span<const TriangleMesh> meshes);
 
-/// The meshes of a level, equal ones joined.
+/// Collects the meshes of a level, and merges equal ones.
 class LevelMeshes {
   public:
-    /// \param mesh  as finishMesh leaves it; its content_hash is made. \return its index.
-    /// \param materials  meshes of other materials are not equal.
+    /// Adds a mesh. \param mesh  after finishMesh(); its content_hash is computed here.
+    /// \param materials  meshes that differ only in materials stay separate.
+    /// \return its index.
     std::uint32_t add(TriangleMesh mesh, bool materials);
     [[nodiscard]] std::vector<TriangleMesh> take() { return std::move(meshes_); }
 
@@ -52,17 +53,18 @@ class LevelMeshes {
     std::map<std::tuple<std::string, std::vector<std::uint8_t>, std::string>, std::uint32_t> known_;
 };
 
-/// importMeshInWorker() of a level: in glTF the meshes of nodes, in OBJ each object or group, a placement each.
-/// `limits.triangles` counts each mesh once. Errors: also kLimit (kLevelMeshesMax, kLevelBodiesMax).
+/// Imports a level like importMeshInWorker(). In glTF, each node places its mesh; in OBJ, each object or group is a
+/// mesh with one placement. `limits.triangles` counts each mesh once. Errors: also kLimit (kLevelMeshesMax,
+/// kLevelBodiesMax).
 [[nodiscard]] Result<Level> importLevelInWorker(const std::filesystem::path& path,
                                                 const ImportOptions& options = {},
                                                 const ImportLimits& limits = {});
 
-/// Cuts the meshes of a level apart, finishes them, and joins equal ones. Those without any area are left out with their
-/// bodies and a warning.
-/// \param all  with name and hash. Its lists of meshes and bodies may hold anything.
-/// \param materials  as of LevelMeshes::add().
-/// Errors: kInvalidInput (lists that do not fit, no mesh that is left), without the file's path.
+/// Splits a level into its meshes, finishes them, and merges equal ones. Skips meshes without area and their bodies,
+/// with a warning.
+/// \param all        with name and hash; its lists of meshes and bodies are untrusted.
+/// \param materials  as in LevelMeshes::add().
+/// Errors, without the file path: kInvalidInput (inconsistent lists, or no mesh left).
 [[nodiscard]] Result<Level> cutLevel(TriangleMesh all, bool materials = true);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A level of a file, or of a folder of mesh files.
+// Imports a level from a file or from a folder of mesh files.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace relief {
 
-/// importLevelInWorker() of a file. Of a folder each mesh file in it, by name: one mesh, placed where its coordinates have it. Files
-/// of other kinds and folders in it are left out.
-/// \param path  of a file or a folder.
-/// Errors: those of importLevelInWorker; of a folder also kUsage (names), kInvalidInput (no mesh file in it, or some with a unit and
-/// some without), kLimit.
+/// Imports a file as importLevelInWorker() does. In a folder, imports each mesh file, sorted by name, as one mesh at
+/// its own coordinates; skips other files and subfolders.
+/// \param path  a file or a folder.
+/// Errors: those of importLevelInWorker; for a folder also kUsage (names), kInvalidInput (no mesh file, or only some
+/// with a unit), kLimit.
 [[nodiscard]] Result<Level> importLevel(const std::filesystem::path& path, const ImportOptions& options = {},
                                         const ImportLimits& limits = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grey PNG images row by row, however large they are; beside runtime/files/png.cpp the only user of libpng.
+// Reads grey PNG images of any size row by row. Only this file and runtime/files/png.cpp use libpng.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,10 @@
 
 namespace relief {
 
-/// \param bytes  untrusted; must outlive the rows. A colour that the chunk tRNS makes transparent is a hole.
-/// Errors, without the file's name: kInvalidInput (libpng's words), kUnsupported (a palette, fewer than 8 bits, interlaced);
-/// of a row kUnsupported, too (red, green and blue that differ, alpha that is not opaque).
+/// Opens a PNG image. A colour that the tRNS chunk makes transparent is a hole.
+/// \param bytes  untrusted; must outlive the rows.
+/// Errors, without the file name: kInvalidInput (libpng's message), kUnsupported (a palette, fewer than 8 bits,
+/// interlacing); reading a row also kUnsupported (red, green and blue that differ, alpha that is not opaque).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openPngRows(std::span<const std::byte> bytes);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons as triangles.
+// Triangulates polygons.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace relief {
 
-/// Cuts polygons into triangles, concave ones and such with corners on straight edges too. Its memory serves one polygon
-/// after the other.
+/// Triangulates polygons, including concave ones and those with corners on straight edges. Reuses its memory between
+/// polygons.
 ///
-/// Ears are cut off in the plane of two axes that the polygon leans least against, in the order of the corners. Each has an
-/// area: a corner on a straight edge becomes the corner of a triangle that has one, as a triangle without would be left out
-/// and leave a slit. Where the polygon has no such triangles, because it crosses itself or has no area, it gets those with
-/// the fewest that are turned over or flat. Projected coordinates are those of the polygon: they lose nothing far from the
+/// Clips ears in corner order, in the coordinate plane closest to the polygon's own. Every ear has an area: a corner on
+/// a straight edge joins a triangle with area, because a triangle without area would be dropped and leave a slit. If no
+/// such triangulation exists, because the polygon crosses itself or has no area, the result has the fewest flipped or
+/// flat triangles. Projected coordinates are the polygon's own, so precision does not depend on the distance from the
 /// origin.
 ///
-/// The first try has the tests of assimp in its precision, of floats, so that bakes keep their bytes; its result counts only
-/// where every triangle has an area.
+/// The first attempt repeats assimp's tests in float precision, so that bakes keep their bytes. Its result is used only
+/// if every triangle has an area.
 class PolygonCutter {
   public:
+    /// Triangulates a polygon.
     /// \param corners  at least 3, in order.
-    /// \return corners.size() − 2 triangles, as indices into `corners`, wound as the polygon is. Valid until the next call.
+    /// \return corners.size() − 2 triangles as indices into `corners`, with the polygon's winding; valid until the next
+    /// call.
     [[nodiscard]] std::span<const glm::uvec3> cut(std::span<const glm::vec3> corners);
 
   private:
-    /// Which other corners keep three in a row from being an ear: those inside of it, up to roundings or exactly, or those
-    /// on its edges too.
+    /// Which other corners disqualify an ear: those inside it, with rounding or exactly, or also those on its edges.
     enum class Test : std::uint8_t { kRounded, kInside, kTouching };
 
     void project(std::span<const glm::vec3> corners);
@@ -42,24 +43,25 @@ class PolygonCutter {
     void cutOff(std::uint32_t ear);
     [[nodiscard]] std::uint32_t largestCorner(std::uint32_t start) const;
     void markReflex(std::uint32_t corner);
-    /// Triangles without area in space, or turned over in the plane.
+    /// Counts triangles that have no area in space or are flipped in the plane.
     [[nodiscard]] std::size_t wrongTriangles(std::span<const glm::vec3> corners) const;
 
     std::vector<glm::dvec2> points_;  // counter-clockwise
     std::vector<std::uint32_t> before_;
     std::vector<std::uint32_t> next_;
-    std::vector<std::uint8_t> reflex_;     // 1: of the corners that are left, one that is not convex
-    std::vector<std::uint32_t> reflexes_;  // those that were once
-    std::size_t sorted_ = 0;               // of reflexes_, the first, by their x
+    std::vector<std::uint8_t> reflex_;     // 1: a remaining corner that is reflex
+    std::vector<std::uint32_t> reflexes_;  // all corners that were reflex at some time
+    std::size_t sorted_ = 0;               // length of the prefix of reflexes_ that is sorted by x
     std::vector<glm::uvec3> triangles_;
     std::vector<glm::uvec3> best_;
 };
 
-/// Turns the triangles of a mesh's polygons so that none begins at the vertex where the one before it began; the shape is the
-/// same. assimp tells polygons apart so, and bakes that go on to begin each triangle where they always did keep their bytes.
+/// Rotates the corners of a polygon's triangles so that no triangle starts at the vertex at which the previous one
+/// started; shapes do not change. assimp marks polygon boundaries in this way. Keeping its order keeps the bytes of
+/// bakes.
 class TriangleStarts {
   public:
-    /// \param polygon  its triangles, of the mesh's vertices.
+    /// \param polygon  its triangles, as vertex indices of the mesh.
     void turn(std::span<glm::uvec3> polygon);
 
   private:

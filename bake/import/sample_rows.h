@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of a height map as its file has them, one row after the other from the first.
+// Reads the samples of a height map row by row, from the first row.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace relief {
 
-inline constexpr std::uint32_t kHeightsSideMax = 1U << 24;  ///< samples in a row
+inline constexpr std::uint32_t kHeightsSideMax = 1U << 24;  ///< samples per row
 
 class SampleRows {
   public:
@@ -20,11 +20,12 @@ class SampleRows {
 
     [[nodiscard]] std::uint64_t columns() const { return columns_; }
     [[nodiscard]] std::uint64_t rows() const { return rows_; }
-    /// The largest whole number that a sample may be; 0: samples are heights.
+    /// The largest integer sample; 0: samples are heights.
     [[nodiscard]] std::uint32_t most() const { return most_; }
 
-    /// \param out  columns() samples of the next row; NaN is a hole. There must be such a row.
-    /// Errors, without the file's name: kInvalidInput, kUnsupported.
+    /// Reads the next row, which must exist.
+    /// \param out  columns() samples; NaN is a hole.
+    /// Errors, without the file name: kInvalidInput, kUnsupported.
     [[nodiscard]] virtual Result<void> next(std::span<float> out) = 0;
 
   protected:
