@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The range of heights below each cell of a quadtree over the squares of a height map.
+// Computes the range of heights in each cell of a quadtree over the squares of a height map.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,27 @@
 
 namespace relief {
 
-/// Of the squares of a column that have ground.
+/// The range of a column's squares with ground.
 struct ColumnRange {
     float low = 0.0F;  ///< heights, object units
     float high = 0.0F;
-    bool ground = false;  ///< some square has any
-    bool hole = false;    ///< some square has none, or lies beyond the grid
+    bool ground = false;  ///< at least one square has ground
+    bool hole = false;    ///< at least one square has none, or lies outside the grid
 };
 
 class ColumnRanges {
   public:
-    /// \param levels  from columns of kLeafSquares on, each twice as wide as those before. The grid must outlive this.
+    /// \param levels  number of levels; the first has columns of kLeafSquares, and each further one doubles their
+    /// width.
+    /// \param grid    must outlive this object.
     ColumnRanges(const HeightGrid& grid, unsigned levels);
 
-    /// Columns along x or z of a level.
+    /// Columns of a level, along x or z.
     [[nodiscard]] std::uint32_t width(unsigned level) const { return levels_[level].width; }
     [[nodiscard]] std::uint32_t depth(unsigned level) const { return levels_[level].depth; }
-    /// \param x, z  any; beyond the grid there are holes.
+    /// Returns the range of a column; outside the grid, all squares are holes.
     [[nodiscard]] ColumnRange at(unsigned level, std::uint32_t x, std::uint32_t z) const;
-    /// Of side² squares from one on. \param side  below kLeafSquares.
+    /// Returns the range of side² squares, starting at (x, z). \param side  below kLeafSquares.
     [[nodiscard]] ColumnRange ofSquares(std::size_t x, std::size_t z, std::uint32_t side) const;
 
   private:

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of patches straight from heights, without a mesh: each leaf holds 4² squares of the height map, with its own heights.
+// Builds a tree of patches directly from heights, without a mesh: each leaf holds 4² squares of the height map, with
+// their heights.
 //
 //        root: 64 squares                        the cells of one root, from the side:
 //        +-------------------------------+
-//        |               |               |       outside      no record of its own, nor what is inside
+//        |               |               |       outside      no record (likewise inside)
 //        |    outside    |_______________|__
 //        |            _..+-´     |   |   |       patches      4 squares, 5² heights of 8 bits over the leaf's own range
 //        |       _.-´|   |inside |___|___|
 //        |___.--´|___|___|_______|_______|       inside
 //
-// A leaf's column of squares may be crossed by several cells above each other; they and the next cell below share its heights.
-// So distances are those of the surface down to a leaf's side below it. A column that is partly without ground, or too steep, is
-// split down to single squares of 2² heights.
+// Several stacked cells may intersect a leaf's column of squares; these cells and the next cell below share its
+// heights. Distances are therefore those of the surface, down to a leaf's side below it. A column that is partly
+// without ground, or too steep, is split into single squares of 2² heights.
 //
-// Every stored height is at most half a step of its leaf from the sample, where 255 steps are the range of its 25 samples and
-// a 512th of the leaf's side, rounded up by at most a sixteenth. So is the surface, which is bilinear between them on either side,
-// and neighbouring leaves differ by at most the sum of both. Squares that rise by more than kSteepest of their sides are the
-// exception: there the surface stands up to kAside of a square beside its place.
+// Every stored height is within half a step of its leaf from the sample. 255 steps span the range of the leaf's 25
+// samples and a 512th of the leaf's side, rounded up by at most a sixteenth. The same bound holds for the surface,
+// because both surfaces are bilinear between the samples. Neighbouring leaves differ by at most the sum of their
+// bounds. Squares that rise by more than kSteepest of their side are the exception: there the surface may be displaced
+// sideways by up to kAside of a square.
 #pragma once
 
 #include <cstdint>
@@ -31,41 +33,41 @@
 
 namespace relief {
 
-/// The largest rise within a leaf that 8 bits hold, of its side. A plane of such single squares has 71° along a row, and 64°
-/// along a diagonal.
+/// Largest rise within a leaf that 8 bits can store, relative to its side. A plane of such single squares has a slope
+/// of 71° along a row, and 64° along a diagonal.
 inline constexpr double kSteepest = 2.9;
-/// Of a square's side: how far the surface of a steeper square may stand beside its place.
+/// Maximum sideways displacement of the surface of a steeper square, relative to its side.
 inline constexpr double kAside = 0.15;
 
-/// The farthest that a square may lie from the origin, in squares: there a sixteenth of it is a step of a float.
+/// Maximum distance of a square from the origin, in squares; there a float step is a sixteenth of a square.
 inline constexpr double kFloatSteps = 524'288.0;
 
 inline constexpr unsigned kLeafLevel = 4;
 
 struct GroundPlace {
     double spacing = 1.0;    ///< between samples, object units
-    glm::dvec3 origin{0.0};  ///< of the first sample at height 0, object space
-    /// The squares whose steepness is counted, from one on: in tiles that overlap each square is of one.
+    glm::dvec3 origin{0.0};  ///< position of the first sample at height 0, object space
+    /// The squares whose steepness is counted; where tiles overlap, each square belongs to one tile.
     glm::uvec2 first{0};
     glm::uvec2 squares{std::numeric_limits<std::uint32_t>::max()};
-    /// Splits from a root down to a leaf: fewer for a coarse likeness, whose roots are those of the ground then.
+    /// Splits from a root down to a leaf; fewer for a coarse collider, which keeps the roots of the ground.
     unsigned leaf_level = kLeafLevel;
-    /// Heights from the lowest to the highest that the roots hold, whatever the samples are.
+    /// Lowest and highest height that the roots must contain; nullopt: those of the samples.
     std::optional<glm::dvec2> heights = {};
 };
 
 struct Ground {
-    std::uint64_t squares = 0;  ///< with ground; of none there is no more than this
+    std::uint64_t squares = 0;  ///< number with ground; if 0, no other member is set
     DepthMap map;
     Bounds bounds;            ///< of the surface, object space
-    std::uint64_t steep = 0;  ///< of those to be counted the ones that are steeper than kSteepest
-    double error_max = 0.0;   ///< half of the largest step of a leaf, object units; 0: all is steep
+    std::uint64_t steep = 0;  ///< counted squares that are steeper than kSteepest
+    double error_max = 0.0;   ///< half of the largest step of a leaf, object units; 0: all squares are steep
 };
 
-/// The ground reaches down to a twentieth of its longest side below its lowest point, or further, as that of meshes does
-/// (bake/shape). Leaves begin at the first sample, and at height 0: of grids whose origins differ by whole leaves they are the same.
-/// The same for any number of threads.
-/// Errors, without a name in front: kLimit (a tree beyond kPatchTexelsMax, or finer than floats).
+/// Builds the tree. The ground extends below its lowest point by a twentieth of its longest side, or more, as for
+/// meshes (bake/shape). Leaves start at the first sample and at height 0: grids whose origins differ by whole leaves
+/// have identical leaves. The result does not depend on the number of threads.
+/// Errors, without a file name: kLimit (a tree beyond kPatchTexelsMax, or finer than floats resolve).
 [[nodiscard]] Result<Ground> bakeGround(const HeightGrid& grid, const GroundPlace& place);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples that a tree of ground is made from.
+// Stores the samples from which a ground tree is built.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace relief {
 
-/// Rows of samples at equal distances, the first at the lowest z, each from the lowest x on.
+/// Equally spaced rows of samples in ascending z, each in ascending x.
 struct HeightGrid {
     std::uint32_t columns = 0;   ///< 2 or more
     std::uint32_t rows = 0;      ///< 2 or more
-    std::vector<float> heights;  ///< columns · rows, object units; NaN is a hole
+    std::vector<float> heights;  ///< columns · rows heights, object units; NaN is a hole
 
     [[nodiscard]] float at(std::size_t column, std::size_t row) const {
         return heights[row * columns + column];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A height map from its file, row by row: PNG and EXR, decoded by a process of their own, or raw samples.
+// Reads a height map file row by row: PNG and EXR, decoded in a worker process, or raw samples.
 #pragma once
 
 #include <array>
@@ -24,27 +24,27 @@ namespace relief {
 
 inline constexpr std::uint64_t kHeightSamplesMax = std::uint64_t{1} << 28;
 
-/// The lowest or the highest value, or up to three of them, far from all others: the gap is more than half the range.
+/// Up to three extreme values, lowest or highest, far from all others: the gap is more than half the range.
 struct LoneSample {
     float sample = 0.0F;  ///< the extreme, as stored in the file
-    float last = 0.0F;    ///< the one next to the gap; `sample` if there is only one
+    float last = 0.0F;    ///< the value next to the gap; equals `sample` if there is only one
     bool lowest = false;
-    double gap = 0.0;  ///< to the next sample, metres
+    double gap = 0.0;  ///< to the next value, metres
 };
 
-/// The lowest and the highest values.
+/// Tracks the lowest and the highest values.
 class SampleRange {
   public:
     void add(float sample) {
         insert(low_, sample);
         insert(high_, -sample);
     }
-    /// The gap is in samples. Returns nullopt unless there are more than twice as many other values.
+    /// Returns the lone values, with the gap in samples; nullopt unless there are more than twice as many other values.
     [[nodiscard]] std::optional<LoneSample> lone() const;
 
   private:
     static constexpr std::size_t kGroupMax = 3;
-    using Least = std::array<float, 2 * kGroupMax + 1>;  ///< different values, ascending; then infinity
+    using Least = std::array<float, 2 * kGroupMax + 1>;  ///< distinct values, ascending, padded with infinity
 
     static void insert(Least& least, float sample) {
         if (sample < least.back() && sample != least.front()) {
@@ -63,9 +63,9 @@ class SampleRange {
 
 class HeightMap {
   public:
-    /// Reads the file, and the image's header; its rows are decoded one by one.
-    /// Errors, with the file in front: those of readFile; kInvalidInput, kUnsupported (no such image); kLimit (more samples
-    /// than kHeightSamplesMax); kUsage (settings that are not for such an image, or are missing); those of
+    /// Reads the file and, for an image, its header. Rows are decoded on demand.
+    /// Errors, with the file in front: those of readFile; kInvalidInput, kUnsupported (not such an image); kLimit (more
+    /// than kHeightSamplesMax samples); kUsage (settings that do not apply to the image, or are missing); those of
     /// openImageRowsInWorker.
     [[nodiscard]] static Result<HeightMap> open(const std::filesystem::path& path, const HeightsSpec& spec,
                                                 const ImportLimits& limits = {});
@@ -76,24 +76,25 @@ class HeightMap {
     [[nodiscard]] std::uint32_t rows() const {
         return static_cast<std::uint32_t>(rows_->rows());
     }                                                                ///< 2 or more
-    [[nodiscard]] const std::string& name() const { return name_; }  ///< of the file, without its folder
-    [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of its bytes
-    /// The settings, with those that the name of a raw file implies.
+    [[nodiscard]] const std::string& name() const { return name_; }  ///< file name without its folder
+    [[nodiscard]] const std::string& hash() const { return hash_; }  ///< XXH3-128 of the file
+    /// The settings, including those that a raw file's extension implies.
     [[nodiscard]] const HeightsSpec& spec() const { return spec_; }
-    /// The lone samples of the rows read so far, without holes.
+    /// The lone samples of the rows read so far, excluding holes.
     [[nodiscard]] std::optional<LoneSample> lone() const;
-    /// Empty for images.
+    /// Always empty for images.
     [[nodiscard]] LikelierFormat likelierFormat() const;
-    /// Whether nothing in the file states the format of its samples.
+    /// Whether the file does not state the format of its samples.
     [[nodiscard]] bool isRaw() const;
-    /// Whether samples stand for heights from low to high.
+    /// Whether samples map to heights from `low` to `high`.
     [[nodiscard]] bool hasLow() const { return rows_->most() > 0; }
 
-    /// \param out  columns() heights of the next row, metres; NaN is a hole.
+    /// Reads the next row.
+    /// \param out  columns() heights in metres; NaN is a hole.
     /// Errors, with the file in front: kInvalidInput, kUnsupported; those of openImageRowsInWorker.
     [[nodiscard]] Result<void> next(std::span<float> out);
 
-    /// Begins again before the first row. Errors: those of open(), with the file in front.
+    /// Restarts before the first row. Errors: those of open(), with the file in front.
     [[nodiscard]] Result<void> rewind();
 
   private:
@@ -101,14 +102,14 @@ class HeightMap {
 
     ImportLimits limits_;
     HeightsSpec spec_;
-    std::string shown_;  // the path in quotes
+    std::string shown_;  // the quoted path
     std::string name_;
     std::string hash_;
-    std::vector<std::byte> bytes_;  // of raw samples
+    std::vector<std::byte> bytes_;  // raw samples
     Descriptor image_;              // sharedBytes() of an image
     std::unique_ptr<SampleRows> rows_;
     double low_ = 0.0;   // height of sample 0
-    double unit_ = 1.0;  // height of a sample's step
+    double unit_ = 1.0;  // height of one sample step
     bool has_hole_ = false;
     float hole_ = 0.0F;  // as stored in the file
     SampleRange range_;

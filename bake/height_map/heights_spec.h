@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings of a height map: `relief bake --heights`.
+// Defines the settings of a height map: `relief bake --heights`.
 //
-//     spacing=1,low=0,high=500           a grey image of whole numbers: 0 stands for low, the largest for high
-//     spacing=0.5,hole=-9999             an EXR image of metres
+//     spacing=1,low=0,high=500           a grey image of integers: 0 is low, the largest value is high
+//     spacing=0.5,hole=-9999             an EXR image in metres
 //     low=-10,high=90,width=2048,hole=0  raw samples of 16 bits, little-endian
 //     spacing=30,type=int16,order=big    raw samples in metres, big-endian, as in .hgt files
 //
-// Columns of samples run along +x, rows along +z, and heights along +y, as glTF has it. The surface is bilinear between four
-// samples, and the ground is solid below it. Squares of which a corner is a hole have no ground.
+// Columns of samples run along +x, rows along +z, and heights along +y, as in glTF. The surface is bilinear between
+// four samples, and the ground below it is solid. A square with a hole at a corner has no ground.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct HeightsOffset {
 [[nodiscard]] bool readForm(std::string_view word, HeightsOffset& offset);
 [[nodiscard]] std::string formText(const HeightsOffset& offset);
 
-/// The type of raw samples. Signed ones and floats are metres.
+/// The type of raw samples. Signed integers and floats are metres.
 enum class SampleType : std::uint8_t { kUint16, kInt16, kFloat32 };
 template <>
 inline constexpr std::array<std::string_view, 3> kWordsOf<SampleType>{"uint16", "int16", "float32"};
@@ -52,16 +52,17 @@ struct HeightsSpec {
     std::uint32_t tile = 1024;
 };
 
-inline constexpr double kHeightMax = 1e9;         ///< of low, high, offset and heights, either sign; metres
-inline constexpr double kHoleMax = 3.4028235e38;  ///< the largest float, as it is written
+/// Limit of the magnitude of low, high, offset and heights; metres.
+inline constexpr double kHeightMax = 1e9;
+inline constexpr double kHoleMax = 3.4028235e38;  ///< the largest float, as written in text
 
 void fields(FieldVisitor& visit, HeightsSpec& spec);
 
-/// Errors: kUsage, naming the key and the cure.
+/// Parses settings. Errors: kUsage, naming the key and the cure.
 [[nodiscard]] Result<HeightsSpec> parseHeightsSpec(std::string_view text);
-/// Adds the settings that the extension of a raw file implies: .hgt is of big-endian int16, and -32768 is its hole.
+/// Adds the settings that the extension of a raw file implies: .hgt is big-endian int16 with -32768 as hole.
 [[nodiscard]] HeightsSpec completed(HeightsSpec spec, const std::filesystem::path& file);
-/// Every setting that is not the default: parseHeightsSpec() reads it back.
+/// Lists every setting that differs from its default; parseHeightsSpec() reads the result.
 [[nodiscard]] std::string toString(const HeightsSpec& spec);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Raw samples without a header: their type, byte order and width are settings, as nothing in the file states them.
+// Reads raw samples without a header. Type, byte order and width are settings, because the file does not state them.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +14,27 @@
 
 namespace relief {
 
+/// Opens raw samples.
 /// \param bytes  untrusted; must outlive the rows.
-/// Errors, without the file's name: kInvalidInput (no such rows, or no square).
+/// Errors, without the file name: kInvalidInput (the size does not fit such rows, or there is no square).
 [[nodiscard]] Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes,
                                                               const HeightsSpec& spec);
 
-/// Settings that fit raw samples better than those given.
+/// Settings that fit raw samples better than the given ones.
 struct LikelierFormat {
     std::optional<SampleType> type = {};  ///< nullopt: as given
     std::optional<ByteOrder> order = {};  ///< nullopt: as given
     bool eight_bits = false;              ///< the samples may also be as given: 8 bits times 256
-    bool doubtful = false;  ///< none is found; but the samples are noise, or differ less with another sign
+    /// No better setting was found, but the samples look like noise, or differ less with the other signedness.
+    bool doubtful = false;
 
     [[nodiscard]] bool found() const { return type || order; }
     friend bool operator==(const LikelierFormat&, const LikelierFormat&) = default;
 };
-/// "type=int16,order=big"; empty if there are none.
+/// "type=int16,order=big"; empty if no better setting was found.
 [[nodiscard]] std::string toString(const LikelierFormat& format);
 
-/// Compares the differences of neighbours in at most 64 rows, and the values of all bytes.
+/// Compares the differences between neighbours in at most 64 rows, and the values of all bytes.
 [[nodiscard]] LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 }  // namespace relief

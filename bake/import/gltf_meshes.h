@@ -35,7 +35,7 @@ struct GltfInfluences {
 struct GltfPrimitive {
     ScenePart part;  ///< contains only positions that triangles use
     std::optional<GltfInfluences> influences{};
-    /// per target, an offset for each position; empty if the target moves none
+    /// Per target, an offset for each position; empty if the target moves none.
     std::vector<std::vector<glm::vec3>> targets{};
 };
 

@@ -23,7 +23,7 @@ class ImportSource {
     [[nodiscard]] static Result<ImportSource> open(const std::filesystem::path& path);
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    /// lower case, without the dot
+    /// Lower case, without the dot.
     [[nodiscard]] const std::string& extension() const { return extension_; }
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
     /// Descriptor of the folder, O_PATH; -1 if it cannot be opened.

@@ -30,7 +30,7 @@ struct ColladaNode {
     std::string name;     ///< the id, else the sid, as assimp names nodes; may be empty
     std::string label;    ///< the name for messages
     bool hidden = false;  ///< `visibility` is 0 or false in a <technique> of an <extra>
-    /// indices of its own children, then of the nodes that it instances
+    /// Indices of its own children, then of the nodes that it instances.
     std::vector<std::uint32_t> children;
 };
 struct ColladaNodes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts with a collider and the materials that they should find: what a tree of materials is fitted to.
+// Samples contacts with a collider and the materials that they should find. A material tree is fitted to them.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace relief {
 
-/// Weight of a contact that lies further than a texel from any other material; of the others it is 1, since texels are no
+/// Weight of a contact farther than a texel from any other material. Other contacts weigh 1, since texels are no
 /// sharper than that.
 inline constexpr std::uint32_t kClearContact = 8;
 
 struct MaterialSample {
     glm::dvec3 point;     ///< on the collider's surface
-    glm::dvec3 normal;    ///< that the collider has there
+    glm::dvec3 normal;    ///< of the collider at that point
     std::uint8_t id = 0;  ///< of the nearest surface of the source
     std::uint32_t weight = kClearContact;
 };
 
-/// Of points that are spread evenly over the area of the source, those that belong to a contact: what lies within solids is in
-/// no contact's way. The same for any number of threads.
+/// Samples points spread evenly over the area of the source, and keeps those that a contact can reach, excluding points
+/// within solids. The result does not depend on the number of threads.
 [[nodiscard]] std::vector<MaterialSample> sampleContacts(const Collider& collider,
                                                          const MaterialSource& source);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a mesh as it was imported, with a material for each triangle.
+// Stores the imported surface of a mesh, with a material for each triangle.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,14 @@
 
 namespace relief {
 
-/// The surface that materials are of. Copies of it are large.
+/// The surface that carries the materials. Large; avoid copies.
 struct MaterialSource {
     std::vector<glm::vec3> positions;   ///< object space
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
-    std::vector<std::uint8_t> ids;      ///< of the triangles, in `list`
-    std::vector<Material> list;         ///< in the order of the file
-    /// It has no sheets, which have one material on both of their sides: a normal tells the sides of a board apart.
+    std::vector<std::uint8_t> ids;      ///< per triangle, an index into `list`
+    std::vector<Material> list;         ///< in file order
+    /// The surface has no sheets. A sheet has one material on both sides; on a solid, the normal separates the two
+    /// sides of a board.
     bool sides = true;
 
     [[nodiscard]] bool empty() const { return list.empty(); }

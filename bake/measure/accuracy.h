@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The accuracy of a field against a mesh, for colliders and their rivals alike.
+// Measures the accuracy of a field against a mesh, for colliders and for other representations.
 #pragma once
 
 #include <cstdint>
@@ -14,77 +14,79 @@
 
 namespace relief {
 
-/// A field at a point.
+/// The value of a field at a point.
 struct FieldValue {
     float distance = 0.0F;   ///< object units, negative inside; kFarOutside: outside at an unknown distance
     glm::vec3 normal{0.0F};  ///< unit length, outwards; zero if unknown
 };
 
-/// A field to be measured. Called from many threads. nullopt: unknown, which counts as outside, as particles fly on.
+/// A field to measure, called from many threads. nullopt means unknown and counts as outside, because particles fly on.
 using Field = std::function<std::optional<FieldValue>(const glm::vec3&)>;
 
-/// The votes: the side, and the normal of the deciding plane. \param collider  borrowed.
+/// Returns the field of the vote: the side, and the normal of the deciding plane. \param collider  borrowed.
 [[nodiscard]] Field fieldOf(const Collider& collider);
 
-/// The same sides with the distance to the nearest surface (nearest_surface.h), which takes about 13 times as long.
+/// Like fieldOf(), with the distance to the nearest surface (nearest_surface.h); takes about 13 times as long.
 /// \param collider  borrowed.
 [[nodiscard]] Field nearestFieldOf(const Collider& collider);
 
-/// Shares of points on the wrong side, in percent of all points of their kind.
+/// Fractions of points on the wrong side, in percent of all points of their kind.
 struct WrongShare {
-    double false_inside = 0.0;   ///< outside in truth
-    double false_outside = 0.0;  ///< inside in truth
+    double false_inside = 0.0;   ///< points that are outside in truth
+    double false_outside = 0.0;  ///< points that are inside in truth
     [[nodiscard]] double total() const { return false_inside + false_outside; }
 };
 
 void fields(FieldVisitor& visit, const WrongShare& share);
 
-/// Accuracy of the votes at TruthSamples::inside.
+/// Accuracy of the vote at TruthSamples::inside.
 struct InsideAccuracy {
     std::uint64_t points = 0;
-    /// Points at which the nearest face does not decide: they are called outside, the normal points away from it, or the depth is
-    /// more than 1.25 times the true one and 0.1 % of the longest side. Percent.
+    /// Points at which the nearest face does not decide, in percent: the point is classified as outside, the normal
+    /// points away from the face, or the depth exceeds the truth by more than 25 % and by more than 0.1 % of the
+    /// longest side.
     double far_face_percent = 0.0;
-    double depth_mean = 0.0;  ///< |depth − true depth| of those that are called inside, object units
+    double depth_mean = 0.0;  ///< |depth − true depth| of points classified as inside, object units
     double depth_p99 = 0.0;
-    double normal_mean = 0.0;  ///< angle between the normal and the way to the boundary, degrees
+    double normal_mean = 0.0;  ///< angle between the normal and the direction to the boundary, degrees
     double normal_p99 = 0.0;
 };
 
 struct FieldAccuracy {
     WrongShare near;     ///< points near the surface
     WrongShare uniform;  ///< points in the box
-    /// |f − true signed distance| of the points near the surface with a distance. Object units; the 99th percentile by
-    /// nearest rank.
+    /// |f − true signed distance| over points near the surface with a distance, object units. The 99th percentile uses
+    /// the nearest rank.
     double distance_mean = 0.0;
     double distance_p99 = 0.0;
-    double far_percent = 0.0;      ///< of the points near the surface: outside without a distance
-    double unknown_percent = 0.0;  ///< of the points near the surface: without a value
-    /// Angle between the normals of field and surface, at surface points that are not buried and have both. Degrees.
+    double far_percent = 0.0;      ///< points near the surface that are outside without a distance
+    double unknown_percent = 0.0;  ///< points near the surface without a value
+    /// Angle between the normals of field and surface, in degrees, over surface points that are not buried and have
+    /// both.
     double normal_mean = 0.0;
     double normal_p99 = 0.0;
     double no_normal_percent = 0.0;  ///< of the surface points that are not buried
     InsideAccuracy inside;
-    double seconds = 0.0;  ///< of the measurement, on all cores
+    double seconds = 0.0;  ///< duration of the measurement
 };
 
-/// \param points  as sampleNear draws them.
+/// Measures the points of sampleNear().
 [[nodiscard]] WrongShare measureNear(const std::vector<TruthPoint>& points, const Field& field);
 
-/// The same for any number of threads, but for `seconds`.
+/// Measures a field. Apart from `seconds`, the result does not depend on the number of threads.
 [[nodiscard]] FieldAccuracy measureField(const TruthSamples& samples, const Field& field);
 
-/// Replaces distance_…, far_percent and unknown_percent by those of another field. Adds to `seconds`.
+/// Replaces distance_…, far_percent and unknown_percent with those of another field. Adds to `seconds`.
 void measureDistances(const TruthSamples& samples, const Field& field, FieldAccuracy& accuracy);
 
 struct ColliderAccuracy {
     FieldAccuracy field;
-    double unseen_percent = 0.0;  ///< of the area that is not buried: no map sees it (sight.h)
+    double unseen_percent = 0.0;  ///< area that is not buried and that no map sees (sight.h)
     double buried_percent = 0.0;  ///< of the whole area
     std::uint64_t gpu_bytes = 0;
 };
 
-/// Sides and normals by the votes, distances by the search for the nearest surface.
+/// Measures a collider: sides and normals by the vote, distances by the search for the nearest surface.
 [[nodiscard]] ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& query,
                                                const Collider& collider);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fine a map of patches is: by its finest cell alone nothing can be told of a place, for cells grow where little is to see.
+// Measures the local resolution of a map of patches. Its finest cell does not describe other places, because cells grow
+// where the surface is simple.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +11,12 @@
 
 namespace relief {
 
-/// Leaves of a map of patches that hold heights. 0: it sees no surface.
+/// Counts the leaves that store heights; 0: the map sees no surface.
 [[nodiscard]] std::uint32_t patchCount(const DepthMap& map);
 
-/// Between the heights of the leaf at a point, of a pair the first one's, object units; the side of the leaf where it holds none.
-/// \param p  object space. Beyond the roots: of the nearest of them.
+/// Returns the spacing of heights in the leaf at a point (for a pair, of the first patch), in object units; the side of
+/// the leaf if it stores none.
+/// \param p  object space. Outside the roots, the nearest root is used.
 [[nodiscard]] double patchSpacingAt(const DepthMap& map, const glm::vec3& p);
 
 }  // namespace relief

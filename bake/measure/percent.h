@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shares as people read them.
+// Converts fractions to percent.
 #pragma once
 
 #include <cstddef>
 
 namespace relief {
 
-/// 100 part / whole, and 0 of nothing.
+/// Returns 100 · part / whole, or 0 if whole is 0.
 [[nodiscard]] inline double percent(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }

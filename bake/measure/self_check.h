@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The measurement that a bake makes of its own result.
+// Measures the result of a bake as part of the bake.
 #pragma once
 
 #include <optional>
@@ -15,12 +15,12 @@ namespace relief {
 
 struct SelfCheck {
     WrongShare wrong;                    ///< near the surface
-    std::optional<PartsAccuracy> parts;  ///< if there are several
+    std::optional<PartsAccuracy> parts;  ///< set if there are several
 };
 
-/// By 4000 points near the surface, and at most 64 near each of the 1024 largest parts.
+/// Measures with 4000 points near the surface, and at most 64 near each of the 1024 largest parts.
 /// \param mesh   the solid of `parts`.
-/// \param scale  of the object in its world, at most.
+/// \param scale  the object's largest scale in its world.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<SelfCheck> selfCheck(const PreparedMesh& mesh, const SurfaceParts& parts,
                                           const Collider& collider, double scale = 1.0);

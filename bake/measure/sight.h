@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visibility of a surface to the maps of a collider.
+// Computes which parts of a surface the maps of a collider can see.
 #pragma once
 
 #include <array>
@@ -19,20 +19,20 @@ namespace relief {
 /// The lines of sight of one map, independent of its texels.
 class Sight {
   public:
-    /// \param map, query  borrowed.
+    /// Borrows both arguments.
     Sight(const DepthMap& map, const MeshQuery& query);
 
-    /// The map can hold the surface there: an end that it keeps has, within the volume, a free line of sight to the front of
-    /// the surface, kSurfaceStep above it.
+    /// Whether the map can represent the surface at the point: from a stored end of its ray, a line of sight within the
+    /// volume reaches the front of the surface, kSurfaceStep above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
-    /// The start of a free line of sight to a point in object space. nullopt: none, and even the finest texels would not have
-    /// the point outside.
+    /// Returns the start of a free line of sight to a point in object space. nullopt: there is none, so that even the
+    /// finest texels would not classify the point as outside.
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
   private:
     struct Lines {
-        std::array<glm::dvec3, 2> start;  ///< where the map's rays start, object space
+        std::array<glm::dvec3, 2> start;  ///< start of the map's rays, object space
         std::size_t count = 0;
     };
     [[nodiscard]] glm::dvec3 inMap(const glm::dvec3& p) const;
@@ -47,16 +47,17 @@ class Sight {
     double side_ = 0.0;
 };
 
-/// All maps of a collider.
+/// The lines of sight of all maps of a collider.
 class Sights {
   public:
-    /// \param maps, query  borrowed.
+    /// Borrows both arguments.
     Sights(std::span<const DepthMap> maps, const MeshQuery& query);
 
     [[nodiscard]] bool see(const SurfacePoint& point) const;
     [[nodiscard]] const std::vector<Sight>& maps() const { return sights_; }
 
-    /// Unseen share of the points that are not buried, in percent. The same for any number of threads.
+    /// Unseen fraction of the points that are not buried, in percent. The result does not depend on the number of
+    /// threads.
     [[nodiscard]] double unseenPercent(std::span<const SurfacePoint> points) const;
 
   private:

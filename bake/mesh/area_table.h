@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing triangles and points of a mesh by area.
+// Selects triangles and points of a mesh by area.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace relief {
 
-/// Finds triangles by cumulative area, without caps (TriangleMesh::cap_triangles).
+/// Finds triangles by cumulative area, excluding caps (TriangleMesh::cap_triangles).
 class AreaTable {
   public:
     explicit AreaTable(const TriangleMesh& mesh);
-    /// \param share  in [0, 1]: of the area before the wanted point.
+    /// Returns the triangle at a fraction of the total area. \param share  in [0, 1].
     [[nodiscard]] std::uint32_t triangleAt(double share) const;
 
   private:
-    std::vector<double> up_to_;  // twice the area, up to and including each triangle
+    std::vector<double> up_to_;  // per triangle, twice the cumulative area, including the triangle
 };
 
-/// Uniform over the triangle if u and v are uniform in [0, 1].
+/// Maps (u, v) to a point on the triangle; uniform if u and v are uniform in [0, 1].
 [[nodiscard]] glm::dvec3 pointOn(const TriangleMesh& mesh, std::uint32_t triangle, double u, double v);
 
 }  // namespace relief

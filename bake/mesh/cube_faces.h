@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faces of a cube map, as OpenGL has them.
+// Lists the faces of a cube map in OpenGL's order.
 #pragma once
 
 #include <glm/vec3.hpp>
 
 namespace relief {
 
-/// The axes of a cube's face by OpenGL 3.3, table 3.21: sign · component.
+/// The axes of a cube face as sign · component: OpenGL 3.3, table 3.21.
 struct CubeFaceAxes {
     struct Axis {
         int component;

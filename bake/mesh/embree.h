@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Embree calls that differ between versions 3 and 4 (CMake: -DRELIEF_EMBREE=3|4), and how Embree is configured.
+// Wraps the Embree calls that differ between versions 3 and 4 (CMake: -DRELIEF_EMBREE=3|4), and configures Embree.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -16,10 +16,10 @@
 
 namespace relief {
 
-/// For rtcNewDevice(). By default Embree runs the widest instruction set of the processor. Fused multiply-add changes
-/// which rays meet an edge, and the vector width which of two surfaces at one depth comes first, so that another
-/// processor would bake other bytes. Hence one set for all, that of every processor since 2008; others get Embree's
-/// error. It costs about a tenth of a bake.
+/// Configuration for rtcNewDevice(). By default, Embree uses the processor's widest instruction set. Fused multiply-add
+/// changes which rays hit an edge; vector width changes which of two surfaces at equal depth comes first. The bytes of
+/// a bake would then depend on the processor. This fixes one instruction set, which every processor since 2008
+/// supports; on others, Embree returns an error. It costs about a tenth of a bake's time.
 #if defined(__x86_64__)
 inline constexpr const char* kEmbreeConfig = "isa=sse4.2";
 #else
@@ -28,7 +28,7 @@ inline constexpr const char* kEmbreeConfig = nullptr;
 
 #if RELIEF_EMBREE == 3
 using EmbreeContext = RTCIntersectContext;
-/// A scene whose rays bring filter functions of their own.
+/// Flag of a scene whose rays have their own filter functions.
 inline constexpr RTCSceneFlags kEmbreeRayFilters = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #else
 using EmbreeContext = RTCRayQueryContext;
@@ -37,10 +37,11 @@ inline constexpr RTCSceneFlags kEmbreeRayFilters = RTC_SCENE_FLAG_FILTER_FUNCTIO
 
 enum class RayOrder { kIncoherent, kCoherent };
 
-/// The context of a ray or of a packet of rays. Filter functions reach it through of().
+/// The context of a ray or ray packet. Filter functions access it through of().
 class RayQuery {
   public:
-    /// `filter` runs for each surface on the ray; null: the nearest one counts. It needs a scene with kEmbreeRayFilters.
+    /// \param filter  runs for each surface on the ray, and requires a scene with kEmbreeRayFilters; null: the nearest
+    /// surface is the hit.
     explicit RayQuery(RTCFilterFunctionN filter = nullptr, RayOrder order = RayOrder::kIncoherent) {
 #if RELIEF_EMBREE == 3
         rtcInitIntersectContext(&context_);
@@ -54,21 +55,22 @@ class RayQuery {
 #endif
     }
 
-    /// The query that a filter function runs for. EmbreeContext is the first member, and Embree hands its pointer back.
+    /// Returns the query of a filter function. EmbreeContext is the first member, and Embree passes its pointer to the
+    /// filter.
     static RayQuery* of(const RTCFilterFunctionNArguments* args) {
         return reinterpret_cast<RayQuery*>(args->context);
     }
 
 #if RELIEF_EMBREE == 3
-    /// Traces the ray; `ray.hit.geomID` stays RTC_INVALID_GEOMETRY_ID without a hit.
+    /// Traces a ray. `ray.hit.geomID` stays RTC_INVALID_GEOMETRY_ID if there is no hit.
     void intersect(RTCScene scene, RTCRayHit& ray) {
         rtcIntersect1(scene, &context_, &ray);
     }
-    /// Traces those of sixteen rays whose `valid` is −1.
+    /// Traces those of the sixteen rays whose `valid` is −1.
     void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
         rtcIntersect16(valid, scene, &context_, &rays);
     }
-    /// `ray.tfar` becomes −∞ on a hit.
+    /// Traces a shadow ray. `ray.tfar` becomes −∞ on a hit.
     void occluded(RTCScene scene, RTCRay& ray) {
         rtcOccluded1(scene, &context_, &ray);
     }
@@ -96,7 +98,7 @@ class RayQuery {
         init(&arguments);
         arguments.context = &context_;
         arguments.filter = filter_;
-        // Without this flag Embree runs only the filters of geometries.
+        // Without this flag, Embree runs only the filters of geometries.
         const int flags =
             (order_ == RayOrder::kCoherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
             (filter_ != nullptr ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : RTC_RAY_QUERY_FLAG_NONE);
@@ -109,7 +111,7 @@ class RayQuery {
 #endif
 };
 
-/// A ray in Embree's units; `end` in units of its direction.
+/// Builds a ray in Embree's coordinates; `end` is in units of its direction.
 [[nodiscard]] inline RTCRayHit rayHit(const glm::vec3& origin, const glm::vec3& direction, float end) {
     RTCRayHit query{};
     query.ray.org_x = origin.x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flat faces of a mesh, however finely they are divided.
+// Finds the flat faces of a mesh, independent of their tessellation.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,16 @@
 
 namespace relief {
 
-/// Connected triangles whose normals are within 1e-4 of the first one's, or as far from it as rounding may turn them: vertices to a
-/// millionth of the mesh's longest side, or to floats.
+/// A set of connected triangles whose normals differ from the first triangle's by at most 1e-4, or by the error of
+/// rounded vertices if that is larger. Vertices are assumed to be rounded to a millionth of the mesh's longest side, or
+/// to floats.
 struct FlatFace {
     double area = 0.0;
     double length =
-        0.0;  ///< the longest edge of a triangle, or the side of a square of that area if that is longer
+        0.0;  ///< the longest triangle edge, or the side of a square of equal area if that is longer
 };
 
-/// \return per triangle, the face that it is part of; one without area is a face of its own.
+/// Returns the face of each triangle; a triangle without area is a face of its own.
 [[nodiscard]] std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions of rays that tell the inside of a mesh from its outside.
+// Defines the directions of rays that classify points as inside or outside.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace relief {
 
-/// About unit length. No model is built along them.
+/// About unit length. Chosen so that no modelled edge or face is parallel to them.
 inline constexpr std::array<glm::dvec3, 7> kParityDirections = {{{0.5773, 0.6137, 0.5386},
                                                                  {-0.7351, 0.3119, 0.6019},
                                                                  {0.2677, -0.8713, 0.4111},

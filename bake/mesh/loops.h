@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over indices: on all cores, and by bucket.
+// Provides a parallel loop and a counting sort.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// Calls visit(i) for i in [begin, end), on all cores. \param grain  indices per task, at least.
+/// Calls visit(i) for i in [begin, end) on all cores. \param grain  least indices per task.
 template <class Visit>
 void forEachIndex(std::size_t begin, std::size_t end, std::size_t grain, const Visit& visit) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, grain), [&](const auto& range) {
@@ -23,12 +23,12 @@ void forEachIndex(std::size_t begin, std::size_t end, std::size_t grain, const V
     });
 }
 
-/// Values by bucket, each bucket in the order of its values' arrival: a counting sort.
+/// Groups values by bucket, keeping their order in each bucket: a counting sort.
 template <class Value, class Index = std::uint32_t>
 class Buckets {
   public:
     Buckets() = default;
-    /// \param forEach  calls its argument with (bucket, value) for every value; runs twice, in the same order.
+    /// \param forEach  calls its argument with (bucket, value) for every value; runs twice and must repeat its order.
     template <class ForEach>
     Buckets(std::size_t count, const ForEach& forEach) : first_(count + 1, 0) {
         forEach([&](std::size_t bucket, const Value&) { ++first_[bucket + 1]; });
@@ -39,12 +39,12 @@ class Buckets {
     }
 
     [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
-    /// The index in values() of a bucket's first value, or of the end for size().
+    /// Index in values() of the first value of a bucket; the end if bucket is size().
     [[nodiscard]] Index first(std::size_t bucket) const { return first_[bucket]; }
     [[nodiscard]] std::span<const Value> operator[](std::size_t bucket) const {
         return std::span(values_).subspan(first_[bucket], first_[bucket + 1] - first_[bucket]);
     }
-    [[nodiscard]] std::vector<Value>& values() { return values_; }  ///< bucket after bucket
+    [[nodiscard]] std::vector<Value>& values() { return values_; }  ///< all buckets, in order
 
   private:
     std::vector<Index> first_;

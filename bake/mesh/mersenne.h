@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generators of random bits: SplitMix64, and the 64-bit Mersenne Twister (Nishimura 2000) for few numbers from many seeds.
+// Generates random bits: SplitMix64, and a 64-bit Mersenne Twister (Nishimura 2000) for short sequences from many
+// seeds.
 #pragma once
 
 #include <array>
@@ -8,7 +9,7 @@
 
 namespace relief {
 
-/// The finalizer of SplitMix64 (Steele, Lea, Flood 2014), of the state after `z`.
+/// The SplitMix64 finalizer (Steele, Lea, Flood 2014), applied to the state after `z`.
 [[nodiscard]] constexpr std::uint64_t splitMix64(std::uint64_t z) {
     z += 0x9e3779b97f4a7c15U;
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -16,8 +17,8 @@ namespace relief {
     return z ^ (z >> 31);
 }
 
-/// The numbers of std::mt19937_64, computed one by one. The library's fills its state and makes 312 at a time, where a
-/// random point takes six.
+/// Generates the sequence of std::mt19937_64 incrementally. The library computes 312 words at a time, but a random
+/// point needs only six.
 class Mersenne64 {
   public:
     explicit Mersenne64(std::uint64_t seed) { words_[0] = seed; }
@@ -39,7 +40,7 @@ class Mersenne64 {
     static constexpr std::size_t kMiddle = 156;
     static constexpr std::uint64_t kUpper = ~std::uint64_t{0} << 31U;
 
-    /// Seeds the words up to and including this one; they need no word that has been replaced.
+    /// Seeds the words up to `last`. Seeding never reads a word that has been replaced.
     void seedUpTo(std::size_t last) {
         for (; seeded_ <= last; ++seeded_) {
             const std::uint64_t before = words_[seeded_ - 1];
@@ -54,7 +55,8 @@ class Mersenne64 {
         return z ^ (z >> 43U);
     }
 
-    std::array<std::uint64_t, kWords> words_;  // valid before seeded_; of the current round before next_
+    // [0, seeded_) are valid; [0, next_) belong to the current round.
+    std::array<std::uint64_t, kWords> words_;
     std::size_t seeded_ = 1;
     std::size_t next_ = 0;
 };

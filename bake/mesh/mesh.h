@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle mesh in object space, as importers make it and bakes take it.
+// Defines the triangle mesh in object space that importers produce and bakes consume.
 #pragma once
 
 #include <array>
@@ -17,76 +17,77 @@
 
 namespace relief {
 
-/// TriangleMesh::labels of a triangle that is not of the file: a cap.
+/// The label of a triangle that is not in the file: a cap (TriangleMesh::labels).
 inline constexpr std::uint32_t kNoLabel = 0xffffffff;
 
-/// Limit of a mesh, instances counted one by one.
+/// Most triangles of a mesh, counting each instance.
 inline constexpr std::uint64_t kTriangleMax = 100'000'000;
-/// Names that one import may select, and bytes per name.
+/// Most names that an import may select, and most bytes per name.
 inline constexpr std::size_t kAskedNamesMax = 255;
 inline constexpr std::size_t kAskedNameBytesMax = 256;
-/// Distinct surfaces of a file; those beyond count as one without a name.
+/// Most distinct surfaces of a file; all further ones share one unnamed entry.
 inline constexpr std::size_t kSurfaceNamesMax = 65'536;
 
-/// The place of a surface in its file.
+/// Node and material of a surface in its file.
 struct SurfaceName {
-    std::uint32_t node_index = 0;  ///< counts the nodes that show something: two of one name are two
-    std::string node;              ///< of OBJ the group or object; "" without a name
-    std::string material;          ///< "" without a name
-    float restitution = 1.0F;      ///< of the material, as formats/materials.h has it, where the file has one
+    std::uint32_t node_index = 0;  ///< counts the nodes that show something; nodes with equal names differ
+    std::string node;              ///< for OBJ, the group or object; "" if unnamed
+    std::string material;          ///< "" if unnamed
+    float restitution = 1.0F;      ///< of the material in the file, if any (formats/materials.h)
     float friction = 0.0F;
 
     friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
 
-/// A different mesh of a level: the next positions and triangles of a TriangleMesh that an importer hands over.
+/// A distinct mesh of a level: the next positions and triangles of an importer's TriangleMesh.
 struct LevelMesh {
     std::string name;
     std::uint64_t positions = 0;
-    std::uint64_t triangles = 0;  ///< whose indices count from the mesh's first position
+    std::uint64_t triangles = 0;  ///< indices count from the mesh's first position
 };
 /// A node that places a mesh: world = position + scale · rotation · mesh.
 struct LevelBody {
     std::uint32_t mesh = 0;
     std::string node;
     std::array<double, 3> position{};
-    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};  ///< a unit quaternion x, y, z, w
+    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};  ///< unit quaternion x, y, z, w
     double scale = 1.0;                                  ///< above 0
 };
 
-/// After finishMesh: at least one triangle, every index valid, every position finite and used by a triangle,
+/// Invariants after finishMesh: at least one triangle; every index valid; every position finite and used by a triangle;
 /// no triangle without area.
 struct TriangleMesh {
-    std::string name;                   ///< file name without its folder; valid UTF-8
-    std::string content_hash;           ///< XXH3-128 of the file's bytes
-    std::string unit;                   ///< of lengths: "m", or "" if the source has none
-    std::vector<glm::vec3> positions;   ///< object space
-    std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside, if the source keeps to that
-    /// Per triangle, 1 + the index of the last of the selected names that it has, or 0. Empty: no names were selected, or
-    /// the triangles are no longer the source's.
+    std::string name;                  ///< file name without its folder; valid UTF-8
+    std::string content_hash;          ///< XXH3-128 of the file
+    std::string unit;                  ///< of lengths: "m", or "" if unknown
+    std::vector<glm::vec3> positions;  ///< object space
+    /// Counter-clockwise seen from outside, if the source is wound consistently.
+    std::vector<glm::uvec3> triangles;
+    /// Per triangle, 1 + the index of the last selected name that applies to it, or 0. Empty if no names were selected,
+    /// or if the triangles are no longer the source's.
     std::vector<std::uint8_t> marks;
-    /// Per triangle an index into `surface_names`. Empty: one surface, or the triangles are no longer the source's.
+    /// Per triangle, an index into `surface_names`. Empty if there is one surface, or if the triangles are no longer
+    /// the source's.
     std::vector<std::uint32_t> labels;
-    /// One per material of each node, in file order; of a single surface only if its material has a name.
+    /// One per material of each node, in file order. A single surface has an entry only if its material has a name.
     std::vector<SurfaceName> surface_names;
-    std::uint64_t dropped_triangles = 0;  ///< without area
-    std::uint64_t unused_vertices = 0;    ///< of the source, that no triangle of it uses
-    /// Triangles at the end that are no surface of the source's: caps over holes (hole_caps.h), rims of shells and the
-    /// ground below terrains (bake/shape). Nothing is measured on them.
+    std::uint64_t dropped_triangles = 0;  ///< triangles without area
+    std::uint64_t unused_vertices = 0;    ///< vertices of the source without a triangle
+    /// Number of final triangles that are not part of the source's surface: caps over holes (hole_caps.h), rims of
+    /// shells, and ground below terrains (bake/shape). Measurements exclude them.
     std::uint64_t cap_triangles = 0;
     std::uint64_t closed_holes = 0;
-    std::uint64_t source_triangles =
-        0;                         ///< of the file, where they differ from `triangles` without caps; else 0
-    double shell_thickness = 0.0;  ///< of the shells among its parts (bake/shape), object units; 0: no shells
-    Bounds bounds;                 ///< of positions
+    std::uint64_t source_triangles = 0;  ///< of the file, if it differs from `triangles` without caps; else 0
+    double shell_thickness = 0.0;        ///< of its thickest shell (bake/shape), object units; 0: no shells
+    Bounds bounds;                       ///< of positions
     std::vector<std::string>
-        dependencies;  ///< the file, by the path that was given, then those it refers to, sorted
-    std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each file's bytes, in the same order
-    std::vector<std::string> warnings;           ///< of the import, one line each
-    /// Of a level, on its way from the importer alone (bake/import/level.h); else empty.
+        dependencies;  ///< the file's path as given, then the files that it references, sorted
+    std::vector<std::string> dependency_hashes;  ///< XXH3-128 of each dependency, in the same order
+    std::vector<std::string> warnings;           ///< from the import, one line each
+    /// Set only for a level between the importer and cutLevel() (bake/import/level.h); else empty.
     std::vector<LevelMesh> level_meshes;
     std::vector<LevelBody> level_bodies;
-    /// Of an animated mesh, on the same way (bake/import/animated_import.h): bytes of an AnimatedMesh.
+    /// Set only for an animated mesh, likewise (bake/import/animated_import.h): a serialized AnimatedMesh.
     std::vector<std::byte> animation;
 
     [[nodiscard]] std::uint64_t surfaceTriangles() const { return triangles.size() - cap_triangles; }
@@ -95,21 +96,21 @@ struct TriangleMesh {
     }
 };
 
-/// Makes the invariants above true: drops triangles without area with their marks and labels, drops positions without a
-/// triangle, and computes the bounds.
-/// \param mesh  with no marks, or as many as triangles; labels likewise.
-/// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate that is not finite or beyond 1e15,
-/// no triangle with an area), kLimit (kTriangleMax).
+/// Establishes the invariants of TriangleMesh: drops triangles without area, with their marks and labels, drops unused
+/// positions, and computes the bounds.
+/// \param mesh  has no marks or one per triangle, and no labels or one per triangle.
+/// Errors, naming mesh.name: kInvalidInput (index out of range, coordinate not finite or beyond 1e15, no triangle with
+/// an area), kLimit (kTriangleMax).
 [[nodiscard]] Result<TriangleMesh> finishMesh(TriangleMesh mesh);
 
-/// Keeps the first `count` triangles, their marks and labels. \pre moveTriangle() has filled them.
+/// Truncates triangles, marks and labels to `count`. \pre moveTriangle() has filled the entries that are kept.
 void keepTriangles(TriangleMesh& mesh, std::size_t count);
-/// Leaves out the labels of a single surface, and its name where that has no material.
+/// Clears the labels if there is only one surface, and clears its name if the material is unnamed.
 void dropSingleLabel(TriangleMesh& mesh);
-/// Copies a triangle, its mark and its label.
+/// Copies a triangle with its mark and label.
 void moveTriangle(TriangleMesh& mesh, std::size_t from, std::size_t to);
 
-/// Extends a box by another one.
+/// Extends a box by another box.
 inline void addBounds(Bounds& bounds, const Bounds& other) {
     bounds.add(other.min);
     bounds.add(other.max);
@@ -129,11 +130,11 @@ inline void addTriangle(Bounds& bounds, const TriangleMesh& mesh, std::uint32_t 
     }
 }
 
-/// Of a triangle with an area.
+/// Returns the plane of a triangle, which must have an area.
 [[nodiscard]] inline TrianglePlane planeOf(const TriangleMesh& mesh, std::uint32_t triangle) {
     return planeOf(mesh.positions, mesh.triangles[triangle]);
 }
-/// By the right-hand rule, of a triangle with an area.
+/// Returns the normal by the right-hand rule. The triangle must have an area.
 [[nodiscard]] inline glm::dvec3 unitNormal(const TriangleMesh& mesh, std::uint32_t triangle) {
     return unit(planeOf(mesh, triangle).normal);
 }

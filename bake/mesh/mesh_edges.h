@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges of a mesh. Equal positions are one vertex, as importers repeat positions along seams.
+// Finds the edges of a mesh. Equal positions count as one vertex, because importers repeat positions along seams.
 #pragma once
 
 #include <algorithm>
@@ -14,34 +14,34 @@
 
 namespace relief {
 
-/// An edge of an odd number of triangles: the border of a hole, or of a flap on a closed surface. A vertex is the lowest
-/// index of its position.
+/// An edge with an odd number of triangles: the border of a hole, or of a flap on a closed surface. Vertices are the
+/// lowest indices of their positions.
 struct OddEdge {
-    std::uint32_t from = 0;  ///< the direction in which most of its triangles run
+    std::uint32_t from = 0;  ///< the direction of most of its triangles
     std::uint32_t to = 0;
 
     friend bool operator==(const OddEdge&, const OddEdge&) = default;
 };
 
-/// Per vertex, the lowest index of an equal position.
+/// Returns, per vertex, the lowest index with an equal position.
 [[nodiscard]] std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh);
 
-/// One side of a triangle, between welded vertices.
+/// A side of a triangle, between welded vertices.
 struct EdgeUse {
     std::uint32_t low = 0;
     std::uint32_t high = 0;
     std::uint32_t triangle = 0;
-    std::uint8_t side = 0;  ///< from corner `side` to the next one
-    bool down = false;      ///< from high to low
+    std::uint8_t side = 0;  ///< from corner `side` to the next corner
+    bool down = false;      ///< directed from high to low
 };
 
-/// All sides of triangles over distinct positions: by edge, then triangle, then side.
+/// Returns all sides of triangles with distinct positions, sorted by edge, then triangle, then side.
 /// \param vertices  number of positions.
 [[nodiscard]] std::vector<EdgeUse> edgeUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices);
 
 struct MeshEdges {
-    std::vector<std::uint32_t> welded;  ///< weldedVertices
-    std::vector<EdgeUse> uses;          ///< edgeUses of the welded vertices
+    std::vector<std::uint32_t> welded;  ///< weldedVertices()
+    std::vector<EdgeUse> uses;          ///< edgeUses() of the welded vertices
 };
 [[nodiscard]] MeshEdges edgesOf(const TriangleMesh& mesh);
 
@@ -58,7 +58,8 @@ class DisjointSets {
         }
         return i;
     }
-    /// The lower root stays, so that the result does not depend on the order. \return the two were apart.
+    /// Joins two sets. The lower root remains, so the result does not depend on the order of calls. \return whether
+    /// they were separate.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -83,20 +84,20 @@ void forEachEdge(const std::vector<EdgeUse>& uses, const Visit& visit) {
     }
 }
 
-/// Ascending by the lower, then the higher vertex. Without any, all rays from a point cross the surface equally often
-/// modulo 2.
+/// Returns the odd edges, sorted by lower, then higher vertex. If there are none, all rays from a point have the same
+/// crossing parity.
 [[nodiscard]] std::vector<OddEdge> oddEdges(const MeshEdges& edges);
 
-/// The triangle across each side, by edges of exactly two triangles.
+/// The neighbour across each side, for edges with exactly two triangles.
 struct TriangleNeighbours {
     static constexpr std::uint32_t kNone = 0xffffffff;
     std::vector<glm::uvec3>
-        across;  ///< per triangle and side, from corner i to the next; kNone at other edges
-    std::vector<std::array<bool, 3>> same;  ///< the two run along their edge in the same direction
+        across;  ///< per triangle and side, from corner i to the next; kNone for other edges
+    std::vector<std::array<bool, 3>> same;  ///< both triangles traverse the edge in the same direction
 };
 [[nodiscard]] TriangleNeighbours neighboursOf(const std::vector<EdgeUse>& uses);
 
-/// A triangle's corners as welded vertices in ascending order: equal for coincident triangles, however they are wound.
+/// A triangle with its welded corners in ascending order: equal for coincident triangles, regardless of winding.
 struct SortedTriangle {
     std::array<std::uint32_t, 3> corners;
     std::uint32_t index;
@@ -107,16 +108,16 @@ struct SortedTriangle {
     }
     friend auto operator<=>(const SortedTriangle&, const SortedTriangle&) = default;
 };
-/// Of these triangles of a mesh, by corners, then index.
+/// Returns the given triangles, sorted by corners, then index.
 [[nodiscard]] std::vector<SortedTriangle> sortedTriangles(const TriangleMesh& mesh,
                                                           std::span<const std::uint32_t> welded,
                                                           std::span<const std::uint32_t> triangles);
-/// Keeps the first of those with equal corners. \return how many are dropped.
+/// Keeps the first entry of each set with equal corners. \return the number removed.
 std::size_t dropRepeats(std::vector<SortedTriangle>& sorted);
 
-/// Several closed surfaces, each wound consistently: every edge runs equally often in both directions, and the triangles
-/// fall into groups that share no edge. Such surfaces may overlap; the winding number of a point, not the parity of a ray's
-/// crossings, then decides if it lies in one of them.
+/// Whether the mesh consists of several closed surfaces, each wound consistently: every edge is used equally often in
+/// both directions, and the triangles form groups that share no edge. Such surfaces may overlap; then the winding
+/// number decides whether a point is inside, not the parity of ray crossings.
 [[nodiscard]] bool isSeveralShells(const MeshEdges& edges);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point and ray queries of a mesh, by Embree: the truth that colliders are measured against.
+// Answers point and ray queries on a mesh with Embree: the truth that colliders are measured against.
 #pragma once
 
 #include <compare>
@@ -20,12 +20,12 @@ struct ClosestPoint {
     glm::dvec3 point{0.0};  ///< object space, on the triangle
 };
 
-/// The point of a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
+/// Returns the point on a triangle closest to p. Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
 [[nodiscard]] glm::dvec3 closestOnTriangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                                            const glm::dvec3& c);
 
 struct FirstHit {
-    double along = 0.0;  ///< in units of the ray's direction
+    double along = 0.0;  ///< units of the ray's direction
     std::uint32_t triangle = 0;
 };
 
@@ -35,91 +35,93 @@ struct LineSpan {
     double end = 0.0;
 };
 
-/// The depth interval of a triangle's corners along a line.
+/// Returns the interval of a triangle's corners, projected onto a line.
 [[nodiscard]] LineSpan cornerSpan(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
                                   const glm::dvec3& direction);
 
 struct LineHit {
-    double at = 0.0;  ///< in units of the line's direction, in double precision
+    double at = 0.0;  ///< units of the line's direction
     std::uint32_t triangle = 0;
 
     friend auto operator<=>(const LineHit&, const LineHit&) = default;
 };
 
-/// The bodies of a mesh that a path is in.
+/// Tracks the bodies that contain the current point of a path.
 struct BodyCounter {
-    int winding = 0;                 ///< about body 0
+    int winding = 0;                 ///< winding number for body 0
     std::vector<std::uint32_t> odd;  ///< other bodies, crossed an odd number of times so far
 
     [[nodiscard]] bool inside() const { return winding != 0 || !odd.empty(); }
-    /// \param side  1 if the path leaves by the surface that it crosses, −1 if it enters.
+    /// Records a crossing. \param side  1 if the path leaves through the surface, −1 if it enters.
     void cross(std::uint32_t body, int side);
 };
 
-/// All queries are thread-safe, and their results independent of the threads and of each other. Directions may have any
-/// length but 0.
+/// Queries are thread-safe and deterministic. Directions may have any length above 0.
 class MeshQuery {
   public:
-    /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
+    /// Shares the Embree scene of the mesh. Errors: those of EmbreeMesh::build.
     [[nodiscard]] static Result<MeshQuery> build(PreparedMesh mesh);
 
     [[nodiscard]] const PreparedMesh& prepared() const { return mesh_; }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
 
-    /// By the majority of seven rays, kParityDirections (inside.h): independent of the winding, and for most points of the
-    /// holes of an open mesh. For PreparedMesh::woundShells the winding number decides instead, so that the overlap of two
-    /// solids is inside. In a union (PreparedMesh::unionOf) each body decides for itself, by two of three rays. Voids
-    /// (PreparedMesh::voids) are inside.
+    /// Classifies a point by the majority of seven rays, kParityDirections (inside.h). This is independent of the
+    /// winding and tolerates holes for most points. For PreparedMesh::woundShells the winding number decides, so that
+    /// the overlap of two solids is inside. In a union (PreparedMesh::unionOf) each body is tested separately, by two
+    /// of three rays. Voids (PreparedMesh::voids) are inside.
     [[nodiscard]] bool inside(const glm::vec3& p) const;
 
-    /// The same without voids.
+    /// Like inside(), without voids.
     [[nodiscard]] bool inBody(const glm::vec3& p) const;
     [[nodiscard]] bool hasVoids() const { return !mesh_.voids().places.empty(); }
-    /// \param p  in no body. Equal for the ends of a free segment, but in creases narrower than the grid of the voids.
+    /// Whether a point is in a void. Equal for both ends of a free segment, except in creases narrower than the grid of
+    /// the voids.
+    /// \param p  in no body.
     [[nodiscard]] bool inVoid(const glm::dvec3& p) const;
-    /// No void meets the box. It may be wrong for one that does not.
+    /// Whether no void meets the box. Conservative: may return false for a box that meets none.
     [[nodiscard]] bool awayFromVoids(const glm::dvec3& low, const glm::dvec3& high) const;
 
-    /// The bodies that `p` is in, for a path that begins there and counts each triangle on its way by bodyOf(). On open meshes
-    /// the path may end in another state than inside() has it.
+    /// Returns the bodies that contain `p`, as the start of a path that counts each crossed triangle by bodyOf(). On
+    /// open meshes the state at the end of the path can differ from inside().
     [[nodiscard]] BodyCounter bodiesAt(const glm::vec3& p) const;
-    /// The body of a triangle: 0 where the winding number decides, else a number of one that decides by parity.
+    /// The body of a triangle: 0 if the winding number decides, else the number of a body that uses parity.
     [[nodiscard]] std::uint32_t bodyOf(std::uint32_t triangle) const {
         return shells_ ? 0 : bodies_.empty() ? 1 : bodies_[triangle];
     }
 
-    /// Number of triangles that a ray from `p` meets.
+    /// Counts the triangles that a ray from `p` hits.
     [[nodiscard]] unsigned crossings(const glm::vec3& p, const glm::dvec3& direction) const;
 
-    /// All triangles on the whole line through `p`, in order; of equals the lower index first.
+    /// Finds all triangles on the infinite line through `p`, sorted by position, then index.
     void hitsAlong(const glm::dvec3& p, const glm::dvec3& direction, std::vector<LineHit>& hits) const;
 
-    /// The intervals of the whole line through `p` that are inside, as inside() has it, in order. Their ends are those of
-    /// the triangles' planes, in double precision.
-    /// \return false if the crossings do not balance, and nothing is known: the line meets an edge, or the mesh is open.
+    /// Finds the intervals of the infinite line through `p` that are inside, as inside() defines it, in order. Their
+    /// ends lie on the triangles' planes, in double precision.
+    /// \return false, with no valid intervals, if crossings do not balance: the line meets an edge, or the mesh is
+    /// open.
     [[nodiscard]] bool spansInside(const glm::dvec3& p, const glm::dvec3& direction,
                                    std::vector<LineSpan>& spans) const;
 
-    /// Every edge has an even number of triangles, equal positions being one: inside() is then equal at both ends of a free
-    /// segment.
+    /// Whether every edge has an even number of triangles, with equal positions merged. Then inside() is equal at both
+    /// ends of a free segment.
     [[nodiscard]] bool watertight() const { return mesh_.closed(); }
 
-    /// Of equally close triangles the lowest index.
-    /// \param hint  a triangle that is probably near: saves time, and does not change the distance.
+    /// Finds the closest point; among equally close triangles, on the one with the lowest index.
+    /// \param hint  a triangle that is probably near: speeds up the search, without changing the distance.
     [[nodiscard]] ClosestPoint closest(const glm::vec3& p, std::optional<std::uint32_t> hint = {}) const;
 
-    /// Whether a triangle of another label than `label` is that near.
-    /// \param labels  of the triangles.
+    /// Whether a triangle with a label other than `label` is within `radius`.
+    /// \param labels  per triangle.
     [[nodiscard]] bool otherWithin(const glm::vec3& p, double radius, std::span<const std::uint8_t> labels,
                                    std::uint8_t label) const;
 
-    /// Object units, negative inside.
+    /// Signed distance in object units, negative inside.
     [[nodiscard]] double signedDistance(const glm::vec3& p) const;
 
-    /// No triangle meets the open segment between two points.
+    /// Whether no triangle meets the open segment between two points.
     [[nodiscard]] bool segmentIsFree(const glm::dvec3& from, const glm::dvec3& to) const;
 
-    /// No triangle meets the ray.
+    /// Whether no triangle meets the ray.
     [[nodiscard]] bool rayIsFree(const glm::dvec3& origin, const glm::dvec3& direction) const;
 
     [[nodiscard]] std::optional<FirstHit> firstHit(const glm::dvec3& origin,
@@ -128,7 +130,7 @@ class MeshQuery {
     [[nodiscard]] const EmbreeMesh& tree() const { return *tree_; }
 
   private:
-    /// The body that a line crosses, and 1 if it leaves it, −1 if it enters.
+    /// A crossed body, and 1 if the line leaves it, −1 if the line enters it.
     struct Crossing {
         std::uint32_t body;
         int side;
@@ -140,15 +142,15 @@ class MeshQuery {
         : mesh_(std::move(mesh)), tree_(&tree), shells_(mesh_.woundShells()), bodies_(mesh_.bodies()) {}
 
     [[nodiscard]] bool rayIsInside(const glm::vec3& p, const glm::dvec3& direction) const;
-    /// The bodies at the begin of a ray.
+    /// Returns the bodies at the start of a ray.
     [[nodiscard]] BodyCounter countAlong(const glm::vec3& p, const glm::dvec3& direction) const;
     /// \param end  in units of the direction.
     [[nodiscard]] bool isFree(const glm::dvec3& origin, const glm::dvec3& direction, float end) const;
 
     PreparedMesh mesh_;
-    const EmbreeMesh* tree_;                 // mesh_ holds it
-    bool shells_;                            // PreparedMesh::woundShells
-    std::span<const std::uint32_t> bodies_;  // mesh_ holds them
+    const EmbreeMesh* tree_;                 // owned by mesh_
+    bool shells_;                            // PreparedMesh::woundShells()
+    std::span<const std::uint32_t> bodies_;  // owned by mesh_
 };
 
 }  // namespace relief

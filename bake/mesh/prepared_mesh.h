@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh with its derived data that all stages of a bake share: edges, winding, and the tree for rays.
+// Holds a mesh with the derived data that all stages of a bake share: edges, winding, and the Embree scene.
 #pragma once
 
 #include <memory>
@@ -15,50 +15,51 @@ namespace relief {
 
 struct EmbreeMesh;
 
-/// A handle on an immutable mesh. Copies are cheap and share the derived data, each of which is computed once, on first
-/// use. First uses are not thread-safe: MeshQuery and RayScene trigger all that they need when they are built, and then
-/// serve all threads.
+/// A handle to an immutable mesh. Copies are cheap and share the derived data, which is computed once, on first use.
+/// First use is not thread-safe: MeshQuery and RayScene trigger what they need when they are built, and are thread-safe
+/// afterwards.
 class PreparedMesh {
   public:
-    /// Implicit, so that a plain mesh can be passed for a single query. Move large meshes in.
+    /// Implicit, so that a plain mesh can be passed for a single query. Move large meshes.
     PreparedMesh(TriangleMesh mesh);
 
     [[nodiscard]] const TriangleMesh& operator*() const;
     [[nodiscard]] const TriangleMesh* operator->() const { return &**this; }
 
     [[nodiscard]] const MeshEdges& edges() const;
-    /// Edges take more memory than the mesh. closed() and woundShells() are kept.
+    /// Frees the edges, which use more memory than the mesh. closed() and woundShells() stay available.
     void freeEdges() const;
     [[nodiscard]] const std::vector<OddEdge>& oddEdges() const;
-    /// No odd edge: any ray from a point meets the surface as often, modulo 2, as any other.
+    /// Whether there is no odd edge. Then all rays from a point have the same crossing parity.
     [[nodiscard]] bool closed() const { return oddEdges().empty(); }
-    /// isSeveralShells() of a closed mesh after windOutwards: the winding number of a point, not the parity of a ray's
-    /// crossings, decides if it is inside.
+    /// isSeveralShells() of a closed mesh after windOutwards. The winding number then classifies points, not the parity
+    /// of ray crossings.
     [[nodiscard]] bool woundShells() const;
-    /// −1 if the mesh is closed and inside out (its triangles are clockwise seen from outside), else 1. Closed means that
-    /// the area vectors of the triangles sum to zero; the sign is that of the enclosed volume.
+    /// Returns −1 if the mesh is closed and inside out (triangles are clockwise seen from outside), else 1. Closed
+    /// means that the triangles' area vectors sum to zero; the sign is that of the enclosed volume.
     [[nodiscard]] double orientation() const;
     [[nodiscard]] const AreaTable& areas() const;
-    /// Lives as long as a copy of this handle. Errors: those of EmbreeMesh::build.
+    /// Returns the Embree scene, which lives as long as any copy of this handle. Errors: those of EmbreeMesh::build.
     [[nodiscard]] Result<const EmbreeMesh*> tree() const;
 
-    /// The mesh as windOutwards leaves it. Derived data that turns cannot change is kept; without a turn, all is.
-    /// \param turn  per triangle: swap its second and third corner.
+    /// Returns the mesh after windOutwards. Keeps derived data that the change cannot affect, and all of it if no
+    /// triangle is flipped.
+    /// \param turn  per triangle: swap its second and third corners.
     [[nodiscard]] PreparedMesh woundOutwards(const std::vector<bool>& turn) &&;
-    /// As last passed to woundOutwards; empty if it has turned none.
+    /// The last argument of woundOutwards; empty if no triangle was flipped.
     [[nodiscard]] const std::vector<bool>& turned() const;
-    /// Parts that each enclose a volume; the inside is their union.
-    /// \param bodies  per triangle: 0 for those, wound outwards, whose winding number decides; else the number of a body
-    ///     that decides by the parity of a ray's crossings.
+    /// Builds a mesh of parts that each enclose a volume; the inside is their union.
+    /// \param bodies  per triangle: 0 if the winding number decides (wound outwards), else the number of a body that
+    /// uses the parity of ray crossings.
     [[nodiscard]] static PreparedMesh unionOf(TriangleMesh mesh, std::vector<std::uint32_t> bodies);
-    /// As passed to unionOf; empty for other meshes.
+    /// The argument of unionOf; empty for other meshes.
     [[nodiscard]] const std::vector<std::uint32_t>& bodies() const;
 
-    /// The same mesh, whose voids are inside.
+    /// Returns the same mesh; points in `voids` are inside.
     [[nodiscard]] PreparedMesh withVoids(Voids voids) &&;
     [[nodiscard]] const Voids& voids() const;
 
-    /// Another mesh, with caps, whose winding is as trusted as this one's.
+    /// Returns another mesh, with caps, that inherits the state of this one's winding.
     [[nodiscard]] PreparedMesh capped(TriangleMesh mesh) const;
 
   private:

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of a ray through a mesh.
+// Estimates the cost of a ray through a mesh.
 #pragma once
 
 #include "bake/mesh/mesh.h"
 
 namespace relief {
 
-/// Mean number of triangles' boxes on a line through the mesh's box: about as many triangles are tested per ray. Artists'
-/// meshes have 2 to 15, forty layers of walls 70, and a fan of 20,000 long thin triangles 4,000, whatever the tree.
+/// Mean number of triangle boxes on a line through the mesh's box: about the number of triangles tested per ray.
+/// Typical models have 2 to 15, forty layers of walls 70, and a fan of 20,000 long thin triangles 4,000, regardless of
+/// the tree.
 [[nodiscard]] double boxesOnLine(const TriangleMesh& mesh);
 
-/// The affordable share of the rays that an ordinary mesh gets: 1 up to 32 boxes on a line, then inversely proportional, so
-/// that the total cost stays the same.
+/// Returns the fraction of an ordinary mesh's ray count that is affordable: 1 up to 32 boxes per line, then inversely
+/// proportional, so that the total cost stays constant.
 [[nodiscard]] double affordableRays(const TriangleMesh& mesh);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a mesh: connected pieces of one node and one material, each judged by itself and its own size.
+// Collects the parts of a mesh: connected pieces of one node and one material, each judged at its own scale.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace relief {
 
-/// kSurface: baked as it is, with the inside left to the parity of rays.
+/// kSurface: baked unchanged; ray parity decides what is inside.
 enum class PartKind : std::uint8_t { kSolid, kSolidWithHoles, kSheet, kTerrain, kSurface };
 template <>
 inline constexpr std::array<std::string_view, 5> kWordsOf<PartKind>{"solid", "solid with holes", "sheet",
@@ -20,33 +20,34 @@ inline constexpr std::array<std::string_view, 5> kWordsOf<PartKind>{"solid", "so
 
 struct SurfacePart {
     PartKind kind = PartKind::kSurface;
-    std::uint32_t node_index = 0;  ///< SurfaceName
-    std::string node;              ///< "" without a name
-    std::string material;          ///< "" without a name
+    std::uint32_t node_index = 0;  ///< as in SurfaceName
+    std::string node;              ///< "" if unnamed
+    std::string material;          ///< "" if unnamed
     Bounds bounds;                 ///< of its triangles in the source, object units
-    double area = 0.0;             ///< of the same
-    std::uint64_t triangles = 0;   ///< the same
-    double thickness = 0.0;        ///< of the shell that stands for a sheet, object units; else 0
-    double right_thickness =
-        0.0;  ///< of it, all that was requested; of a default at most a tenth of the longest side
+    double area = 0.0;             ///< of the same triangles
+    std::uint64_t triangles = 0;   ///< number of them
+    double thickness = 0.0;        ///< of the shell that represents a sheet, object units; else 0
+    /// The part of `thickness` that counts as correct: all if it was requested; of a default, at most a tenth of the
+    /// longest side.
+    double right_thickness = 0.0;
 
     [[nodiscard]] double size() const { return static_cast<double>(bounds.longestSide()); }
 };
 
 struct SurfaceParts {
-    std::vector<SurfacePart> parts;  ///< in the order of their first triangles
-    /// Per triangle of the solid that is baked, its part; kNoLabel for caps over holes.
+    std::vector<SurfacePart> parts;  ///< ordered by first triangle
+    /// Per triangle of the baked solid, its part; kNoLabel for caps over holes.
     std::vector<std::uint32_t> part_of;
 };
 
-/// Collects the parts of a mesh from its triangles.
+/// Builds SurfaceParts from the triangles of a mesh.
 class SurfacePartsBuilder {
   public:
-    /// \param mesh  borrowed.
+    /// Borrows the mesh.
     explicit SurfacePartsBuilder(const TriangleMesh& mesh);
-    /// Connected triangles; each label among them is a part.
+    /// Adds connected triangles; each label among them becomes a part.
     void add(const std::vector<std::uint32_t>& triangles, PartKind kind);
-    /// Per triangle of the mesh; kNoLabel where none was added.
+    /// Per triangle of the mesh; kNoLabel if it was not added.
     [[nodiscard]] const std::vector<std::uint32_t>& partOf() const { return part_of_; }
     [[nodiscard]] std::vector<SurfacePart>& parts() { return parts_; }
 
@@ -58,10 +59,11 @@ class SurfacePartsBuilder {
 
 /// Parts so far from the others that the common box is mostly empty: a stray vertex, a forgotten helper object.
 struct OutlierParts {
-    std::vector<std::uint32_t> parts;  ///< indices, ascending
-    Bounds rest;                       ///< of all others
+    std::vector<std::uint32_t> parts;  ///< ascending
+    Bounds rest;                       ///< of all other parts
 };
-/// All strays together have at most a hundredth of the area, and without them the box's longest side is at most a tenth.
+/// Finds outlier parts. Together they have at most 1 % of the area, and without them the box's longest side shrinks to
+/// at most a tenth.
 [[nodiscard]] OutlierParts straysOf(const std::vector<SurfacePart>& parts);
 
 }  // namespace relief

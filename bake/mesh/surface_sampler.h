@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random points on a mesh, with the same bits everywhere.
+// Draws random points on a mesh, bit-identical on all platforms.
 #pragma once
 
 #include <algorithm>
@@ -14,22 +14,22 @@
 
 namespace relief {
 
-/// Offset of points from the surface, in units of the longest side, to tell its sides apart and for lines of sight to it.
-/// Half of the free space round a tight map.
+/// Offset of points from the surface, in units of the longest side. Separates the two sides of a surface, and keeps
+/// lines of sight off it. Half of the margin around a tight map.
 inline constexpr double kSurfaceStep = 5e-5;
 
-/// Random numbers with the same bits everywhere: no library distribution, no libm.
+/// A portable random generator: uses no library distribution and no libm.
 class MersenneRandom {
   public:
     explicit MersenneRandom(std::uint64_t seed) : engine_(seed) {}
-    /// The generator of the i-th sample, so that samples can be drawn in any order.
+    /// The generator of sample i, so that samples can be drawn in any order.
     MersenneRandom(std::uint64_t seed, std::uint64_t i) : engine_(seed * 0x9e3779b97f4a7c15U + i) {}
-    /// In [0, 1).
+    /// Uniform in [0, 1).
     double uniform() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
     std::size_t below(std::size_t count) {
         return std::min(static_cast<std::size_t>(uniform() * static_cast<double>(count)), count - 1);
     }
-    /// Nearly normal, of mean 0 and deviation 1: the sum of twelve uniform 16-bit numbers, four from each draw.
+    /// Approximately normal, with mean 0 and deviation 1: the sum of twelve uniform 16-bit numbers, four per draw.
     double normal() {
         std::uint64_t sum = 0;
         for (int i = 0; i < 3; ++i) {
@@ -40,7 +40,7 @@ class MersenneRandom {
     }
     glm::dvec3 direction() {
         for (;;) {
-            // Braces, as compilers choose the order of a call's arguments.
+            // Braces fix the order of evaluation.
             const glm::dvec3 v{2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0};
             const double square = v.x * v.x + (v.y * v.y + v.z * v.z);
             if (square <= 1.0 && square > 1e-4) {
@@ -55,14 +55,14 @@ class MersenneRandom {
 
 struct SurfaceDraw {
     glm::dvec3 position;
-    glm::dvec3 normal;  ///< unit length, by the triangle's winding
+    glm::dvec3 normal;  ///< unit length, following the triangle's winding
 };
 
-/// Uniform on a triangle.
+/// Draws uniformly on a triangle.
 [[nodiscard]] SurfaceDraw drawOnTriangle(const TriangleMesh& mesh, std::uint32_t triangle,
                                          MersenneRandom& random);
 
-/// \param at  in [0, 1]: as AreaTable::triangleAt has it; stratify over it.
+/// Draws on the surface. \param at  the argument of AreaTable::triangleAt, in [0, 1]; stratify over it.
 [[nodiscard]] SurfaceDraw drawOnSurface(const TriangleMesh& mesh, const AreaTable& areas, double at,
                                         MersenneRandom& random);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plane of a triangle in double precision: the one source of depths and normals, so that both are the same on every
-// processor, independent of the ray tracer's arithmetic.
+// Computes the plane of a triangle in double precision. All depths and normals derive from it, so they do not depend on
+// the processor or on the ray tracer's arithmetic.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ namespace relief {
 
 struct TrianglePlane {
     glm::dvec3 point;  ///< first corner, object space
-    /// Of length twice the triangle's area, by the right-hand rule; zero without hasArea().
+    /// Length is twice the triangle's area, direction by the right-hand rule; zero unless hasArea().
     glm::dvec3 normal;
 };
 
@@ -37,7 +37,7 @@ struct TrianglePlane {
     return planeOf(positions[t.x], positions[t.y], positions[t.z]);
 }
 
-/// The corners span a plane, so that a float normal can be computed.
+/// Whether the corners span a plane, so that a float normal can be computed.
 [[nodiscard]] inline bool hasArea(const TrianglePlane& plane) {
     return plane.normal != glm::dvec3(0.0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free space within a mesh that no way from outside reaches.
+// Stores free space within a mesh that cannot be reached from outside.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace relief {
 
-/// The nodes of a grid, and what each lies in.
+/// A grid of nodes, each classified.
 struct Voids {
     enum class Place : std::uint8_t { kSolid, kOutside, kVoid };
 
-    glm::dvec3 origin{0.0};  ///< of node (0, 0, 0), object space
-    double step = 0.0;       ///< between nodes, object units
+    glm::dvec3 origin{0.0};  ///< position of node (0, 0, 0), object space
+    double step = 0.0;       ///< node spacing, object units
     glm::ivec3 nodes{0};
-    std::vector<Place> places;  ///< x fastest; empty: no void. Beyond them there is none
-    std::uint32_t count = 0;    ///< of voids
+    std::vector<Place> places;  ///< x fastest; empty: no void. There is no void outside the grid
+    std::uint32_t count = 0;    ///< number of voids
 
     [[nodiscard]] std::size_t at(const glm::ivec3& node) const {
         return (static_cast<std::size_t>(node.z) * static_cast<std::size_t>(nodes.y) +
@@ -29,7 +29,7 @@ struct Voids {
     [[nodiscard]] glm::dvec3 position(const glm::ivec3& node) const {
         return origin + step * glm::dvec3(node);
     }
-    /// visit(node, place) for those of a block, both ends included, that are in the grid.
+    /// Calls visit(node, place) for the nodes in [first, last], clipped to the grid.
     template <class Visit>
     void eachNode(const glm::ivec3& first, const glm::ivec3& last, const Visit& visit) const {
         const glm::ivec3 low = glm::max(first, glm::ivec3(0));
@@ -42,7 +42,7 @@ struct Voids {
             }
         }
     }
-    /// A node of a block is in a void.
+    /// Whether a node in [first, last] is in a void.
     [[nodiscard]] bool meet(const glm::ivec3& first, const glm::ivec3& last) const {
         bool found = false;
         eachNode(first, last,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts of the faults that keep a mesh from bounding a solid. Equal positions are one vertex throughout, as importers
+// Counts the faults that prevent a mesh from bounding a solid. Equal positions count as one vertex, because importers
 // repeat positions along seams.
 #pragma once
 
@@ -14,10 +14,10 @@
 
 namespace relief {
 
-/// The first fault of a kind: of the lowest vertex or triangle.
+/// The first fault of a kind, by lowest vertex or triangle.
 struct MeshFault {
-    std::string what;    ///< "a boundary edge": with its article
-    glm::vec3 at{0.0F};  ///< object space: the middle of the edge or triangle, or the vertex
+    std::string what;    ///< with its article: "a boundary edge"
+    glm::vec3 at{0.0F};  ///< object space: the vertex, or the middle of the edge or triangle
 };
 
 void fields(FieldVisitor& visit, const MeshFault& fault);
@@ -25,30 +25,32 @@ void fields(FieldVisitor& visit, const MeshFault& fault);
 struct MeshHealth {
     std::uint64_t triangles = 0;
     std::uint64_t degenerate_triangles = 0;  ///< without area; dropped by the importer
-    std::uint64_t duplicate_triangles = 0;   ///< of the three vertices of an earlier triangle, in any order
-    std::uint64_t boundary_edges = 0;        ///< of one triangle
-    std::uint64_t nonmanifold_edges = 0;     ///< of three triangles or more
-    std::uint64_t inconsistent_edges = 0;    ///< of two triangles that run along it in the same direction
-    std::uint64_t nonmanifold_vertices = 0;  ///< whose triangles fall into groups that share no edge there
-    std::uint64_t components = 0;            ///< of triangles connected by edges
+    /// With the same three vertices as an earlier triangle, in any order.
+    std::uint64_t duplicate_triangles = 0;
+    std::uint64_t boundary_edges = 0;        ///< with one triangle
+    std::uint64_t nonmanifold_edges = 0;     ///< with three or more triangles
+    std::uint64_t inconsistent_edges = 0;    ///< with two triangles that traverse it in the same direction
+    std::uint64_t nonmanifold_vertices = 0;  ///< whose triangles form groups that share no edge there
+    std::uint64_t components = 0;            ///< sets of triangles connected by edges
     std::uint64_t closed_components = 0;
-    bool closed = false;                   ///< no edge has an odd number of triangles: the mesh has an inside
-    bool inside_out = false;               ///< PreparedMesh::orientation is −1
-    std::optional<MeshFault> first_fault;  ///< of the gravest kind; none for a closed solid
+    /// No edge has an odd number of triangles, so the mesh has an inside.
+    bool closed = false;
+    bool inside_out = false;               ///< PreparedMesh::orientation() is −1
+    std::optional<MeshFault> first_fault;  ///< of the most severe kind; nullopt for a solid
 
-    /// Closed, manifold, wound outwards, without duplicates. Degenerate triangles do not count.
+    /// Whether the mesh is closed, manifold, wound outwards, and free of duplicates. Degenerate triangles are ignored.
     [[nodiscard]] bool isSolid() const { return !first_fault.has_value(); }
 };
 
 void fields(FieldVisitor& visit, const MeshHealth& health);
 
-/// The result does not depend on the number of threads.
+/// Inspects a mesh. The result does not depend on the number of threads.
 [[nodiscard]] MeshHealth inspectMesh(const PreparedMesh& mesh);
 
-/// "12 boundary edges, 3 non-manifold vertices, inside out"
+/// Lists the faults: "12 boundary edges, 3 non-manifold vertices, inside out".
 [[nodiscard]] std::string faultsText(const MeshHealth& health);
 
-/// Errors: kInvalidInput, with the counts and the first place, if the mesh is not a solid.
+/// Fails if the mesh is not a solid. Errors: kInvalidInput, with the counts and the first place.
 [[nodiscard]] Result<void> requireSolid(const MeshHealth& health, const std::string& mesh_name);
 
 }  // namespace relief

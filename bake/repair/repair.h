@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage between reading a mesh and baking it: counts its faults, refuses or repairs it on request, and winds it outwards.
+// Implements the stage between import and bake: counts faults, rejects or repairs the mesh on request, and winds it
+// outwards.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +16,20 @@ namespace relief {
 
 struct RepairOptions {
     bool strict = false;
-    std::string method;   ///< "wrap" or "wrap=ALPHA"; empty: none
-    bool examine = true;  ///< count faults even where no other option needs that
+    std::string method;   ///< "wrap" or "wrap=ALPHA"; empty: no repair
+    bool examine = true;  ///< count faults even if no other option requires it
 };
 
 void fields(FieldVisitor& visit, RepairOptions& options);
 
-/// The ALPHA of a repair method, in units of the longest side; 0 for an empty one. Errors: kUsage.
+/// Parses ALPHA from a repair method, in units of the longest side; 0 for an empty method. Errors: kUsage.
 [[nodiscard]] Result<double> wrapAlpha(const std::string& method);
 
 struct RepairReport {
-    std::optional<MeshHealth> health;    ///< of the mesh as it came
+    std::optional<MeshHealth> health;    ///< of the imported mesh
     std::string repair;                  ///< "wrap=0.01", or ""
     std::optional<MeshHealth> repaired;  ///< after the repair
-    std::uint64_t turned = 0;            ///< triangles, to face outwards
+    std::uint64_t turned = 0;            ///< triangles flipped to face outwards
 };
 
 struct RepairedMesh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orients triangles outwards by rays and volumes, whatever the order of their corners in the file.
+// Orients triangles outwards by rays and volumes, regardless of their order of corners in the file.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,18 @@ namespace relief {
 
 struct Winding {
     PreparedMesh mesh;         ///< the same triangles in the same order
-    std::uint64_t turned = 0;  ///< triangles whose second and third corner were swapped
+    std::uint64_t turned = 0;  ///< number of flipped triangles, whose second and third corners are swapped
 };
 
-/// Turns triangles until neighbours run along their common edge in opposite directions and each patch faces outwards. A patch
-/// is connected by edges of two triangles. A closed one faces out of its volume, or into it as a hollow if all of it lies
-/// inside an odd number of others. An open one is turned if rays (by parity) find the inside in front of most of it; where
-/// that is unclear, as on sheets, it keeps the winding of most of its triangles.
+/// Flips triangles until neighbours traverse their common edge in opposite directions and each patch faces outwards. A
+/// patch is connected by edges of two triangles. A closed patch faces out of its volume, or into it as a cavity if all
+/// of it lies inside an odd number of others. An open patch is flipped if rays (by parity) find the inside in front of
+/// most of it. If that is unclear, as on sheets, it keeps the winding of most of its triangles.
 ///
-/// A mesh of a single, consistently wound patch stays unchanged, even inside out (see PreparedMesh::orientation), and keeps
-/// its edges() for shapeMesh; those of others are freed. The result does not depend on the number of threads.
-/// \param mesh  moved: a shared mesh is copied.
+/// A mesh of a single, consistently wound patch is unchanged, even if it is inside out (see PreparedMesh::orientation),
+/// and keeps its edges() for shapeMesh; the edges of other meshes are freed. The result does not depend on the number
+/// of threads.
+/// \param mesh  moved; a shared mesh is copied.
 /// Errors: those of MeshQuery::build.
 [[nodiscard]] Result<Winding> windOutwards(PreparedMesh mesh);
 

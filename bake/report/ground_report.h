@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reports of a bake of a height map and of a check against it, for people and for programs.
+// Reports a bake of a height map, or a check against it, as text and as JSON.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// One line. \param output  the file or the folder, for messages.
+/// Returns one line. \param output  the file or folder, for the message.
 [[nodiscard]] std::string groundText(const GroundResult& result, const std::string& output, double ms);
 
 void fields(FieldVisitor& visit, const GroundTile& tile);
@@ -29,9 +29,7 @@ struct GroundJson {
 
 void fields(FieldVisitor& visit, const GroundJson& report);
 
-// --- The check.
-
-/// \param name  of the collider or the world, for people
+/// \param name  of the collider or world, for the text.
 [[nodiscard]] std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& name);
 
 void fields(FieldVisitor& visit, const GroundNear& near);

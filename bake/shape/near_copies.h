@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed parts that coincide with another one but for rounding, as in an export of two copies, one grown by a millionth. The
-// space between them is thinner than any wall of a collider, and would make the solid hollow.
+// Finds closed parts that almost coincide with another part, as in an export of two copies, one scaled by a millionth.
+// The gap between them is thinner than any wall of a collider and would make the solid hollow.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,17 @@ namespace relief {
 inline constexpr double kCopyReach = 1e-4;
 
 struct NearCopies {
-    std::vector<std::uint32_t> triangles;  ///< of all parts but the largest of each group, ascending
+    std::vector<std::uint32_t> triangles;  ///< of all parts except the largest of each group, ascending
     std::uint64_t parts = 0;               ///< number of parts of these triangles
-    double farthest = 0.0;                 ///< from a corner to the nearest of the kept part, object units
+    /// Largest distance from a corner to the nearest corner of the kept part, object units.
+    double farthest = 0.0;
 
-    /// "2 closed parts lie within 1e-06 of another …"
+    /// Returns the warning: "2 closed parts lie within 1e-06 of another …".
     [[nodiscard]] std::string text() const;
 };
 
-/// Two parts are near copies if every corner of each has one of the other within kCopyReach of their longest side.
+/// Finds near copies: two parts in which every corner has a corner of the other part within kCopyReach of their longest
+/// side.
 /// \param solids  closed, not flat; borrowed.
 [[nodiscard]] NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids);
 

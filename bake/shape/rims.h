@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two open shells of a double-walled vessel, joined at their rims.
+// Joins the two open shells of a double-walled vessel at their rims.
 #pragma once
 
 #include <array>
@@ -12,25 +12,26 @@ namespace relief {
 
 struct OpenShell {
     TriangleMesh mesh;      ///< after finishMesh
-    bool is_solid = false;  ///< it may be a solid with holes; one shell of a wall at least is one
+    bool is_solid = false;  ///< it may be a solid with holes; at least one shell of a wall must be
 };
 
-/// Two shells, with a ring between each pair of rims that face each other.
+/// Two shells, joined by a ring between each pair of facing rims.
 struct ShellWall {
     std::size_t outer = 0;  ///< index of the shell
     std::size_t inner = 0;
-    bool alike = false;  ///< both were wound alike: to the outside, or into the space within
-    TriangleMesh mesh;   ///< before finishMesh; small holes may be left
+    bool alike = false;  ///< both were wound alike: to the outside, or to the space within
+    TriangleMesh mesh;   ///< before finishMesh; may still have small holes
 };
 
 struct ShellWalls {
     std::vector<ShellWall> walls;
-    /// Outer and inner shells with nearly facing mouths, by the inner one: it is in no wall, and either may be a solid.
+    /// Pairs of outer and inner shells with nearly facing mouths, one per inner shell that is in no wall. Either may be
+    /// a solid.
     std::vector<std::array<std::size_t, 2>> unjoined;
 };
 
-/// Joins each outer shell to an inner one. The holes of the inner one that face no hole of the outer one have to be
-/// small. Each shell is part of one wall at most.
+/// Joins each outer shell to an inner one. Holes of the inner shell that face no hole of the outer shell must be small.
+/// A shell belongs to at most one wall.
 [[nodiscard]] ShellWalls joinRims(const std::vector<OpenShell>& shells);
 
 }  // namespace relief

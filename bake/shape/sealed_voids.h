@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free space that the sheets and solids of a union enclose together, such as that of a pot under its lid.
+// Finds free space that the sheets and solids of a union enclose together, such as the inside of a pot under its lid.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,21 @@
 
 namespace relief {
 
-/// The kinds of triangles of a union by the space that they close off: kNothing where free space on both sides was asked for.
+/// The kind of a triangle of a union, by the space that it closes off; kNothing if free space was requested on both
+/// sides.
 enum class Wall : std::uint8_t { kSolid, kSheet, kNothing };
 
-/// Free space that leads outside only through a sheet, or through openings that lie between the nodes of a grid and let at
-/// most a hundredth of all rays out: of 192 along the longest side, in the box of what 64 find that has at least a
-/// ten-thousandth of that side cubed. A hollow of a solid is no void. The same for any number of threads.
+/// Finds free space that leads outside only through a sheet, or through openings that lie between grid nodes and pass
+/// at most 1 % of all rays. A grid of 64 nodes along the longest side finds candidates of at least 1e-4 of that side
+/// cubed. A grid of 192 nodes refines the box of the candidates. A cavity of a solid is not a void. The result does not
+/// depend on the number of threads.
 /// \param walls  per triangle.
 [[nodiscard]] Voids sealedVoids(const MeshQuery& query, const std::vector<Wall>& walls);
 
-/// The same union, with its voids, and without the triangles that face nothing else among those of its surface: they follow
-/// it, as caps do (TriangleMesh::cap_triangles).
-/// \param part_of  per triangle; reordered with them, and kNoLabel for those that follow. Errors: those of finishMesh.
+/// Returns the same union with its voids filled. Triangles that face only voids and solids move to the end, like caps
+/// (TriangleMesh::cap_triangles).
+/// \param part_of  per triangle; reordered with them, with kNoLabel for the moved ones.
+/// Errors: those of finishMesh.
 [[nodiscard]] Result<PreparedMesh> withVoids(const MeshQuery& query, Voids voids,
                                              std::vector<std::uint32_t>& part_of);
 

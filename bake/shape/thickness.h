@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thickness of shells.
+// Computes the thickness of shells.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,21 @@
 
 namespace relief {
 
-/// The largest --thickness, in units of the mesh's longest side.
+/// Maximum --thickness, in units of the mesh's longest side.
 inline constexpr double kThicknessMax = 0.5;
 
-/// One and a half texels of a bake of this box, for walls that fill their texels; at most 4 % of its longest side.
-/// \param budget_bytes  of all texels.
+/// Returns 1.5 texels of a bake of this box, so that walls fill their texels; at most 4 % of its longest side.
+/// \param budget_bytes  for all texels.
 [[nodiscard]] double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes);
-/// The same of a texel that is given.
+/// Like defaultThickness(), for a given texel.
 [[nodiscard]] double thicknessOfTexel(const Bounds& bounds, double texel);
-/// The same for a part of that box: 0.4 to 25 % of its own longest side; by a given texel also less.
+/// Clamps a default to 0.4 to 25 % of a part's longest side. With `by_texel`, the lower limit is 0.01 %.
 [[nodiscard]] double partThickness(double default_thickness, double part_size, bool by_texel = false);
-/// How much of a default thickness still counts as the part: a tenth of its longest side.
+/// Returns the part of a default thickness that counts as correct: at most a tenth of the part's longest side.
 [[nodiscard]] double rightThickness(double thickness, double part_size);
 
-/// Errors: kUsage, if shells would be thinner than 1e-4 of the smallest sheet's longest side or than floats resolve.
+/// Checks the thickness. Errors: kUsage, if shells would be thinner than 1e-4 of the smallest sheet's longest side, or
+/// thinner than floats resolve.
 [[nodiscard]] Result<void> checkShellThickness(double thickness, double smallest_sheet,
                                                const TriangleMesh& mesh);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which open parts of a mesh are the two shells of a wall.
+// Finds pairs of open parts that are the two shells of a wall.
 #pragma once
 
 #include <string>
@@ -17,14 +17,15 @@ struct WallCandidate {
     bool may_be_solid = false;  ///< OpenShell::is_solid
 };
 
-/// Joins the rims of candidates of similar size whose bounds contain each other's center. Tests only pairs that overlap along x: a
-/// file may have thousands of open parts.
+/// Joins the rims of candidates of similar size whose bounds contain each other's center. Tests only pairs that overlap
+/// along x, because a file may have thousands of open parts.
 /// \param name  of the mesh.
 /// \return shells as indices of candidates.
 [[nodiscard]] ShellWalls wallsAmong(const std::vector<WallCandidate>& candidates, const std::string& name);
 
-/// Whether a shell of a wall is wound like the other one in the file, or in no single way.
-/// \param mesh    of the candidates. \param turned  per triangle of it: against the winding of the file.
+/// Whether the two shells of a wall are wound alike in the file, or one of them inconsistently.
+/// \param mesh    the mesh of the candidates.
+/// \param turned  per triangle of it: flipped relative to the file.
 [[nodiscard]] bool isUnclear(const ShellWall& wall, const std::vector<WallCandidate>& candidates,
                              const TriangleMesh& mesh, const std::vector<bool>& turned);
 
