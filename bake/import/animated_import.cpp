@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bytes of a name that is not that of another clip, without the number behind it.
+/// Name length in bytes that leaves space for a unique number.
 constexpr std::size_t kBareNameMax = kAnimatedNameMax - 8;
 constexpr std::size_t kNamesListed = 5;
 
-/// A skin, or parts that morph: what a program can pose without any clip.
+/// Whether a program can pose the mesh without clips: it has a skin or morph targets.
 bool canBePosed(const AnimatedMesh& mesh) {
     return !mesh.weights.empty() || mesh.influences.size() > mesh.positions.size() ||
            std::any_of(mesh.joints.begin(), mesh.joints.end(),
@@ -31,7 +31,7 @@ bool hasName(const AnimatedMesh& mesh, const std::string& name) {
                        [&](const MeshClip& clip) { return clip.name == name; });
 }
 
-/// The nodes of one mesh, by those of another with the same names.
+/// Maps the nodes of one mesh to the nodes of another mesh by name.
 class NodeMatch {
   public:
     NodeMatch(const AnimatedMesh& from, const AnimatedMesh& mesh) : from_(from), mesh_(mesh) {
@@ -42,7 +42,7 @@ class NodeMatch {
         }
     }
 
-    /// nullopt where there is no such node, or none that can be moved so.
+    /// Returns nullopt if no node matches, or if the channel cannot move it.
     std::optional<std::uint32_t> nodeOf(const ClipChannel& channel) {
         const MeshNode& from = from_.nodes[channel.node];
         const auto found = by_name_.find(from.name);
@@ -61,7 +61,7 @@ class NodeMatch {
     }
 
     [[nodiscard]] bool allKnown() const { return unknown_.empty(); }
-    /// "'a', 'b' and 3 more"
+    /// Lists unmatched names: "'a', 'b' and 3 more".
     [[nodiscard]] std::string unknown() const {
         std::string text;
         for (std::size_t i = 0; i < std::min(unknown_.size(), kNamesListed); ++i) {

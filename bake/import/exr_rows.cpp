@@ -53,7 +53,7 @@ class ExrRows : public SampleRows {
 
     Result<void> open() {
         try {
-            // OpenEXR takes memory for whole rows before anything can be asked. The limit is of the whole process.
+            // OpenEXR allocates whole rows when it opens a file. The limit applies to the whole process.
             static std::once_flag limited;
             std::call_once(limited,
                            [] { Imf::Header::setMaxImageSize(int{kHeightsSideMax}, int{kHeightsSideMax}); });
@@ -90,7 +90,8 @@ class ExrRows : public SampleRows {
     Result<void> next(std::span<float> out) override {
         try {
             Imf::FrameBuffer buffer;
-            // Addresses count from the pixel (0, 0), which may lie outside; with a stride of 0 every row is the first.
+            // Addresses are relative to pixel (0, 0), which may lie outside the data window. A stride of 0 maps every
+            // row to the same memory.
             auto* const base = reinterpret_cast<char*>(out.data()) -
                                std::int64_t{left_} * static_cast<std::int64_t>(sizeof(float));
             buffer.insert(channel_, Imf::Slice(Imf::FLOAT, base, sizeof(float), 0));

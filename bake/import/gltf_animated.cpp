@@ -21,9 +21,9 @@
 namespace relief {
 namespace {
 
-/// Columns of a matrix count as perpendicular up to this cosine, the rounding of floats.
+/// Maximum cosine between matrix columns that count as perpendicular: float rounding.
 constexpr double kPerpendicular = 1e-6;
-/// Of the sum of a vertex's weights from 1: quantised weights differ by less.
+/// Maximum deviation of a vertex's weight sum from 1 without a warning; quantized weights deviate less.
 constexpr double kWeightSumWarns = 0.03;
 
 Affine rowsOf(const Transform& transform) {
@@ -44,7 +44,8 @@ glm::vec4 unitRotation(const glm::dvec4& q) {
     return q / std::sqrt(glm::dot(q, q));
 }
 
-/// A matrix as translation, rotation and scale, which clips can move; a shear or a flat one stays a matrix.
+/// Decomposes a matrix into translation, rotation and scale, which clips can animate. Sheared or flat matrices are
+/// kept.
 void separate(const Transform& transform, MeshNode& node) {
     glm::dmat3 turn = transform.linear;
     glm::dvec3 scale;
@@ -112,7 +113,7 @@ class AnimatedReader {
         std::vector<Affine> binds;
     };
 
-    /// All nodes, as none of them need be shown where clips are for another file.
+    /// Uses all nodes, because a file of clips need not show any of them.
     Result<void> readClips() {
         std::vector<std::uint32_t> roots;
         for (std::uint32_t i = 0; i < from_.size(); ++i) {
@@ -177,7 +178,7 @@ class AnimatedReader {
         return {};
     }
 
-    /// glTF is in metres, and +y is upwards.
+    /// glTF uses metres and +Y up.
     void addFrame() {
         const FrameChange change = changeOf({1.0, UpAxis::kPlusY}, job_.options.unit, job_.options.up);
         out_.unit = change.unit;
@@ -189,7 +190,7 @@ class AnimatedReader {
         }
     }
 
-    /// Joints may stand in trees that the scene does not show.
+    /// Adds joints, which may be outside the shown scene.
     [[nodiscard]] std::vector<std::uint32_t> withJoints(std::vector<std::uint32_t> all) const {
         std::set<std::uint32_t> known(all.begin(), all.end());
         for (const auto& [key, skin] : skins_) {
@@ -207,7 +208,7 @@ class AnimatedReader {
         return all;
     }
 
-    /// \param order  of nodes of the file, parents first. They go below the frame, if there is one.
+    /// \param order  nodes of the file, parents first. They are added below the frame node, if there is one.
     Result<void> addNodes(const std::vector<std::uint32_t>& order) {
         if (order.size() + 1 > kMeshNodesMax) {
             return fail(ErrorCode::kLimit, "it has " + std::to_string(order.size()) + " nodes, and at most " +
@@ -228,7 +229,7 @@ class AnimatedReader {
         return {};
     }
 
-    /// The weights of the morph targets of a node's mesh.
+    /// Adds the morph target weights of a node's mesh.
     Result<void> addWeights(const GltfNode& from, MeshNode& node) {
         const GltfValue& mesh = *from.mesh;
         std::size_t count = 0;
@@ -255,7 +256,7 @@ class AnimatedReader {
         return {};
     }
 
-    /// The mesh of a node, or of each of its instances.
+    /// Adds the mesh of a node, or of each of its instances.
     Result<void> place(std::uint32_t index) {
         const GltfNode& from = from_[index];
         const GltfMesh& mesh = *RELIEF_TRY(meshes_.read(*from.mesh, {}));
@@ -272,7 +273,7 @@ class AnimatedReader {
         return {};
     }
 
-    /// \param below  a place below the node; of no skinned mesh.
+    /// \param below  transform relative to the node; identity for a skinned mesh.
     Result<void> placeAt(std::uint32_t index, const GltfMesh& mesh, const Transform& below) {
         const GltfNode& from = from_[index];
         for (const GltfPrimitive& primitive : mesh.primitives) {
@@ -283,7 +284,7 @@ class AnimatedReader {
                 RELIEF_TRY(checkJoints(*primitive.influences, skin.joints, *from.mesh, *from.skin));
                 mirrored = RELIEF_TRY(addInfluences(*primitive.influences, skin));
             } else {
-                // A skinned mesh is not moved by its node; parts of it without joints stay where they are.
+                // A node does not move its skinned mesh, so primitives without joints stay in place.
                 const std::uint32_t joint =
                     RELIEF_TRY(jointOf(from.skin ? 0 : *nodes_[index], rowsOf(below)));
                 for (std::size_t i = 0; i < primitive.part.positions.size(); ++i) {
@@ -314,7 +315,7 @@ class AnimatedReader {
                    : mesh.wrong("has positions that are no numbers");
     }
 
-    /// \return how far most of it is mirrored in the rest pose: above 0.
+    /// Returns the mirrored weight minus the unmirrored weight in the rest pose: above 0 if most of it is mirrored.
     Result<double> addInfluences(const GltfInfluences& influences, const Skin& skin) {
         double mirrored = 0.0;
         std::map<std::uint32_t, bool> mirrors;
@@ -347,7 +348,7 @@ class AnimatedReader {
         return mirrored;
     }
 
-    /// The joint of that node and bind: skins of one skeleton share theirs.
+    /// Returns the joint for a node and bind matrix; skins of one skeleton share joints.
     Result<std::uint32_t> jointOf(std::uint32_t node, const Affine& bind) {
         std::array<float, 12> numbers{};
         for (std::size_t i = 0; i < 12; ++i) {
@@ -366,7 +367,7 @@ class AnimatedReader {
         return found->second;
     }
 
-    /// The material of the triangles that come next: its name, as different ones of a name are one.
+    /// Adds the material of the following triangles; materials with equal names are merged.
     Result<void> addMaterial(const ScenePart& part) {
         const std::string name = cleanUtf8(part.material, kAnimatedNameMax);
         const auto [found, added] =
@@ -408,7 +409,7 @@ class AnimatedReader {
         if (mesh_.triangles.empty()) {
             return noTriangles(left_out_.any());
         }
-        if (mesh_.materials == std::vector<std::string>{""}) {  // none is named
+        if (mesh_.materials == std::vector<std::string>{""}) {  // no material has a name
             mesh_.materials.clear();
             mesh_.triangle_materials.clear();
         }
@@ -433,7 +434,7 @@ class AnimatedReader {
     Transform frame_;
     LeftOutObjects left_out_;
     std::vector<GltfNode> from_;
-    std::vector<std::optional<std::uint32_t>> nodes_;  // of mesh_, by those of the file
+    std::vector<std::optional<std::uint32_t>> nodes_;  // by node index in the file; the index in mesh_
     std::map<std::uint64_t, Skin> skins_;
     std::map<std::pair<std::uint32_t, std::array<float, 12>>, std::uint32_t> joints_;
     std::map<std::string, std::uint16_t> materials_;

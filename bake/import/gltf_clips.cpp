@@ -16,9 +16,9 @@
 namespace relief {
 namespace {
 
-/// Of an accessor.
+/// Limit per accessor.
 constexpr std::uint64_t kKeysMax = 10'000'000;
-/// Tolerance of a rotation's length, beyond which it is no rotation at all.
+/// Tolerance of a quaternion's length; beyond it, the quaternion is invalid.
 constexpr double kRotationTolerance = 0.1;
 
 constexpr std::array<std::string_view, 4> kPaths = {"translation", "rotation", "scale", "weights"};
@@ -66,7 +66,8 @@ class ClipReader {
     }
 
   private:
-    /// Adds the channel, if it moves a node of the mesh. \param moved  nodes of the file, and paths.
+    /// Adds the channel if it moves a node of the mesh. \param moved  pairs of node and path that already have a
+    /// channel.
     Result<void> readChannel(const GltfValue& from, const std::vector<GltfValue>& samplers,
                              std::set<std::pair<std::uint64_t, std::string>>& moved, MeshClip& clip) {
         const std::optional<GltfValue> target = RELIEF_TRY(from.object("target"));
@@ -83,7 +84,7 @@ class ClipReader {
         }
         const std::optional<std::uint8_t> member = indexOf(kPaths, *path);
         if (!node || !member) {
-            // As extensions have them: a light, a material.
+            // Extensions animate other targets, such as lights and materials.
             return {};
         }
         if (!moved.emplace(node->index(), *path).second) {
@@ -130,7 +131,7 @@ class ClipReader {
         return times;
     }
 
-    /// \param channel  gets curve and values.
+    /// \param channel  receives curve and values.
     Result<void> readValues(const GltfValue& sampler, ClipChannel& channel) {
         const std::string word = RELIEF_TRY(sampler.get<std::string>("interpolation", "LINEAR"));
         const std::optional<std::uint8_t> curve = indexOf(kCurves, word);
@@ -165,7 +166,7 @@ class ClipReader {
         return channel.member == NodeMember::kRotation ? unitRotations(output, channel) : Result<void>();
     }
 
-    /// Quantised quaternions are no unit ones. Tangents stay as they are.
+    /// Normalizes quaternions, which quantization changes. Tangents are unchanged.
     static Result<void> unitRotations(const GltfValue& output, ClipChannel& channel) {
         const bool cubic = channel.curve == KeyCurve::kCubic;
         for (std::size_t key = 0; key < channel.times.size(); ++key) {

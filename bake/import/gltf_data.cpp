@@ -18,13 +18,13 @@ namespace {
 
 // --- bytes ---
 
-constexpr std::size_t kHeader = 12;      // of a GLB: magic, version, length
-constexpr std::size_t kChunkHeader = 8;  // its length and type
+constexpr std::size_t kHeader = 12;      // GLB: magic, version, length
+constexpr std::size_t kChunkHeader = 8;  // length and type
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr const char* kCutOff = "and was probably cut off; copy or export it again";
 
-/// The byte order is the machine's: little-endian.
+/// Loads a value; assumes a little-endian machine.
 template <class T>
 T load(const std::byte* at) {
     T value{};
@@ -52,7 +52,7 @@ Result<std::string> percentDecoded(std::string_view text) {
     return out;
 }
 
-/// With or without its padding.
+/// Decodes base64, with or without padding.
 std::optional<std::vector<std::byte>> base64Bytes(std::string_view text) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<std::uint8_t, 256> values{};
@@ -96,11 +96,11 @@ constexpr std::uint64_t kUnsignedShort = 5123;
 constexpr std::uint64_t kUnsignedInt = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
-/// Valid accessors of a use.
+/// The accessor types that a use allows.
 struct Rules {
     const char* type;
     std::array<std::uint64_t, 5> components;
-    bool normalized;  ///< integers may be normalised
+    bool normalized;  ///< integers may be normalized
 };
 constexpr std::array<Rules, 10> kRules = {
     {{"VEC3", {kByte, kUnsignedByte, kShort, kUnsignedShort, kFloat}, true},
@@ -118,7 +118,7 @@ std::uint64_t sizeOf(std::uint64_t type) {
     return type <= kUnsignedByte ? 1 : type <= kUnsignedShort ? 2 : 4;
 }
 
-/// A normalised byte of 127 is 1.
+/// Loads a value; a normalized byte of 127 is 1.
 template <class T>
 float loadQuantised(const std::byte* at, bool normalized) {
     const auto value = static_cast<float>(load<T>(at));
@@ -147,8 +147,8 @@ struct Elements {
     [[nodiscard]] const std::byte* at(std::uint64_t index) const { return first + index * stride; }
 };
 
-/// The `count` elements of `size` bytes in the view that `owner` names.
-/// \param strided  whether the view may have a stride.
+/// Returns `count` elements of `size` bytes in the view that `owner` references. \param strided  the view may have a
+/// stride.
 Result<Elements> elementsOf(const GltfValue& owner, GltfBuffers& buffers, std::uint64_t count,
                             std::uint64_t size, bool strided) {
     const GltfView view = RELIEF_TRY(buffers.view(owner));
@@ -159,7 +159,7 @@ Result<Elements> elementsOf(const GltfValue& owner, GltfBuffers& buffers, std::u
                            std::to_string(size) + " to the next");
     }
     const std::uint64_t length = view.bytes.size();
-    // Divided, not multiplied: no overflow.
+    // Division cannot overflow.
     const bool fits = count == 0 || (offset <= length && size <= length - offset &&
                                      count - 1 <= (length - offset - size) / stride);
     if (!fits) {
@@ -294,7 +294,7 @@ Result<GltfView> GltfBuffers::view(const GltfValue& from) {
     return GltfView{unpacked_[place.index()], stride};
 }
 
-/// \param place  with a buffer, and a part of it.
+/// \param place  an object that references a part of a buffer.
 Result<std::span<const std::byte>> GltfBuffers::part(const GltfValue& place) {
     const GltfValue buffer = RELIEF_TRY(place.needed("buffer", "buffers"));
     const std::uint64_t offset = RELIEF_TRY(place.get<std::uint64_t>("byteOffset", 0));

@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
 
-// Each takes a value of a type, and returns what is wrong with it ("[3] is no number"), or "".
+// Each overload reads a value of one type. Returns the fault ("[3] is not a number"), or "".
 std::string takeGltf(const Json& json, bool& value) {
     value = json.is_boolean() && json.get<bool>();
     return json.is_boolean() ? "" : " is neither true nor false";

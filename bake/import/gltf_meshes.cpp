@@ -18,14 +18,14 @@ enum Mode : std::uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, 
 constexpr std::uint8_t kByTriangle = 1;
 constexpr std::uint8_t kByOther = 2;
 constexpr std::uint64_t kJointsMax = 65536;
-/// Sets of joints: a vertex has at most sixteen.
+/// Maximum sets of joints; a vertex has at most sixteen joints.
 constexpr std::size_t kSetsMax = 4;
 
 std::uint64_t linesOf(std::uint64_t mode, std::uint64_t corners) {
     return mode == kLines ? corners / 2 : corners < 2 ? 0 : mode == kLineLoop ? corners : corners - 1;
 }
 
-/// The corners of a triangle, by number in its primitive. Every other triangle of a strip is flipped.
+/// Returns the corners of triangle i of a primitive. Every other triangle of a strip is flipped.
 glm::uvec3 cornersOf(std::uint64_t mode, std::uint32_t i) {
     return mode == kFan         ? glm::uvec3(0, i + 1, i + 2)
            : mode == kTriangles ? glm::uvec3(3 * i, 3 * i + 1, 3 * i + 2)
@@ -33,7 +33,7 @@ glm::uvec3 cornersOf(std::uint64_t mode, std::uint32_t i) {
                                 : glm::uvec3(i + 1, i, i + 2);
 }
 
-/// Whether the weights of every vertex are 0 or more, and have a sum above 0.
+/// Whether the weights of every vertex are not negative and sum to more than 0.
 bool weigh(const GltfInfluences& influences) {
     for (std::size_t at = 0; at < influences.all.size(); at += influences.per_vertex) {
         double sum = 0.0;
@@ -48,8 +48,9 @@ bool weigh(const GltfInfluences& influences) {
     return true;
 }
 
-/// Reads JOINTS_0, WEIGHTS_0, JOINTS_1, … \param vertices  as many as the primitive has.
-/// \return nullopt where there are none.
+/// Reads JOINTS_0, WEIGHTS_0, JOINTS_1, …
+/// \param vertices  number of vertices of the primitive.
+/// \return nullopt if there are none.
 Result<std::optional<GltfInfluences>> readInfluences(const GltfValue& attributes, GltfBuffers& buffers,
                                                      std::uint64_t vertices) {
     std::vector<std::pair<std::vector<glm::vec4>, std::vector<glm::vec4>>> sets;
@@ -227,7 +228,7 @@ Result<GltfPrimitive> GltfMeshes::readPrimitive(const GltfValue& place, Needs ne
     return out;
 }
 
-/// \param kept  the positions of the part, by their index in the accessor.
+/// \param kept  the part's positions, as indices into the accessor.
 Result<void> GltfMeshes::readTargets(const std::vector<GltfValue>& places, std::size_t vertices,
                                      const std::vector<std::uint32_t>& kept, GltfPrimitive& out) {
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -274,7 +275,7 @@ Result<GltfMeshes::Vertices*> GltfMeshes::vertices(const GltfValue& accessor) {
 /// \param vertices  of the primitive.
 Result<void> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mode, Vertices& vertices,
                                        ScenePart& part) {
-    // Without indices, the vertices in their order.
+    // Without indices, vertices are used in order.
     const std::optional<GltfValue> accessor = RELIEF_TRY(place.named("indices", "accessors"));
     std::vector<std::uint32_t> indices;
     if (accessor) {

@@ -10,9 +10,9 @@
 namespace relief {
 namespace {
 
-/// The library asserts what follows, and makes no other checks of it.
+/// The library checks the following limits only with assert().
 constexpr std::uint64_t kStrideMax = 256;
-/// Of attributes no byte packs more bytes than this.
+/// Maximum compression ratio of attributes.
 constexpr std::uint64_t kRatioMax = 256;
 
 struct MeshoptPacking {
@@ -39,7 +39,7 @@ Result<void> checkPacking(const GltfValue& extension, const MeshoptPacking& pack
         return extension.wrong("has a byteStride or a count that its mode, " + packing.mode +
                                ", does not have");
     }
-    // Divided, not multiplied: no overflow.
+    // Division cannot overflow.
     if (packing.count != size / stride || size % stride != 0) {
         return extension.wrong("unpacks to another length than its buffer view has");
     }

@@ -15,7 +15,7 @@ namespace {
 
 // --- the document ---
 
-// Required extensions that are read or do not change positions.
+// Required extensions that are supported or do not affect positions.
 constexpr std::array<std::string_view, 14> kKnown = {"KHR_mesh_quantization",    "KHR_texture_transform",
                                                      "KHR_technique_webgl",      "KHR_techniques_webgl",
                                                      "KHR_texture_basisu",       "KHR_lights_punctual",
@@ -64,7 +64,8 @@ Result<void> checkExtensions(const GltfValue& document) {
     return {};
 }
 
-/// Whether animations show and hide nodes (KHR_animation_pointer). Errors: of animations, which a mesh does not depend on.
+/// Whether animations change the visibility of nodes (KHR_animation_pointer). Errors are those of animations, which a
+/// mesh does not depend on.
 Result<bool> animatesVisibility(const GltfValue& document) {
     for (const GltfValue& animation : RELIEF_TRY(document.objects("animations"))) {
         for (const GltfValue& channel : RELIEF_TRY(animation.objects("channels"))) {
@@ -82,9 +83,9 @@ Result<bool> animatesVisibility(const GltfValue& document) {
 
 // --- nodes ---
 
-/// Tolerance of a rotation's length, as in the Khronos validator: the rounding of bytes.
+/// Tolerance of a quaternion's length, as in the Khronos validator: rounding to bytes.
 constexpr double kUnitTolerance = 0.00674;
-/// Tolerance of the last row of a matrix, 0 0 0 1.
+/// Tolerance of a matrix's last row, 0 0 0 1.
 constexpr float kRowTolerance = 1e-5F;
 
 glm::dmat3 rotationOf(const glm::dvec3& v, double w) {
@@ -137,7 +138,7 @@ Result<GltfPlacement> placementOf(const GltfValue& node) {
     return at;
 }
 
-/// Links the nodes with their children.
+/// Links nodes to their children.
 Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     for (std::uint32_t index = 0; index < nodes.size(); ++index) {
         const GltfValue place = nodes[index].place;
@@ -146,7 +147,7 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
             if (child >= nodes.size()) {
                 return place.wrong("names a child, " + name + ", that does not exist");
             }
-            // n nodes could show it 2ⁿ times.
+            // Otherwise, n nodes could show a mesh 2ⁿ times.
             if (std::exchange(nodes[child].parent, index)) {
                 return invalidInput(name + " has two parents; nodes must form trees");
             }
@@ -156,12 +157,12 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
     return {};
 }
 
-/// Refuses levels of detail that lead back to their node, through children too: none of them would be shown.
+/// Rejects levels of detail that lead back to their node, also through children; none of them would be shown.
 Result<void> checkLevels(const std::vector<GltfNode>& nodes,
                          const std::vector<std::vector<std::uint32_t>>& levels) {
     enum class State : std::uint8_t { kNew, kOpen, kDone };
     std::vector<State> states(nodes.size(), State::kNew);
-    std::vector<std::pair<std::uint32_t, std::size_t>> path;  // nodes, and the next of what each leads to
+    std::vector<std::pair<std::uint32_t, std::size_t>> path;  // nodes, each with its next successor
     for (std::uint32_t first = 0; first < nodes.size(); ++first) {
         if (states[first] == State::kNew) {
             states[first] = State::kOpen;
@@ -192,7 +193,7 @@ Result<void> checkLevels(const std::vector<GltfNode>& nodes,
     return {};
 }
 
-/// Hides what is below nodes that are not shown. \param all  nodes, each before its children.
+/// Hides the descendants of hidden nodes. \param all  nodes, parents first.
 void hideBelow(const std::vector<std::uint32_t>& all, std::vector<GltfNode>& nodes) {
     for (const std::uint32_t index : all) {
         const Shown above = nodes[index].parent ? nodes[*nodes[index].parent].shown : Shown::kYes;
@@ -200,7 +201,8 @@ void hideBelow(const std::vector<std::uint32_t>& all, std::vector<GltfNode>& nod
     }
 }
 
-/// Marks the nodes that extensions hide, with all below. Lower levels of detail are usually in no scene.
+/// Marks the nodes that extensions hide, with their descendants. Lower levels of detail are usually not part of a
+/// scene.
 Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, std::vector<GltfNode>& nodes) {
     for (GltfNode& node : nodes) {
         const auto extensions = RELIEF_TRY(node.place.object("extensions"));
@@ -215,7 +217,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
         const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));
         const auto levels = RELIEF_TRY(inside(extensions, "MSFT_lod"));
         using Indices = std::vector<std::uint64_t>;
-        bool met = nodes[i].shown != Shown::kHidden;  // the first level that is shown
+        bool met = nodes[i].shown != Shown::kHidden;  // a more detailed level is shown
         for (const std::uint64_t level : levels ? RELIEF_TRY(levels->get<Indices>("ids", {})) : Indices()) {
             if (level >= nodes.size()) {
                 return levels->wrong("names nodes[" + std::to_string(level) + "], which does not exist");
@@ -235,7 +237,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
     return {};
 }
 
-/// Empty where there is no such attribute.
+/// Returns an empty list if the attribute is missing.
 template <class T>
 Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* name, GltfUse use,
                                       GltfBuffers& buffers, std::uint64_t count_max) {
@@ -244,7 +246,7 @@ Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* n
                     : Result<std::vector<T>>(std::vector<T>());
 }
 
-/// The modes of a physics material, of which a smaller or a larger value alone would count.
+/// Warns of combine modes that would use only the smaller or larger value.
 Result<void> checkCombineModes(const GltfValue& material, std::vector<std::string>& warnings) {
     constexpr const char* kWarning =
         "physics materials have a frictionCombine or restitutionCombine of minimum or maximum, which has no "
@@ -279,7 +281,7 @@ Result<std::vector<GltfNode>> readGltfNodes(const GltfValue& document, HiddenAs 
         node.skin = RELIEF_TRY(place.named("skin", "skins"));
     }
     RELIEF_TRY(linkNodes(nodes));
-    // Each node has at most one parent, so a node that no root reaches is part of a ring.
+    // A node has at most one parent, so a node that no root reaches is part of a cycle.
     std::vector<std::uint32_t> roots;
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
         if (!nodes[i].parent) {

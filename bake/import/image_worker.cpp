@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// openImageRowsInWorker: starts relief-import, and reads the rows that it sends through a pipe.
+// Implements openImageRowsInWorker: starts relief-import, and reads the rows that it sends through a pipe.
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ namespace relief {
 namespace {
 
 constexpr std::size_t kImageErrorBytesMax = 4096;
-/// As much as any user may ask for.
+/// The largest pipe that an unprivileged user may request.
 constexpr int kPipeBytes = 1 << 20;
 
 constexpr std::array<unsigned char, 8> kPng = {0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
@@ -40,7 +40,8 @@ class WorkerRows : public SampleRows {
         if (const int failed = makePipe(pipe_, end)) {
             return ImportProcess::notStarted(failed);
         }
-        static_cast<void>(::fcntl(end.get(), F_SETPIPE_SZ, kPipeBytes));  // or less is ready ahead
+        // On failure, the worker buffers fewer rows.
+        static_cast<void>(::fcntl(end.get(), F_SETPIPE_SZ, kPipeBytes));
         RELIEF_TRY(worker_.start("image", kImportImage, {std::string(kImportNamesFollow)},
                                  {image, -1, end.get(), end.get()}));
         end.reset();

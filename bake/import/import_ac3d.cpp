@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Not by assimp 5.2: it reads cut files, replaces indices out of range, turns objects the wrong way and leaves those below a
-// shifted one behind (import_ac3d_test.cpp).
+// assimp 5.2 is not used: it accepts truncated files, replaces out-of-range indices, rotates objects the wrong way, and
+// does not move the kids of a translated object (import_ac3d_test.cpp).
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -19,18 +19,18 @@
 namespace relief {
 namespace {
 
-/// Deeper files are no models, and would be walked over by recursion.
+/// Rejects deeper files, because later stages recurse.
 constexpr std::size_t kDepthMax = 1000;
 
-/// The low digit of a surface's flags.
+/// Low digit of a surface's flags.
 enum SurfaceKind : std::uint64_t { kPolygon = 0, kClosedLine = 1, kLine = 2, kStripSurface = 4 };
 
-/// Surfaces of one material of an object.
+/// The surfaces of an object by material.
 using ByMaterial = std::map<std::uint64_t, PolygonMesh>;
 
 class Ac3dReader {
   public:
-    /// \param job  borrowed.
+    /// Borrows the job.
     explicit Ac3dReader(const ImportJob& job)
         : job_(job),
           text_(std::string_view(reinterpret_cast<const char*>(job.bytes.data()), job.bytes.size())) {}
@@ -52,7 +52,7 @@ class Ac3dReader {
         for (const Parent& parent : open_) {
             missing += std::min(parent.kids, kTriangleMax);
         }
-        if (missing > 0) {  // wrong counts are in files that people use
+        if (missing > 0) {  // common in practice
             scene_.warnings.push_back(
                 "it has " + std::to_string(missing) +
                 " objects fewer than its 'kids' announce; if some are missing, copy or export it again");
@@ -65,7 +65,7 @@ class Ac3dReader {
     }
 
   private:
-    /// An object whose kids are still to come.
+    /// An object whose kids follow.
     struct Parent {
         std::uint32_t node;
         std::uint64_t kids;
@@ -78,7 +78,7 @@ class Ac3dReader {
                          "it ends too early: " + what + "; it was probably cut off: copy or export it again");
     }
 
-    /// Without quotes, if it has any.
+    /// Removes quotes, if any.
     static std::string nameOf(std::string_view words) {
         if (words.empty() || words.front() != '"') {
             return std::string(words.substr(0, words.find_first_of(" \t")));
@@ -105,7 +105,7 @@ class Ac3dReader {
                             : Result<double>(wrongLine(line(), noNumber(word)));
     }
 
-    /// An object up to its kids, which follow it.
+    /// Reads an object up to its kids, which follow it.
     Result<void> readObject() {
         const auto index = static_cast<std::uint32_t>(scene_.nodes.size());
         depths_.push_back(open_.empty() ? 0 : depths_[open_.back().node] + 1);
@@ -165,7 +165,7 @@ class Ac3dReader {
                 node.transform->offset[axis] = RELIEF_TRY(number());
             }
         } else if (key == "rot") {
-            // The image of each axis, one after the other.
+            // One axis after another, as columns.
             for (int axis = 0; axis < 3; ++axis) {
                 for (int i = 0; i < 3; ++i) {
                     node.transform->linear[axis][i] = RELIEF_TRY(number());
@@ -184,13 +184,13 @@ class Ac3dReader {
         return {};
     }
 
-    /// Any text of so many bytes, which begins on the next line.
+    /// Skips a block of bytes, which starts on the next line.
     Result<void> passData() {
         const std::uint64_t bytes = RELIEF_TRY(count("bytes"));
         text_.nextLine();
         const std::string_view rest = text_.rest();
         const std::string_view data = rest.substr(0, std::min<std::uint64_t>(bytes, rest.size()));
-        // Its first line is that behind the last word.
+        // The next line starts after the last word.
         lines_before_ = line() + static_cast<std::size_t>(std::ranges::count(data, '\n'));
         text_ = TextScanner(rest.substr(data.size()));
         return {};
@@ -207,7 +207,7 @@ class Ac3dReader {
                 position[axis] = static_cast<float>(RELIEF_TRY(number()));
             }
             positions_.push_back(position);
-            text_.nextLine();  // with normals in files of TORCS
+            text_.nextLine();  // TORCS appends normals
         }
         scene_.counts.vertices += vertices;
         used_.resize(positions_.size(), 0);
@@ -260,7 +260,7 @@ class Ac3dReader {
                                                             ", from 0; repair the file or export it again");
             }
             corners_.push_back(static_cast<std::uint32_t>(*corner));
-            text_.nextLine();  // with its place in a texture, or several
+            text_.nextLine();  // TORCS appends one or more texture coordinates
         }
         if (kind == kClosedLine || kind == kLine) {
             ++scene_.counts.lines;
@@ -272,7 +272,7 @@ class Ac3dReader {
         return kind == kStripSurface ? addStrip(polygons) : addPolygon(corners_, polygons);
     }
 
-    /// Of the corners. \param by  1: lines and points, 2: polygons.
+    /// Marks the current corners as used. \param by  1: lines and points, 2: polygons.
     void mark(std::uint8_t by) {
         for (const std::uint32_t corner : corners_) {
             used_[corner] |= by;
@@ -292,7 +292,7 @@ class Ac3dReader {
         return triangles_ > job_.triangle_max ? Result<void>(tooManyTriangles(job_)) : Result<void>();
     }
 
-    /// Every other triangle of a strip is wound the other way round. Those with a corner twice join strips.
+    /// Flips every other triangle of a strip. Skips triangles with a repeated corner, which join strips.
     Result<void> addStrip(PolygonMesh& polygons) {
         for (std::size_t i = 0; i + 2 < corners_.size(); ++i) {
             const std::uint32_t a = corners_[i + i % 2];
@@ -320,18 +320,18 @@ class Ac3dReader {
 
     const ImportJob& job_;
     TextScanner text_;
-    std::size_t lines_before_ = 0;  // text_
+    std::size_t lines_before_ = 0;  // before text_
     ImportScene scene_;
     std::vector<std::string> materials_;
     std::vector<Parent> open_;
-    std::vector<std::size_t> depths_;  // of the nodes
+    std::vector<std::size_t> depths_;  // by node
     std::uint64_t vertices_ = 0;
     std::uint64_t triangles_ = 0;
     std::uint64_t subdivided_ = 0;
-    // Of the object:
+    // The current object:
     std::vector<glm::vec3> positions_;
-    std::vector<std::uint8_t> used_;      // of each position, by what
-    std::vector<std::uint32_t> corners_;  // of the surface
+    std::vector<std::uint8_t> used_;      // per position; see mark()
+    std::vector<std::uint32_t> corners_;  // of the current surface
 };
 
 }  // namespace

@@ -26,10 +26,10 @@ namespace {
 
 // --- files and log ---
 
-/// The mesh from memory, and the files that it refers to (material libraries) by ImportFiles. Nothing can be written.
+/// Serves the mesh from memory, and the files that it references (material libraries) through ImportFiles. Read-only.
 class ReadOnlyFiles final : public Assimp::IOSystem {
   public:
-    /// \param mesh  the mesh's bytes, borrowed.
+    /// Borrows both. \param mesh  the mesh's bytes.
     ReadOnlyFiles(ImportFiles& files, std::span<const std::byte> mesh) : files_(files), mesh_(mesh) {}
 
     bool Exists(const char* path) const override { return path != nullptr && files_.exists(path); }
@@ -52,7 +52,7 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
         return new Assimp::MemoryIOStream(copy, bytes->size(), true);
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
-    // assimp's own would touch the disk.
+    // assimp's defaults would access the disk.
     bool CreateDirectory(const std::string& /*path*/) override { return false; }
     bool ChangeDirectory(const std::string& /*path*/) override { return false; }
     bool DeleteFile(const std::string& /*file*/) override { return false; }
@@ -62,8 +62,8 @@ class ReadOnlyFiles final : public Assimp::IOSystem {
     std::span<const std::byte> mesh_;
 };
 
-/// The first errors of an import on this thread, and warnings about omitted parts of the surface. A reader of assimp that
-/// repairs a file, such as an index out of range, reports it nowhere else.
+/// The first errors of an import on this thread, and warnings about omitted parts of the surface. This log is the only
+/// place where assimp's readers report that they repaired a file, such as an out-of-range index.
 thread_local std::vector<std::string> logged;
 
 bool hasAny(std::string_view text, std::span<const std::string_view> words) {
@@ -71,11 +71,11 @@ bool hasAny(std::string_view text, std::span<const std::string_view> words) {
                        [text](std::string_view word) { return text.find(word) != std::string_view::npos; });
 }
 
-/// Words of its warnings (BLEND, LWO, FBX) about omitted parts of the surface.
+/// Phrases in assimp's warnings (BLEND, LWO, FBX) about omitted parts of the surface.
 constexpr std::array<std::string_view, 7> kLeftOut = {
     "type is unsupported",   "unsupported primitive chunk", "unknown polygon type",   "unsupported ID",
     "unrecognized geometry", "not enough vertices",         "unexpected vertex setup"};
-/// Subjects that an import ignores anyway.
+/// Topics that an import ignores.
 constexpr std::array<std::string_view, 5> kNoSurface = {"aterial", "exture", "nimation", "angent", "inormal"};
 
 class Listener final : public Assimp::Logger {
@@ -104,7 +104,7 @@ class Listener final : public Assimp::Logger {
 
 void beginLogging() {
     static const bool kInstalled = [] {
-        Assimp::DefaultLogger::set(new Listener);  // kept by assimp for the life of the process
+        Assimp::DefaultLogger::set(new Listener);  // owned by assimp for the life of the process
         return true;
     }();
     static_cast<void>(kInstalled);
@@ -127,8 +127,8 @@ std::optional<T> metadata(const aiMetadata* data, const char* key) {
     return value;
 }
 
-/// FBX has its unit in centimetres, and its axes by number and sign. assimp applies neither, reads 10,5 as 10, and reads only
-/// numbers of type double.
+/// Reads the frame of an FBX file: unit in centimetres, axes as index and sign. assimp applies neither, reads 10,5 as
+/// 10, and reads only numbers of type double.
 SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     SourceFrame frame{std::nullopt, std::nullopt};
     const FbxUnit unit = fbxUnit(job.bytes).value_or(FbxUnit{"1", 1.0});
@@ -147,7 +147,8 @@ SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     return frame;
 }
 
-/// assimp scales the root by the document's unit. \param root  loses that scale.
+/// Reads the frame of a COLLADA file. assimp scales the root by the document's unit. \param root  that scale is
+/// removed.
 SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     SourceFrame frame = colladaFrame(job.bytes);
     const double applied = double{root.a1};  // as rounded by assimp
@@ -158,8 +159,8 @@ SourceFrame daeFrame(const ImportJob& job, aiMatrix4x4& root) {
     return frame;
 }
 
-/// assimp turns the root, and divides it by the file's master scale, even an invalid one. \param root  loses the turn, and an
-/// invalid scale.
+/// Reads the frame of a 3DS file. assimp rotates the root, and divides it by the file's master scale, even if that is
+/// invalid. \param root  the rotation and an invalid scale are removed.
 SourceFrame frameOf3ds(aiMatrix4x4& root) {
     SourceFrame frame{std::nullopt, UpAxis::kPlusZ};
     const float scale = root.a1;
@@ -171,7 +172,7 @@ SourceFrame frameOf3ds(aiMatrix4x4& root) {
     return frame;
 }
 
-/// \param scene  its root loses what assimp has applied of the frame.
+/// Reads the frame of a file. \param scene  assimp's conversion is removed from its root.
 SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
     SourceFrame frame;
     switch (format) {
@@ -191,13 +192,14 @@ SourceFrame frameOf(AssimpFrame format, const ImportJob& job, aiScene& scene) {
 
 std::string nameOf(const aiString& text) {
     const std::string_view name(text.data, std::min<std::size_t>(text.length, sizeof(text.data)));
-    // Placeholders of assimp for missing names, and its suffix for nodes of FBX that it splits.
+    // assimp's placeholders for missing names, and its suffix for split FBX nodes.
     const bool made_up = name == AI_DEFAULT_MATERIAL_NAME || (name.starts_with('<') && name.ends_with('>')) ||
                          name.find("_$AssimpFbx$_") != std::string_view::npos;
     return made_up ? std::string() : std::string(name.substr(0, name.find(kLodGroupMark)));
 }
 
-/// Some readers of assimp keep invalid indices. \return nullopt: a face uses a vertex that does not exist.
+/// Converts a mesh. Some of assimp's readers keep invalid indices. \return nullopt if a face references a missing
+/// vertex.
 std::optional<PolygonMesh> polygonsOf(const aiMesh& mesh) {
     PolygonMesh polygons;
     if (!mesh.HasPositions()) {
@@ -220,7 +222,7 @@ std::optional<PolygonMesh> polygonsOf(const aiMesh& mesh) {
     return polygons;
 }
 
-/// Gives each corner its own vertex: keeps the bytes of bakes of meshes beside lines or points.
+/// Gives each corner its own vertex. This keeps the bytes of bakes of meshes with lines or points.
 void unshare(ScenePart& part) {
     std::vector<glm::vec3> positions;
     for (glm::uvec3& t : part.triangles) {
@@ -231,7 +233,7 @@ void unshare(ScenePart& part) {
     part.positions = std::move(positions);
 }
 
-/// \return false: a face uses a vertex that does not exist.
+/// Returns false if a face references a missing vertex.
 bool addMeshes(const aiScene& source, ImportScene& scene) {
     for (const aiMesh* mesh : std::span(source.mMeshes, source.mNumMeshes)) {
         const std::optional<PolygonMesh> polygons = polygonsOf(*mesh);
@@ -258,7 +260,7 @@ bool addMeshes(const aiScene& source, ImportScene& scene) {
     return true;
 }
 
-/// A property of an FBX node, of any type of number. \return whether it is there, and 0.
+/// Whether a property of an FBX node exists and is 0, in any numeric type.
 bool isZero(const aiNode& node, const char* property) {
     const auto is = [&](auto zero) { return metadata<decltype(zero)>(node.mMetaData, property) == zero; };
     return is(false) || is(std::int32_t{0}) || is(0.0F) || is(0.0);
@@ -268,13 +270,13 @@ std::span<aiNode* const> childrenOf(const aiNode& node) {
     return {node.mChildren, node.mNumChildren};
 }
 
-/// Nodes that the file hides, other than by properties of FBX.
+/// Nodes that the file hides by other means than FBX properties.
 struct HiddenNodes {
     std::map<const aiNode*, std::string> labels;  ///< names for messages
     std::vector<std::string> unmet;               ///< hidden objects without a node
 };
 
-/// The nodes with these names.
+/// Finds the nodes with these names.
 HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
     HiddenNodes hidden;
     std::set<std::string> unmet = names;
@@ -296,8 +298,8 @@ HiddenNodes nodesOf(const aiNode& root, const std::set<std::string>& names) {
     return hidden;
 }
 
-/// Follows the nodes of assimp along those of the document, since names may be missing or occur several times. assimp keeps
-/// their order, and drops instances that it does not find.
+/// Finds the hidden nodes by walking assimp's tree and the document's in parallel, because names may be missing or
+/// ambiguous. assimp keeps the order, and drops instances that it cannot resolve.
 HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document) {
     HiddenNodes hidden;
     if (std::none_of(document.begin(), document.end(), [](const ColladaNode& node) { return node.hidden; })) {
@@ -336,12 +338,12 @@ HiddenNodes nodesOf(const aiNode& root, const std::vector<ColladaNode>& document
     return hidden;
 }
 
-/// Whether the file hides this node and what is below it, whatever is above it.
+/// Whether the file hides this node and its descendants, ignoring ancestors.
 bool hidesBelow(const aiNode& node, const HiddenNodes& hidden) {
     return isZero(node, "Visibility") || hidden.labels.contains(&node);
 }
 
-/// The same of this node. FBX's Show is that of the node only.
+/// Whether the file hides this node, ignoring ancestors. FBX's Show applies only to the node itself.
 bool isHidden(const aiNode& node, const HiddenNodes& hidden) {
     return isZero(node, "Show") || hidesBelow(node, hidden);
 }
@@ -353,7 +355,7 @@ bool hasMeshes(const aiNode& node) {
            });
 }
 
-/// All levels of a LodGroup but the most detailed one, which is the first that is shown.
+/// Finds all levels of a LodGroup except the most detailed one, which is the first that is shown.
 std::set<const aiNode*> lesserLevels(const aiNode& group, const HiddenNodes& hidden) {
     std::set<const aiNode*> levels;
     if (std::string_view(group.mName.C_Str()).find(kLodGroupMark) == std::string_view::npos) {
@@ -392,7 +394,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
                             : hidesBelow(*from, hidden)   ? Shown::kHidden
                                                           : Shown::kYes;
         node.is_shown = below == Shown::kYes && isZero(*from, "Show") ? Shown::kHidden : below;
-        if (index > 0) {  // the root is the file
+        if (index > 0) {  // the root represents the file
             const auto label = hidden.labels.find(from);
             node.shown = label != hidden.labels.end() ? label->second
                          : node.names[0].empty()      ? scene.nodes[parent].shown
@@ -422,7 +424,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
     }
 }
 
-/// Keeps only the readers that claim the extension, so that the choice does not depend on the contents.
+/// Keeps only the readers for the extension, so that the contents do not affect the choice.
 void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     std::vector<Assimp::BaseImporter*> others;
     for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
@@ -438,17 +440,17 @@ void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
     }
 }
 
-/// assimp's message, with the files that were refused. Throws std::bad_alloc where it has run out of memory.
+/// Returns assimp's message, and the refused files. Throws std::bad_alloc if assimp ran out of memory.
 tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFiles& files) {
     if (const std::exception_ptr& thrown = importer.GetException(); thrown != nullptr) {
         try {
             std::rethrow_exception(thrown);
         } catch (const std::bad_array_new_length&) {
-            // An invalid size: the file is wrong.
+            // An invalid size in the file.
         } catch (const std::bad_alloc&) {
             throw;
         } catch (...) {
-            // Its message follows.
+            // The message follows below.
         }
     }
     const std::string words = oneCleanLine(importer.GetErrorString());
@@ -471,10 +473,10 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
         format == AssimpFrame::kFbx ? markedFbx(job.bytes) : std::nullopt;
     // Owned by the importer.
     importer.SetIOHandler(new ReadOnlyFiles(files, marked ? *marked : files.meshBytes()));
-    // Otherwise files with only bones get a made-up mesh.
+    // Otherwise assimp creates a placeholder mesh for files that contain only bones.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // turned here
-    // Owned by the importer, and not constant.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // applied below
+    // Owned by the importer; the cast is safe because the object is not constant.
     auto* const source = const_cast<aiScene*>(importer.ReadFile(job.file_name, 0));
     if (hasLogged("UnitScaleFactor must be non-zero")) {
         return invalidInput("its UnitScaleFactor is 0, which is no length; export it again with a unit");

@@ -25,7 +25,7 @@ void fields(FieldVisitor& visit, ImportLimits& limits) {
     visit("import_memory", limits.memory,
           {.help = "Memory that reading the mesh may take",
            .unit = "bytes",
-           .range = {64e6, 1e12},  // a little mesh takes less
+           .range = {64e6, 1e12},  // enough for a small mesh
            .must = "64MB to 1000GB"});
     visit("import_time", limits.seconds,
           {.help = "Seconds that reading the mesh may take",

@@ -17,10 +17,10 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kRefusedMax = 4;  // as many as a message can name
+constexpr std::size_t kRefusedMax = 4;  // the most that a message lists
 constexpr std::size_t kRefusedPathMax = 200;
 
-/// "a\b" and "./a/b" become "a/b".
+/// Converts "a\b" and "./a/b" to "a/b".
 std::string relativePath(std::string_view path) {
     std::string text(path);
     std::replace(text.begin(), text.end(), '\\', '/');
@@ -51,7 +51,7 @@ Descriptor ImportFiles::openBeneath(const std::string& path, std::string& why) c
         return Descriptor();
     }
     open_how how{};
-    // Non-blocking: a pipe without a writer must not hang the importer.
+    // Non-blocking, so that a pipe without a writer cannot hang the importer.
     how.flags = O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK;
     how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS;
     Descriptor file(static_cast<int>(::syscall(SYS_openat2, folder_, path.c_str(), &how, sizeof(how))));

@@ -11,7 +11,7 @@ namespace {
 
 using enum MeshReader;
 
-// Formats of which assimp's test models are imported correctly, or refused clearly.
+// Only formats whose test models in assimp are imported correctly, or rejected clearly.
 constexpr MeshFormat kRows[] = {
     {.extension = "obj", .reader = kObj},
     {.extension = "stl", .reader = kStl, .whole = true},
@@ -20,7 +20,7 @@ constexpr MeshFormat kRows[] = {
     {.extension = "gltf", .reader = kGltf},
     {.extension = "glb", .reader = kGltf, .signatures = {"glTF\x02"}},
     {.extension = "ac", .reader = kAc3d, .signatures = {"AC3D"}, .whole = true},
-    {.extension = "acc", .reader = kAc3d, .signatures = {"AC3D"}, .whole = true},  // of TORCS
+    {.extension = "acc", .reader = kAc3d, .signatures = {"AC3D"}, .whole = true},  // TORCS
     {.extension = "fbx", .frame = AssimpFrame::kFbx, .signatures = {"Kaydara FBX Binary", "; FBX "}},
     {.extension = "dae", .frame = AssimpFrame::kDae},
     {.extension = "3ds", .frame = AssimpFrame::k3ds},
@@ -37,7 +37,7 @@ std::string_view textOf(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// By the header's count and the length; the rest of the header may be anything.
+/// Compares the length with the header's count; the rest of the header may have any contents.
 bool isBinaryStl(std::string_view extension, std::span<const std::byte> bytes) {
     std::uint32_t count = 0;
     if (extension != "stl" || bytes.size() <= 84) {

@@ -13,7 +13,7 @@
 namespace relief {
 namespace {
 
-/// The part in that pose, flipped if most of it is mirrored.
+/// Returns the part in the given pose, flipped if most of it is mirrored.
 ScenePart posed(ScenePart part, const GltfInfluences& influences, const std::vector<Transform>& joints) {
     double mirrored = 0.0;
     std::vector<bool> mirrors;
@@ -76,9 +76,9 @@ class GltfReader {
   private:
     struct Skin {
         GltfSkin joints;
-        std::vector<Transform> transforms;  // of vertices as they are modelled
+        std::vector<Transform> transforms;  // from modelled vertices
     };
-    /// A mesh, a primitive of it, and a skin + 1, or 0 for none.
+    /// Mesh, primitive, and skin + 1, or 0 without a skin.
     using PlacedKey = std::tuple<std::uint64_t, std::size_t, std::uint64_t>;
 
     void warn(const std::string& text) {
@@ -87,7 +87,7 @@ class GltfReader {
         }
     }
 
-    /// The meshes of the nodes below the roots, in the order in which the scene shows them.
+    /// Reads the meshes of the nodes below the roots, in scene order.
     Result<void> readShown() {
         std::vector<std::uint32_t> shown;
         std::set<std::uint64_t> skinned;
@@ -138,7 +138,7 @@ class GltfReader {
         return {};
     }
 
-    /// The node's mesh becomes that of a child for each instance, before its own children.
+    /// Moves the node's mesh to one new child per instance, before the node's own children.
     Result<void> placeInstances(const GltfNode& from, std::uint32_t index) {
         const auto instances = RELIEF_TRY(gltfInstances(from, buffers_, instances_left_));
         if (instances && from.skin) {
@@ -178,9 +178,9 @@ class GltfReader {
     GltfBuffers buffers_;
     ImportScene scene_;
     GltfMeshes meshes_;
-    std::vector<GltfNode> nodes_;                // beside those of the scene
-    std::map<std::uint64_t, Skin> skins_;        // by number + 1
-    std::map<PlacedKey, std::uint32_t> placed_;  // indices of the scene's parts
+    std::vector<GltfNode> nodes_;                // by index in the file
+    std::map<std::uint64_t, Skin> skins_;        // by index + 1
+    std::map<PlacedKey, std::uint32_t> placed_;  // indices of scene parts
     bool all_jointed_ = true;
     std::uint64_t instances_left_ = kGltfInstancesMax;
 };

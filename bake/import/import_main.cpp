@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-import`: reads one mesh file or image for its parent (import_protocol.h), with limits and without rights, so
-// that a hostile file can harm only this process. Started by ImportProcess; not for direct use.
+// `relief-import`: reads one mesh file or image for its parent (import_protocol.h) in a sandbox, so that a hostile file
+// can harm only this process. Started by ImportProcess; not for direct use.
 #include <fcntl.h>
 #include <malloc.h>
 #include <poll.h>
@@ -30,9 +30,9 @@
 namespace relief {
 namespace {
 
-/// For the stack of importRaw and small allocations.
+/// Reserve for the stack of importRaw and small allocations.
 constexpr std::uint64_t kMemoryBeside = (std::uint64_t{1} << 30) + (std::uint64_t{64} << 20);
-/// Of the heap, whose pages may be large.
+/// Initial heap, which may use large pages.
 constexpr std::uint64_t kHeapBytes = std::uint64_t{64} << 20;
 
 std::uint64_t fileSize(int file) {
@@ -45,7 +45,7 @@ bool isFolder(int file) {
     return ::fstat(file, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
-/// The parent ended before PR_SET_PDEATHSIG took effect.
+/// Whether the parent ended before PR_SET_PDEATHSIG took effect.
 bool orphaned() {
     pollfd alive{kImportAliveFd, 0, 0};
     return ::poll(&alive, 1, 0) > 0 && (alive.revents & POLLERR) != 0;
@@ -61,11 +61,11 @@ int sendMessage(const Result<TriangleMesh>& raw) {
     if (size > fileSize(kImportResultFd)) {
         return kImportExitTooLarge;
     }
-    // All of it now: a page that cannot be allocated later raises SIGBUS.
+    // Allocates all of it now: a page that cannot be allocated later raises SIGBUS.
     if (const int code = reserveMemory(kImportResultFd, size)) {
         return exitOf(code);
     }
-    // Not by write(), which the sandbox forbids.
+    // mmap(), because the sandbox forbids write().
     void* const pages =
         ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, kImportResultFd, 0);
     if (pages == MAP_FAILED) {
@@ -98,7 +98,7 @@ int sendRows(std::span<const std::byte> image) {
     const ImageSize size{(*rows)->columns(), (*rows)->rows(), (*rows)->most()};
     int code = writeAll(kImportResultFd, std::as_bytes(std::span(&good, 1)));
     code = code != 0 ? code : writeAll(kImportResultFd, std::as_bytes(std::span(&size, 1)));
-    std::vector<float> row(1 + size.columns);  // the first value, 0, has the bytes of `good`
+    std::vector<float> row(1 + size.columns);  // the leading 0.0F has the bytes of a u32 of 0
     for (std::uint64_t i = 0; i < size.rows && code == 0; ++i) {
         if (const Result<void> read = (*rows)->next(std::span(row).subspan(1)); !read) {
             return sendError(read.error());
@@ -149,7 +149,7 @@ int work(std::span<char*> arguments) {
     if (orphaned()) {
         return kImportExitArguments;
     }
-    prepareHeap(static_cast<std::size_t>(std::min(memory / 4, kHeapBytes)));  // within the limit
+    prepareHeap(static_cast<std::size_t>(std::min(memory / 4, kHeapBytes)));  // counts towards the limit
     std::set_new_handler([] { ::_exit(kImportExitMemory); });
     if (image) {
         return sendRows({static_cast<const std::byte*>(pages), size});
@@ -179,5 +179,5 @@ int main(int argc, char** argv) {
     } catch (...) {
         code = relief::kImportExitMemory;
     }
-    ::_exit(code);  // without cleaning up
+    ::_exit(code);  // without cleanup
 }

@@ -17,7 +17,7 @@ constexpr std::size_t kErrorBytesMax = 4096;
 constexpr std::size_t kWarningsMax = 100;
 constexpr std::size_t kFilesMax = 100'000;
 
-/// Counts the bytes of a message, and writes them where there is a target.
+/// Counts the bytes of a message, and writes them if there is a target.
 class Writer {
   public:
     explicit Writer(std::byte* target = nullptr) : target_(target) {}
@@ -51,12 +51,12 @@ class Writer {
     std::uint64_t size_ = 0;
 };
 
-/// Reads the bytes of a Writer; of any other bytes, nothing after the first invalid length.
+/// Reads a message of Writer. For other bytes, reads nothing after the first invalid length.
 class Reader {
   public:
     explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-    /// Everything was read, and was there.
+    /// Whether the message was complete and read to its end.
     [[nodiscard]] bool done() const { return good_ && bytes_.empty(); }
 
     template <class T>
@@ -93,7 +93,7 @@ class Reader {
     bool good_ = true;
 };
 
-/// Writes or reads a mesh.
+/// Writes or reads a mesh, depending on the channel.
 template <class Channel, class Mesh>
 void exchange(Channel& channel, Mesh& mesh, std::uint64_t triangle_max) {
     const auto text = [&](auto& value) { channel.array(value, kImportBytesMax); };
@@ -160,7 +160,7 @@ void writeImportMessage(const Result<TriangleMesh>& raw, std::span<std::byte> ta
 
 Result<TriangleMesh> readImportMessage(std::span<const std::byte> bytes, std::uint64_t triangle_max) {
     Reader reader(bytes);
-    auto code = static_cast<std::uint32_t>(ErrorCode::kFailure);  // if even this is missing
+    auto code = static_cast<std::uint32_t>(ErrorCode::kFailure);  // the default if even this is missing
     reader.number(code);
     if (code != 0) {
         std::string message;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Not by assimp 5.2: it reads cut files, and replaces indices out of range (import_text_test.cpp, Off).
+// assimp 5.2 is not used: it accepts truncated files, and replaces out-of-range indices (import_text_test.cpp, Off).
 #include "bake/import/import_readers.h"
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 namespace relief {
 namespace {
 
-/// The elements that each end with a line, which may hold colours and the like behind them, as the format has it. The others
-/// follow each other over any lines.
+/// Kinds of elements that end at a line break. The rest of the line may hold colours and similar data, as the format
+/// specifies. Other elements continue across lines.
 struct EndsWithLine {
     bool vertex = true;
     bool face = true;
@@ -43,7 +43,7 @@ class OffReader {
         return std::move(mesh_);
     }
 
-    /// A vertex or a face does.
+    /// Whether a vertex or face spans several lines.
     [[nodiscard]] bool spansLines() const { return spans_lines_; }
 
   private:
@@ -51,7 +51,8 @@ class OffReader {
         std::string_view word = text_.anyWord();
         const std::string name = lowerCase(word);
         if (name.ends_with("off")) {
-            // Colours, normals and the like follow a vertex's coordinates; nOFF has any number of coordinates, 4OFF four.
+            // Colours, normals and similar data follow a vertex's coordinates; nOFF has any number of coordinates, 4OFF
+            // four.
             if (name.find_first_not_of("stcnof") != std::string::npos || word.ends_with("nOFF")) {
                 return wrongLine(text_.line(),
                                  quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
@@ -66,7 +67,7 @@ class OffReader {
         }
         vertices_ = RELIEF_TRY(countOf(word));
         faces_ = RELIEF_TRY(countOf(text_.anyWord()));
-        // The count of edges is not used, and some writers omit it.
+        // The count of edges is unused, and some writers omit it.
         if (text_.atLineEnd()) {
             TextScanner ahead = text_;
             const bool alone = parseUnsigned(ahead.anyWord()) && ahead.atLineEnd();
@@ -90,7 +91,7 @@ class OffReader {
         return std::to_string(vertices_) + " vertices and " + std::to_string(faces_) + " faces";
     }
 
-    /// The file ends too early.
+    /// Returns the error for a truncated file.
     [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& where) const {
         return wrongLine(text_.line(), "it ends " + where + ", though its header announces " + counts() +
                                            ": it was probably cut off; copy or export it again");
@@ -121,7 +122,7 @@ class OffReader {
         return {};
     }
 
-    /// \return the number of its triangles.
+    /// Returns the number of triangles.
     Result<std::uint64_t> readFace(std::uint64_t index) {
         const std::string_view word = text_.anyWord();
         if (word.empty()) {
@@ -166,7 +167,7 @@ class OffReader {
     TextScanner text_;
     EndsWithLine ends_;
     bool spans_lines_ = false;
-    int behind_ = 0;  ///< numbers behind a vertex's coordinates, by the header
+    int behind_ = 0;  ///< numbers after a vertex's coordinates, by the header
     std::uint64_t vertices_ = 0;
     std::uint64_t faces_ = 0;
     PolygonMesh mesh_;
@@ -178,8 +179,8 @@ Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     OffReader reader(text, {});
     Result<PolygonMesh> mesh = reader.read();
-    // A further element on a line looks like colours. It is missing at the end, unless it goes on below and its rest there
-    // looks like one more.
+    // A second element on a line looks like colours of the first. It is then missing at the end of the file, unless it
+    // continues on the next line and its rest there looks like another element.
     for (const EndsWithLine ends : {EndsWithLine{false, false}, {true, false}, {false, true}}) {
         if (mesh && !reader.spansLines()) {
             break;

@@ -23,17 +23,18 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWorkerName = "relief-import";
 constexpr const char* kWorkerFolder = "../libexec/relief";
-/// File sizes are signed.
+/// Below the maximum file size, which is signed.
 constexpr std::uint64_t kMemoryMax = std::uint64_t{1} << 46;
 
-/// The folder of the executable or shared library with this function.
+/// Returns the folder of the executable or shared library that contains this function.
 fs::path ownFolder() {
     Dl_info info{};
     const bool found = ::dladdr(reinterpret_cast<const void*>(&ownFolder), &info) != 0;
     return found && info.dli_fname != nullptr ? fs::path(info.dli_fname).parent_path() : fs::path();
 }
 
-/// The program, beside this one, where an installation puts it, or beside the library with this function; "" if missing.
+/// Returns the path of relief-import: beside this program, in an installation's libexec, or beside the library that
+/// contains this function; "" if missing.
 std::string workerProgram() {
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -108,7 +109,7 @@ Result<void> ImportProcess::start(const std::string& path, std::string_view kind
     start.arguments.insert(start.arguments.end(), more.begin(), more.end());
     start.files.assign(kImportMeshFd, -1);
     start.files.insert(start.files.end(), files.begin(), files.end());
-    // The signals of the worker's limits must end it, even if this process ignores them.
+    // The worker's limits raise signals that must end it, even if this process ignores them.
     start.reset_ignored_signals = true;
     const int failed = worker_.start(start);
     return failed == 0 ? Result<void>() : notStarted(failed);
@@ -184,7 +185,7 @@ tl::unexpected<Error> ImportProcess::ended(int number) const {
             return fail(ErrorCode::kInvalidInput,
                         "the importer tried what it may not (SIGSYS), as a hostile file can make it; do not "
                         "trust the file, or report it if you do");
-        case SIGBUS:  // its memory is no file that could have been truncated
+        case SIGBUS:  // not a truncated file: its memory is anonymous
             return shortOf("could not go on", ENOMEM);
         default:
             return unreadable("crashed on it (" + signalName(number) + ")");

@@ -29,7 +29,7 @@
 namespace relief {
 namespace {
 
-// Missing from the kernel header of Debian 12.
+// Missing from the kernel headers of Debian 12.
 constexpr std::uint64_t kLandlockTruncate = std::uint64_t{1} << 14U;
 
 tl::unexpected<Error> cannot(const char* what) {
@@ -37,7 +37,7 @@ tl::unexpected<Error> cannot(const char* what) {
                 std::string("the importer cannot ") + what + " (" + std::strerror(errno) + ")");
 }
 
-/// Lowers a limit; one that is lower already stays.
+/// Lowers a limit; keeps it if it is already lower.
 bool lowerLimit(__rlimit_resource resource, std::uint64_t soft, std::uint64_t hard) {
     rlimit limit{};
     if (::getrlimit(resource, &limit) != 0) {
@@ -48,15 +48,15 @@ bool lowerLimit(__rlimit_resource resource, std::uint64_t soft, std::uint64_t ha
     return ::setrlimit(resource, &limit) == 0;
 }
 
-/// Address space of this process, in bytes; 0 if it cannot be read.
-[[maybe_unused]] std::uint64_t addressSpace() {  // unused under the sanitizers
+/// Returns the size of this process's address space in bytes; 0 if it cannot be read.
+[[maybe_unused]] std::uint64_t addressSpace() {  // unused under sanitizers
     std::ifstream file("/proc/self/statm");
     std::uint64_t pages = 0;
     file >> pages;
     return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// No effect on kernels without Landlock: the importer opens files by ImportFiles anyway.
+/// Applies Landlock. No effect on kernels without it; the importer opens files only through ImportFiles anyway.
 Result<void> enterLandlock(int folder) {
     const long abi = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (abi < 1) {
@@ -64,7 +64,7 @@ Result<void> enterLandlock(int folder) {
     }
     landlock_ruleset_attr rules{};
     rules.handled_access_fs =
-        (std::uint64_t{LANDLOCK_ACCESS_FS_MAKE_SYM} << 1U) - 1U;  // all of the first version
+        (std::uint64_t{LANDLOCK_ACCESS_FS_MAKE_SYM} << 1U) - 1U;  // all rights of ABI version 1
     rules.handled_access_fs |= abi >= 2 ? std::uint64_t{LANDLOCK_ACCESS_FS_REFER} : 0U;
     rules.handled_access_fs |= abi >= 3 ? kLandlockTruncate : 0U;
     const Descriptor ruleset(
@@ -118,7 +118,7 @@ constexpr int kAllowed[] = {
     SCMP_SYS(gettid),
     SCMP_SYS(exit),
     SCMP_SYS(exit_group),
-    // clocks and the size of the machine, which sorting in libc needs
+    // clocks, and the machine's size, which libc's sort queries
     SCMP_SYS(clock_gettime),
     SCMP_SYS(gettimeofday),
     SCMP_SYS(clock_nanosleep),
@@ -141,7 +141,7 @@ struct Refused {
     int error;
 };
 
-/// Libraries try these and can do without. Without clone3, glibc uses clone, whose flags a filter can check.
+/// Libraries try these calls and work without them. If clone3 fails, glibc uses clone, whose flags a filter can check.
 constexpr Refused kRefused[] = {
     {SCMP_SYS(clone3), ENOSYS},   {SCMP_SYS(open), EACCES},       {SCMP_SYS(openat), EACCES},
     {SCMP_SYS(stat), EACCES},     {SCMP_SYS(lstat), EACCES},      {SCMP_SYS(statx), EACCES},
@@ -151,7 +151,7 @@ constexpr Refused kRefused[] = {
 };
 
 constexpr auto kThread = static_cast<scmp_datum_t>(CLONE_VM | CLONE_SIGHAND | CLONE_THREAD);
-/// Further flags of threads in glibc and musl.
+/// Further thread flags of glibc and musl.
 constexpr auto kThreadMay =
     static_cast<scmp_datum_t>(CLONE_FS | CLONE_FILES | CLONE_SYSVSEM | CLONE_SETTLS | CLONE_PARENT_SETTID |
                               CLONE_CHILD_SETTID | CLONE_CHILD_CLEARTID | CLONE_DETACHED);
@@ -162,7 +162,7 @@ class Rules {
   public:
     explicit Rules(scmp_filter_ctx filter) : filter_(filter) {}
 
-    /// Argument `index`, masked, is `value`.
+    /// Matches if argument `index`, masked, equals `value`.
     static scmp_arg_cmp masked(unsigned index, scmp_datum_t mask, scmp_datum_t value) {
         return {index, SCMP_CMP_MASKED_EQ, mask, value};
     }
@@ -172,7 +172,7 @@ class Rules {
     void refuse(const Refused& refused, std::initializer_list<scmp_arg_cmp> where = {}) {
         add(SCMP_ACT_ERRNO(static_cast<unsigned>(refused.error)), refused.call, where);
     }
-    /// \return 0 or the errno of the first rule that could not be added.
+    /// Returns 0, or the errno of the first rule that could not be added.
     [[nodiscard]] int failure() const { return failure_; }
 
   private:
@@ -200,12 +200,12 @@ void addRules(Rules& rules, int folder, int result) {
     for (const Refused& refused : kRefused) {
         rules.refuse(refused);
     }
-    // Memory for reading and writing, never executable; shared only as the result.
+    // Memory is readable and writable, never executable. Only the result may be shared.
     const auto shared = static_cast<scmp_datum_t>(MAP_SHARED);
     rules.allow(SCMP_SYS(mmap), {Rules::masked(2, PROT_EXEC, 0), Rules::masked(3, shared, 0)});
     rules.allow(SCMP_SYS(mprotect), {Rules::masked(2, PROT_EXEC, 0)});
     if (folder >= 0) {
-        // A filter cannot check the path: Landlock does.
+        // A filter cannot check the path; Landlock does.
         rules.allow(SCMP_SYS(openat2), {Rules::is(0, static_cast<scmp_datum_t>(folder))});
     }
     const auto file = static_cast<scmp_datum_t>(result);
@@ -225,25 +225,25 @@ void addRules(Rules& rules, int folder, int result) {
         rules.allow(SCMP_SYS(fallocate), {Rules::is(0, file), Rules::is(1, 0)});
         rules.allow(SCMP_SYS(fcntl), {Rules::is(0, file), Rules::is(1, F_ADD_SEALS)});
     }
-    // fstat of glibc.
+    // glibc's fstat.
     rules.allow(SCMP_SYS(newfstatat), {Rules::is(3, AT_EMPTY_PATH)});
-    // Queries only.
+    // Only queries.
     for (const int question : {PR_GET_DUMPABLE, PR_GET_NO_NEW_PRIVS, PR_GET_PDEATHSIG}) {
         rules.allow(SCMP_SYS(prctl), {Rules::is(0, static_cast<scmp_datum_t>(question))});
     }
     rules.allow(SCMP_SYS(prlimit64), {Rules::is(0, 0), Rules::is(2, 0)});
     rules.allow(SCMP_SYS(getrlimit));
     rules.allow(SCMP_SYS(clone), {Rules::masked(0, ~kThreadMay, kThread)});
-    // abort() of this process, and of no other.
+    // abort() of this process only.
     rules.allow(SCMP_SYS(tgkill), {Rules::is(0, static_cast<scmp_datum_t>(::getpid()))});
 }
 
-/// Forbids all system calls that reading a mesh does not need. Allowed are memory that is not executable, threads, reading of
-/// descriptors, openat2 (which Landlock confines to a folder and to reading), clocks, and exit. Calls that libraries try and
-/// can do without fail (EACCES, EPERM, ENOSYS, ENOTTY); all others end the process by SIGSYS. Requires PR_SET_NO_NEW_PRIVS.
-/// No effect on kernels without seccomp.
+/// Blocks all system calls that reading a mesh does not need. Allows non-executable memory, threads, reading from
+/// descriptors, openat2 (which Landlock restricts to reading below a folder), clocks, and exit. Calls that libraries
+/// can do without fail (EACCES, EPERM, ENOSYS, ENOTTY); all others end the process with SIGSYS. Requires
+/// PR_SET_NO_NEW_PRIVS. No effect on kernels without seccomp.
 Result<void> enterSeccomp(int folder, int result) {
-    // EFAULT: the kernel supports filters, and this one is null.
+    // EFAULT means that the kernel supports filters and rejects this null pointer.
     if (::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, nullptr) == 0 || errno != EFAULT) {
         return {};
     }
@@ -252,7 +252,7 @@ Result<void> enterSeccomp(int folder, int result) {
         errno = ENOMEM;
         return cannot("limit its system calls");
     }
-    // The kernel's own errno; calls of other architectures are forbidden, too.
+    // Report the kernel's errno, and kill calls of other architectures.
     for (const auto& [attribute, value] : {std::pair{SCMP_FLTATR_API_SYSRAWRC, 1U},
                                            std::pair{SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS}}) {
         errno = -::seccomp_attr_set(filter.get(), attribute, value);
@@ -272,13 +272,13 @@ Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) {
         return cannot("ask to end with its parent");
     }
-#ifndef RELIEF_SANITIZED  // the sanitizer's shadow memory takes terabytes of address space
+#ifndef RELIEF_SANITIZED  // the sanitizers' shadow memory needs terabytes of address space
     const std::uint64_t taken = addressSpace();
     if (taken == 0 || !lowerLimit(RLIMIT_AS, taken + limits.memory, taken + limits.memory)) {
         return cannot("limit its memory");
     }
 #endif
-    // SIGXCPU first; SIGKILL a second later, if that is caught.
+    // SIGXCPU first; SIGKILL one second later, if SIGXCPU is caught.
     if (!lowerLimit(RLIMIT_CPU, limits.seconds, std::uint64_t{limits.seconds} + 1U) ||
         !lowerLimit(RLIMIT_STACK, kSandboxStack, kSandboxStack) || !lowerLimit(RLIMIT_CORE, 0, 0) ||
         !lowerLimit(RLIMIT_FSIZE, 0, 0)) {

@@ -19,15 +19,15 @@
 namespace relief {
 namespace {
 
-/// A transform whose determinant is this small, relative to the product of its columns' lengths, leaves no volume.
+/// Determinant, relative to the product of the column lengths, below which a transform has no volume.
 constexpr double kFlat = 1e-9;
-/// Deviation from one scale and right angles, relative, that is rounding: a tenth of a millimetre in a metre.
+/// Relative deviation from uniform scale and right angles that counts as rounding: 0.1 mm per metre.
 constexpr double kRigid = 1e-4;
-/// Of bodies (formats/world).
+/// Limits of bodies (formats/world).
 constexpr double kPlaceMax = 1e15;
 constexpr double kScaleMin = 1e-9;
 constexpr double kScaleMax = 1e9;
-/// A larger share of loose vertices, one in so many, is worth a warning.
+/// More loose vertices than 1 in kLooseShare cause a warning.
 constexpr std::uint64_t kLooseShare = 10;
 
 double determinant(const glm::dmat3& m) {
@@ -36,13 +36,13 @@ double determinant(const glm::dmat3& m) {
            m[2][0] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
 }
 
-/// Whether a world may have it. False for NaN.
+/// Whether a world may contain the pose; false for NaN.
 bool isPlaced(const glm::dvec3& offset, double scale) {
     return std::abs(offset.x) <= kPlaceMax && std::abs(offset.y) <= kPlaceMax &&
            std::abs(offset.z) <= kPlaceMax && scale >= kScaleMin && scale <= kScaleMax;
 }
 
-/// "1 line, 3 points and 2 free-form curves or surfaces"; "" without any.
+/// Returns "1 line, 3 points and 2 free-form curves or surfaces"; "" if there are none.
 std::string othersText(const MeshParts& parts) {
     std::vector<std::string> words;
     const auto add = [&words](std::uint64_t count, const char* one, const char* many) {
@@ -60,7 +60,7 @@ std::string othersText(const MeshParts& parts) {
     return text;
 }
 
-/// Cuts polygons into triangles, run by run.
+/// Triangulates polygons, run by run.
 class PolygonRuns {
   public:
     PolygonRuns(const PolygonMesh& polygons, bool apart)
@@ -69,7 +69,8 @@ class PolygonRuns {
           has_polygons_(std::any_of(polygons.sizes.begin(), polygons.sizes.end(),
                                     [](std::uint32_t size) { return size > 3; })) {}
 
-    /// The next polygons. \param end  index. \param other  whether they belong to another surface than the previous ones.
+    /// Triangulates the next polygons. \param end  end index. \param other  they belong to another surface than the
+    /// previous run.
     ScenePart upTo(std::size_t end, bool other) {
         ScenePart part;
         std::vector<glm::vec3> places;
@@ -108,7 +109,7 @@ class PolygonRuns {
     }
 
   private:
-    /// The indices that turn triangles (TriangleStarts) restart after so many: keeps the bytes of bakes.
+    /// Count after which the indices for TriangleStarts restart. Keeps the bytes of bakes.
     static constexpr std::uint32_t kHeldMax = 100'000;
 
     const PolygonMesh& polygons_;
@@ -117,14 +118,14 @@ class PolygonRuns {
     PolygonCutter cutter_;
     TriangleStarts starts_;
     std::size_t next_ = 0;   // polygon
-    std::size_t first_ = 0;  // of its corners
+    std::size_t first_ = 0;  // index of its first corner
     std::uint32_t held_ = 0;
 };
 
-/// The names of a file's triangles, and marks for those that --as selects.
+/// Collects the names of a file's triangles, and marks triangles that --as selects.
 class NameMarks {
   public:
-    /// \param job  borrowed.
+    /// Borrows the job.
     explicit NameMarks(const ImportJob& job) : job_(job) {
         for (std::size_t i = 0; i < std::min(job.options.names.size(), kAskedNamesMax); ++i) {
             marks_[job.options.names[i]] = static_cast<std::uint8_t>(i + 1);
@@ -133,8 +134,9 @@ class NameMarks {
 
     [[nodiscard]] bool any() const { return !marks_.empty(); }
 
-    /// \param names  of some triangles, as the file has them.
-    /// \return their TriangleMesh::marks: the largest of several.
+    /// Records the names of some triangles.
+    /// \param names  as stored in the file.
+    /// \return the triangles' mark (TriangleMesh::marks); the largest if several names apply.
     std::uint8_t meet(const std::vector<std::string>& names) {
         std::uint8_t mark = 0;
         for (std::size_t i = 0; any() && i < names.size(); ++i) {
@@ -152,7 +154,7 @@ class NameMarks {
         return mark;
     }
 
-    /// Whether every name was met. Errors: kUsage, with the existing names.
+    /// Checks that every selected name was found. Errors: kUsage, with the existing names.
     [[nodiscard]] Result<void> allMet() const {
         const std::vector<std::string>& asked = job_.options.names;
         const auto unmet = std::find_if(asked.begin(), asked.end(), [&](const std::string& name) {
@@ -182,9 +184,9 @@ class NameMarks {
 
     const ImportJob& job_;
     std::map<std::string, std::uint8_t, std::less<>> marks_;  // of the selected names
-    std::set<std::uint8_t> met_;                              // of those
-    std::vector<std::string> names_;                          // the first that were met, in order
-    std::set<std::string, std::less<>> known_;                // the same
+    std::set<std::uint8_t> met_;                              // marks that were found
+    std::vector<std::string> names_;                          // the first names in the file, in order
+    std::set<std::string, std::less<>> known_;                // the same, for lookup
 };
 
 class Flattener {
@@ -222,14 +224,14 @@ class Flattener {
   private:
     enum class State : std::uint8_t { kUnseen, kOpen, kEmpty, kShown };
 
-    /// A node of a level, or several with one index.
+    /// A node of a level, or several nodes with the same index.
     struct Use {
         const SceneNode* node;
         std::vector<std::uint32_t> parts;
         Transform transform;
         std::uint8_t mark;
     };
-    /// Identifies a mesh: parts, mark, what is applied to them, by columns, and the response of its node.
+    /// Identifies a mesh: its parts, its mark, the linear transform applied to it (columns), and its node's response.
     using MeshKey = std::tuple<std::vector<std::uint32_t>, std::uint8_t, std::array<double, 9>,
                                std::optional<NodeResponse>>;
 
@@ -259,7 +261,7 @@ class Flattener {
         return std::move(mesh_);
     }
 
-    /// The runs of a group of an OBJ are nodes of one index.
+    /// Merges nodes with the same index: the runs of an OBJ group.
     std::vector<Use> uses() {
         std::vector<Use> all;
         std::map<std::pair<std::uint32_t, std::uint8_t>, std::size_t> known;
@@ -391,8 +393,8 @@ class Flattener {
         return {};
     }
 
-    /// Visits the nodes with triangles, parents first: visit(node, transform of its parts, mark) -> whether to continue.
-    /// \return whether all were visited.
+    /// Calls visit(node, transform of its parts, mark) for nodes with triangles, parents first, until it returns false.
+    /// \return whether all nodes were visited.
     template <class Visit>
     bool forEachUse(const Visit& visit) {
         struct Pending {
@@ -436,7 +438,7 @@ class Flattener {
         return triangles_ <= job_.triangle_max && vertices_ <= 3 * job_.triangle_max;
     }
 
-    /// Mirroring transforms flip triangles. \param first  the position that indices count from.
+    /// Adds a part; mirroring transforms flip its triangles. \param first  the position from which indices count.
     void add(const SceneNode& node, const ScenePart& part, const Transform& transform, std::uint8_t mark,
              std::uint32_t first = 0) {
         if (part.triangles.empty()) {
@@ -476,15 +478,15 @@ class Flattener {
     NameMarks marks_;
     Transform root_;
     LeftOutObjects left_out_;
-    std::vector<State> states_;  // of the nodes
-    std::vector<bool> placed_;   // of the parts
+    std::vector<State> states_;  // by node
+    std::vector<bool> placed_;   // by part
     TriangleMesh mesh_;
     std::uint64_t vertices_ = 0;
     std::uint64_t triangles_ = 0;
     std::uint64_t flat_ = 0;
     std::uint32_t uses_ = 0;
-    std::map<SurfaceName, std::uint32_t> labels_;  // of TriangleMesh::surface_names
-    std::map<MeshKey, std::uint32_t> meshes_;      // of TriangleMesh::level_meshes
+    std::map<SurfaceName, std::uint32_t> labels_;  // index into TriangleMesh::surface_names
+    std::map<MeshKey, std::uint32_t> meshes_;      // index into TriangleMesh::level_meshes
 };
 
 }  // namespace
@@ -510,7 +512,7 @@ std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
     if (!(scale > 0.0) || determinant(m) < 0.0) {
         return std::nullopt;
     }
-    // From the largest of its four parts, so that no digits are lost: Shepperd (1978).
+    // Starts from the largest of the four components, to keep precision: Shepperd (1978).
     const glm::dmat3 r = m / scale;
     const std::array<double, 4> squares = {1 + r[0][0] - r[1][1] - r[2][2], 1 - r[0][0] + r[1][1] - r[2][2],
                                            1 - r[0][0] - r[1][1] + r[2][2], 1 + r[0][0] + r[1][1] + r[2][2]};
@@ -520,7 +522,7 @@ std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
         {r[2][0] + r[0][2], r[1][2] + r[2][1], squares[2], r[0][1] - r[1][0]},
         {r[1][2] - r[2][1], r[2][0] - r[0][2], r[0][1] - r[1][0], squares[3]},
     }};
-    // The last of equals, so that no turn is w = 1.
+    // The last of equals, so that the identity has w = 1.
     std::size_t largest = 3;
     for (std::size_t i = 0; i < 3; ++i) {
         largest = squares[i] > squares[largest] ? i : largest;
@@ -532,7 +534,7 @@ std::optional<RigidPose> rigidPose(const glm::dmat3& m) {
     }
     const double length = pose.rotation[3] < 0.0 ? -std::sqrt(square) : std::sqrt(square);
     for (double& part : pose.rotation) {
-        part = part / length + 0.0;  // no negative zeros
+        part = part / length + 0.0;  // removes negative zeros
     }
     return pose;
 }
@@ -601,7 +603,7 @@ Result<void> addPolygons(const PolygonMesh& polygons, bool apart, const ImportJo
     scene.roots = {0};
     scene.nodes.push_back({.names = {job.file_name}});
     PolygonRuns runs(polygons, apart);
-    std::map<std::string_view, std::uint32_t> indices;  // equal names are one node
+    std::map<std::string_view, std::uint32_t> indices;  // groups with equal names are one node
     const PolygonGroup unnamed;
     const PolygonGroup* last = nullptr;
     for (std::size_t i = 0; i <= polygons.groups.size(); ++i) {

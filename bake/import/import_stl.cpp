@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Not by assimp 5.2: it reads a text cut behind a facet as a smaller mesh, and no triangle of a binary file with bytes behind
-// its last one and a header that begins with "solid" (import_text_test.cpp, Stl and BinaryStlOfAnyHeaderAndLength).
+// assimp 5.2 is not used: it reads text that is truncated after a facet as a smaller mesh, and reads no triangles from
+// a binary file whose header begins with "solid" if bytes follow the last triangle (import_text_test.cpp, Stl and
+// BinaryStlOfAnyHeaderAndLength).
 #include "bake/import/import_readers.h"
 
 #include <array>
@@ -18,8 +19,8 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kStlHeader = 84;  // bytes, the count included
-constexpr std::size_t kTriangle = 50;   // bytes: a normal, three corners, two for any use
+constexpr std::size_t kStlHeader = 84;  // bytes, including the count
+constexpr std::size_t kTriangle = 50;   // bytes: a normal, three corners, two attribute bytes
 
 void addTriangle(const std::array<glm::vec3, 3>& corners, PolygonMesh& mesh) {
     for (const glm::vec3& corner : corners) {
@@ -80,7 +81,7 @@ class StlText {
     }
 
   private:
-    /// The next word in lower case; word_ keeps its case.
+    /// Returns the next word in lower case; word_ keeps its case.
     std::string next() {
         word_ = text_.anyWord();
         return lowerCase(word_);
@@ -99,7 +100,7 @@ class StlText {
         return next() == wanted ? Result<void>() : unexpected(("'" + std::string(wanted) + "'").c_str());
     }
 
-    /// The name is the first word after "solid" on its line.
+    /// Reads a solid; its name is the first word after "solid" on the line.
     Result<void> readSolid() {
         PolygonGroup group;
         group.begin = mesh_.sizes.size();
@@ -121,7 +122,7 @@ class StlText {
     Result<void> readFacet() {
         std::string word = next();
         if (word == "normal") {
-            // Writers put NaN and worse there.
+            // Skips the normal; some writers put NaN or worse there.
             do {
                 word = next();
             } while (!word.empty() && word != "outer" && word != "vertex" && word != "endfacet");
@@ -160,7 +161,7 @@ bool isText(std::span<const std::byte> bytes) {
         return false;
     }
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    // A truncated binary file may begin with the same word; its header is padded with zeros.
+    // A truncated binary file may begin with "solid", too; its header is padded with zeros.
     TextScanner scanner(text);
     return lowerCase(scanner.anyWord()) == "solid" &&
            scanner.rest().substr(0, kStlHeader).find('\0') == std::string_view::npos;

@@ -12,21 +12,22 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kQuotedMax = 40;  // bytes of the file shown in a message
+constexpr std::size_t kQuotedMax = 40;  // limit for quotes from the file, in bytes
 
 std::string number(double value) {
     return shortest(static_cast<float>(value));
 }
 
-/// The whole of the text, without white space at its ends, as a finite number.
+/// Parses the whole text, ignoring surrounding white space, as a finite number.
 std::optional<double> finiteNumber(std::string_view text) {
     const std::string_view word = takeWord(text);
     const std::optional<double> value = takeWord(text).empty() ? parseDouble(word) : std::nullopt;
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// \param text  behind the name of a property: its type, label and flags, each as 'S', length and bytes; then a letter for
-///              the type of the value, and that.
+/// Reads the unit of a binary file.
+/// \param text  begins after the property's name: type, label and flags, each as 'S', length and bytes; then the letter
+/// of the value's type, and the value.
 FbxUnit binaryFbxUnit(std::string_view text) {
     const auto take = [&text](auto value) {
         if (text.size() >= sizeof(value)) {
@@ -80,7 +81,7 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
                                   " is taken, but the file says that its unit is " + number(*source.metres) +
                                   " m");
     }
-    // The current name of the source's axis.
+    // The axis after mirroring.
     const auto now = [&source](UpAxis axis) {
         return !source.mirrored || axis < UpAxis::kPlusZ ? axis
                : axis == UpAxis::kPlusZ                  ? UpAxis::kMinusZ
@@ -136,7 +137,7 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
     xml.load_buffer(document.data(), document.size());
     const pugi::xml_node asset = xml.child("COLLADA").child("asset");
     const std::string meter = asset.child("unit").attribute("meter").as_string("1");
-    // Some locales write a comma, which assimp reads as a point.
+    // Some locales write a comma; assimp reads it as a point.
     std::string point = meter;
     std::replace(point.begin(), point.end(), ',', '.');
     frame.metres = finiteNumber(point);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// importMeshInWorker: starts relief-import, waits for it, and checks its answer.
+// Implements importMeshInWorker: starts relief-import, waits for it, and validates its answer.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file size limit counts for memory, too.
+/// The file size limit also applies to memfds.
 std::uint64_t largestFile(std::uint64_t wanted) {
     rlimit limit{};
     return ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY
@@ -61,7 +61,7 @@ class Import {
     }
 
   private:
-    /// Errors of the worker itself name the file already.
+    /// Adds the file name to an error, unless the worker already did.
     [[nodiscard]] Result<TriangleMesh> named(Result<TriangleMesh> raw) const {
         const std::string name = quotedPath(path_);
         return raw || raw.error().message.find(name) != std::string::npos
@@ -88,7 +88,7 @@ class Import {
         RELIEF_TRY(worker_.start(path_.string(), wordOf(kind), arguments(),
                                  {mesh.get(), source.folder(), result.get(), alive_end.get()}));
         alive_end.reset();
-        RELIEF_TRY(worker_.await(alive.get(), 0));  // that it closes
+        RELIEF_TRY(worker_.await(alive.get(), 0));  // wait until it closes
         std::byte begun{};
         RELIEF_TRY(worker_.finish(::read(alive.get(), &begun, 1) == 1));
         mesh.reset();
@@ -109,7 +109,7 @@ class Import {
     Result<TriangleMesh> message(int result) const {
         constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
         struct stat status {};
-        // Unsealed, it could change during the reading.
+        // An unsealed file could change while it is read.
         const int seals = ::fcntl(result, F_GET_SEALS);
         if (seals < 0 || (seals & kSeals) != kSeals || ::fstat(result, &status) != 0 || status.st_size == 0) {
             return fail(ErrorCode::kFailure,

@@ -24,7 +24,7 @@ bool isPose(const LevelBody& body) {
     for (const double part : body.rotation) {
         square += part * part;
     }
-    // Written so that NaN is none.
+    // Written to reject NaN.
     return std::abs(square - 1.0) <= kUnitTolerance && body.scale > 0.0 && body.scale <= kPoseMax &&
            std::all_of(body.position.begin(), body.position.end(),
                        [](double x) { return std::abs(x) <= kPoseMax; });
@@ -52,7 +52,7 @@ std::vector<T> cut(const std::vector<T>& all, std::size_t first, std::size_t cou
     return {part.begin(), part.end()};
 }
 
-/// The labels of one mesh, and the names that these need.
+/// Copies the labels of one mesh, and the names that they use.
 void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) {
     std::map<std::uint32_t, std::uint32_t> places;
     for (std::size_t i = 0; !all.labels.empty() && i < mesh.triangles.size(); ++i) {
@@ -70,7 +70,7 @@ void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) 
     dropSingleLabel(mesh);
 }
 
-/// Whether finishMesh would find an area, or a fault.
+/// Whether finishMesh would find a triangle with area, or a fault.
 bool isWorthAnything(const TriangleMesh& mesh) {
     return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const glm::uvec3& t) {
         return std::max({t.x, t.y, t.z}) >= mesh.positions.size() || hasArea(planeOf(mesh.positions, t));
@@ -152,7 +152,7 @@ Result<Level> cutLevel(TriangleMesh all, bool materials) {
     level.dependency_hashes = std::move(all.dependency_hashes);
     level.warnings = std::move(all.warnings);
     LevelMeshes meshes;
-    std::vector<std::optional<std::uint32_t>> places;  // of the meshes
+    std::vector<std::optional<std::uint32_t>> places;  // by mesh
     std::size_t position = 0;
     std::size_t triangle = 0;
     for (const LevelMesh& one : all.level_meshes) {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The mesh files of a folder, by name.
+/// Returns the mesh files of a folder, sorted by name.
 Result<std::vector<fs::path>> meshFilesOf(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code error;

@@ -22,24 +22,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// assimp and flatten() recurse along chains of nodes; this stack holds a million of them. Only used pages take memory.
+/// assimp and flatten() recurse along chains of nodes; this stack suffices for a million nodes. Only touched pages use
+/// memory.
 constexpr std::size_t kStackBytes = std::size_t{1} << 30;
 constexpr std::size_t kStackBytesMin = std::size_t{8} << 20;
 
-/// Prefixes the error with the file, and adds a cure if it has none.
+/// Adds the file name in front, and a cure if there is none.
 tl::unexpected<Error> unreadable(const ImportJob& job, const Error& error) {
     const bool cured = error.message.find(';') != std::string::npos;
     return fail(error.code, "cannot read the mesh " + job.shown + ": " + error.message +
                                 (cured ? "" : "; repair the file or export it again"));
 }
 
-/// \param apart  as of addPolygons().
+/// \param apart  as in addPolygons().
 Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, const ImportJob& job) {
     if (!polygons) {
         return tl::unexpected<Error>(polygons.error());
     }
     if (polygons->positions.empty()) {
-        // Any text is an OBJ; the other formats are known by their beginning.
+        // The OBJ reader accepts any text; other formats have signatures.
         return invalidInput(job.extension == "obj" ? "it has no vertices, and is probably no .obj file"
                                                    : "it has no triangles; export the mesh again");
     }
@@ -48,8 +49,8 @@ Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, con
     return scene;
 }
 
-/// Also opens the material libraries of an OBJ, which are dependencies although they do not change the shape. One with the
-/// mesh's own name replaces a missing one.
+/// Reads an OBJ and opens its material libraries, which are dependencies although they do not affect the shape. A
+/// library with the mesh's own name replaces a missing one.
 Result<PolygonMesh> readObjOf(const ImportJob& job, ImportFiles& files) {
     ObjMesh obj = RELIEF_TRY(readObj(job.bytes));
     const std::string own = fs::path(job.file_name).replace_extension("mtl").string();

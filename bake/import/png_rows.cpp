@@ -16,7 +16,7 @@
 namespace relief {
 namespace {
 
-/// libpng leaves a function by longjmp: those that call setjmp here have no local object with a destructor.
+/// libpng reports errors with longjmp, so functions here that call setjmp have no local objects with destructors.
 class PngRows : public SampleRows {
   public:
     explicit PngRows(std::span<const std::byte> bytes) : left_(bytes) {
@@ -63,7 +63,7 @@ class PngRows : public SampleRows {
     }
 
   private:
-    /// The one colour that a chunk tRNS makes transparent. Of 8 bits only the low byte counts.
+    /// Reads the colour that a tRNS chunk makes transparent. With 8-bit samples, only the low byte is used.
     void readHole() {
         png_color_16p key = nullptr;
         if (png_get_tRNS(png_, info_, nullptr, nullptr, &key) == 0 || key == nullptr) {
@@ -79,7 +79,7 @@ class PngRows : public SampleRows {
         return most_ > 255 ? std::uint32_t{row_[2 * i]} << 8U | row_[2 * i + 1] : std::uint32_t{row_[i]};
     }
 
-    /// Many programs save grey as red, green and blue, all the same, and with an alpha that is opaque.
+    /// Checks that a pixel is grey. Many programs save grey as equal red, green and blue, with opaque alpha.
     [[nodiscard]] Result<void> checkColour(std::size_t column, std::uint32_t grey) const {
         const std::size_t first = column * channels_;
         const bool coloured = channels_ >= 3 && (sampleAt(first + 1) != grey || sampleAt(first + 2) != grey);

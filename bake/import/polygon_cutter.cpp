@@ -11,7 +11,8 @@
 namespace relief {
 namespace {
 
-/// Twice the polygon's area long (M. Newell's formula); relative to the first corner, for precision far from the origin.
+/// Returns a normal of twice the polygon's area (Newell's formula). Relative to the first corner, for precision far
+/// from the origin.
 glm::dvec3 normalOf(std::span<const glm::vec3> corners) {
     const glm::dvec3 origin(corners[0]);
     glm::dvec3 normal(0.0);
@@ -21,8 +22,8 @@ glm::dvec3 normalOf(std::span<const glm::vec3> corners) {
     return normal;
 }
 
-/// Whether the angle at corner `at` of a quadrilateral exceeds half a turn, by the sum of its two parts beside the diagonal;
-/// in floats, whose rounding decides about corners on straight edges.
+/// Whether the angle at corner `at` of a quadrilateral exceeds 180°, as the sum of the two angles beside the diagonal.
+/// In float precision, because rounding decides for corners on straight edges.
 bool isDent(std::span<const glm::vec3> corners, std::size_t at) {
     constexpr float kHalfTurn = 3.14159265F;
     const auto towards = [&](std::size_t other) {
@@ -104,7 +105,7 @@ void PolygonCutter::cutQuad(std::span<const glm::vec3> corners) {
             return !hasArea(planeOf(corners[t.x], corners[t.y], corners[t.z]));
         });
     };
-    // The other diagonal only if that is better.
+    // Use the other diagonal only if it is better.
     if (const auto before = flat(start); before > 0 && flat((start + 1) % 4) >= before) {
         flat(start);
     }
@@ -123,7 +124,7 @@ void PolygonCutter::cutEars(Test test) {
     reflexes_.clear();
     for (std::uint32_t i = 0; i < count && test != Test::kRounded; ++i) {
         markReflex(i);
-        // NaN lies in no ear and cannot be sorted.
+        // NaN is in no ear and cannot be sorted.
         if (reflex_[i] != 0 && std::isfinite(points_[i].x) && std::isfinite(points_[i].y)) {
             reflexes_.push_back(i);
         }
@@ -217,7 +218,7 @@ bool PolygonCutter::holds(std::uint32_t ear, const glm::dvec2& point, Test test)
     for (int i = 0; i < 3 && inside; ++i) {
         const glm::dvec2 edge = corners[(i + 1) % 3] - corners[i];
         const glm::dvec2 to = point - corners[i];
-        // A polygon with joined holes passes through some points twice.
+        // A polygon with joined holes visits some points twice.
         inside = point != corners[i];
         const double side = edge.x * to.y - edge.y * to.x;
         inside = inside && (test == Test::kInside ? side > 0.0 : side >= 0.0);
@@ -235,7 +236,7 @@ void PolygonCutter::cutOff(std::uint32_t ear) {
     for (const std::uint32_t neighbour : {before, next}) {
         const bool was = reflex_[neighbour] != 0;
         markReflex(neighbour);
-        // In a polygon that crosses itself, a convex corner may become reflex.
+        // In a self-intersecting polygon, a convex corner may become reflex.
         if (!was && reflex_[neighbour] != 0) {
             reflexes_.push_back(neighbour);
         }

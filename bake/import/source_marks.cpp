@@ -31,13 +31,13 @@ std::uint32_t lengthAt(std::string_view text, std::size_t at) {
     return length;
 }
 
-/// A string of an FBX document: a token in quotes, or 'S', length and bytes.
+/// A string in an FBX document: quoted text, or 'S', length and bytes.
 struct FbxString {
-    std::size_t begin;  ///< of its bytes
+    std::size_t begin;  ///< offset of its first byte
     std::size_t size;
 };
 
-/// The string behind `at`, in text behind blanks and a comma. nullopt: there is none.
+/// Returns the string after `at`; in text, skips blanks and a comma. nullopt if there is none.
 std::optional<FbxString> stringBehind(std::string_view text, std::size_t at) {
     if (isBinary(text)) {
         const bool is_string =
@@ -50,7 +50,7 @@ std::optional<FbxString> stringBehind(std::string_view text, std::size_t at) {
     return end == std::string_view::npos ? std::nullopt : std::optional(FbxString{at + 1, end - at - 1});
 }
 
-/// Behind a string, its quote included.
+/// Returns the offset after a string, including its closing quote.
 std::size_t endOf(std::string_view text, const FbxString& string) {
     return string.begin + string.size + (isBinary(text) ? 0 : 1);
 }
@@ -62,7 +62,7 @@ std::string quoted(std::string_view text, std::string_view word) {
     return isBinary(text) ? "S" + length + std::string(word) : "\"" + std::string(word) + "\"";
 }
 
-/// Replaces two strings that follow each other by two that are as long together.
+/// Replaces two consecutive strings with two strings of the same total length.
 void replacePair(std::string& text, const FbxString& first, std::string_view new_first,
                  const FbxString& second, std::string_view new_second) {
     const std::size_t before = isBinary(text) ? 5 : 1;
@@ -75,7 +75,7 @@ void replacePair(std::string& text, const FbxString& first, std::string_view new
     }
 }
 
-/// A property `name` of a type of that name, which assimp does not know, becomes a number.
+/// Changes the type of a property `name` from a type of the same name, unknown to assimp, to a number.
 bool typeAsNumber(std::string& text, std::string_view name) {
     const std::string start = quoted(text, name);
     bool any = false;
@@ -100,7 +100,7 @@ bool typeAsNumber(std::string& text, std::string_view name) {
     return any;
 }
 
-/// The string of a binary document that ends before `end`.
+/// Returns the string of a binary document that ends before `end`.
 std::optional<FbxString> stringBefore(std::string_view text, std::size_t end) {
     constexpr std::size_t kNameMax = 1024;
     for (std::size_t size = 0; size + 5 <= end && size <= kNameMax; ++size) {
@@ -113,7 +113,7 @@ std::optional<FbxString> stringBefore(std::string_view text, std::size_t end) {
 
 bool markLodGroups(std::string& text) {
     const bool binary = isBinary(text);
-    // In the name of a model: at its end in binary, at its begin in text.
+    // Inside a model's name: at the end in binary files, at the start in text files.
     const std::string_view word = binary ? "\0\1Model"sv : "\"Model::"sv;
     bool any = false;
     for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
@@ -162,7 +162,7 @@ class ColladaReader {
     }
 
   private:
-    /// Objects that nodes may instance.
+    /// Collects the objects that nodes may instance.
     void addIds(const pugi::xml_node& collada) {
         std::vector<pugi::xml_node> pending;
         for (const pugi::xml_node library : collada.children()) {
@@ -196,7 +196,7 @@ class ColladaReader {
         return false;
     }
 
-    /// The index of a node, which is read later if it is new.
+    /// Returns the index of a node; a new node is read later.
     std::uint32_t indexOf(const pugi::xml_node& node) {
         const auto next = static_cast<std::uint32_t>(elements_.size());
         const auto [found, added] = indices_.try_emplace(node, next);
@@ -257,7 +257,7 @@ class ColladaReader {
         return {};
     }
 
-    /// "line 3: the node 'x'"; without a line in UTF-16.
+    /// Returns "line 3: the node 'x'"; without a line for UTF-16.
     [[nodiscard]] std::string placeOf(const pugi::xml_node& node, const pugi::xml_node& instance) const {
         const std::string_view before =
             text_.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(instance.offset_debug(), 0)));
@@ -278,14 +278,15 @@ class ColladaReader {
     std::map<std::string, pugi::xml_node> objects_;  // by id
     std::map<pugi::xml_node, std::uint32_t> indices_;
     std::vector<pugi::xml_node> elements_;  // by index
-    std::set<pugi::xml_node> controllers_;  // visited
+    std::set<pugi::xml_node> controllers_;  // already visited
     std::uint64_t missing_ = 0;
 };
 
-/// Chunks of a 3DS file.
+/// Reads the chunks of a 3DS file.
 class HiddenOf3ds {
   public:
-    /// \param text  of the chunks inside a chunk `parent`. \param object  the name of the object that they describe.
+    /// \param text    the chunks inside a chunk `parent`.
+    /// \param object  name of the object that they describe.
     void read(std::string_view text, std::uint16_t parent = 0, const std::string& object = "") {
         constexpr std::size_t kHeader = 6;
         while (text.size() >= kHeader) {

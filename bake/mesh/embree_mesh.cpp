@@ -35,8 +35,8 @@ tl::unexpected<Error> embreeError(RTCError error, const std::string& what) {
     return fail(code, what + ": the ray tracer reports: " + errorWords(error));
 }
 
-/// The device of all meshes that live: each takes one of the thousand thread-local keys of a process, and a level may have
-/// four thousand meshes. Null: Embree's error is that of no device.
+/// Returns the device that all live meshes share. A device uses one of a process's thousand thread-local keys, and a
+/// level may have four thousand meshes. Null on failure: rtcGetDeviceError(nullptr) then returns the error.
 std::shared_ptr<RTCDeviceTy> sharedDevice() {
     static std::mutex mutex;
     static std::weak_ptr<RTCDeviceTy> living;

@@ -14,10 +14,10 @@ namespace relief {
 namespace {
 
 constexpr double kFlat = 1e-4;
-/// The rounding of coordinates, relative to the mesh's longest side: six decimals are usual at unit size.
+/// Rounding of coordinates, relative to the mesh's longest side: six decimals are common at unit size.
 constexpr double kRounding = 1e-6;
 
-/// Radians; slivers may be turned by any angle.
+/// Radians; rounding may rotate slivers by any angle.
 constexpr double kTurnMost = 0.01;
 
 double longestEdge(const TriangleMesh& mesh, std::uint32_t triangle) {
@@ -33,7 +33,7 @@ std::vector<FlatFace> flatFacesOf(const TriangleMesh& mesh) {
     const double rounding = std::max(kRounding * double{mesh.bounds.longestSide()},
                                      double{std::numeric_limits<float>::epsilon()} *
                                          double{std::max({farthest.x, farthest.y, farthest.z})});
-    // The angle by which rounding may turn a triangle's normal, whose length is twice its area.
+    // Maximum rotation of a triangle's normal by rounding; the normal's length is twice the area.
     const auto turnOf = [&](std::uint32_t triangle, const glm::dvec3& normal) {
         return 2.0 * rounding * longestEdge(mesh, triangle) / length(normal);
     };

@@ -10,11 +10,11 @@
 namespace relief {
 namespace {
 
-// Object units. Squares of map coordinates and the scales of a map stay within a float's range.
+// Object units. Squares of map coordinates and the scales of a map stay within the range of floats.
 constexpr float kCoordinateMax = 1e15F;
 constexpr float kSizeMin = 1e-15F;
 
-/// From here on, whole triangles may round to one point.
+/// Beyond this coordinate, a whole triangle may round to one point.
 constexpr float kFar = 1e6F;
 
 tl::unexpected<Error> noArea(const TriangleMesh& mesh) {
@@ -82,7 +82,7 @@ Result<TriangleMesh> finishMesh(TriangleMesh mesh) {
         }
         for (const std::uint32_t i : {t.x, t.y, t.z}) {
             const glm::vec3& p = mesh.positions[i];
-            // Written so that NaN fails too.
+            // Written to reject NaN.
             if (!(std::abs(p.x) <= kCoordinateMax && std::abs(p.y) <= kCoordinateMax &&
                   std::abs(p.z) <= kCoordinateMax)) {
                 return fail(ErrorCode::kInvalidInput,

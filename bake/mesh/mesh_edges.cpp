@@ -16,22 +16,23 @@ namespace {
 
 constexpr std::ptrdiff_t kLargeBucket = 1 << 16;
 
-/// Equal for equal positions.
+/// Hashes a position; equal for equal positions.
 std::uint64_t hashOf(const glm::vec3& p, std::uint64_t salt) {
-    // + 0 turns −0 into 0.
+    // + 0 converts −0 to 0.
     const auto bits = [](float value) { return std::uint64_t{std::bit_cast<std::uint32_t>(value + 0.0F)}; };
     return splitMix64(splitMix64((bits(p.x) << 32 | bits(p.y)) ^ salt) + bits(p.z));
 }
 
 }  // namespace
 
-// Corners, edges and the slots below have 32-bit indices.
+// Corners, edges and the slots below use 32-bit indices.
 static_assert(6 * kTriangleMax < std::uint64_t{1} << 30);
 
 std::vector<std::uint32_t> weldedVertices(const TriangleMesh& mesh) {
     const std::size_t count = mesh.positions.size();
-    // Linear probing, at most half full, over indices + 1. Only lower vertices are in the table, so that the first of
-    // equal ones is found whatever the hashes are. The salt depends on all positions, against files made to collide.
+    // Linear probing, at most half full, over indices + 1. The table contains only lower vertices, so the first of
+    // equal positions is found, whatever the hashes are. The salt depends on all positions, so a hostile file cannot
+    // force collisions.
     const std::uint64_t salt = xxh3_64(std::as_bytes(std::span(mesh.positions)));
     std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), 0);
     const std::size_t mask = slots.size() - 1;
@@ -62,7 +63,7 @@ namespace {
 template <class VertexOf>
 std::vector<EdgeUse> sortedUses(const std::vector<glm::uvec3>& triangles, std::size_t vertices,
                                 const VertexOf& vertexOf) {
-    // Into a bucket per lower vertex, where few are left to sort.
+    // One bucket per lower vertex leaves only a few entries to sort.
     Buckets<EdgeUse> by_low(vertices, [&](const auto& visit) {
         for (std::uint32_t i = 0; i < triangles.size(); ++i) {
             const glm::uvec3& t = triangles[i];
@@ -79,7 +80,7 @@ std::vector<EdgeUse> sortedUses(const std::vector<glm::uvec3>& triangles, std::s
         const auto less = [](const EdgeUse& a, const EdgeUse& b) {
             return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
         };
-        if (end - begin > kLargeBucket) {  // the hub of a fan
+        if (end - begin > kLargeBucket) {  // the centre of a fan
             tbb::parallel_sort(begin, end, less);
         } else {
             std::sort(begin, end, less);
@@ -130,7 +131,7 @@ std::vector<SortedTriangle> sortedTriangles(const TriangleMesh& mesh, std::span<
 }
 
 std::size_t dropRepeats(std::vector<SortedTriangle>& sorted) {
-    // clang 14 cannot compile std::ranges::unique of libstdc++ 12.
+    // clang 14 cannot compile libstdc++ 12's std::ranges::unique.
     const auto end =
         std::unique(sorted.begin(), sorted.end(),
                     [](const SortedTriangle& a, const SortedTriangle& b) { return a.corners == b.corners; });

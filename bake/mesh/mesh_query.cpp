@@ -14,7 +14,7 @@
 namespace relief {
 namespace {
 
-/// A query of all surfaces on a ray: visit(args, i) sees each of them, and the ray passes through.
+/// Visits all surfaces on a ray with visit(args, i); the ray continues through each.
 template <class Visit>
 class EveryHit : public RayQuery {
   public:
@@ -32,7 +32,7 @@ class EveryHit : public RayQuery {
     const Visit& visit_;
 };
 
-/// 1 if the i-th ray leaves by the surface that it met, −1 if it enters.
+/// Returns 1 if ray i leaves through the surface, −1 if it enters.
 int sideOf(const RTCFilterFunctionNArguments* args, unsigned i) {
     const double along =
         static_cast<double>(RTCHitN_Ng_x(args->hit, args->N, i)) * RTCRayN_dir_x(args->ray, args->N, i) +
@@ -41,25 +41,25 @@ int sideOf(const RTCFilterFunctionNArguments* args, unsigned i) {
     return along < 0.0 ? -1 : 1;
 }
 
-/// The depth along a ray of the plane of a triangle that it meets, held between the triangle's corners for planes seen
-/// edge-on. Embree's own distance has a quotient that differs among processors.
+/// Returns the depth of a triangle's plane along a ray that hits it, clamped to the triangle's corners, for planes seen
+/// edge-on. Embree's own distance contains a quotient that differs between processors.
 double depthAt(const TriangleMesh& mesh, std::uint32_t triangle, const glm::dvec3& origin,
                const glm::dvec3& direction) {
     const TrianglePlane plane = planeOf(mesh, triangle);
     const double depth = dot(plane.normal, plane.point - origin) / dot(plane.normal, direction);
     const LineSpan corners = cornerSpan(mesh, triangle, origin, direction);
-    // Written so that NaN becomes the nearest corner's.
+    // Written so that NaN becomes the nearest corner's depth.
     return std::max(0.0, depth >= corners.begin ? std::min(depth, corners.end) : corners.begin);
 }
 
-/// Runs visit(args, i) for all surfaces on a ray from p.
+/// Calls visit(args, i) for all surfaces on a ray from p.
 template <class Visit>
 void trace(const EmbreeMesh& tree, const glm::vec3& p, const glm::dvec3& direction, const Visit& visit) {
     RTCRayHit query = rayHit(tree.toLocal(p), direction, std::numeric_limits<float>::infinity());
     EveryHit(visit).intersect(tree.scene.get(), query);
 }
 
-/// The part of a line that lies in a box, in units of its direction; begin > end: none.
+/// Clips a line to a box, in units of its direction; begin > end if they do not meet.
 LineSpan inBox(const Bounds& box, const glm::dvec3& p, const glm::dvec3& direction) {
     LineSpan span{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (int axis = 0; axis < 3; ++axis) {
@@ -79,7 +79,7 @@ LineSpan inBox(const Bounds& box, const glm::dvec3& p, const glm::dvec3& directi
     return span;
 }
 
-/// One search for the closest point; in Embree's units.
+/// A search for the closest point, in Embree's units.
 struct Search {
     const TriangleMesh& mesh;
     const EmbreeMesh& tree;
@@ -91,14 +91,14 @@ struct Search {
 
     [[nodiscard]] float radius() const { return static_cast<float>(std::sqrt(best_squared)) + slack; }
 
-    /// \return true if the triangle is closer than the best so far.
+    /// Returns true if the triangle is closer than the best so far.
     bool add(std::uint32_t index) {
         const auto corners = cornersOf(mesh, index);
         const glm::dvec3 closest = closestOnTriangle(p, tree.toLocal(corners[0]), tree.toLocal(corners[1]),
                                                      tree.toLocal(corners[2]));
         const glm::dvec3 offset = closest - p;
         const double squared = dot(offset, offset);
-        // Of equals the lowest index, whatever the order of the visits.
+        // Ties go to the lowest index, independent of the order of visits.
         if (squared < best_squared || (squared == best_squared && index < triangle)) {
             best_squared = squared;
             triangle = index;
@@ -116,7 +116,7 @@ struct Search {
     }
 };
 
-/// One search for any triangle of another label within a distance; in Embree's units.
+/// A search for any triangle with a different label within a distance, in Embree's units.
 struct OtherSearch {
     const TriangleMesh& mesh;
     const EmbreeMesh& tree;
@@ -142,12 +142,12 @@ struct OtherSearch {
     }
 };
 
-/// Room of a search radius: Embree's boxes and its queries are floats.
+/// Margin of a search radius, because Embree's boxes and queries are floats.
 float slackAt(const glm::dvec3& p) {
     return static_cast<float>(2e-6 * (1.0 + std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)})));
 }
 
-/// Visits the triangles that may be within a radius of the search's point; in Embree's units.
+/// Visits the triangles that may be within a radius of the search's point, in Embree's units.
 template <class S>
 void visitNear(S& search, float radius) {
     RTCPointQueryContext context;
@@ -161,8 +161,8 @@ void visitNear(S& search, float radius) {
     rtcPointQuery(search.tree.scene.get(), &query, &context, S::visit, &search);
 }
 
-/// The parity directions, each turned to leave the box sooner, the shortest first: of many layers of leaves or grass, a ray
-/// meets fewer.
+/// The parity directions, each possibly reversed to leave the box sooner, shortest first. Rays then hit fewer of many
+/// layers, such as leaves or grass.
 class WaysOut {
   public:
     WaysOut(const Bounds& box, const glm::vec3& p) {
@@ -267,8 +267,8 @@ bool MeshQuery::inBody(const glm::vec3& p) const {
             return false;
         }
     }
-    // For closed surfaces of a union all rays agree but those through an edge. By parity, the mesh may be open or wound in
-    // any way.
+    // On closed surfaces of a union, only rays through an edge disagree. With parity, the mesh may be open, and its
+    // winding is irrelevant.
     const std::size_t rays = !bodies_.empty() && shells_ ? 3 : kParityDirections.size();
     std::size_t votes[2] = {0, 0};
     const WaysOut ways(box, p);
@@ -294,7 +294,7 @@ bool MeshQuery::inVoid(const glm::dvec3& p) const {
     if (of_void == 8 || of_outside == 8 || (of_void == 0 && !voids.meet(cell - 1, cell + 2))) {
         return of_void == 8;
     }
-    // A node in sight is on the same side. Where none is, as in a crease, the nearest decides.
+    // A visible node is on the same side. If none is visible, as in a crease, the nearest node decides.
     std::optional<Place> seen;
     Place nearest = Place::kSolid;
     double least = std::numeric_limits<double>::infinity();

@@ -24,7 +24,7 @@ struct PreparedMesh::State {
     std::vector<std::uint32_t> bodies;
     Voids voids;
 
-    /// Computes what depends on the edges, without keeping edges of its own.
+    /// Computes everything that depends on the edges. If the edges are not stored, computes them temporarily.
     void learn() {
         const MeshEdges own = edges ? MeshEdges{} : edgesOf(mesh);
         const MeshEdges& from = edges ? *edges : own;
@@ -115,7 +115,7 @@ PreparedMesh PreparedMesh::woundOutwards(const std::vector<bool>& turn) && {
     }
     state.turned = turn;
     state.edges.reset();
-    // The direction of odd edges follows the winding; that a mesh has none does not.
+    // The direction of odd edges depends on the winding; their absence does not.
     if (state.odd_edges && !state.odd_edges->empty()) {
         state.odd_edges.reset();
     }

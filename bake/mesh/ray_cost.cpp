@@ -16,7 +16,8 @@ double halfArea(const Bounds& box) {
 }  // namespace
 
 double boxesOnLine(const TriangleMesh& mesh) {
-    // Cauchy: a line through a convex body meets another within it with the probability of their ratio of areas.
+    // Cauchy: a line through a convex body meets another body inside it with a probability equal to the ratio of their
+    // areas.
     double sum = 0.0;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         Bounds box;

@@ -9,7 +9,7 @@
 namespace relief {
 namespace {
 
-/// Limits of the strays' share of the area, and of the box's longest side without them.
+/// Maximum area of outliers, and of the longest side of the remaining box, as fractions.
 constexpr double kStrayArea = 0.01;
 constexpr double kStrayRest = 0.1;
 
@@ -20,7 +20,7 @@ double distanceTo(const glm::dvec3& center, const Bounds& bounds) {
                      std::abs(high.z)});
 }
 
-/// The area-weighted median along each axis, which strays do not move.
+/// Returns the area-weighted median along each axis, which outliers do not affect.
 glm::dvec3 medianOf(const std::vector<SurfacePart>& parts, double area) {
     glm::dvec3 median(0.0);
     std::vector<std::size_t> order(parts.size());
@@ -82,7 +82,7 @@ OutlierParts straysOf(const std::vector<SurfacePart>& parts) {
     std::vector<std::uint32_t> order(parts.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return distanceTo(median, parts[i].bounds); });
-    // The farthest hundredth of the area, from the first part on whose loss shrinks the box.
+    // Outliers are within the farthest 1 % of the area, starting at the first part whose removal shrinks the box.
     double kept = 0.0;
     Bounds rest;
     for (std::size_t k = 0; k < order.size(); ++k) {

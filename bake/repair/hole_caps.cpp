@@ -20,22 +20,22 @@
 namespace relief {
 namespace {
 
-/// Limit of points whose side the caps change, over the points inside.
+/// Maximum number of points whose side the caps change, relative to the points inside.
 constexpr double kTurnedMax = 0.05;
 
-/// A point, and the share of the rays from it that cross the surface an odd number of times.
+/// A point, and the fraction of its rays that cross the surface an odd number of times.
 struct Vote {
     glm::vec3 position{0.0F};
     double odd = 0.0;
 
     [[nodiscard]] bool inside() const { return odd > 0.5; }
-    /// More than three quarters of the rays agree.
+    /// Whether more than three quarters of the rays agree.
     [[nodiscard]] bool clear() const { return std::abs(odd - 0.5) > 0.25; }
 };
 
 Vote voteAt(const MeshQuery& query, const glm::vec3& position) {
     unsigned odd = 0;
-    // In opposite pairs, so that no half space outvotes the other: one side of a terrain would be inside.
+    // Opposite pairs keep a half space from outvoting the other; otherwise one side of a terrain would be inside.
     for (const glm::dvec3& direction : kParityDirections) {
         odd += query.crossings(position, direction) % 2;
         odd += query.crossings(position, -direction) % 2;
@@ -43,14 +43,14 @@ Vote voteAt(const MeshQuery& query, const glm::vec3& position) {
     return {position, odd / (2.0 * static_cast<double>(kParityDirections.size()))};
 }
 
-/// The i-th point of Roberts's sequence in the unit cube (2018, "The unreasonable effectiveness of
-/// quasirandom sequences").
+/// Returns point i of Roberts's sequence in the unit cube (2018, "The unreasonable effectiveness of quasirandom
+/// sequences").
 glm::dvec3 spread(std::size_t i) {
     const glm::dvec3 steps(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
     return glm::fract(0.5 + steps * static_cast<double>(i));
 }
 
-/// The votes on both sides of points of the surface.
+/// Votes on both sides of points of the surface.
 std::vector<std::array<Vote, 2>> voteAtSurface(const MeshQuery& query, std::size_t probes) {
     const TriangleMesh& mesh = query.mesh();
     const AreaTable& areas = query.prepared().areas();
@@ -90,13 +90,13 @@ Enclosure enclosureOf(const std::vector<std::array<Vote, 2>>& votes) {
     return {static_cast<double>(one_sided) / count, agreement / (2.0 * count)};
 }
 
-/// Appends caps to a mesh, hole by hole.
+/// Appends caps to a mesh, one hole at a time.
 class Capper {
   public:
     explicit Capper(TriangleMesh& mesh) : mesh_(mesh) {}
 
-    /// A hole without a fan of nonzero areas stays open: such triangles are not allowed, and leaving them out would break the
-    /// parity of edges.
+    /// Closes a hole. If no fan has only triangles with area, the hole stays open: triangles without area are not
+    /// allowed, and omitting them would break the parity of edges.
     void close(const BorderLoop& loop) {
         const std::size_t before = mesh_.triangles.size();
         if (loop.size() == 3 && hasArea(planeOf(at(loop[0].from), at(loop[1].from), at(loop[2].from)))) {
@@ -119,11 +119,11 @@ class Capper {
   private:
     [[nodiscard]] glm::dvec3 at(std::uint32_t vertex) const { return mesh_.positions[vertex]; }
 
-    /// The centroid of the loop. If it is collinear with an edge, a point near it, and finally farther off.
+    /// Returns the centroid of the loop. If it is collinear with an edge, tries points at increasing distances from it.
     [[nodiscard]] std::optional<glm::vec3> apexOf(const BorderLoop& loop) const {
         const glm::dvec3 origin = at(loop.front().from);
         glm::dvec3 moment(0.0);
-        glm::dvec3 normal(0.0);  // Newell's: twice the area of the loop
+        glm::dvec3 normal(0.0);  // Newell's normal: twice the area of the loop
         double around = 0.0;
         double extent = 0.0;
         for (const BorderStep& step : loop) {
@@ -142,7 +142,7 @@ class Capper {
         const double size = length(normal);
         const glm::dvec3 directions[] = {
             size > 0.0 ? normal / size : glm::dvec3(1, 1, 1), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-        // From a few float steps on, so that the bulge stays invisible.
+        // Starts at a few float steps, so that the bulge stays invisible.
         const glm::dvec3 far = glm::max(glm::abs(mesh_.bounds.min), glm::abs(mesh_.bounds.max));
         for (double step = 0x1p-21 * std::max({far.x, far.y, far.z}); step < extent; step *= 4.0) {
             for (const glm::dvec3& direction : directions) {
@@ -156,7 +156,7 @@ class Capper {
         return std::nullopt;
     }
 
-    /// The point as a float, if all triangles of its fan have an area.
+    /// Returns the point in float precision if all triangles of its fan have an area.
     [[nodiscard]] std::optional<glm::vec3> usable(const BorderLoop& loop, const glm::dvec3& point) const {
         // Rounding may leave the box.
         const glm::vec3 apex = glm::clamp(glm::vec3(point), mesh_.bounds.min, mesh_.bounds.max);
@@ -168,7 +168,7 @@ class Capper {
     TriangleMesh& mesh_;
 };
 
-/// Clear votes contradicted by the closed mesh, over the clear votes for inside.
+/// Returns the number of clear votes that the closed mesh contradicts, relative to the clear votes for inside.
 double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
     std::size_t inside = 0;
     std::size_t turned = 0;
@@ -181,7 +181,7 @@ double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
     return static_cast<double>(turned) / static_cast<double>(std::max<std::size_t>(inside, 1));
 }
 
-/// On and off the surface: caps of patches whose seams do not meet would cross the inside.
+/// Tests points on and off the surface: caps of patches whose seams do not meet would cross the inside.
 bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
                 const MeshQuery& closed) {
     std::vector<Vote> sides;
@@ -194,8 +194,8 @@ bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& 
 
 }  // namespace
 
-// Every vertex has an even number of odd edges, so that a walk over unused edges ends where it began; it is cut wherever it
-// meets itself. At a fork it continues against the triangles' direction, to the lowest vertex.
+// Every vertex has an even number of odd edges, so a walk over unused edges ends at its start. It is split wherever it
+// meets itself. At a fork, it continues against the triangles' direction, to the lowest vertex.
 std::vector<BorderLoop> borderLoops(const std::vector<OddEdge>& edges) {
     std::vector<BorderStep> steps;  // of all vertices, best first
     steps.reserve(2 * edges.size());
@@ -206,7 +206,7 @@ std::vector<BorderLoop> borderLoops(const std::vector<OddEdge>& edges) {
     std::sort(steps.begin(), steps.end(), [](const BorderStep& a, const BorderStep& b) {
         return std::tuple(a.from, a.against, a.to) < std::tuple(b.from, b.against, b.to);
     });
-    // By rank of a vertex with odd edges: its first step that may still be free.
+    // Per vertex with odd edges, its first step that may be unused.
     std::vector<std::uint32_t> vertices;
     std::vector<std::size_t> next;
     for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// Counts faults of one kind and keeps the first place.
+/// Counts faults of one kind, and keeps the first place.
 struct First {
     std::uint64_t count = 0;
     glm::vec3 at{0.0F};
@@ -75,7 +75,7 @@ class Inspection {
     }
 
   private:
-    /// The uses [begin, end) of an edge.
+    /// Visits an edge with the uses [begin, end).
     void visitEdge(std::size_t begin, std::size_t end) {
         const EdgeUse& first = uses_[begin];
         const std::size_t count = end - begin;
@@ -98,7 +98,7 @@ class Inspection {
         }
     }
 
-    /// The corner of an edge's triangle at one of the edge's vertices.
+    /// Returns the corner of an edge's triangle at one of the edge's vertices.
     static std::uint32_t cornerAt(const EdgeUse& use, std::uint32_t vertex) {
         const bool starts_here = vertex == (use.down ? use.high : use.low);
         return 3 * use.triangle + (use.side + (starts_here ? 0U : 1U)) % 3;

@@ -10,7 +10,7 @@
 
 #include "bake/mesh/mesh_edges.h"
 
-// CGAL's assertions would print; what they check is checked here before or after the calls.
+// CGAL's assertions would print. The code below checks their conditions before or after the calls.
 #ifndef CGAL_NDEBUG
 #define CGAL_NDEBUG 1
 #endif
@@ -26,8 +26,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using SurfaceMesh = CGAL::Surface_mesh<Point>;
 
-/// Distinct points, and triangles, for CGAL: in units of the longest side about the middle of the box, where no product of
-/// coordinates leaves the range of a double.
+/// Distinct points and triangles for CGAL. Units are the longest side, relative to the middle of the box, so that no
+/// product of coordinates overflows a double.
 struct Soup {
     glm::dvec3 center{0.0};
     double side = 1.0;
@@ -36,7 +36,7 @@ struct Soup {
 
     explicit Soup(const TriangleMesh& mesh)
         : center(0.5 * glm::dvec3(mesh.bounds.min) + 0.5 * glm::dvec3(mesh.bounds.max)),
-          // A power of two, so that the conversion back is exact.
+          // A power of two makes the conversion back exact.
           side(std::ldexp(1.0, std::ilogb(mesh.bounds.longestSide()))) {
         const std::vector<std::uint32_t> welded = weldedVertices(mesh);
         std::vector<std::size_t> index(welded.size(), 0);
@@ -57,7 +57,7 @@ struct Soup {
     }
 };
 
-/// The surface, as another one of the same file.
+/// Converts the surface to a mesh with the source's name and hash.
 Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup, const SurfaceMesh& surface) {
     TriangleMesh mesh;
     mesh.name = source.name;
@@ -85,7 +85,7 @@ Result<TriangleMesh> meshOf(const TriangleMesh& source, const Soup& soup, const 
 }  // namespace
 
 Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha) {
-    // Written so that NaN fails too.
+    // Written to reject NaN.
     if (!(alpha >= kWrapAlphaMin && alpha <= kWrapAlphaMax)) {
         return fail(ErrorCode::kUsage, "alpha must be between 0.001 and 0.5 of the longest side");
     }

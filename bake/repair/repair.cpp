@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// Examines the wrap, and fails where it is no solid.
+/// Examines the wrap, and fails if it is not a solid.
 Result<void> checkWrap(const PreparedMesh& mesh, RepairReport& report) {
     report.repaired = inspectMesh(mesh);
     mesh.freeEdges();

@@ -18,24 +18,24 @@
 namespace relief {
 namespace {
 
-/// Triangles of a patch that are sampled, evenly spread over its list.
+/// Maximum number of samples per patch, spread evenly over its list of triangles.
 constexpr std::size_t kSamplesMax = 63;
-/// Least share of the samples, in favour less against, to turn an open patch.
+/// Minimum fraction of samples, votes in favour minus votes against, to flip an open patch.
 constexpr double kClearShare = 0.5;
-/// Surfaces nearer to each other along a line, in units of the longest side, coincide.
+/// Surfaces closer than this along a line coincide; in units of the longest side.
 constexpr double kCoincident = 1e-10;
-/// With more patches, the open ones are sampled by lines too: rays patch by patch would take the square of their number
-/// where they coincide.
+/// With more patches, open ones are sampled by lines, too. Separate rays for each patch would take quadratic time if
+/// the patches coincide.
 constexpr std::size_t kManyPatches = 1000;
 constexpr std::size_t kLinesAtOnce = 64;
 
 /// Triangles connected by edges of two triangles.
 struct Patch {
     std::vector<std::uint32_t> triangles;
-    std::uint64_t turned = 0;  ///< of them, to agree with the first
+    std::uint64_t turned = 0;  ///< triangles flipped to agree with the first
     bool closed = true;
-    std::optional<bool> hollow;   ///< a closed patch lies inside an odd number of others
-    std::optional<bool> inwards;  ///< an open patch clearly has the inside in front of it
+    std::optional<bool> hollow;   ///< whether a closed patch lies inside an odd number of others
+    std::optional<bool> inwards;  ///< whether an open patch clearly has the inside in front of it
 };
 
 class Winder {
@@ -43,7 +43,7 @@ class Winder {
     explicit Winder(const PreparedMesh& mesh)
         : prepared_(mesh), mesh_(*mesh), turn_(mesh->triangles.size(), 0) {}
 
-    /// \return per triangle: turn it.
+    /// Returns, per triangle, whether to flip it.
     Result<std::vector<bool>> run() {
         if (isOnePatchWoundAlike()) {
             return std::vector<bool>(turn_.size(), false);
@@ -55,10 +55,10 @@ class Winder {
             return std::vector<bool>(turn_.size(), false);
         }
         prepared_.freeEdges();
-        // Parity does not depend on the winding, which is about to change.
+        // Parity does not depend on the winding, which changes below.
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(prepared_));
         tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
-            // To spread samples, unlike the order of the search.
+            // Sorted, unlike the search order, to spread samples.
             std::ranges::sort(patches_[i].triangles);
         });
         Nesting(*this, query).run();
@@ -116,7 +116,7 @@ class Winder {
                     }
                 }
             }
-            // By majority.
+            // The majority decides.
             if (2 * patch.turned > patch.triangles.size()) {
                 for (const std::uint32_t triangle : patch.triangles) {
                     turn_[triangle] ^= 1U;
@@ -132,7 +132,7 @@ class Winder {
         return turn_[triangle] != 0 ? -normal : normal;
     }
 
-    /// Six times the volume of a patch, as currently wound.
+    /// Returns six times the volume of a patch, as currently wound.
     [[nodiscard]] double volumeOf(const Patch& patch) const {
         const glm::dvec3 center = mesh_.bounds.center();
         double volume = 0.0;
@@ -142,7 +142,7 @@ class Winder {
         return volume;
     }
 
-    /// Points just in front of and just behind a triangle are inside.
+    /// Whether points just in front of and just behind a triangle are inside.
     [[nodiscard]] std::array<bool, 2> sidesOf(std::uint32_t triangle, const MeshQuery& query) const {
         const glm::dvec3 on = sampleOn(triangle);
         glm::dvec3 normal = normalOf(triangle);
@@ -150,12 +150,12 @@ class Winder {
         return {isInside(on + normal, query), isInside(on - normal, query)};
     }
 
-    /// Off the middle, which lies on lines of symmetry more often.
+    /// Off the middle, which is more often on a line of symmetry.
     [[nodiscard]] glm::dvec3 sampleOn(std::uint32_t triangle) const {
         return pointOn(mesh_, triangle, 0.37, 0.29);
     }
 
-    /// By parity alone, as the winding is unknown.
+    /// Uses only parity, because the winding is unknown.
     [[nodiscard]] static bool isInside(const glm::vec3& p, const MeshQuery& query) {
         std::size_t odd = 0;
         for (const glm::dvec3& direction : kParityDirections) {
@@ -179,7 +179,7 @@ class Winder {
                     return inwards;
                 }
             }
-            return !inwards;  // a hollow in another patch
+            return !inwards;  // a cavity in another patch
         }
         if (patch.inwards) {
             return *patch.inwards;
@@ -192,9 +192,9 @@ class Winder {
         return sum > kClearShare * static_cast<double>(samples);
     }
 
-    /// Finds the closed patches that are hollows in others, and the orientation of many open ones. A line classifies all
-    /// patches that it crosses, so that thousands of nested ones take no more lines than one, however thin the walls between
-    /// them.
+    /// Finds the closed patches that are cavities in others, and the orientation of many open patches. One line
+    /// classifies all patches that it crosses, so thousands of nested patches need no more lines than one patch,
+    /// however thin the walls between them are.
     class Nesting {
       public:
         Nesting(Winder& winder, const MeshQuery& query)
@@ -219,7 +219,7 @@ class Winder {
                     order.push_back(i);
                 }
             }
-            // The innermost first: their lines cross all that they lie in.
+            // Innermost first: their lines cross all enclosing patches.
             std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return size[i]; });
             while (!order.empty()) {
                 traceAll(order);
@@ -238,10 +238,10 @@ class Winder {
       private:
         struct Known {
             std::size_t lines = 0;
-            std::size_t samples = 0;  ///< places; of a closed patch those inside an odd number of others
-            bool outside = false;     ///< of a closed patch, there is another place
+            std::size_t samples = 0;  ///< for a closed patch, only those inside an odd number of others
+            bool outside = false;     ///< a closed patch has a sample outside
             double facing =
-                0.0;  ///< of an open patch: samples with the inside in front less those with it behind
+                0.0;  ///< for an open patch: samples with the inside in front, minus samples with it behind
         };
         /// A crossing of a line with a patch.
         struct Place {
@@ -256,7 +256,7 @@ class Winder {
                    known_[i].lines >= std::max(wanted, kParityDirections.size());
         }
 
-        /// One line for each patch that is not decided by an earlier one.
+        /// Traces one line for each patch that no earlier line has decided.
         void traceAll(const std::vector<std::uint32_t>& order) {
             std::vector<std::uint32_t> chosen;
             std::vector<std::vector<Place>> places(kLinesAtOnce);
@@ -283,8 +283,9 @@ class Winder {
             }
         }
 
-        /// Traces the next line through a patch, and classifies all patches that it crosses: just outwards of their own
-        /// surface, inside an odd number of others or not. No places if the crossings do not balance.
+        /// Traces the next line through a patch, and classifies all patches that it crosses: whether a point just
+        /// outwards of their own surface is inside an odd number of others. Returns no places if the crossings do not
+        /// balance.
         void traceLine(std::uint32_t patch, std::vector<Place>& places) const {
             places.clear();
             const std::vector<std::uint32_t>& triangles = patches_[patch].triangles;
@@ -298,13 +299,13 @@ class Winder {
                 return;
             }
             const double coincident = kCoincident * mesh_.bounds.longestSide();
-            // Patch and index of each hit, by patch.
+            // Patch and index of each hit, sorted by patch.
             std::vector<std::pair<std::uint32_t, std::uint32_t>> own;
             for (std::uint32_t i = 0; i < hits.size(); ++i) {
                 own.emplace_back(patch_of_[hits[i].triangle], i);
             }
             std::ranges::sort(own);
-            // The first and the last of the hits that coincide with each.
+            // The first and last hits that coincide with each hit.
             std::vector<std::uint32_t> first(hits.size());
             std::vector<std::uint32_t> last(hits.size());
             for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -349,7 +350,7 @@ class Winder {
                              std::vector<Place>& places) {
             const std::uint32_t hit = own[i].second;
             const bool enters = (i - begin) % 2 == 0;
-            // Crossings before the place or up to its end, less those of the patch itself.
+            // Counts crossings before the place, or up to its end, minus those of the patch itself.
             const std::uint32_t before = enters ? first[hit] : last[hit] + 1;
             std::size_t mine = i - begin;
             while (enters && mine > 0 && own[begin + mine - 1].second >= before) {

@@ -51,7 +51,7 @@ struct ShapeOptions {
     bool thickness_by_texel = false;
     VoidsAs voids = VoidsAs::kFull;
 
-    [[nodiscard]] std::vector<std::string> names() const;  ///< Of `named`, in that order.
+    [[nodiscard]] std::vector<std::string> names() const;  ///< of `named`, in order
 };
 
 /// Parses the values of --as: KIND at most once, and NAME=KIND, split at the last "=". Errors: kUsage, kLimit.
