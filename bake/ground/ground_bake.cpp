@@ -29,11 +29,11 @@ namespace fs = std::filesystem;
 constexpr std::size_t kKeyDigits = 16;
 constexpr std::uint32_t kRowsBetweenReports = 256;
 
-/// A part of a row or a column of squares, and the samples about it.
+/// A part of a row or column of squares, and the samples around it.
 struct Stretch {
     std::uint32_t first = 0;  ///< its first square
-    std::uint32_t begin = 0;  ///< the first sample, a leaf before that
-    std::uint32_t end = 0;    ///< behind the last sample, a leaf beyond its last square
+    std::uint32_t begin = 0;  ///< its first sample, a leaf before the first square
+    std::uint32_t end = 0;    ///< the end of its samples, a leaf beyond the last square
 };
 
 std::vector<Stretch> stretchesOf(std::uint32_t samples, std::uint32_t squares) {
@@ -45,12 +45,12 @@ std::vector<Stretch> stretchesOf(std::uint32_t samples, std::uint32_t squares) {
     return stretches;
 }
 
-/// Rows of a height map in their order, those that are done with forgotten.
+/// A sliding window over the rows of a height map.
 class RowBand {
   public:
     explicit RowBand(HeightMap& map) : map_(map) {}
 
-    /// \param rows  that begin and end no earlier than those before.
+    /// \param rows  begin and end must not decrease between calls.
     Result<void> moveTo(const Stretch& rows) {
         const std::size_t columns = map_.columns();
         const std::uint32_t gone = std::min(rows.begin, end_) - begin_;
@@ -71,7 +71,7 @@ class RowBand {
         }
         return grid;
     }
-    /// All of it, which is then gone.
+    /// Moves out all rows; the window is empty afterwards.
     [[nodiscard]] HeightGrid take() { return {map_.columns(), end_ - begin_, std::move(heights_)}; }
 
   private:
@@ -81,18 +81,18 @@ class RowBand {
     std::vector<float> heights_;
 };
 
-/// A tile, and its containers. No bytes: it has no ground, or no coarse likeness.
+/// A tile and its containers. `bytes` is empty without ground, `coarse` without a coarse collider.
 struct BakedTile {
     GroundTile tile;
     std::vector<std::byte> bytes;
     std::vector<std::byte> coarse;
 };
 
-/// Squares along the side of a coarse one.
+/// Squares along the side of a coarse square.
 constexpr std::uint32_t kCoarse = 4;
 static_assert(kLeafSquares % kCoarse == 0, "or coarse squares of tiles would not meet");
 
-/// A sample that is ground, as near to a place as there is one within a coarse square; a hole where there is none.
+/// Returns the ground sample nearest to a position within a coarse square; a hole if there is none.
 float nearestGround(const HeightGrid& grid, std::uint32_t column, std::uint32_t row) {
     float nearest = grid.at(column, row);
     std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
@@ -188,7 +188,7 @@ class GroundBaker {
         Collider collider;
         collider.bounds = ground.bounds;
         collider.unit = "m";
-        // Of each square both its triangles.
+        // Two triangles per square.
         collider.provenance = {map_.name(),
                                map_.hash(),
                                2 * ground.squares,
@@ -209,7 +209,7 @@ class GroundBaker {
         return baked;
     }
 
-    /// \param collider  that of the tile.
+    /// \param collider  the tile's collider.
     Result<void> bakeCoarse(const HeightGrid& grid, const GroundPlace& place, Collider collider,
                             BakedTile& baked) const {
         const Bounds& box = baked.tile.box;
@@ -271,7 +271,7 @@ class GroundBaker {
         std::vector<Result<BakedTile>> tiles(across.size());
         forEachIndex(0, across.size(), 1, [&](std::size_t i) {
             const Stretch& columns = across[i];
-            // The tile's own first square is its origin; what lies before it has coordinates below 0.
+            // The origin is the tile's first square; the leaf before it has negative coordinates.
             const glm::uvec2 first(columns.first - columns.begin, along.first - along.begin);
             const GroundPlace place{.spacing = heights().spacing,
                                     .origin = -heights().spacing * glm::dvec3(first.x, 0.0, first.y),
@@ -299,7 +299,7 @@ class GroundBaker {
         return {};
     }
 
-    /// Writes a tile's containers, if it has ground.
+    /// Writes a tile's containers if it has ground.
     [[nodiscard]] Result<BakedTile> written(BakedTile baked, std::size_t column, std::size_t row) const {
         const auto write = [&](std::vector<std::byte>& bytes, const std::string& hash, const char* kind) {
             const std::string file = fileStem(fs::path(map_.name()).stem().string()) + "-" +
@@ -341,7 +341,7 @@ class GroundBaker {
                (format.eight_bits ? ", unless they are 8 bits times 256" : "");
     }
 
-    /// Settings that seem not to be those of the file. \param most  of its squares are steep.
+    /// Names settings that probably do not match the file. \param most  most of its squares are steep.
     [[nodiscard]] std::string causeOfSteep(bool most) const {
         std::optional<LoneSample> lone = map_.lone();
         if (lone && lone->gap <= kSteepest * heights().spacing) {

@@ -20,25 +20,27 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kBatch = 65'536;  ///< points that are measured at once
+constexpr std::size_t kBatch = 65'536;  ///< points measured at once
 constexpr std::size_t kWorst = 10;
-constexpr double kApart = 4.0 * kLeafSquares;  ///< between the worst places along an axis, in squares
-constexpr double kDeep = 0.05;  ///< of its box's longest side, ground goes below its lowest point
+/// Minimum distance between worst places along an axis, in squares.
+constexpr double kApart = 4.0 * kLeafSquares;
+/// Depth of ground below its lowest point, relative to the longest side of its box.
+constexpr double kDeep = 0.05;
 constexpr std::uint32_t kRowsBetweenChecks = 256;
 
 enum class Kind : std::uint8_t { kNear, kSeam, kAnywhere };
 
-/// Squares drawn one by one in their order, as many from each equal part of them.
+/// Draws squares in ascending order, stratified: equally many from each equal part.
 class Strata {
   public:
     Strata(std::uint64_t squares, std::uint64_t samples, std::uint64_t seed, Kind kind)
         : squares_(squares), samples_(squares > 0 ? samples : 0), seed_(seed), kind_(kind) {
         draw();
     }
-    /// Whether a square before this one is still to come.
+    /// Whether a square before this one remains to be drawn.
     [[nodiscard]] bool before(std::uint64_t square) const { return next_ < samples_ && square_ < square; }
     [[nodiscard]] std::uint64_t square() const { return square_; }
-    /// Of the same draw: a place in the square and a height, each in [0, 1).
+    /// Position in the square and height of the current draw, each in [0, 1).
     [[nodiscard]] const std::array<double, 3>& place() const { return place_; }
     void advance() {
         ++next_;
@@ -87,9 +89,9 @@ struct Square {
 struct Probe {
     Kind kind;
     float x, z;     // world space
-    double height;  // of the surface there, world space; NaN: there is no ground
+    double height;  // of the surface there, world space; NaN: no ground
     double rise;    // of the square, metres
-    double share;   // in [0, 1): the point's place between the lowest and the highest of its kind
+    double share;   // relative height of the point in the range of its kind, in [0, 1)
 };
 
 struct Outcome {
@@ -98,11 +100,11 @@ struct Outcome {
     std::optional<double> error;
 };
 
-/// A body's part of the plane.
+/// The part of the plane that a body covers.
 struct Footprint {
     glm::dvec2 low, high;              // of its surface
-    glm::dvec2 solid_low, solid_high;  // of all that it may call inside
-    double floor;                      // its ground is solid down to here
+    glm::dvec2 solid_low, solid_high;  // of all points that it may classify as inside
+    double floor;                      // its ground is solid down to this height
 
     [[nodiscard]] bool holds(double x, double z) const {
         return x >= low.x && z >= low.y && x <= high.x && z <= high.y;
@@ -218,7 +220,7 @@ class GroundChecker {
         return {};
     }
 
-    /// Calls visit(row) for each row of squares, whose samples are above_ and below_ then.
+    /// Calls visit(row) for each row of squares; above_ and below_ hold its samples.
     template <class Visit>
     Result<void> forEachRow(double from, const Visit& visit) {
         RELIEF_TRY(map_.next(above_));
@@ -237,7 +239,7 @@ class GroundChecker {
                 double{below_[column + 1]}};
     }
 
-    /// Of a square's number along x or z. \param squares  along that axis
+    /// Whether a square, by its index along x or z, is at a seam. \param squares  along that axis.
     [[nodiscard]] bool atSeam(std::uint32_t number, std::uint32_t squares) const {
         const std::uint32_t tile = request_.heights.tile;
         const std::uint32_t at = number % tile;
@@ -249,7 +251,7 @@ class GroundChecker {
     }
     [[nodiscard]] bool hasTiles() const { return bodies_.size() > 1; }
 
-    /// Counts what is to be drawn from.
+    /// Counts the squares to draw from.
     Result<void> survey() {
         RELIEF_TRY(forEachRow(0.0, [this](std::uint32_t row) {
             std::uint32_t ground = 0;
@@ -285,7 +287,7 @@ class GroundChecker {
                ")";
     }
 
-    /// Another map, or other settings, would be wrong nearly everywhere.
+    /// Detects another map or other settings, which would be wrong nearly everywhere.
     [[nodiscard]] Result<void> compareExtents() const {
         const glm::dvec2 from(offset().x, offset().z);
         const glm::dvec2 low = from + spacing() * glm::dvec2(first_);
@@ -341,7 +343,8 @@ class GroundChecker {
         return {};
     }
 
-    /// The points of a row of squares that may lie around the map. \param row  from 0, the row before the first
+    /// Draws points in a row of squares, which may be outside the map. \param row  0 is the row before the map's first
+    /// row.
     void drawAnywhere(Strata& strata, std::uint32_t row) {
         const std::uint64_t squares = std::uint64_t{map_.columns()} + 1;
         for (; strata.before((row + std::uint64_t{1}) * squares); strata.advance()) {
@@ -350,7 +353,7 @@ class GroundChecker {
         }
     }
 
-    /// \param column, row  of its square, which may lie around the map
+    /// \param column, row  of the point's square, which may be outside the map.
     void add(Kind kind, std::int64_t column, std::int64_t row, const std::array<double, 3>& place) {
         const double across = static_cast<double>(column);
         const double along = static_cast<double>(row);
@@ -363,7 +366,7 @@ class GroundChecker {
         if (column >= 0 && row >= 0 && column + 1 < std::int64_t{map_.columns()} &&
             row + 1 < std::int64_t{map_.rows()}) {
             const Square one = square(static_cast<std::size_t>(column));
-            // At the place that the float stands for.
+            // Evaluated at the coordinates after rounding to floats.
             const double s = (double{probe.x} - offset().x) / spacing() - across;
             const double t = (double{probe.z} - offset().z) / spacing() - along;
             probe.height = offset().y + one.at(std::clamp(s, 0.0, 1.0), std::clamp(t, 0.0, 1.0));
@@ -415,7 +418,7 @@ class GroundChecker {
         };
         const auto [from, to] = rangeOf(probe, floor);
         const auto y = static_cast<float>(from + probe.share * (to - from));
-        // A height of NaN is below none.
+        // Comparison with NaN is false.
         Outcome outcome{double{y} < probe.height, insideAt(y), {}};
         if (probe.kind != Kind::kAnywhere) {
             outcome.error = errorAlong(insideAt, from, to, probe.height);
@@ -423,9 +426,9 @@ class GroundChecker {
         return outcome;
     }
 
-    /// Of the heights that a point may have. \param floor  of the ground there, if any body has some
+    /// Returns the range of heights for a point. \param floor  of the ground there, if a body covers it.
     [[nodiscard]] std::pair<double, double> rangeOf(const Probe& probe, std::optional<double> floor) const {
-        // A wrong map may lie below the floor of the ground.
+        // With a wrong map, the surface may be below the ground's floor.
         const double reach = probe.height - within_;
         if (probe.kind != Kind::kAnywhere) {
             return {floor && *floor < probe.height ? std::max(*floor, reach) : reach, probe.height + within_};
@@ -437,7 +440,7 @@ class GroundChecker {
         return {bottom, offset().y + highest_ + deep};
     }
 
-    /// Bisection, down to neighbouring floats.
+    /// Bisects down to adjacent floats.
     template <class Inside>
     static std::optional<double> errorAlong(const Inside& inside, double from, double to, double height) {
         auto low = static_cast<float>(from);
@@ -494,7 +497,7 @@ class GroundChecker {
         worst.resize(std::min(worst.size(), kWorst));
     }
 
-    /// Of the bodies that overlap there the one that reaches farthest around the point.
+    /// Returns the body at a point; if several overlap, the one that extends farthest around it.
     [[nodiscard]] std::string nodeAt(const Probe& probe) const {
         const glm::dvec2 p(probe.x, probe.z);
         std::string node;
@@ -514,20 +517,20 @@ class GroundChecker {
     const std::string& name_;
     HeightMap& map_;
     double within_;
-    std::vector<float> above_;  // samples of the row before
+    std::vector<float> above_;  // samples of the previous row
     std::vector<float> below_;
     std::vector<Footprint> bodies_;
     glm::dvec3 low_{std::numeric_limits<double>::max()};  // of all surfaces, world space
     glm::dvec3 high_{std::numeric_limits<double>::lowest()};
-    glm::uvec2 first_{std::numeric_limits<std::uint32_t>::max()};  // squares with ground
+    glm::uvec2 first_{std::numeric_limits<std::uint32_t>::max()};  // of the squares with ground
     glm::uvec2 last_{0};
-    double lowest_ = std::numeric_limits<double>::max();  // samples at ground, without the offset
+    double lowest_ = std::numeric_limits<double>::max();  // of all ground samples, without the offset
     double highest_ = std::numeric_limits<double>::lowest();
     std::uint64_t seam_squares_ = 0;
     std::vector<Probe> probes_;
     NearSums near_;
     NearSums seams_;
-    std::uint64_t false_inside_ = 0;  // anywhere
+    std::uint64_t false_inside_ = 0;  // points anywhere
     std::uint64_t false_outside_ = 0;
     GroundAccuracy result_;
 };

@@ -14,30 +14,31 @@
 namespace relief {
 namespace {
 
-/// The ground below the lowest point, of the longest side.
+/// Depth of the ground below its lowest point, relative to the longest side.
 constexpr double kGroundDepth = 0.05;
-/// Patches hold heights within so much of the bottom of their cell, of its side, and a little more.
+/// Patches store heights up to this distance from the bottom of their cell, in units of its side, and slightly beyond.
 constexpr double kHeld = 3.99;
-/// Places along each axis of a steep cell at which its two likenesses are held against it.
+/// Test positions along each axis of a steep cell, at which its two approximations are compared with it.
 constexpr int kTried = 8;
 /// Heights upwards, rows and columns across.
 constexpr PatchFrame kUp{0, 1, 0};
 constexpr int kBasesPerCell = 512;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-/// Cells along an axis that floats tell apart, with room for places within each.
+/// Cells along an axis that floats can distinguish, with a margin for positions within each.
 constexpr double kCellsMax = 1 << 20;
 
-/// A cell with a record. Indices count cells of its level, x and z from the grid's first sample, y from height 0.
+/// A cell with a record. Indices count cells of its level; x and z from the grid's first sample, y from height 0.
 struct Cell {
     std::uint32_t x = 0;
     std::int32_t y = 0;
     std::uint32_t z = 0;
     std::uint8_t level = 0;
     PatchRecord::Kind kind = PatchRecord::Kind::kOutside;
-    std::uint8_t children = 0;  ///< of a split one: masks
+    std::uint8_t children = 0;  ///< for a split cell: masks
     std::uint8_t inside = 0;
-    bool owner = false;       ///< of a patch: it writes the heights that others share
-    std::uint32_t first = 0;  ///< of a split one: index of its first child; of a patch: of its heights
+    bool owner = false;  ///< for a patch: it writes the heights that others share
+    /// For a split cell: index of its first child; for a patch: index of its heights.
+    std::uint32_t first = 0;
 };
 
 class GroundTree {
@@ -65,12 +66,12 @@ class GroundTree {
     [[nodiscard]] double cellSize(unsigned level) const {
         return place_.spacing * root_squares_ / static_cast<double>(1U << level);
     }
-    /// Squares along the side of a cell; of half a square 1, as there are no more heights in it.
+    /// Returns the squares along the side of a cell; 1 for half a square, which has no further heights.
     [[nodiscard]] std::uint32_t squaresOf(unsigned level) const {
         return std::max(root_squares_ >> level, 1U);
     }
 
-    /// \param x, z  cells of a level from the first sample.
+    /// \param x, z  cells of a level, from the first sample.
     [[nodiscard]] double heightAt(unsigned level, std::size_t x, std::size_t z) const {
         if (level <= square_level_) {
             return grid_.at(x * squaresOf(level), z * squaresOf(level));
@@ -99,7 +100,7 @@ class GroundTree {
         return half;
     }
 
-    /// \return whether any square has ground.
+    /// Returns whether any square has ground.
     bool findRange() {
         ColumnRange all;
         for (std::uint32_t z = 0; z < ranges_.depth(leaf_level_); ++z) {
@@ -155,14 +156,16 @@ class GroundTree {
                         "tile=, or give a larger spacing or a smaller range of heights");
     }
 
-    /// kSplit where the column cannot be one patch, also of a cell that is to be a leaf of another kind.
+    /// Classifies a cell. Returns kSplit if the column cannot be one patch, also for a cell that will become a leaf of
+    /// another kind.
     [[nodiscard]] PatchRecord::Kind kindOf(const Cell& cell, const ColumnRange& column) const {
         const double size = cellSize(cell.level);
         if (!column.ground || !(double{column.high} > size * cell.y)) {
             return PatchRecord::Kind::kOutside;
         }
         const bool fits = double{column.high} - double{column.low} <= kSteepest * size;
-        // The next leaf below the surface has its heights too, or what enters it would meet the plane of many leaves.
+        // The next leaf below the surface shares its heights; otherwise points that enter it would hit the planes of
+        // many leaves.
         const double margin =
             cell.level == last_level_ && !fits ? 0.0 : cellSize(std::max(unsigned{cell.level}, leaf_level_));
         if (!column.hole && double{column.low} >= size * (cell.y + 1.0) + margin) {
@@ -172,7 +175,7 @@ class GroundTree {
         return patch ? PatchRecord::Kind::kPatch : PatchRecord::Kind::kSplit;
     }
 
-    /// Records level by level, and room for their heights.
+    /// Creates records level by level, and reserves their heights.
     Result<void> splitCells() {
         for (std::uint32_t z = 0; z < roots_.z; ++z) {
             for (std::uint32_t y = 0; y < roots_.y; ++y) {
@@ -230,7 +233,8 @@ class GroundTree {
         cell.first = place;
     }
 
-    /// The heights of a patch, from its cell's bottom on in its sides. Those of a column share codes and scale.
+    /// Returns the heights of a patch above its cell's bottom, in units of its side. Cells of a column share codes and
+    /// scale.
     [[nodiscard]] PatchHeights heightsOf(const Cell& cell, bool& steep) const {
         const double size = cellSize(cell.level);
         const std::uint32_t across = cell.level <= square_level_ ? squaresOf(cell.level) : 1;
@@ -264,8 +268,9 @@ class GroundTree {
         return patch;
     }
 
-    /// Heights of a steep cell that a patch holds. Those that are cut off keep its gentle edges, those that are drawn to the
-    /// cell's middle the place where the surface crosses that; the ones that err less are taken.
+    /// Approximates the heights of a steep cell by heights that a patch can store. Clamped heights preserve its gentle
+    /// edges. Heights scaled towards the cell's middle preserve the line where the surface crosses the middle. The
+    /// approximation with the smaller error is used.
     [[nodiscard]] static std::array<double, 4> likenessOf(const std::array<double, 4>& heights) {
         std::array<double, 4> cut = heights;
         std::array<double, 4> drawn = heights;
@@ -321,7 +326,7 @@ class GroundTree {
         return {{-by_x * per_length, per_length, -by_z * per_length}, middle};
     }
 
-    /// Of a cell without a patch.
+    /// Returns the record of a cell without a patch.
     [[nodiscard]] PatchRecord flatOf(const Cell& cell) const {
         const bool inside = cell.kind == PatchRecord::Kind::kInside;
         if (!columnOf(cell.level, cell.x, cell.z).ground) {
@@ -402,7 +407,7 @@ class GroundTree {
 
     const HeightGrid& grid_;
     const GroundPlace& place_;
-    /// Splits from a root down to a leaf of kLeafSquares, to a single square, and to half the side of a steep one.
+    /// Splits from a root down to a leaf of kLeafSquares, to a single square, and to half of a steep square.
     unsigned leaf_level_;
     unsigned square_level_;
     unsigned last_level_;
@@ -410,12 +415,12 @@ class GroundTree {
     ColumnRanges ranges_;
     double low_ = 0.0;  // of the surface
     double high_ = 0.0;
-    double deepest_ = 0.0;     // of the ground, at least
+    double deepest_ = 0.0;     // the ground is solid at least down to this height
     std::int32_t bottom_ = 0;  // the lowest row of roots
     glm::uvec3 roots_{0};
     std::uint32_t levels_ = 0;
     std::vector<Cell> cells_;            // in the order of their records
-    std::vector<std::uint32_t> shared_;  // the heights of each leaf's column; kNone: not placed yet
+    std::vector<std::uint32_t> shared_;  // heights of each leaf's column; kNone: not placed yet
     std::uint32_t height_texels_ = 0;
     Ground ground_;
 };

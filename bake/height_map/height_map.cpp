@@ -18,10 +18,10 @@
 namespace relief {
 namespace {
 
-/// Floats, and some room for the headers of images that do not shrink.
+/// Floats, plus a margin for headers of images that do not compress.
 constexpr std::uint64_t kFileMax = 4 * kHeightSamplesMax + (std::uint64_t{64} << 20);
 
-/// Whether the settings are for such a file.
+/// Checks that the settings apply to this kind of file.
 Result<void> checkKind(const std::filesystem::path& path, bool image, const HeightsSpec& spec) {
     const char* const raw = spec.width ? "width" : spec.type ? "type" : spec.order ? "order" : nullptr;
     if (image && raw != nullptr) {
@@ -59,7 +59,7 @@ Result<void> checkHole(const HeightsSpec& spec, int least, int most) {
     return {};
 }
 
-/// The settings that only some images have.
+/// Checks settings that apply only to some images.
 Result<void> checkSettings(const SampleRows& rows, const HeightsSpec& spec) {
     if (rows.most() == 0) {
         if (spec.low || spec.high) {

@@ -11,10 +11,10 @@
 namespace relief {
 namespace {
 
-/// Leaves of a tree of patches have so many squares along a side: those of neighbouring tiles coincide.
+/// Squares along the side of a leaf; tile sizes are multiples, so that leaves of neighbouring tiles coincide.
 constexpr std::uint32_t kTileStep = 4;
 
-/// Reads one key, and collects the names of all.
+/// Reads one key, and collects the names of all keys.
 class KeySetter : public FieldVisitor {
   public:
     KeySetter(std::string_view key, std::string_view value) : key_(key), value_(value) {}
@@ -27,7 +27,7 @@ class KeySetter : public FieldVisitor {
         }
     }
     [[nodiscard]] bool fills() const override { return true; }
-    /// Empty: the value was taken.
+    /// Returns the fault; empty if the value was accepted.
     [[nodiscard]] std::string fault() const {
         if (known_) {
             return fault_;
@@ -45,7 +45,7 @@ class KeySetter : public FieldVisitor {
     std::string fault_;
 };
 
-/// The fault of values that are right by themselves; empty if there is none.
+/// Returns the fault of a combination of valid values; empty if there is none.
 std::string faultOf(const HeightsSpec& spec) {
     if (spec.low && spec.high && !(*spec.low < *spec.high)) {
         return "low is " + numberWord(*spec.low) + " but must be below high, " + numberWord(*spec.high) +
@@ -88,7 +88,7 @@ bool readForm(std::string_view word, HeightsOffset& offset) {
         if (!number || !within(kHeightMax).holds(*number)) {
             return false;
         }
-        offset.at[axis] = *number + 0.0;  // no −0, so that one setting has one text
+        offset.at[axis] = *number + 0.0;  // no −0, so that equal settings have equal text
     }
     return true;
 }

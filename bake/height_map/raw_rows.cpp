@@ -28,13 +28,13 @@ RawFormat formatOf(const HeightsSpec& spec) {
     return {spec.type.value_or(SampleType::kUint16), spec.order.value_or(ByteOrder::kLittle)};
 }
 
-/// NaN unless `spec` states both the hole and this format.
+/// Returns NaN unless `spec` states both the hole and this format.
 double holeOf(const HeightsSpec& spec, const RawFormat& format) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return format == formatOf(spec) ? spec.hole.value_or(kNone) : kNone;
 }
 
-/// Numbers without a header.
+/// Reads samples without a header.
 class RawRows : public SampleRows {
   public:
     RawRows(std::span<const std::byte> bytes, std::uint64_t columns, const RawFormat& format)
@@ -77,7 +77,7 @@ class RawRows : public SampleRows {
     RawFormat format_;
 };
 
-/// Samples in a row of a raw file of so many bytes; 0: it has no such rows.
+/// Returns the samples per row of a raw file of this size; 0 if there are no such rows.
 std::uint64_t columnsOf(std::size_t bytes, std::optional<std::uint32_t> width, const RawFormat& format) {
     const std::uint64_t samples = bytes / format.bytes();
     const auto side = static_cast<std::uint64_t>(std::sqrt(static_cast<double>(samples)));
@@ -86,10 +86,10 @@ std::uint64_t columnsOf(std::size_t bytes, std::optional<std::uint32_t> width, c
     return whole && (width || side * side == samples) ? columns : 0;
 }
 
-/// How much neighbours differ.
+/// Differences between neighbours.
 struct Variation {
-    double between = 0.0;  ///< neighbours of a row, on average
-    double spread = 0.0;   ///< from the mean, on average
+    double between = 0.0;  ///< mean difference of neighbours in a row
+    double spread = 0.0;   ///< mean deviation from the mean
 
     /// Far below 1 for smooth ground, about 1.3 for noise.
     [[nodiscard]] double roughness() const {
@@ -97,8 +97,8 @@ struct Variation {
     }
 };
 
-/// Reads at most 64 rows of a raw file, without the holes of `spec`. Returns nullopt if the file has no rows of this format, or if
-/// most of its samples are no heights.
+/// Reads at most 64 rows of a raw file, without the holes of `spec`. Returns nullopt if the file has no rows of this
+/// format, or if most of its samples are not heights.
 std::optional<Variation> variationOf(std::span<const std::byte> bytes, const HeightsSpec& spec,
                                      const RawFormat& format) {
     constexpr std::uint64_t kRows = 64;
@@ -116,7 +116,7 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
             RawRows(row, columns, format).next(std::span(samples).subspan(i * columns, columns)));
     }
     const double hole = holeOf(spec, format);
-    constexpr float kLeast = 1e-20F;  // small whole numbers read as floats are smaller
+    constexpr float kLeast = 1e-20F;  // small integers read as floats are smaller
     const auto isHeight = [&](float sample) {
         return std::abs(double{sample}) <= kHeightMax && double{sample} != hole &&
                (sample == 0.0F || std::abs(sample) >= kLeast);
@@ -146,7 +146,7 @@ std::optional<Variation> variationOf(std::span<const std::byte> bytes, const Hei
     return variation;
 }
 
-/// How many values the low and the high bytes of 16-bit samples have.
+/// The numbers of distinct low and high bytes in 16-bit samples.
 struct ByteValues {
     std::size_t low = 0;
     std::size_t high = 0;
@@ -160,8 +160,9 @@ ByteValues byteValues(std::span<const std::byte> bytes, ByteOrder order) {
     return {values.at(low).count(), values.at(1 - low).count()};
 }
 
-/// Whether 16-bit samples lie at both ends of their type's range with nothing between, and neighbours at different ends are as
-/// near as others if the range is a ring: 65535 beside 0 is -1 of int16. Two values only may be two levels.
+/// Whether 16-bit samples are at both ends of their type's range with nothing between, and neighbours at different ends
+/// are as close as others if the range wraps around: 65535 next to 0 is -1 in int16. Files with only two values are
+/// excluded; these may be two levels.
 bool wrapsAround(std::span<const std::byte> bytes, const HeightsSpec& spec, const RawFormat& format) {
     const std::uint64_t columns = columnsOf(bytes.size(), spec.width, format);
     if (columns == 0) {
@@ -249,7 +250,7 @@ LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const Heights
     const std::size_t swapped = 1 - in_order;
     constexpr double kAlike = 1.25;
     const ByteValues values = own.bytes() == 2 ? byteValues(bytes, own.order) : ByteValues{};
-    // Heights within 256 m are as smooth in the wrong order as in the right one, and times 256.
+    // Heights within 256 m are as smooth in the wrong byte order as in the right one, and scaled by 256.
     if (values.high > 2 * values.low && roughness.at(swapped) <= kAlike * roughness.at(best)) {
         best = swapped;
     }

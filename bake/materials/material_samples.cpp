@@ -16,17 +16,17 @@
 namespace relief {
 namespace {
 
-/// Of the surface of the source.
+/// Number of samples on the source's surface.
 constexpr std::size_t kSamples = 400'000;
-/// Of the texels there: how far a contact may lie from the point of the mesh that it belongs to.
+/// Maximum distance between a contact and its mesh point, in local texels.
 constexpr double kReach = 1.5;
-/// Of that: how near a contact is found.
+/// Precision of a contact's position, relative to that distance.
 constexpr double kNear = 0.03;
 
 /// A point of the source.
 struct SurfacePoint {
     glm::dvec3 at;
-    glm::dvec3 normal;  ///< of length 1
+    glm::dvec3 normal;  ///< unit length
     std::uint32_t triangle = 0;
 };
 
@@ -46,7 +46,7 @@ class SurfacePoints {
         const auto found = std::lower_bound(sums_.begin(), sums_.end(), share * sums_.back());
         const auto index = std::min(static_cast<std::size_t>(found - sums_.begin()), sums_.size() - 1);
         const glm::uvec3& t = source_.triangles[index];
-        // Roberts' sequence R2, folded into the triangle.
+        // Roberts's sequence R2, folded into the triangle.
         double u = std::fmod(static_cast<double>(k) * 0.7548776662466927, 1.0);
         double v = std::fmod(static_cast<double>(k) * 0.5698402909980532, 1.0);
         if (u + v > 1.0) {
@@ -64,7 +64,7 @@ class SurfacePoints {
     std::vector<double> sums_;
 };
 
-/// The side of the collider's texels at a point, object units: leaves of patches have their own.
+/// Returns the side of the collider's texels at a point, object units; leaves of patches have their own.
 double texelAt(const Collider& collider, const glm::vec3& p, float finest) {
     float texel = finest;
     for (const DepthMap& map : collider.maps) {
@@ -82,7 +82,7 @@ double texelAt(const Collider& collider, const glm::vec3& p, float finest) {
     return double{texel};
 }
 
-/// The point in which a line along a normal leaves the collider, no further off than `reach`, and the normal just within.
+/// Finds where a line along a normal leaves the collider, within `reach`, and the normal just inside that point.
 std::optional<SurfacePoint> contactOf(const Collider& collider, const SurfacePoint& from, double reach) {
     double low = -reach;
     double high = reach;
@@ -93,11 +93,11 @@ std::optional<SurfacePoint> contactOf(const Collider& collider, const SurfacePoi
         within = sample.inside() ? sample : within;
         return sample.inside();
     };
-    // Most points that are in no contact's way have solids before them.
+    // Most points that no contact reaches have a solid in front of them.
     if (evaluateInside(collider, glm::vec3(from.at + high * from.normal)).inside || !look(low)) {
         return std::nullopt;
     }
-    // The distance leads there at once, unless it is that of another surface, or of one that lies aslant.
+    // The distance leads there in one step, unless it belongs to another or a slanted surface.
     const double guess = low + std::abs(double{within.distance});
     for (const double along : {guess + 0.4 * kNear * reach, guess - 0.4 * kNear * reach}) {
         if (along > low && along < high) {
@@ -110,7 +110,7 @@ std::optional<SurfacePoint> contactOf(const Collider& collider, const SurfacePoi
     return SurfacePoint{from.at + high * from.normal, glm::dvec3(within.normal), from.triangle};
 }
 
-/// The surface near the collider, which may be a tile of it.
+/// Selects the surface near the collider, which may be a tile.
 MaterialSource near(const MaterialSource& source, const Bounds& box) {
     const glm::vec3 room(box.longestSide() / 32.0F);
     MaterialSource part;
@@ -136,7 +136,7 @@ Result<MeshQuery> queryOf(const MaterialSource& source) {
     mesh.positions = source.positions;
     mesh.triangles = source.triangles;
     mesh.bounds = boundsOf(mesh.positions);
-    // As one body, whose edges are not needed: its inside is of no interest here.
+    // A single body avoids computing edges; the inside is irrelevant here.
     return MeshQuery::build(
         PreparedMesh::unionOf(std::move(mesh), std::vector<std::uint32_t>(source.triangles.size(), 1)));
 }
@@ -147,11 +147,11 @@ std::vector<MaterialSample> sampleContacts(const Collider& collider, const Mater
     const MaterialSource source = near(whole, collider.bounds);
     const Result<MeshQuery> query = queryOf(source);
     if (!query || source.triangles.empty()) {
-        return {};  // the tree is then by the faces alone
+        return {};  // without samples, the tree is fitted only to the faces
     }
     const SurfacePoints points(source);
     const float finest = finestTexel(collider);
-    const std::size_t sides = source.sides ? 1 : 2;  // a sheet shows both of its own
+    const std::size_t sides = source.sides ? 1 : 2;  // a sheet shows both sides
     std::vector<std::array<std::optional<MaterialSample>, 2>> all(kSamples);
     tbb::parallel_for(std::size_t{0}, kSamples, [&](std::size_t k) {
         SurfacePoint from = points.at(k);

@@ -21,28 +21,28 @@
 namespace relief {
 namespace {
 
-/// Of the smallest texel: how far off the surface a contact may lie.
+/// Maximum distance between a contact and the surface, in units of the smallest texel.
 constexpr double kMargin = 0.5;
-/// The least component of unit normals along the axis that tells two sides apart.
+/// Minimum component of unit normals along the axis that separates two sides.
 constexpr double kSideMin = 0.5;
 constexpr double kDiagonal = 0.70710678118654752;
-/// Nodes that are tried for each that is kept: a split may mend nothing by itself, and much by those below it.
+/// Nodes to try per node to keep: a split may improve nothing by itself, but its descendants may.
 constexpr std::size_t kTriedPerNode = 2;
-/// Faces that lie in one plane stay in one another's cells down to the smallest: beyond so many in all, cells stay unsplit.
+/// Coplanar faces stay in each other's cells down to the smallest cell. Beyond this total, cells are not split.
 constexpr std::size_t kFacesHeldMax = std::size_t{1} << 26;
-/// Bytes of a material in the container, beside its name.
+/// Bytes of a material in the container, excluding its name.
 constexpr std::size_t kMaterialBytes = 40;
 
 struct MaterialTreeOptions {
     Bounds box;            ///< of the collider
-    double texel = 0.0;    ///< the smallest of its maps, object units: no cell is smaller than half of it
-    std::size_t most = 0;  ///< bytes; once they are spent, cells stay unsplit
+    double texel = 0.0;    ///< smallest texel of its maps, object units; no cell is smaller than half of it
+    std::size_t most = 0;  ///< budget in bytes; once it is spent, cells are not split
 };
 
 /// A triangle in double precision.
 struct Face {
     std::array<glm::dvec3, 3> corners;
-    glm::dvec3 normal;  ///< of length 1
+    glm::dvec3 normal;  ///< unit length
 
     [[nodiscard]] double squareTo(const glm::dvec3& p) const {
         const glm::dvec3 off = closestOnTriangle(p, corners[0], corners[1], corners[2]) - p;
@@ -84,26 +84,26 @@ bool meets(const Face& face, const glm::dvec3& center, double half) {
     return true;
 }
 
-/// How a cell without nodes below it is: the leaf that fits its samples best.
+/// The leaf that fits a cell's samples best.
 struct Fit {
     std::optional<MaterialSides> sides;
-    std::uint8_t single = 0;  ///< without them
-    std::size_t wrong = 0;    ///< weight of the samples
+    std::uint8_t single = 0;  ///< if `sides` is nullopt
+    std::size_t wrong = 0;    ///< weight of wrong samples
 };
 
-/// A cell, and the triangles and samples near it.
+/// A cell, with the triangles and samples near it.
 struct Cell {
     glm::dvec3 center{0.0};
     int depth = 0;
     std::vector<std::uint32_t> faces;
     std::vector<std::uint32_t> samples;
     Fit fit;
-    bool final = false;                      ///< nothing tells its surfaces apart any better
+    bool final = false;                      ///< further splits cannot separate its surfaces
     bool kept = false;                       ///< with its octants
-    std::array<std::uint32_t, 8> octants{};  ///< cells; 0: it is a leaf
+    std::array<std::uint32_t, 8> octants{};  ///< cells; 0: a leaf
 };
 
-/// Splits the cell whose leaf is wrong at most samples, again and again.
+/// Repeatedly splits the leaf with the most wrong samples.
 class TreeBuilder {
   public:
     TreeBuilder(const MaterialSource& source, const MaterialTreeOptions& options,
@@ -132,7 +132,7 @@ class TreeBuilder {
         split({0});
         std::size_t left = kTriedPerNode * mostNodes(0) - 1;
         while (!open_.empty() && left > 0) {
-            // So many at once, for the threads; always as many.
+            // A fixed batch size, for parallelism and determinism.
             constexpr std::size_t kAtOnce = 32;
             std::vector<std::uint32_t> next;
             while (!open_.empty() && next.size() < std::min(kAtOnce, left)) {
@@ -142,7 +142,7 @@ class TreeBuilder {
             left -= next.size();
             split(next);
         }
-        // Pairs of sides take bytes as well, and fewer nodes may have other pairs.
+        // Pairs of sides use bytes, too, and a tree with fewer nodes may have other pairs.
         for (std::size_t pairs = 0;;) {
             keepBest(mostNodes(pairs));
             const std::size_t used = pairsKept();
@@ -160,7 +160,7 @@ class TreeBuilder {
         const double half = 0.5 * double{result_.size} + margin_;
         for (std::size_t i = 0; i < source_.triangles.size(); ++i) {
             const glm::uvec3& t = source_.triangles[i];
-            // A tile's tree needs the faces in the tile alone.
+            // A tile's tree needs only faces in the tile.
             const glm::vec3 low =
                 glm::min(glm::min(source_.positions[t.x], source_.positions[t.y]), source_.positions[t.z]);
             const glm::vec3 high =
@@ -183,14 +183,14 @@ class TreeBuilder {
         }
     }
 
-    /// A part of a mesh that has a single material.
+    /// Handles a tile whose surface has a single material.
     void keepOnly(std::uint8_t id) {
         result_.list = {source_.list[id]};
         result_.origin = glm::vec3(0.0F);
         result_.size = 0.0F;
     }
 
-    /// \param pairs  of sides.
+    /// \param pairs  pairs of sides.
     [[nodiscard]] std::size_t mostNodes(std::size_t pairs) const {
         std::size_t taken = pairs * sizeof(MaterialSides);
         for (const Material& one : source_.list) {
@@ -215,10 +215,10 @@ class TreeBuilder {
         return (axis < 3 ? 1.0 : kDiagonal) * alongMaterialAxis(normal, axis);
     }
 
-    /// Sides that all of these faces are apart on.
+    /// Returns the sides that separate all of these faces.
     [[nodiscard]] std::optional<MaterialSides> sidesOf(const std::vector<std::uint32_t>& faces) const {
         for (int axis = 0; axis < kMaterialAxes && source_.sides; ++axis) {
-            std::array<int, 2> ids{-1, -1};  // of those that face along the axis, and against it
+            std::array<int, 2> ids{-1, -1};  // of faces along the axis, and against it
             const bool apart = std::all_of(faces.begin(), faces.end(), [&](std::uint32_t face) {
                 const double share = along(faces_[face].normal, axis);
                 int& id = ids[share < 0.0 ? 1 : 0];
@@ -245,7 +245,7 @@ class TreeBuilder {
         return id;
     }
 
-    /// The most frequent of counts, and how many there are of others. Of equals the first.
+    /// Returns the most frequent index (the first of equals), and the total of all other counts.
     static std::pair<std::uint8_t, std::size_t> most(const std::vector<std::size_t>& counts) {
         const auto found = std::max_element(counts.begin(), counts.end());
         std::size_t all = 0;
@@ -267,7 +267,7 @@ class TreeBuilder {
         return wrong;
     }
 
-    /// \param otherwise  material without samples.
+    /// \param otherwise  the material if there are no samples.
     [[nodiscard]] Fit fitOf(const std::vector<std::uint32_t>& samples, std::uint8_t otherwise) const {
         Fit best{std::nullopt, otherwise, 0};
         if (samples.empty()) {
@@ -321,7 +321,7 @@ class TreeBuilder {
             octant.fit.wrong = wrongOf(octant.fit, octant.samples);
             decided = octant.fit.wrong == 0;
         }
-        if (!decided) {  // by what contacts find: they may lie further off than the faces are looked for
+        if (!decided) {  // decided by the samples: contacts may lie farther off than faces are searched
             octant.fit = fitOf(octant.samples,
                                nearest(octant.faces.empty() ? cell.faces : octant.faces, octant.center));
         }
@@ -338,7 +338,7 @@ class TreeBuilder {
             cells_[cells[i / 8]].octants[i % 8] = number;
             held_ += octants[i].faces.size();
             if (!octants[i].final && held_ <= kFacesHeldMax) {
-                open_.push({octants[i].fit.wrong, ~number});  // of equals the first
+                open_.push({octants[i].fit.wrong, ~number});  // the first of equals
             } else {
                 held_ -= octants[i].faces.size();
                 octants[i].faces = {};
@@ -353,7 +353,8 @@ class TreeBuilder {
         }
     }
 
-    /// The byte of a leaf. Beyond so many pairs of sides, the material of the one that most surface faces.
+    /// Returns the byte of a leaf. If there are too many pairs of sides, uses the material of the side with the most
+    /// surface.
     [[nodiscard]] std::uint8_t leafOf(const Fit& fit) {
         if (!fit.sides) {
             return fit.single;
@@ -369,8 +370,7 @@ class TreeBuilder {
         return static_cast<std::uint8_t>(result_.list.size() + index);
     }
 
-    /// Chooses the cells that have octants: of all trees the one of least wrong + least · nodes, from below.
-    /// \return its nodes.
+    /// Chooses, bottom-up, the cells with octants that minimize wrong + least · nodes. \return the number of nodes.
     std::size_t keepWorth(double least) {
         std::vector<double> cost(cells_.size());
         for (std::size_t i = cells_.size(); i-- > 0;) {
@@ -383,7 +383,7 @@ class TreeBuilder {
             for (const std::uint32_t octant : cell.octants) {
                 split += cost[octant];
             }
-            // Between samples, too, surfaces are told apart where that costs nothing.
+            // A split that costs nothing also separates surfaces between samples.
             cell.kept = i == 0 || (least > 0.0 ? split < cost[i] : split <= cost[i]);
             cost[i] = cell.kept ? split : cost[i];
         }
@@ -397,7 +397,7 @@ class TreeBuilder {
         return nodes;
     }
 
-    /// Level by level, the root first.
+    /// Breadth-first, from the root.
     [[nodiscard]] std::vector<std::uint32_t> keptNodes() const {
         std::vector<std::uint32_t> order{0};
         for (std::size_t i = 0; i < order.size(); ++i) {
@@ -410,8 +410,8 @@ class TreeBuilder {
         return order;
     }
 
-    /// The tree that is wrong at least of those of so many nodes. Breiman et al., "Classification and Regression Trees" (1984),
-    /// chapter 3: each worth of a node has its own best tree, and these are nested.
+    /// Keeps the tree with the lowest error for at most `most` nodes. Breiman et al., "Classification and Regression
+    /// Trees" (1984), chapter 3: each cost per node has its own best tree, and these trees are nested.
     void keepBest(std::size_t most) {
         double small = 0.0;  // keeps too many
         if (keepWorth(small) <= most) {
@@ -430,7 +430,7 @@ class TreeBuilder {
             may[node] = 1;
         }
         std::size_t left = most - keepWorth(large);
-        // Of those that are worth the same the upper ones first, as far as they fit.
+        // Fills the remaining nodes with nodes of equal value, upper levels first.
         std::vector<std::uint32_t> order{0};
         for (std::size_t i = 0; i < order.size(); ++i) {
             for (const std::uint32_t octant : cells_[order[i]].octants) {
@@ -460,7 +460,7 @@ class TreeBuilder {
         return std::min(pairs.size(), kMaterialSidesMax + 1 - result_.list.size());
     }
 
-    /// Level by level.
+    /// Breadth-first.
     void writeNodes() {
         std::vector<std::uint32_t> order{0};
         for (std::size_t i = 0; i < order.size(); ++i) {
@@ -483,9 +483,9 @@ class TreeBuilder {
     const MaterialTreeOptions& options_;
     std::vector<MaterialSample> samples_;
     Materials result_;
-    std::vector<Face> faces_;        // that meet the root
-    std::vector<std::uint8_t> ids_;  // as many
-    std::size_t held_ = 0;           // faces of the cells that may yet be split
+    std::vector<Face> faces_;        // those that meet the root
+    std::vector<std::uint8_t> ids_;  // by face
+    std::size_t held_ = 0;           // faces in cells that may still be split
     std::vector<Cell> cells_;
     std::priority_queue<std::pair<std::size_t, std::uint32_t>> open_;  // wrong samples, and ~ the cell
     double margin_ = 0.0;
@@ -496,7 +496,7 @@ double areaOf(const TriangleMesh& mesh, std::uint32_t triangle) {
     return 0.5 * length(planeOf(mesh, triangle).normal);
 }
 
-/// The number of a material by its name, which is new or has the response that it had.
+/// Returns the index of a material by name; the name is new or has the same response as before.
 Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
                          std::map<std::string, std::size_t>& known, std::vector<Material>& list) {
     const auto [found, added] = known.try_emplace(name.material, list.size());

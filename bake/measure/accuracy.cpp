@@ -18,12 +18,12 @@ namespace relief {
 namespace {
 
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-/// InsideAccuracy::far_face_percent: of the true depth, and of the longest side. Below 0.45 of a wall's thickness the opposite
-/// face is at least 1.22 times as far.
+/// Limits for InsideAccuracy::far_face_percent, relative to the true depth and to the longest side. Within 0.45 of a
+/// wall's thickness, the opposite face is at least 1.22 times as far.
 constexpr double kFarFace = 1.25;
 constexpr double kFarFaceShare = 1e-3;
 
-/// Sums in the order of the samples, not in that of the threads.
+/// Sums in sample order, so that results do not depend on threads.
 struct Spread {
     double mean = 0.0;
     double p99 = 0.0;
@@ -83,7 +83,7 @@ void compareDistances(const std::vector<TruthPoint>& points,
     accuracy.unknown_percent = percent(unknown, points.size());
 }
 
-/// In degrees. Exact for small angles, where acos of the cosine is not.
+/// In degrees. Accurate for small angles, unlike acos of the cosine.
 double angleBetween(const glm::dvec3& a, const glm::dvec3& b) {
     return kDegrees * portable::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }

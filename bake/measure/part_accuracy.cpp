@@ -20,13 +20,13 @@
 namespace relief {
 namespace {
 
-/// A part with a smaller share of exposed points lies inside others.
+/// A part with a smaller fraction of exposed points is inside other parts.
 constexpr double kExposed = 0.05;
-/// Resolution of float coordinates, relative, with room for a step to either side of a surface.
+/// Relative resolution of float coordinates, with a margin for steps to both sides of a surface.
 constexpr double kFloatStep = 1e-6;
-/// Times that the distance of the points from a part that seems to be absent is halved.
+/// Maximum halvings of the points' distance from a part that seems to be missing.
 constexpr int kCloser = 5;
-/// Points that confirm a lost part, which fewer have found.
+/// Points that confirm a lost part if fewer points found it.
 constexpr std::uint32_t kConfirm = 256;
 
 /// The triangles of each part with cumulative areas.
@@ -50,7 +50,7 @@ class PartTriangles {
     }
 
     [[nodiscard]] bool empty(std::size_t part) const { return triangles_[part].empty(); }
-    /// \param share  in [0, 1): of the part's area before the triangle.
+    /// Returns the triangle at a fraction of a part's area. \param share  in [0, 1).
     [[nodiscard]] std::uint32_t triangleAt(std::size_t part, double share) const {
         const std::span<const std::uint32_t> triangles = triangles_[part];
         const auto up_to = std::span(up_to_).subspan(triangles_.first(part), triangles.size());
@@ -60,7 +60,7 @@ class PartTriangles {
 
   private:
     Buckets<std::uint32_t> triangles_;
-    std::vector<double> up_to_;  // twice the area, within the part
+    std::vector<double> up_to_;  // twice the cumulative area within the part
 };
 
 class PartMeter {
@@ -83,15 +83,15 @@ class PartMeter {
   private:
     struct Judged {
         PartAccuracy accuracy;
-        std::uint32_t inside = 0;  // points, in truth
-        std::uint32_t missed = 0;  // of those, points called outside
+        std::uint32_t inside = 0;  // points that are inside in truth
+        std::uint32_t missed = 0;  // of those, points classified as outside
 
         [[nodiscard]] bool lost() const { return accuracy.state == PartVerdict::kLost; }
-        /// Most of it is.
+        /// Whether most of the part is missing.
         [[nodiscard]] bool absent() const { return 2 * missed >= inside; }
     };
 
-    /// At the part's own scale, and closer where it is thinner than that and seems to be absent.
+    /// Measures at the part's own scale, and closer if the part is thinner than that and seems to be missing.
     [[nodiscard]] PartAccuracy judge(std::uint32_t part, std::uint32_t points) const {
         const double size = parts_.parts[part].size();
         const double least = leastSigma(part);
@@ -112,7 +112,7 @@ class PartMeter {
         return found.accuracy;
     }
 
-    /// Points closer to a part are as good as on it.
+    /// Returns the sigma below which points count as on the surface.
     [[nodiscard]] double leastSigma(std::uint32_t part) const {
         const Bounds& bounds = parts_.parts[part].bounds;
         const glm::vec3 far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
@@ -129,7 +129,8 @@ class PartMeter {
             found.state = PartVerdict::kHidden;
             return judged;
         }
-        // Too thick a shell is judged by the face that it should have: by its own, a lost sheet would be right.
+        // A shell that is too thick is measured against the face that it should have; against its own face, a lost
+        // sheet would be correct.
         const double too_deep = 0.5 * (parts_.parts[part].thickness - parts_.parts[part].right_thickness);
         MersenneRandom random(options_.seed, part);
         std::uint32_t false_inside = 0;
@@ -137,7 +138,7 @@ class PartMeter {
             const double share = (k + random.uniform()) / points;
             const auto [on, normal] =
                 drawOnTriangle(query_.mesh(), triangles_.triangleAt(part, share), random);
-            // Braces, as compilers choose the order of a call's arguments.
+            // Braces fix the order of evaluation.
             const glm::dvec3 offset{random.normal(), random.normal(), random.normal()};
             if (query_.inside(on + step * normal) && query_.inside(on - step * normal)) {
                 continue;
@@ -174,7 +175,7 @@ class Groups {
   public:
     explicit Groups(bool materials) : materials_(materials) {}
 
-    /// \param index  sorts the groups.
+    /// \param index  sort key of the group.
     void add(std::uint64_t index, const SurfacePart& part, const PartAccuracy& accuracy) {
         const std::string& name = materials_ ? part.material : part.node;
         if (name.empty() || accuracy.points == 0) {
@@ -214,7 +215,7 @@ class Groups {
     std::map<std::pair<std::uint64_t, std::string>, Sum> sums_;
 };
 
-/// Lost, coarse, minor, held, then the others.
+/// The order is lost, coarse, minor, held, then the others.
 int rankOf(PartVerdict state) {
     constexpr std::array<int, kPartVerdicts> kRanks = {3, 1, 0, 4, 2, 5};
     return kRanks[static_cast<std::size_t>(state)];
@@ -224,8 +225,8 @@ bool isMissing(const PartAccuracy& part) {
     return part.wrong.false_outside > part.wrong.false_inside;
 }
 
-/// Percent of the points near the exposed surface that minor and coarse parts miss. What exceeds them shows in the points of the
-/// whole, which seldom lie inside a thin part.
+/// Returns the percentage of points near the exposed surface that minor and coarse parts miss. Surfaces that are too
+/// thick affect the measurement of the whole, whose points are rarely inside a thin part.
 double minorMissed(const PartsAccuracy& all, const SurfaceParts& parts) {
     double missed = 0.0;
     double area = 0.0;
@@ -308,7 +309,7 @@ PartsAccuracy measureParts(const MeshQuery& query, const SurfaceParts& parts, co
     all.ignored.unmeasured = all.countOf(PartVerdict::kRest);
     nodes.addTo(all.groups);
     materials.addTo(all.groups);
-    // By size too: a large part that is half wrong is worse than a small one that is all wrong.
+    // Also weighted by size: a large part that is half wrong is worse than a small part that is all wrong.
     const auto weight = [&](const PartAccuracy& one) {
         return std::pair(rankOf(one.state), -one.wrong.total() * parts.parts[one.part].size());
     };

@@ -21,7 +21,7 @@ std::uint32_t patchCount(const DepthMap& map) {
     for (std::uint32_t i = 1; i < end; ++i) {
         const PatchRecord record = patchTexel(map.texels, i);
         patches += record.kind() == Kind::kPatch ? 1 : 0;
-        // Records are in the order of the levels, so that each split cell makes room for its children at the end.
+        // Records are ordered by level: the children of each split cell extend the next level.
         end +=
             record.kind() == Kind::kSplit ? static_cast<std::uint32_t>(std::popcount(record.children())) : 0;
     }

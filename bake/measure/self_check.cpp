@@ -9,9 +9,9 @@
 namespace relief {
 namespace {
 
-/// A share of one in a hundred is then known to a sixth of that.
+/// Enough to measure a fraction of 1 % with a relative error of one sixth.
 constexpr std::uint32_t kPoints = 4000;
-/// A lost part has a quarter of its points on the wrong side.
+/// At least a quarter of a lost part's points are wrong.
 const PartOptions kParts{
     .points = 64, .points_min = 16, .points_all = 16'384, .parts_max = 1024, .detail = {}};
 

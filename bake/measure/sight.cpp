@@ -45,7 +45,7 @@ Sight::Lines Sight::linesTo(const glm::dvec3& p, const glm::dvec3& in_map) const
     const auto add = [&](const glm::dvec3& line) { lines.start[lines.count++] = p + line; };
     if (map_.projection() == Projection::kCube) {
         const double reach = std::max({std::abs(in_map.x), std::abs(in_map.y), std::abs(in_map.z)});
-        // From the centre, or from the face of the volume behind p.
+        // Starts at the centre, or at the volume's face behind p.
         const double share = map_.compare == Compare::kLess ? -1.0 : 1.0 / reach - 1.0;
         add(to_object_ * (share * in_map));
         return lines;
@@ -68,7 +68,7 @@ bool Sight::sees(const SurfacePoint& point) const {
         return false;
     }
     if (map_.projection() == Projection::kLocal) {
-        return true;  // some patch looks at it from above
+        return true;  // some patch sees it from above
     }
     const Lines lines = linesTo(p, in_map);
     for (std::size_t i = 0; i < lines.count; ++i) {

@@ -46,10 +46,10 @@ constexpr std::uint64_t kSurfaceKind = 1;
 constexpr std::uint64_t kNearKind = 2;
 constexpr std::uint64_t kUniformKind = 3;
 constexpr std::uint64_t kInsideKind = 4;
-/// Points inside lie up to this share of the thickness below a face: beyond, the opposite one is about as near.
+/// Maximum depth of inside points below a face, relative to the thickness; deeper, the opposite face is about as near.
 constexpr double kInsideShare = 0.45;
 
-/// Draws the i-th sample of each kind.
+/// Draws sample i of each kind.
 class Sampler {
   public:
     Sampler(const MeshQuery& query, const AccuracyOptions& options)
@@ -99,7 +99,7 @@ class Sampler {
         return {p, query_.inside(p) ? -1.0F : 1.0F};
     }
 
-    /// nullopt below a buried face or one without an inside, and next to a boundary.
+    /// Returns nullopt below a buried face, below a face without an inside, and at a boundary.
     [[nodiscard]] std::optional<InsidePoint> inside(std::size_t i) const {
         SplitMixRandom random(options_.seed, kInsideKind, i);
         const auto [on, triangle] = draw(random);

@@ -19,17 +19,17 @@ namespace {
 
 /// Side of a cell, in units of the longest side.
 constexpr double kCell = 0.03;
-/// A place reaches this many cells from its worst one, over cells with at least kAsBad of its points.
+/// A place extends up to this many cells from its worst cell, over cells with at least kAsBad of that cell's points.
 constexpr int kReach = 3;
 constexpr double kAsBad = 0.25;
-/// Points of a place whose causes are found.
+/// Maximum points per place whose causes are determined.
 constexpr std::size_t kCausesMax = 200;
 
-/// A point near the surface on the wrong side.
+/// A wrong point near the surface.
 struct Wrong {
     std::uint32_t sample = 0;  ///< index of the point
     int map = -1;
-    bool inside = false;  ///< by the collider
+    bool inside = false;  ///< as the collider classifies it
 };
 
 std::vector<Wrong> wrongPoints(const TruthSamples& samples, const Collider& collider) {
@@ -42,7 +42,7 @@ std::vector<Wrong> wrongPoints(const TruthSamples& samples, const Collider& coll
     return points;
 }
 
-/// The wrong points in a grid round the mesh.
+/// The wrong points in a grid around the mesh.
 class Cells {
   public:
     Cells(const TruthSamples& samples, const Bounds& bounds, const std::vector<Wrong>& wrong)
@@ -56,7 +56,7 @@ class Cells {
         }
     }
 
-    /// Removes the worst place: indices of wrong points by cell, the worst cell first. Empty if none is left.
+    /// Removes and returns the worst place: indices of wrong points by cell, worst cell first. Empty if none is left.
     std::vector<std::vector<std::uint32_t>> takePlace() {
         const auto worst = std::ranges::max_element(points_, {}, &std::vector<std::uint32_t>::size);
         if (worst->empty()) {
@@ -77,7 +77,7 @@ class Cells {
                 if (points.empty() || std::max({offset.x, offset.y, offset.z}) > kReach) {
                     return;
                 }
-                // The margin of a place belongs to it, but does not extend it.
+                // The margin of a place belongs to it but does not extend it.
                 if (static_cast<double>(points.size()) >= least) {
                     waiting.push_back(other);
                 }
@@ -119,7 +119,7 @@ class Cells {
     std::vector<std::vector<std::uint32_t>> points_;  // by cell
 };
 
-/// Finds the causes of wrong points.
+/// Determines the causes of wrong points.
 class Causes {
   public:
     Causes(const TruthSamples& samples, const MeshQuery& query, const Sights& sights)
@@ -147,7 +147,7 @@ class Causes {
     }
 
   private:
-    /// With its normal towards the outside.
+    /// Returns the nearest surface point, with its normal outwards.
     [[nodiscard]] SurfacePoint surfaceBeside(const TruthPoint& point) const {
         const ClosestPoint closest = query_.closest(point.position);
         glm::dvec3 normal = planeOf(query_.mesh(), closest.triangle).normal;
@@ -156,7 +156,7 @@ class Causes {
         return {closest.point, in_front == point.inside() ? -normal : normal, false};
     }
 
-    /// A line of sight from free space ends here.
+    /// Whether a line of sight from free space reaches the point.
     [[nodiscard]] bool isReached(const glm::vec3& p) const {
         return std::ranges::any_of(sights_.maps(), [&](const Sight& sight) {
             const std::optional<glm::dvec3> start = sight.reaches(p);
@@ -169,13 +169,13 @@ class Causes {
     const Sights& sights_;
 };
 
-/// The index of the greatest count, of equals the lowest, and that count.
+/// Returns the index of the largest count (the lowest of equals), and that count.
 std::pair<std::size_t, std::size_t> mostFrequent(const std::vector<std::size_t>& counts) {
     const auto most = std::max_element(counts.begin(), counts.end());
     return {static_cast<std::size_t>(most - counts.begin()), *most};
 }
 
-/// The wrong point nearest to the mean of its cell.
+/// Returns the wrong point nearest to the mean of its cell.
 glm::vec3 middleOf(const std::vector<std::uint32_t>& cell, const std::vector<Wrong>& wrong,
                    const TruthSamples& samples) {
     const auto at = [&](std::uint32_t i) { return glm::dvec3(samples.near[wrong[i].sample].position); };
@@ -188,7 +188,7 @@ glm::vec3 middleOf(const std::vector<std::uint32_t>& cell, const std::vector<Wro
     return samples.near[wrong[*nearest].sample].position;
 }
 
-/// Without the cause.
+/// Describes a place without its cause.
 WorstPlace describe(const std::vector<std::uint32_t>& points, const std::vector<Wrong>& wrong,
                     const TruthSamples& samples, const Collider& collider) {
     WorstPlace place;

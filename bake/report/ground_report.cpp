@@ -9,12 +9,12 @@
 namespace relief {
 namespace {
 
-/// There is none where all is steep.
+/// Returns nullopt if all squares are steep.
 std::optional<double> bound(double error_max) {
     return error_max > 0.0 ? std::optional(error_max) : std::nullopt;
 }
 
-/// "12.3 mm"
+/// Returns "12.3 mm".
 std::string millimetres(double metres) {
     return shortNumber(1000.0 * metres) + " mm";
 }
@@ -32,7 +32,7 @@ std::vector<std::string> nearRow(const std::string& kind, const GroundNear& near
             std::to_string(near.missing)};
 }
 
-/// The fields that reports of a bake and of a check share.
+/// Adds the fields that reports of a bake and of a check share.
 void sourceFields(FieldVisitor& visit, const std::string& heights, std::uint32_t columns,
                   std::uint32_t rows) {
     visit("heights", heights, {"Effective settings, as --heights takes them"});

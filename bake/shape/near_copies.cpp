@@ -38,7 +38,7 @@ Solid measured(const TriangleMesh& mesh, const Part& part) {
     return solid;
 }
 
-/// The corners of a part in a grid, for the nearest one within a reach.
+/// A grid of a part's corners that finds the nearest corner within a reach.
 class Corners {
   public:
     Corners(const TriangleMesh& mesh, const Solid& solid, double reach)
@@ -53,7 +53,8 @@ class Corners {
         places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
     }
 
-    /// The greatest distance of a corner of `other` from the nearest one; nullopt if beyond the reach.
+    /// Returns the largest distance from a corner of `other` to its nearest corner here; nullopt if it exceeds the
+    /// reach.
     [[nodiscard]] std::optional<double> farthestOf(const Corners& other) const {
         double farthest = 0.0;
         for (const auto& [cell, corner] : other.places_) {
@@ -69,14 +70,14 @@ class Corners {
   private:
     using Cell = std::array<std::int64_t, 3>;
 
-    /// The lowest neighbour of a cell with corners of the part is 0.
+    /// Offset so that the lowest neighbour of a cell with corners is 0.
     [[nodiscard]] Cell cellOf(const glm::dvec3& p) const {
         const glm::dvec3 cell = glm::floor((p - low_) / reach_) + 2.0;
         return {static_cast<std::int64_t>(cell.x), static_cast<std::int64_t>(cell.y),
                 static_cast<std::int64_t>(cell.z)};
     }
     [[nodiscard]] static std::uint64_t key(const Cell& cell) {
-        constexpr unsigned kBits = 21;  // 1 / kCopyReach is far less
+        constexpr unsigned kBits = 21;  // 1 / kCopyReach is far below 2²¹
         return static_cast<std::uint64_t>(cell[0]) << (2 * kBits) |
                static_cast<std::uint64_t>(cell[1]) << kBits | static_cast<std::uint64_t>(cell[2]);
     }
@@ -106,7 +107,7 @@ class Corners {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;  // cell, corner
 };
 
-/// The distance of two parts; nullopt if they are not near copies.
+/// Returns the distance between two parts; nullopt if they are not near copies.
 std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Solid& b) {
     const double reach = kCopyReach * double{std::max(a.bounds.longestSide(), b.bounds.longestSide())};
     for (int axis = 0; axis < 3; ++axis) {
@@ -115,7 +116,7 @@ std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Soli
             return std::nullopt;
         }
     }
-    // All of b now lies within reach of a's bounds, as its cells require.
+    // Now all of b is within reach of a's bounds, as its cells require.
     const Corners of_a(mesh, a, reach);
     const Corners of_b(mesh, b, reach);
     const std::optional<double> one = of_a.farthestOf(of_b);
@@ -123,7 +124,7 @@ std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Soli
     return other ? std::optional(std::max(*one, *other)) : std::nullopt;
 }
 
-/// Parts by size and the cell of their lower corner: those of nearly equal bounds are in neighbouring cells.
+/// Parts by size and by the cell of their lower corner. Parts with nearly equal bounds are in neighbouring cells.
 class Places {
   public:
     /// Calls visit(solid) until it returns true.
@@ -152,7 +153,7 @@ class Places {
     }
 
   private:
-    /// At least the reach of parts of twice the size, and hardly larger, so that most parts in a cell are copies.
+    /// The cell size is slightly above the reach of parts of twice the size, so that most parts in a cell are copies.
     static glm::dvec3 cellOf(const Solid& solid, int size) {
         return glm::floor(glm::dvec3(solid.bounds.min) / (4.0 * kCopyReach * std::ldexp(1.0, size)));
     }

@@ -11,10 +11,10 @@
 namespace relief {
 namespace {
 
-/// The least volume of a solid, in units of its area to the power of 3/2; a sphere has 0.094.
+/// Minimum volume of a solid, in units of area^(3/2); a sphere has 0.094.
 constexpr double kVolumeMin = 1e-5;
 
-/// Calls visit(uses) for each edge and kind of triangles.
+/// Calls visit(uses) for each edge, separately for each kind of triangle.
 template <class Visit>
 void forEachEdgeOfAKind(const MeshEdges& edges, std::span<const ShapeAs> kinds, const Visit& visit) {
     std::vector<EdgeUse> of_kind;
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> copiesInSolids(const TriangleMesh& mesh, std::span<co
     std::vector<std::uint32_t> copies;
     for (const Part& part : parts) {
         if (part.manifold) {
-            continue;  // edges of copies have four or more triangles
+            continue;  // edges of copies have at least four triangles
         }
         const std::vector<SortedTriangle> sorted = sortedTriangles(mesh, welded, part.triangles);
         std::vector<std::uint32_t> again;

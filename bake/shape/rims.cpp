@@ -22,36 +22,36 @@
 namespace relief {
 namespace {
 
-/// Rims face each other if all of either is this near to the other, in units of the inner one's longest side.
+/// Maximum distance of two facing rims from each other, in both directions, in units of the inner rim's longest side.
 constexpr double kRimGap = 0.5;
-/// Mouths nearly face each other if their bounds differ by at most this, in the same units.
+/// Maximum difference between the bounds of mouths that nearly face each other, in the same units.
 constexpr double kNearRimGap = 1.5;
-/// The inner rims that face none have at most this fraction of the area of the others.
+/// Maximum area of inner rims that face no rim, as a fraction of the other rims' area.
 constexpr double kUnmatchedArea = 0.5;
-/// A wall has at most this fraction of the volume within its outer shell.
+/// Maximum volume of a wall, as a fraction of the volume within its outer shell.
 constexpr double kWallVolume = 0.95;
-/// Limit of the pairs of corners that are compared.
+/// Maximum number of corner pairs that are compared.
 constexpr std::size_t kRimPairs = 100'000'000;
 
 /// A border of an open shell, in the direction of a cap's triangles.
 struct Rim {
     std::vector<std::uint32_t> vertices;
-    std::vector<glm::dvec3> places;  ///< of the vertices
+    std::vector<glm::dvec3> places;  ///< positions of the vertices
     Bounds bounds;
-    glm::dvec3 normal{0.0};  ///< Newell's
+    glm::dvec3 normal{0.0};  ///< Newell's normal
 };
 
 struct RimmedShell {
     std::size_t index = 0;
     const OpenShell* shell = nullptr;
-    int axis = 0;           ///< the longest one
-    std::vector<Rim> rims;  ///< by the lower bound along the axis
-    double volume = 0.0;    ///< within, with closed rims
+    int axis = 0;           ///< the longest axis
+    std::vector<Rim> rims;  ///< sorted by the lower bound along the axis
+    double volume = 0.0;    ///< enclosed volume with closed rims
 
     [[nodiscard]] const TriangleMesh& mesh() const { return shell->mesh; }
 };
 
-/// Within a mesh whose rims are closed by fans.
+/// Returns the volume enclosed by a mesh whose rims are closed by fans.
 double volumeWithin(const TriangleMesh& mesh, const std::vector<const Rim*>& rims, std::uint32_t first = 0) {
     std::vector<glm::uvec3> triangles = mesh.triangles;
     for (const Rim* rim : rims) {
@@ -91,10 +91,10 @@ RimmedShell rimmedShell(const OpenShell& shell, std::size_t index) {
     return rimmed;
 }
 
-/// All corners of a rim are within a gap from another one.
+/// Whether every corner of one rim is within a gap of the other rim.
 bool isNear(const Rim& from, const Rim& to, double gap) {
     const std::size_t count = to.places.size();
-    std::size_t side = 0;  // where the last corner was near
+    std::size_t side = 0;  // the side that was near the previous corner
     return std::ranges::all_of(from.places, [&](const glm::dvec3& p) {
         for (std::size_t i = 0; i < count; ++i, side = (side + 1) % count) {
             const glm::dvec3& a = to.places[side];
@@ -113,7 +113,7 @@ double boxGap(const Bounds& a, const Bounds& b) {
     return std::max({most.x, most.y, most.z});
 }
 
-/// The nearest of the outer shell's rims that faces an inner one; its count of rims if none does.
+/// Returns the nearest of the outer shell's rims that faces an inner one; the number of outer rims if there is none.
 std::size_t facingRim(const RimmedShell& outer, const std::vector<bool>& taken, const Rim& rim) {
     const double gap = kRimGap * double{rim.bounds.longestSide()};
     const double from = double{rim.bounds.min[outer.axis]} - gap;
@@ -137,7 +137,7 @@ std::size_t facingRim(const RimmedShell& outer, const std::vector<bool>& taken, 
     return outer.rims.size();
 }
 
-/// Appends the ring between two rims that run the same way.
+/// Appends the ring between two rims of the same direction.
 void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vector<std::uint32_t> b) {
     const auto apart = [&](std::uint32_t i, std::uint32_t k) {
         return distance(glm::dvec3(mesh.positions[i]), glm::dvec3(mesh.positions[k]));
@@ -163,14 +163,14 @@ void addRing(TriangleMesh& mesh, const std::vector<std::uint32_t>& a, std::vecto
     ++mesh.closed_holes;
 }
 
-/// nullopt: too few rims of the inner shell face rims of the outer one, or it is not within the outer one.
+/// Returns nullopt if too few rims of the inner shell face rims of the outer one, or if it is not inside the outer one.
 std::optional<ShellWall> wallBetween(const RimmedShell& outer, const RimmedShell& inner) {
     if (!outer.mesh().bounds.meets(inner.mesh().bounds)) {
         return std::nullopt;
     }
     std::vector<bool> taken(outer.rims.size(), false);
-    std::vector<std::array<const Rim*, 2>> pairs;  // outer and inner ones
-    std::vector<const Rim*> unmatched;             // inner ones
+    std::vector<std::array<const Rim*, 2>> pairs;  // outer, inner
+    std::vector<const Rim*> unmatched;             // inner rims
     double largest = 0.0;
     double area = 0.0;
     bool turn = false;
@@ -213,12 +213,12 @@ std::optional<ShellWall> wallBetween(const RimmedShell& outer, const RimmedShell
     }
     wall.labels.resize(wall.triangles.size(), kNoLabel);
     if (volumeWithin(wall, unmatched, first) >= kWallVolume * outer.volume) {
-        return std::nullopt;  // one beside the other
+        return std::nullopt;  // side by side
     }
     return ShellWall{outer.index, inner.index, turn, std::move(wall)};
 }
 
-/// A shell within another one, whose largest rims nearly face each other.
+/// Whether a shell is inside another one and their largest rims nearly face each other.
 bool nearlyFace(const RimmedShell& outer, const RimmedShell& inner) {
     const auto largest = [](const RimmedShell& shell) {
         return std::ranges::max_element(shell.rims, {}, [](const Rim& rim) { return length(rim.normal); });

@@ -21,15 +21,16 @@
 namespace relief {
 namespace {
 
-/// Of the first grid, which looks for voids; the second looks at those alone.
+/// The first grid finds candidates; the second covers only those.
 constexpr int kFirstNodes = 64;
 constexpr int kNodes = 192;
-/// The least void to look at, in nodes of the first: a ten-thousandth of the longest side cubed.
+/// Smallest candidate, in nodes of the first grid: 1e-4 of the longest side cubed.
 constexpr std::size_t kFirstVolume = 26;
-/// Rays from a void, and how many of them may lead out.
+/// Rays from a void, and the maximum fraction that may lead out.
 constexpr std::size_t kRays = 2'000;
 constexpr double kRaysOut = 0.01;
-/// Of a triangle: its corners and the middles of its sides, drawn towards its own middle, and that.
+/// Test points of a triangle are its centre, its corners and the middles of its sides; the latter are moved towards the
+/// centre by this factor.
 constexpr double kDrawnIn = 0.95;
 
 using Place = Voids::Place;
@@ -42,7 +43,7 @@ class Grid {
         : query_(query), walls_(walls) {
         voids_.step = step;
         voids_.nodes = glm::ivec3(glm::ceil((high - low) / step)) + 2;
-        // Beside planes of the model's own grid.
+        // Offset from the planes of the model's own grid.
         voids_.origin = 0.5 * (low + high) - 0.5 * step * glm::dvec3(voids_.nodes) +
                         step * glm::dvec3(0.5013, 0.4987, 0.5007);
         const auto nodes = static_cast<std::size_t>(voids_.nodes.x) *
@@ -56,7 +57,7 @@ class Grid {
         }
     }
 
-    /// The voids of which is_void(nodes) is true.
+    /// Returns the voids for which is_void(nodes) is true.
     template <class IsVoid>
     Voids find(const IsVoid& is_void) {
         std::vector<std::uint8_t> by_solids(flags_.size(), 0);
@@ -97,7 +98,7 @@ class Grid {
     [[nodiscard]] glm::dvec3 position(std::size_t i) const { return voids_.position(nodeAt(i)); }
 
   private:
-    // Between a node and the next along each axis, a surface; the same of a solid; and for the node itself.
+    // Bits of a node: a surface before the next node along each axis; the same for solids; the node itself is inside.
     static constexpr std::uint8_t kWall = 1;
     static constexpr std::uint8_t kSolidWall = 8;
     static constexpr std::uint8_t kInside = 64;
@@ -106,7 +107,7 @@ class Grid {
         const int across = (axis + 1) % 3;
         const int along = (axis + 2) % 3;
         const auto count = static_cast<double>(voids_.nodes[axis]);
-        // Lines of one row share no byte with those of another.
+        // Lines of different rows share no byte.
         tbb::parallel_for(0, voids_.nodes[along], [&](int row) {
             std::vector<LineHit> hits;
             std::vector<LineSpan> spans;
@@ -141,7 +142,7 @@ class Grid {
         });
     }
 
-    /// The nodes of the grid's sides that are in no body.
+    /// Returns the nodes on the grid's sides that are in no body.
     [[nodiscard]] std::vector<std::size_t> boundary() const {
         std::vector<std::size_t> nodes;
         for (std::size_t i = 0; i < flags_.size(); ++i) {
@@ -155,7 +156,7 @@ class Grid {
         return nodes;
     }
 
-    /// The nodes that are reached, and marked as seen, without crossing `wall`.
+    /// Returns the nodes reachable without crossing `wall`, and marks them as seen.
     std::vector<std::size_t> flood(std::vector<std::size_t> from, std::uint8_t wall,
                                    std::vector<std::uint8_t>& seen) const {
         for (const std::size_t node : from) {
@@ -186,12 +187,12 @@ class Grid {
 
     const MeshQuery& query_;
     const std::vector<Wall>& walls_;
-    Voids voids_;  // without places
+    Voids voids_;  // its places are empty
     std::array<std::size_t, 3> stride_{};
     std::vector<std::uint8_t> flags_;
 };
 
-/// The box of all voids.
+/// Returns the bounding box of all voids.
 std::array<glm::dvec3, 2> boxOf(const Voids& voids) {
     glm::ivec3 low = voids.nodes;
     glm::ivec3 high(0);
@@ -204,7 +205,7 @@ std::array<glm::dvec3, 2> boxOf(const Voids& voids) {
     return {voids.position(low), voids.position(high)};
 }
 
-/// The triangle faces voids, and else nothing but the inside of other bodies.
+/// Whether a triangle faces only voids and the inside of other bodies, and at least one void.
 bool facesVoids(const MeshQuery& query, std::uint32_t triangle) {
     if (query.bodyOf(triangle) != 0) {
         return false;  // not wound

@@ -30,35 +30,38 @@
 namespace relief {
 namespace {
 
-/// Sight samples of all open parts, and the least of each.
+/// Sight samples of all open parts together, and the minimum for each part.
 constexpr std::size_t kSightPoints = 4096;
 constexpr std::size_t kSightPointsMin = 8;
-/// Least number of probes for closing the holes of a part.
+/// Minimum number of probes for closing the holes of a part.
 constexpr std::size_t kPartProbesMin = 64;
-/// A sheet: more than this share of the rays from its darker side lead out.
+/// Sheet: more than this fraction of the rays from its darker side escape.
 constexpr double kSheetSight = 0.1;
-/// A visible part: more than this share of the rays from its lighter side lead out.
+/// Visible part: more than this fraction of the rays from its lighter side escape.
 constexpr double kSeen = 0.02;
-/// A sheet that may be a solid with larger holes: it has at least this share of the mesh's extent, and its shadows at most
-/// this share left without their opposites.
+/// A sheet that may be a solid with larger holes has at least this fraction of the mesh's extent. At most the second
+/// fraction of its projected area has no opposite.
 constexpr double kBodyExtent = 0.25;
 constexpr double kMouthMax = 0.5;
-/// A body cut off at its foot: the hole is flat by this length of its triangles' mean normal, faces down by this cosine, and
-/// this share of the surface has no sight of it from behind, at this many points of it.
+/// A body cut off at its foot. The hole is flat: the mean normal of its triangles has at least this length. It faces
+/// down by at least this cosine. At least this fraction of the surface does not see the hole from behind, tested at
+/// this many points.
 constexpr double kFootFlat = 0.9;
 constexpr double kFootDown = 0.5;
 constexpr double kFootHidden = 0.05;
 constexpr int kFootPoints = 16;
-/// A two-sided sheet: this share of a closed part's triangles coincide in pairs.
+/// Two-sided sheet: this fraction of a closed part's triangles coincide in pairs.
 constexpr double kTwice = 0.9;
-/// A terrain covers this share of its rectangle, and has this many triangles and this share of the mesh's extent.
+/// Minimum fraction of its rectangle that a terrain covers, minimum number of triangles, and minimum fraction of the
+/// mesh's extent.
 constexpr double kTerrainCover = 0.98;
 constexpr std::size_t kTerrainTriangles = 200;
 constexpr double kTerrainExtent = 0.8;
-/// The ground below a terrain, in units of the longest side.
+/// Depth of the ground below a terrain, in units of the longest side.
 constexpr double kGround = 0.05;
 
-/// Share of the rays from either side of a sheet that lead out of the mesh; a lower bound once both exceed kSheetSight.
+/// Returns, for each side of a sheet, the fraction of rays that escape from the mesh; a lower bound if both exceed
+/// kSheetSight.
 std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const MeshQuery& query) {
     const double side = query.mesh().bounds.longestSide();
     const TriangleMesh mesh = meshOf(sheet, "");
@@ -83,8 +86,8 @@ std::array<double, 2> sightOf(const Sheet& sheet, std::size_t samples, const Mes
     return {out[0] / rays, out[1] / rays};
 }
 
-/// A part with holes, closed, is a body cut off at its foot, such as a statue open below, and no vessel: a vessel's mouth
-/// faces up, or all of its inside has sight of it.
+/// Whether a part with holes, after closing, is a body cut off at its foot, such as a statue open below, and not a
+/// vessel. A vessel's mouth faces up, or all of its inside sees the mouth.
 Result<bool> isCutOffBelow(const PreparedMesh& closed, bool z_is_up) {
     glm::dvec3 mouth(0.0);
     double area = 0.0;
@@ -120,7 +123,7 @@ Result<bool> isCutOffBelow(const PreparedMesh& closed, bool z_is_up) {
 
 class Shaper {
   public:
-    /// \param turned  per triangle, earlier than by windOutwards; empty: none.
+    /// \param turned  per triangle: flipped before windOutwards; empty: none.
     Shaper(const PreparedMesh& mesh, const ShapeOptions& options, std::vector<bool> turned = {})
         : prepared_(mesh),
           mesh_(*mesh),
@@ -195,7 +198,7 @@ class Shaper {
     enum class Kind : std::uint8_t { kHoled, kPerhapsHoled, kJoined, kSheet, kTerrain };
     struct Role {
         Kind kind = Kind::kSheet;
-        int axis = 1;  ///< of a terrain's heights
+        int axis = 1;  ///< up axis of a terrain
     };
 
     /// An open part.
@@ -203,11 +206,11 @@ class Shaper {
         Sheet sheet;
         ShapeAs as = ShapeAs::kAuto;
         Role role;
-        bool full = false;  ///< closed by itself, and a solid
+        bool full = false;  ///< closed separately, and a solid
     };
 
-    /// Restarts without copies, which hide the inside: the rest has to be wound again.
-    /// \param warning  for the mesh, or "".
+    /// Restarts without copies, which hide the inside; the remaining triangles must be wound again. \param warning  for
+    /// the mesh, or "".
     Result<ShapedMesh> runWithout(const std::vector<std::uint32_t>& copies, const std::string& warning) {
         TriangleMesh rest = mesh_;
         if (!warning.empty()) {
@@ -232,7 +235,7 @@ class Shaper {
         return shaped;
     }
 
-    /// The kind of each triangle, counting names in the report. Empty: all of one kind.
+    /// Returns the kind of each triangle, and counts names in the report. Empty: all of one kind.
     [[nodiscard]] std::vector<ShapeAs> kindsOfTriangles() {
         if (options_.named.empty() || mesh_.marks.size() != mesh_.triangles.size()) {
             return {};
@@ -248,7 +251,7 @@ class Shaper {
         return kinds;
     }
 
-    /// A closed part of several kinds is a solid, unless some of it is to be a shell.
+    /// Makes a closed part of several kinds a solid, unless a piece of it must be a shell.
     void keepSolidsWhole() {
         for (const Part& part : parts_) {
             const auto count = [&](ShapeAs as) {
@@ -273,7 +276,7 @@ class Shaper {
         return part.closed && as != ShapeAs::kShell && (as == ShapeAs::kSolid || !isFlat(part));
     }
 
-    /// Closed, but without a volume, as a two-sided sheet.
+    /// Whether a closed part has no volume, such as a two-sided sheet.
     [[nodiscard]] bool isFlat(const Part& part) const {
         std::vector<glm::uvec3> triangles;
         triangles.reserve(part.triangles.size());
@@ -284,14 +287,14 @@ class Shaper {
             return true;
         }
         if (part.manifold) {
-            return false;  // a coincident pair with manifold edges is a part of its own, without a volume
+            return false;  // a coincident pair with manifold edges is a separate part without volume
         }
         std::vector<SortedTriangle> sorted = sortedTriangles(mesh_, welded_, part.triangles);
         const auto repeats = static_cast<double>(dropRepeats(sorted));
         return 2.0 * repeats > kTwice * static_cast<double>(part.triangles.size());
     }
 
-    /// All open parts as sheets, for now.
+    /// Turns all open parts into sheets; sortSheets() finds the other kinds.
     void makeSheets(const std::vector<const Part*>& parts) {
         open_.resize(parts.size());
         tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
@@ -338,7 +341,7 @@ class Shaper {
         return {};
     }
 
-    /// The mesh without future shells, which have free space on both sides, however dark.
+    /// Returns the mesh without future shells, which have free space on both sides, however dark.
     [[nodiscard]] PreparedMesh opaque() const {
         TriangleMesh mesh;
         for (std::size_t i = 0; i < kinds_.size(); ++i) {
@@ -355,7 +358,7 @@ class Shaper {
         return finished ? PreparedMesh(std::move(*finished)) : prepared_;  // may be too small for a mesh
     }
 
-    /// The height axis of a sheet that is the ground of its mesh.
+    /// Returns the up axis of a sheet that is the ground of its mesh.
     [[nodiscard]] std::optional<int> terrainAxis(const Sheet& sheet) const {
         if (sheet.triangles.size() < kTerrainTriangles) {
             return std::nullopt;
@@ -363,7 +366,7 @@ class Shaper {
         const glm::dvec3 size = boundsOf(sheet.positions).size();
         const glm::dvec3 whole = mesh_.bounds.size();
         const Shadow shadow = shadowOf(sheet);
-        // With a unit, the importer has turned +y upwards. Otherwise +z may be up as well.
+        // If the mesh has a unit, the importer has rotated it to +Y up. Otherwise +z may also be up.
         for (const int axis : {1, 2}) {
             const int across = (axis + 1) % 3;
             const int along = (axis + 2) % 3;
@@ -371,7 +374,7 @@ class Shaper {
             const bool ground = size[axis] < 0.7 * std::min(size[across], size[along]) &&
                                 size[across] >= kTerrainExtent * whole[across] &&
                                 size[along] >= kTerrainExtent * whole[along];
-            // All of it faces one way, and so covers nothing twice.
+            // All triangles face the same way, so nothing is covered twice.
             const bool heights = std::abs(shadow.signed_area[axis]) >= 0.9999 * shadow.area[axis] &&
                                  0.5 * shadow.area[axis] >= kTerrainCover * rectangle;
             if (ground && heights && (axis == 1 || (mesh_.unit.empty() && parts_.size() == 1))) {
@@ -381,13 +384,13 @@ class Shaper {
         return std::nullopt;
     }
 
-    /// The axis of the largest projection.
+    /// Returns the axis of the largest projection.
     static int flattestAxis(const Sheet& sheet) {
         const glm::dvec3 area = glm::abs(shadowOf(sheet).signed_area);
         return area.y >= std::max(area.x, area.z) ? 1 : area.z >= area.x ? 2 : 0;
     }
 
-    /// The parts of some source triangles; sets their kind.
+    /// Returns the parts of some source triangles, and sets their kind.
     [[nodiscard]] std::vector<std::uint32_t> partsFor(std::span<const std::uint32_t> sources, PartKind kind) {
         std::vector<std::uint32_t> parts;
         parts.reserve(sources.size());
@@ -400,15 +403,15 @@ class Shaper {
         return parts;
     }
 
-    /// A part with holes, closed.
+    /// A part with holes, after closing.
     struct Closed {
         std::optional<PreparedMesh> mesh;
         bool balanced = true;
-        bool is_body = true;  ///< and no vessel
+        bool is_body = true;  ///< not a vessel
     };
 
-    /// Without a mesh if the holes cannot be closed, or the result encloses nothing.
-    /// \param is_body  as is known without a look at it.
+    /// Closes a part. Returns no mesh if the holes cannot be closed, or if the result encloses nothing. \param is_body
+    /// already known to be a body.
     [[nodiscard]] Result<Closed> close(const TriangleMesh& open, bool is_body) const {
         const std::size_t probes = std::clamp(open.triangles.size() / 8, kPartProbesMin, kEnclosureProbes);
         const PreparedMesh closed = RELIEF_TRY(closeHoles(open, probes));
@@ -437,7 +440,7 @@ class Shaper {
         union_.countHoles(mesh.closed_holes);
     }
 
-    /// Each part with holes by itself, then the rest together: panels whose seams do not meet.
+    /// Closes each part with holes separately, then the rest together: panels whose seams do not meet.
     Result<void> closeParts() {
         const std::vector<bool> joined = RELIEF_TRY(addWalls());
         std::vector<Open*> holed;
@@ -490,7 +493,8 @@ class Shaper {
                part.as == ShapeAs::kAuto;
     }
 
-    /// Adds the walls of joined shells, whose inside is free. \return per part: it is joined to another one.
+    /// Adds the walls of joined shells; the space within stays free. \return per part, whether it was joined to another
+    /// one.
     Result<std::vector<bool>> addWalls() {
         std::vector<WallCandidate> candidates;
         for (const Open& part : open_) {
@@ -513,7 +517,7 @@ class Shaper {
         return joined;
     }
 
-    /// \param parts  of one kind.
+    /// \param parts  all of one kind.
     Result<void> closeTogether(const std::vector<Open*>& parts) {
         TriangleMesh rest;
         rest.name = mesh_.name;
@@ -550,7 +554,7 @@ class Shaper {
 
     static double sizeOf(const Sheet& sheet) { return double{boundsOf(sheet.positions).longestSide()}; }
 
-    /// A given thickness must suit the smallest sheet and the resolution of floats.
+    /// A given thickness must suit the smallest sheet, and the resolution of floats.
     [[nodiscard]] Result<void> checkThickness() const {
         double smallest = std::numeric_limits<double>::max();
         for (const Open& part : open_) {
@@ -594,7 +598,7 @@ class Shaper {
         return {};
     }
 
-    /// Shells by request have free space on both sides.
+    /// Shells on request have free space on both sides.
     static bool seals(const Open& part) {
         return part.role.kind == Kind::kSheet && part.as != ShapeAs::kShell;
     }
@@ -640,13 +644,13 @@ class Shaper {
     const PreparedMesh& prepared_;
     const TriangleMesh& mesh_;
     const ShapeOptions& options_;
-    std::vector<bool> turned_;  // of the triangles: against the winding of the file
+    std::vector<bool> turned_;  // by triangle; flipped relative to the file
     std::vector<std::uint32_t> welded_;
     std::vector<Part> parts_;
-    std::vector<ShapeAs> kinds_;                        // of the triangles; empty: options_.as
-    std::vector<Open> open_;                            // of parts_
-    std::vector<std::array<std::size_t, 2>> unjoined_;  // of open_: ShellWalls::unjoined
-    std::uint32_t bodies_ = 0;                          // by parity, numbered from 1
+    std::vector<ShapeAs> kinds_;                        // by triangle; empty: options_.as
+    std::vector<Open> open_;                            // from parts_
+    std::vector<std::array<std::size_t, 2>> unjoined_;  // ShellWalls::unjoined, as indices of open_
+    std::uint32_t bodies_ = 0;                          // bodies that use parity, numbered from 1
     SurfacePartsBuilder collected_;
     SolidUnion union_;
     ShapeReport report_;

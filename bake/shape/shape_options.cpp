@@ -10,7 +10,7 @@ namespace relief {
 namespace {
 
 constexpr const auto& kAsNames = kWordsOf<ShapeAs>;
-/// Before a default thickness, of which each part takes its own.
+/// Prefix of a default thickness that each part adapts.
 constexpr std::string_view kByPart = "auto=";
 
 bool isNamed(const ShapeOptions& options, std::string_view name) {
@@ -46,7 +46,7 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
         const std::size_t equals = word.rfind('=');
         const bool is_named = equals != std::string::npos;
         const std::string kind = is_named ? word.substr(equals + 1) : word;
-        // As the file's names are made: what an error message lists can be typed.
+        // Cleaned like names in the file, so that names from an error message can be typed.
         const std::string name = cleanUtf8(word.substr(0, is_named ? equals : 0));
         const std::optional<ShapeAs> as = fromWord<ShapeAs>(kind);
         const auto wrong = [&](const std::string& why) {

@@ -17,11 +17,11 @@
 namespace relief {
 namespace {
 
-/// The longest mitre, in units of half the thickness: that of kFoldCosine.
+/// Longest mitre, in units of half the thickness: that of kFoldCosine.
 constexpr double kMitreMax = 2.0;
-/// The least offset of a side by its mitre, in units of half the thickness.
+/// Smallest offset of a side by its mitre, in units of half the thickness.
 constexpr double kMitreLeast = 0.7;
-/// Keeps the mitre defined where all normals are alike, in units of their number.
+/// Damping, in units of the number of normals; keeps the mitre defined if all normals are equal.
 constexpr double kMitreDamping = 1e-4;
 
 glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
@@ -30,7 +30,7 @@ glm::dvec3 unitNormal(const std::vector<glm::vec3>& positions, const glm::uvec3&
 
 /// Winds neighbours consistently, and cuts joints of one-sided surfaces.
 void windConsistently(Sheet& sheet, const std::vector<std::array<bool, 3>>& same) {
-    std::vector<std::uint8_t> state(sheet.triangles.size(), 0);  // 1: as it is, 2: turned
+    std::vector<std::uint8_t> state(sheet.triangles.size(), 0);  // 1: unchanged, 2: flipped
     std::vector<std::uint32_t> queue;
     for (std::uint32_t first = 0; first < sheet.triangles.size(); ++first) {
         if (state[first] != 0) {
@@ -59,7 +59,7 @@ void windConsistently(Sheet& sheet, const std::vector<std::array<bool, 3>>& same
                 }
             }
         }
-        // By majority of the patch.
+        // The patch's majority decides.
         const auto turned = static_cast<std::size_t>(
             std::ranges::count(queue, 2, [&](std::uint32_t triangle) { return state[triangle]; }));
         for (const std::uint32_t triangle : queue) {
@@ -71,7 +71,8 @@ void windConsistently(Sheet& sheet, const std::vector<std::array<bool, 3>>& same
     }
 }
 
-/// Joins triangles across edges of two, and cuts the folds, which show once neighbours are wound alike.
+/// Joins triangles across edges of two triangles, and cuts folds, which are detectable only after neighbours are wound
+/// alike.
 void joinEdges(Sheet& sheet) {
     TriangleNeighbours neighbours = neighboursOf(edgeUses(sheet.triangles, sheet.positions.size()));
     sheet.neighbours = std::move(neighbours.across);
@@ -88,7 +89,7 @@ void joinEdges(Sheet& sheet) {
     }
 }
 
-/// The least-squares mitre m of a corner, n·m = 1 for each of its normals n.
+/// The least-squares mitre m of a corner: n·m = 1 for each of its normals n.
 struct Mitre {
     glm::dmat3 squares{0.0};  // sum of n·nᵀ
     glm::dvec3 sum{0.0};
@@ -115,12 +116,12 @@ double angleAt(const std::vector<glm::vec3>& positions, const glm::uvec3& t, int
     const glm::dvec3 a = glm::dvec3(positions[t[(corner + 1) % 3]]) - at;
     const glm::dvec3 b = glm::dvec3(positions[t[(corner + 2) % 3]]) - at;
     const double size = std::sqrt(dot(a, a) * dot(b, b));
-    // Any weight that grows with the angle; an arc cosine is not needed.
+    // Any weight that grows with the angle suffices; no arc cosine is needed.
     return size > 0.0 ? 1.0 - std::clamp(dot(a, b) / size, -1.0, 1.0) + 1e-3 : 1e-3;
 }
 
-/// Corner k of triangle i is 3·i + k. Per corner, the one of the same vertex across the side that begins there, or
-/// kNoTriangle.
+/// Corner k of triangle i has the index 3·i + k. Returns, per corner, the corner at the same vertex across the side
+/// that begins there, or kNoTriangle.
 std::vector<std::uint32_t> nextCorners(const Sheet& sheet) {
     std::vector<std::uint32_t> next(3 * sheet.triangles.size(), Sheet::kNoTriangle);
     for (std::uint32_t i = 0; i < next.size(); ++i) {
@@ -135,10 +136,10 @@ std::vector<std::uint32_t> nextCorners(const Sheet& sheet) {
     return next;
 }
 
-/// The corners around each vertex that have one mitre in common.
+/// Groups the corners around each vertex that share a mitre.
 class CornerFans {
   public:
-    /// Splits the fans of joined corners whose common mitre would leave a side thin, and cuts the sheet there.
+    /// Splits fans of joined corners whose common mitre would leave a side thin, and cuts the sheet there.
     explicit CornerFans(Sheet& sheet)
         : sheet_(sheet), roots_(3 * sheet.triangles.size(), Sheet::kNoTriangle) {
         for (const glm::uvec3& t : sheet.triangles) {
@@ -171,14 +172,14 @@ class CornerFans {
         }
     }
 
-    /// Per corner, the lowest one of its mitre.
+    /// Per corner, the lowest corner that shares its mitre.
     [[nodiscard]] const std::vector<std::uint32_t>& roots() const { return roots_; }
     [[nodiscard]] const glm::dvec3& mitreOf(std::uint32_t corner) const { return mitres_[roots_[corner]]; }
     /// Whether a fan was split between two corners of one vertex.
     [[nodiscard]] bool areCut(std::uint32_t a, std::uint32_t b) const {
         return fan_of_[a] == fan_of_[b] && roots_[a] != roots_[b];
     }
-    /// Between two corners across a side, which begins at the first one. The sides are open now.
+    /// Pairs of corners across a cut side, which begins at the first corner. Cut sides are open.
     [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& cuts() const { return cuts_; }
     /// The fans in cuts without a border, as roots.
     [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& lids() const { return lids_; }
@@ -201,7 +202,7 @@ class CornerFans {
             setMitre(fan, all);
             return;
         }
-        if (closed) {  // begins behind the sharpest edge
+        if (closed) {  // starts after the sharpest edge
             std::size_t sharpest = 0;
             double least = 1.0;
             for (std::size_t k = 0; k < fan.size(); ++k) {
@@ -245,7 +246,7 @@ class CornerFans {
         }
     }
 
-    /// Between a corner and the next one.
+    /// Cuts between a corner and the next one.
     void cut(std::uint32_t corner, std::uint32_t next) {
         sheet_.neighbours[corner / 3][static_cast<int>(corner % 3)] = Sheet::kNoTriangle;
         sheet_.neighbours[next / 3][static_cast<int>((next + 2) % 3)] = Sheet::kNoTriangle;
@@ -253,7 +254,7 @@ class CornerFans {
     }
 
     Sheet& sheet_;
-    std::vector<glm::dvec3> normals_;  // of the triangles
+    std::vector<glm::dvec3> normals_;  // by triangle
     std::vector<std::uint32_t> roots_;
     std::vector<glm::dvec3> mitres_;     // by root
     std::vector<std::uint32_t> fan_of_;  // the first corner of the fan before it was split
@@ -261,10 +262,11 @@ class CornerFans {
     std::vector<std::vector<std::uint32_t>> lids_;
 };
 
-/// An offset that would meet the one from the other side ends this share of the way to that side: they overlap a little.
+/// An offset that would meet the one from the other side ends at this fraction of the distance to that side, so that
+/// both overlap slightly.
 constexpr double kThinReach = 0.55;
-/// A corner's ray starts this far towards the middle of its triangle, in units of the way and of the offset: rays from
-/// vertices meet the edges of symmetric meshes.
+/// A corner's ray starts this far towards the middle of its triangle, as a fraction of that distance and of the offset.
+/// Rays from vertices would hit the edges of symmetric meshes.
 constexpr double kThinStart = 0.01;
 
 glm::dvec3 middleOf(const Sheet& sheet, const glm::uvec3& t) {
@@ -273,9 +275,9 @@ glm::dvec3 middleOf(const Sheet& sheet, const glm::uvec3& t) {
            3.0;
 }
 
-/// The way to what a point of a sheet faces along an offset and against it, in units of the offset: up to 2, where the
-/// offsets of both meet.
-/// \param isOwn  of a triangle's index: it is not faced.
+/// Returns the free distance from a point of a sheet along an offset and against it, in units of the offset; at most 2,
+/// where the offsets of both sides meet.
+/// \param isOwn  whether to ignore a triangle, by index.
 template <class IsOwn>
 std::array<double, 2> roomAt(const MeshQuery& query, const glm::dvec3& start, const glm::dvec3& offset,
                              const IsOwn& isOwn) {
@@ -293,7 +295,7 @@ std::array<double, 2> roomAt(const MeshQuery& query, const glm::dvec3& start, co
     return room;
 }
 
-/// Drops triangles without area.
+/// Collects a solid part; drops triangles without area.
 class PartBuilder {
   public:
     std::uint32_t addPosition(const glm::dvec3& p) {
@@ -309,7 +311,7 @@ class PartBuilder {
             part_.sources.push_back(source);
         }
     }
-    /// Below the side from a to b of a triangle seen from above.
+    /// Adds a wall below the side from a to b of a triangle seen from above.
     void addWall(std::uint32_t source, const std::array<std::uint32_t, 2>& a,
                  const std::array<std::uint32_t, 2>& b) {
         addTriangle(source, b[0], a[0], a[1]);
@@ -323,16 +325,18 @@ class PartBuilder {
     SolidPart part_;
 };
 
-/// Closes a surface where a region's offset is left out.
+/// Closes a surface where a region's offset is omitted.
 struct Fan {
     BorderLoop loop;
     glm::vec3 apex{0.0F};
     std::uint32_t source = 0;
 };
 
-/// The triangles of thin regions whose offset is left out: fans close what is left, within the shell's own reach.
-/// \param endOf  the offset of a triangle's corner. \param turned  the offset's triangles are wound the other way.
-/// \param fans   these fans are appended.
+/// Marks the triangles of thin regions whose offset is omitted. Fans close the remaining surface within the shell's own
+/// reach.
+/// \param endOf   returns the offset of a triangle's corner.
+/// \param turned  the offset's triangles have the opposite winding.
+/// \param fans    receives the fans.
 template <class EndOf>
 std::vector<bool> fullRegions(const Sheet& sheet, const std::vector<std::uint8_t>& thin, const EndOf& endOf,
                               bool turned, const PartBuilder& builder, const MeshQuery& query, double reach,
@@ -346,7 +350,7 @@ std::vector<bool> fullRegions(const Sheet& sheet, const std::vector<std::uint8_t
         }
         seen[first] = true;
         region.assign(1, first);
-        std::vector<OddEdge> border;  // as the triangles that stay have it
+        std::vector<OddEdge> border;  // with the remaining triangles
         for (std::size_t k = 0; k < region.size(); ++k) {
             for (std::uint32_t side = 0; side < 3; ++side) {
                 const std::uint32_t next = sheet.neighbours[region[k]][static_cast<int>(side)];
@@ -364,7 +368,7 @@ std::vector<bool> fullRegions(const Sheet& sheet, const std::vector<std::uint8_t
         const std::size_t before = fans.size();
         for (BorderLoop& loop : borderLoops(border)) {
             if (loop.size() < 3) {
-                continue;  // there and back
+                continue;  // back and forth
             }
             glm::dvec3 sum(0.0);
             for (const BorderStep& step : loop) {
@@ -423,8 +427,7 @@ class Thickener {
         return ends_[roots_[3 * triangle + corner]];
     }
 
-    /// A triangle of the same vertex is not faced.
-    /// \param but_cut  unless it is cut from the corner.
+    /// Ignores triangles at the same vertex. \param but_cut  does not ignore triangles that are cut from the corner.
     [[nodiscard]] std::array<double, 2> roomAtCorner(std::uint32_t corner, bool but_cut) const {
         const glm::uvec3& t = sheet_.triangles[corner / 3];
         const std::uint32_t vertex = t[static_cast<int>(corner % 3)];
@@ -452,7 +455,7 @@ class Thickener {
         return room;
     }
 
-    /// By root: an edge there turns over in the offset above or below.
+    /// Returns, by root, whether an edge there would flip in the offset above or below.
     [[nodiscard]] std::vector<std::array<bool, 2>> turnsOver() const {
         std::vector<std::array<bool, 2>> turns(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
@@ -467,7 +470,7 @@ class Thickener {
         return turns;
     }
 
-    /// \param turns  there the offset ends where there is no more room.
+    /// \param turns  where the offset ends if there is no more space.
     void placeEnds(const std::vector<std::array<bool, 2>>& turns) {
         ends_.resize(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
@@ -481,7 +484,7 @@ class Thickener {
         }
     }
 
-    /// All of its corners are thin, or its middle is and its offset turns over.
+    /// Whether all corners of a triangle are thin, or its middle is thin and its offset flips.
     [[nodiscard]] bool isThin(std::uint32_t i, std::size_t face) const {
         bool corners = true;
         bool turned = false;
@@ -507,7 +510,7 @@ class Thickener {
         }
     }
 
-    /// Those of corners where the sheet is cut and only thin triangles meet, as at the tip of a needle.
+    /// Shortens corners where the sheet is cut and only thin triangles meet, as at the tip of a needle.
     void shortenThinEnds() {
         const std::vector<std::array<double, 2>> room = roomByRoot(true);
         std::vector<std::array<bool, 2>> thick(roots_.size());
@@ -530,7 +533,8 @@ class Thickener {
         }
     }
 
-    /// \param face  0: above, 1: below. \param fans  those of its full regions are appended.
+    /// \param face  0: above, 1: below.
+    /// \param fans  receives the fans of its filled regions.
     void addFace(std::size_t face, std::vector<Fan>& fans) {
         const auto endOf = [&](std::uint32_t i, std::uint32_t corner) { return endsOf(i, corner)[face]; };
         const std::vector<bool> full =
@@ -553,7 +557,7 @@ class Thickener {
         }
     }
 
-    /// Between the two ends of each corner where the sheet is cut.
+    /// Adds bevels between the two ends of each corner where the sheet is cut.
     void addBevels() {
         bevelled_.resize(sheet_.triangles.size());
         std::vector<bool> has_lid(roots_.size(), false);
@@ -584,7 +588,7 @@ class Thickener {
         }
     }
 
-    /// A triangle above, and the one below.
+    /// Adds a triangle above, and its counterpart below.
     void addBoth(std::uint32_t source, const std::array<std::uint32_t, 2>& a,
                  const std::array<std::uint32_t, 2>& b, const std::array<std::uint32_t, 2>& c) {
         builder_.addTriangle(source, a[0], b[0], c[0]);
@@ -685,7 +689,7 @@ SolidPart extruded(const Sheet& sheet, int axis, float bottom) {
         p[axis] = bottom;
         builder.addPosition(p);
     }
-    // Upwards, however the sheet is wound.
+    // Upwards, regardless of the sheet's winding.
     const bool turn = !(shadowOf(sheet).signed_area[axis] > 0.0);
     const auto corners = [&](std::uint32_t i) {
         const glm::uvec3& t = sheet.triangles[i];

@@ -13,21 +13,21 @@ constexpr double kShellLeast = 0.004;
 constexpr double kShellMost = 0.25;
 constexpr double kShellRight = 0.1;
 constexpr double kThicknessMin = 1e-4;
-/// The resolution of floats at the far end of a mesh's box, in units of its longest side.
+/// Resolution of floats at the far end of a mesh's box, in units of its longest side.
 constexpr double kThicknessFloat = 4e-6;
 
 }  // namespace
 
 double defaultThickness(const Bounds& bounds, std::uint64_t budget_bytes) {
     const glm::dvec3 size = bounds.size();
-    // Front-back maps along the axes, at eight bytes per texel, and half as many others.
+    // Front-back maps along the axes at eight bytes per texel, plus half as many other maps.
     const double area = 12.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
     const double texel = std::sqrt(area / static_cast<double>(std::max<std::uint64_t>(budget_bytes, 1)));
     return thicknessOfTexel(bounds, texel);
 }
 
 double thicknessOfTexel(const Bounds& bounds, double texel) {
-    // A float, which containers record exactly.
+    // Rounded to a float, which containers store exactly.
     return double{static_cast<float>(std::min(1.5 * texel, 0.04 * double{bounds.longestSide()}))};
 }
 

@@ -11,10 +11,10 @@
 namespace relief {
 namespace {
 
-/// The smaller shell of a wall has at least this fraction of the extent of the larger one.
+/// Minimum extent of the smaller shell, as a fraction of the larger one's.
 constexpr double kShellExtent = 0.25;
 
-/// A sheet runs against the winding of the file; nullopt if only some of its triangles do.
+/// Returns whether a sheet is wound against the file; nullopt if only some of its triangles are.
 std::optional<bool> turnedSinceImport(const Sheet& sheet, const TriangleMesh& mesh,
                                       const std::vector<bool>& turned) {
     std::size_t count = 0;
@@ -29,7 +29,7 @@ std::optional<bool> turnedSinceImport(const Sheet& sheet, const TriangleMesh& me
     return count == 0 || count == sheet.triangles.size() ? std::optional(count > 0) : std::nullopt;
 }
 
-/// Per candidate: another one may be the other shell of its wall.
+/// Per candidate, whether some other candidate may be the second shell of its wall.
 std::vector<bool> mayBeWalls(const std::vector<WallCandidate>& candidates) {
     std::vector<Bounds> bounds;
     for (const WallCandidate& candidate : candidates) {
