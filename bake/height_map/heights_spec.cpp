@@ -53,7 +53,7 @@ std::string faultOf(const HeightsSpec& spec) {
     }
     if (spec.tile % kTileStep != 0) {
         return "tile is " + std::to_string(spec.tile) +
-               " but must be a multiple of 4, as leaves have 4 squares; use " +
+               " but must be a multiple of 4, the squares along a leaf; use " +
                std::to_string(spec.tile / kTileStep * kTileStep);
     }
     return {};
@@ -132,21 +132,20 @@ void fields(FieldVisitor& visit, HeightsSpec& spec) {
         return FieldInfo{.help = help, .range = within(kHeightMax), .must = "a number from -1e9 to 1e9"};
     };
     visit("spacing", spec.spacing,
-          {.help = "Between samples, metres",
+          {.help = "Distance between samples, metres",
            .range = {1e-6, 1e6},
            .must = "a length from 0.000001 to 1000000"});
-    visit("low", spec.low, number("Height of sample 0, of unsigned samples"));
+    visit("low", spec.low, number("Height of sample 0, for unsigned samples"));
     visit("high", spec.high, number("Height of the largest sample, 65535 or 255"));
     visit("hole", spec.hole,
-          {.help = "Sample that is none, as the file has it",
-           .range = within(kHoleMax),
-           .must = "a finite number"});
+          {.help = "Sample value that marks a hole", .range = within(kHoleMax), .must = "a finite number"});
     visit("width", spec.width,
-          {.help = "Samples in a row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
-    visit("type", spec.type, {.help = "Samples of a raw file; int16 and float32 are metres"});
+          {.help = "Samples per row of a raw file", .range = {2.0, double{kHeightsSideMax}}});
+    visit("type", spec.type, {.help = "Sample type of a raw file; int16 and float32 are metres"});
     visit("order", spec.order, {.help = "Byte order of a raw file"});
-    visit("offset", spec.offset,
-          {.help = "Place of the first sample at height 0", .must = "three numbers x/y/z from -1e9 to 1e9"});
+    visit(
+        "offset", spec.offset,
+        {.help = "Position of the first sample at height 0", .must = "three numbers x/y/z from -1e9 to 1e9"});
     visit("tile", spec.tile, {.help = "Squares along a tile's side, with --world", .range = {64.0, 8192.0}});
 }
 

@@ -192,11 +192,11 @@ ColliderAccuracy measureCollider(const TruthSamples& samples, const MeshQuery& q
 
 void fields(FieldVisitor& visit, const WrongShare& share) {
     visit("wrong_percent", share.total(),
-          {"Share of the points that are on the wrong side", "%", kPercentRange});
+          {"Fraction of the points that are on the wrong side", "%", kPercentRange});
     visit("false_inside_percent", share.false_inside,
-          {"Share of the points that are outside but classified as inside", "%", kPercentRange});
+          {"Fraction of the points that are outside but classified as inside", "%", kPercentRange});
     visit("false_outside_percent", share.false_outside,
-          {"Share of the points that are inside but classified as outside", "%", kPercentRange});
+          {"Fraction of the points that are inside but classified as outside", "%", kPercentRange});
 }
 
 }  // namespace relief

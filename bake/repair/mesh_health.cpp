@@ -56,7 +56,7 @@ class Inspection {
         for (const auto& [what, first] :
              {std::pair{"a boundary edge", &boundary_},
               std::pair{"an edge of three or more triangles", &nonmanifold_},
-              std::pair{"an edge that two triangles run along in the same direction", &inconsistent_},
+              std::pair{"an edge that two triangles traverse in the same direction", &inconsistent_},
               std::pair{"a duplicate triangle", &duplicates_},
               std::pair{"a vertex where surfaces only touch", &vertices_}}) {
             if (first->count > 0) {
@@ -208,8 +208,7 @@ void fields(FieldVisitor& visit, const MeshHealth& health) {
     visit("closed", health.closed, {"No edge belongs to an odd number of triangles"});
     visit("inside_out", health.inside_out, {"The mesh as a whole is wound inwards"});
     visit("triangles", health.triangles, {"Triangles with area"});
-    visit("degenerate_triangles", health.degenerate_triangles,
-          {"Triangles without area, which are left out"});
+    visit("degenerate_triangles", health.degenerate_triangles, {"Triangles without area, which are dropped"});
     visit("duplicate_triangles", health.duplicate_triangles,
           {"Triangles with the same three corners as an earlier one"});
     visit("boundary_edges", health.boundary_edges, {"Edges of one triangle"});
@@ -217,11 +216,11 @@ void fields(FieldVisitor& visit, const MeshHealth& health) {
     visit("nonmanifold_vertices", health.nonmanifold_vertices,
           {"Vertices whose triangles form several groups that share no edge there"});
     visit("inconsistent_edges", health.inconsistent_edges,
-          {"Edges of two triangles that run along them in the same direction"});
+          {"Edges that two triangles traverse in the same direction"});
     visit("components", health.components, {"Groups of triangles connected by edges"});
     visit("closed_components", health.closed_components, {"Components that are closed"});
     visit("first_fault", health.first_fault,
-          {"First fault of the most serious kind; null if the mesh is solid"});
+          {"First fault of the most severe kind; null if the mesh is a solid"});
 }
 
 }  // namespace relief

@@ -70,11 +70,11 @@ Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options)
 void fields(FieldVisitor& visit, RepairOptions& options) {
     visit(
         "strict", options.strict,
-        {.help = "Refuse a mesh that is not a closed solid wound outwards, with exit code 3; with --repair, "
-                 "a repaired one that is still open"});
+        {.help = "Reject a mesh that is not a closed solid wound outwards, with exit code 3; with --repair, "
+                 "reject a repaired mesh that is still open"});
     visit("repair", options.method,
-          {.help = "Bake another surface: wrap[=ALPHA], a closed one shrunk round the mesh, spanning gaps of "
-                   "ALPHA longest sides, 0.01 by default",
+          {.help = "Repair the mesh: wrap[=ALPHA] shrinks a closed surface around it that spans gaps of "
+                   "ALPHA longest sides (default: 0.01)",
            .value = "WORD",
            .recorded = true});
 }

@@ -48,39 +48,40 @@ void fields(FieldVisitor& visit, const NamedTriangles& named) {
     visit("name", named.shape.name,
           {.help = "Name of a node, mesh, group or material of the file", .pattern = "."});
     visit("as", named.shape.as, {"How its triangles are treated"});
-    visit("triangles", named.triangles, {"Triangles with this name and no later one"});
+    visit("triangles", named.triangles,
+          {"Triangles with this name, except those that a later name overrides"});
 }
 
 void fields(FieldVisitor& visit, const ShapeReport& report) {
     const auto length = [](double value) { return onlyIf(value > 0.0, static_cast<float>(value)); };
     constexpr FieldRange kAboveZero{.low = 0.0, .low_included = false};
-    visit("as", report.as, {"KIND of --as, for triangles without a named one"});
+    visit("as", report.as, {"KIND of --as for triangles without a named KIND"});
     visit("named", report.named, {"Each --as NAME=KIND, in the order of the options"});
     visit("solids", report.solids, {"Closed parts"});
     visit("solids_with_holes", report.solids_with_holes,
           {"Open parts whose inside is mostly hidden; their holes are closed"});
     visit("sheets", report.sheets, {"Parts that are visible from both sides; they become shells"});
     visit("unjoined_shells", report.unjoined_shells,
-          {"Open shells within another one, with mouths that nearly face each other, whose inside is full"});
+          {"Open shells within another shell, with nearly facing mouths; their inside is filled"});
     visit("closable_sheets", report.closable_sheets,
           {"Sheets of at least a quarter of the mesh's longest side that would be solids with closed holes: "
            "vessels, or bodies for --as solid"});
     visit("unclear_walls", report.unclear_walls,
-          {"Walls made of two open shells whose winding does not tell a lining from a body in its clothes"});
+          {"Walls of two open shells whose winding does not distinguish a lining from a clothed body"});
     visit("terrains", report.terrains, {"Height fields; they become the ground below them"});
     visit("voids", report.voids,
-          {"Voids that sheets and solids seal together; they are full, but with --voids hollow"});
+          {"Voids that sheets and solids seal together; filled, except with --voids hollow"});
     visit("coincident_triangles", report.coincident_triangles,
-          {"Triangles left out because they coincide with another one"});
+          {"Triangles dropped because they coincide with another triangle"});
     visit("near_copies", report.near_copies,
-          {"Closed parts left out because they lie within a ten-thousandth of their longest side of a larger "
+          {"Closed parts dropped because they lie within a ten-thousandth of their longest side of a larger "
            "one"});
     visit("thickness", length(report.thickness),
           {"Thickness of the thickest shell; null without shells", "object units", kAboveZero});
     visit("thickness_least", length(report.thickness_least),
           {"Thickness of the thinnest shell; null without shells", "object units", kAboveZero});
     visit("thickness_asked", report.thickness > 0.0 && report.default_thickness == 0.0,
-          {"--thickness was given; otherwise each shell suits the size of its part"});
+          {"--thickness was given; otherwise each shell's thickness depends on the size of its part"});
 }
 
 }  // namespace relief
