@@ -90,7 +90,7 @@ struct BakedTile {
 
 /// Squares along the side of a coarse square.
 constexpr std::uint32_t kCoarse = 4;
-static_assert(kLeafSquares % kCoarse == 0, "or coarse squares of tiles would not meet");
+static_assert(kLeafSquares % kCoarse == 0, "coarse squares of neighbouring tiles must meet");
 
 /// Returns the ground sample nearest to a position within a coarse square; a hole if there is none.
 float nearestGround(const HeightGrid& grid, std::uint32_t column, std::uint32_t row) {
@@ -162,7 +162,7 @@ class GroundBaker {
         if (!(std::max({far.x, far.y, far.z}) < kFloatSteps * heights().spacing)) {
             return fail(ErrorCode::kLimit, map_.name() +
                                                ": it lies so far from the origin that floats do not resolve "
-                                               "its squares there; give a nearer "
+                                               "its squares there; give a smaller "
                                                "--heights offset, or a larger spacing");
         }
         return {};
@@ -170,7 +170,8 @@ class GroundBaker {
 
     [[nodiscard]] tl::unexpected<Error> noGround() const {
         return invalidInput(
-            map_.name() + ": no square has ground, as each has a corner that is a hole; see --heights hole");
+            map_.name() +
+            ": no square has ground, because each has a hole at a corner; check --heights hole");
     }
 
     Result<std::vector<std::byte>> containerOf(const Collider& collider) const {
@@ -244,10 +245,10 @@ class GroundBaker {
         const std::vector<Stretch> across = stretchesOf(map_.columns(), heights().tile);
         const std::vector<Stretch> along = stretchesOf(map_.rows(), heights().tile);
         if (across.size() * along.size() > kWorldCollidersMax) {
-            return fail(ErrorCode::kLimit, map_.name() + ": it makes " +
-                                               std::to_string(across.size() * along.size()) + " tiles, and " +
-                                               std::to_string(kWorldCollidersMax) +
-                                               " are the most; give a larger --heights tile");
+            return fail(ErrorCode::kLimit,
+                        map_.name() + ": it needs " + std::to_string(across.size() * along.size()) +
+                            " tiles, more than the limit of " + std::to_string(kWorldCollidersMax) +
+                            "; give a larger --heights tile");
         }
         World world;
         world.unit = "m";
@@ -327,8 +328,9 @@ class GroundBaker {
         if (steep > 0) {
             result_.warnings.push_back(
                 map_.name() + ": " + std::to_string(steep) +
-                " squares are steep: they rise by more than 2.9 of their side, 64 degrees along a diagonal "
-                "and 71 along a row; walls stand up to 0.15 of a square beside their place there");
+                " squares are steep: they rise by more than 2.9 times their side (64 degrees along a "
+                "diagonal, "
+                "71 along a row); walls there are displaced by up to 0.15 of a square");
         }
         if (!cause.empty()) {
             result_.warnings.push_back(map_.name() + ": " + cause);

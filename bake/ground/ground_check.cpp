@@ -203,7 +203,7 @@ class GroundChecker {
             if (body.scale != 1.0F || body.rotation != std::array{0.0F, 0.0F, 0.0F, 1.0F}) {
                 return invalidInput(
                     name_ + ": its body '" + body.node +
-                    "' is turned or scaled, and ground never is; bake it again with --heights");
+                    "' is rotated or scaled, but ground must not be; bake it again with --heights");
             }
             const Bounds& box = field_.colliderOf(i).bounds;
             const Bounds solid = solidBox(field_.colliderOf(i));
@@ -276,7 +276,7 @@ class GroundChecker {
         if (result_.squares == 0) {
             return invalidInput(
                 map_.name() +
-                ": no square has ground, as each has a corner that is a hole; see --heights hole");
+                ": no square has ground, because each has a hole at a corner; check --heights hole");
         }
         return {};
     }
@@ -297,7 +297,7 @@ class GroundChecker {
         const glm::dvec2 off = glm::max(glm::abs(low - own_low), glm::abs(high - own_high));
         if (!(std::max(off.x, off.y) <= kLeafSquares * spacing())) {
             return invalidInput(
-                map_.name() + ": its ground lies " + extentText(low, high) + " in x and z, and that of " +
+                map_.name() + ": its ground lies " + extentText(low, high) + " in x and z, but that of " +
                 name_ + " " + extentText(own_low, own_high) +
                 "; give the height map that it was baked from, and its --heights spacing and offset");
         }
@@ -307,7 +307,7 @@ class GroundChecker {
     void compareHashes() {
         for (const Collider& collider : field_.colliders()) {
             if (collider.provenance.mesh_hash != map_.hash()) {
-                result_.warnings.push_back(map_.name() + " is another file than the one that " + name_ +
+                result_.warnings.push_back(map_.name() + " is not the file that " + name_ +
                                            " was baked from");
                 return;
             }
@@ -542,14 +542,13 @@ Result<HeightsSpec> recordedHeights(const WorldField& field, const std::string& 
     for (const Collider& collider : field.colliders()) {
         const std::string heights = recordedBake(collider.provenance.options).request.heights;
         if (heights.empty()) {
-            return fail(ErrorCode::kUsage,
-                        name +
-                            " was not baked from a height map; give --mesh the mesh that it was baked from, "
-                            "or --heights if it is ground all the same");
+            return fail(ErrorCode::kUsage, name +
+                                               " was not baked from a height map; give its mesh with --mesh, "
+                                               "or use --heights if it is ground");
         }
         if (recorded && *recorded != heights) {
             return fail(ErrorCode::kUsage, name + " was baked from several height maps, with --heights " +
-                                               *recorded + " and " + heights + "; check each by itself");
+                                               *recorded + " and " + heights + "; check each separately");
         }
         recorded = heights;
     }

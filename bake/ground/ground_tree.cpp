@@ -151,8 +151,8 @@ class GroundTree {
 
     [[nodiscard]] tl::unexpected<Error> tooLarge(const std::string& why) const {
         return fail(ErrorCode::kLimit,
-                    why + " that their tree takes more than " + std::to_string(kPatchTexelsMax) +
-                        " texels of 8 bytes; bake tiles by --world, smaller ones by --heights "
+                    why + " that the tree exceeds " + std::to_string(kPatchTexelsMax) +
+                        " texels of 8 bytes; bake tiles with --world, smaller ones with --heights "
                         "tile=, or give a larger spacing or a smaller range of heights");
     }
 

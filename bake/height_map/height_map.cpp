@@ -25,13 +25,15 @@ constexpr std::uint64_t kFileMax = 4 * kHeightSamplesMax + (std::uint64_t{64} <<
 Result<void> checkKind(const std::filesystem::path& path, bool image, const HeightsSpec& spec) {
     const char* const raw = spec.width ? "width" : spec.type ? "type" : spec.order ? "order" : nullptr;
     if (image && raw != nullptr) {
-        return fail(ErrorCode::kUsage, std::string("--heights ") + raw +
-                                           " is for raw samples, and this is an image; leave it out");
+        return fail(ErrorCode::kUsage,
+                    std::string("--heights ") + raw +
+                        " applies only to raw samples, but this is an image; leave it out");
     }
     const std::string extension = lowerCase(path.extension().string());
     if (!image && raw == nullptr && extension != ".raw" && extension != ".r16") {
-        return fail(ErrorCode::kUnsupported,
-                    "it is no PNG or EXR image; if it holds raw samples, give --heights type= or width=");
+        return fail(
+            ErrorCode::kUnsupported,
+            "it is not a PNG or EXR image; if it contains raw samples, give --heights type= or width=");
     }
     return {};
 }
@@ -44,8 +46,9 @@ Result<void> checkSize(const SampleRows& rows) {
     if (rows.columns() > kHeightsSideMax || rows.rows() > kHeightsSideMax ||
         rows.columns() * rows.rows() > kHeightSamplesMax) {
         return fail(ErrorCode::kLimit,
-                    "it has " + size + " samples, and " + std::to_string(kHeightSamplesMax) +
-                        " are the most; cut it into several, each with its --heights offset");
+                    "it has " + size + " samples, more than the limit of " +
+                        std::to_string(kHeightSamplesMax) +
+                        "; split it into several maps, each with its own --heights offset");
     }
     return {};
 }
@@ -65,7 +68,7 @@ Result<void> checkSettings(const SampleRows& rows, const HeightsSpec& spec) {
         if (spec.low || spec.high) {
             return fail(ErrorCode::kUsage,
                         std::string("--heights ") + (spec.low ? "low" : "high") +
-                            " is for unsigned samples, and these are heights; leave it out");
+                            " applies only to unsigned samples, but these are heights; leave it out");
         }
         return spec.type == SampleType::kInt16 ? checkHole(spec, -32768, 32767) : Result<void>();
     }
@@ -157,7 +160,7 @@ Result<void> HeightMap::rewind() {
     std::unique_ptr<SampleRows> again = RELIEF_TRY(openRows());
     if (again->columns() != rows_->columns() || again->rows() != rows_->rows() ||
         again->most() != rows_->most()) {
-        return invalidInput(shown_ + ": the importer answers with another size; save it again");
+        return invalidInput(shown_ + ": the importer returned another size; save it again");
     }
     rows_ = std::move(again);
     return {};

@@ -212,11 +212,11 @@ Result<std::unique_ptr<SampleRows>> openRawRows(std::span<const std::byte> bytes
     const RawFormat format = formatOf(spec);
     const std::uint64_t columns = columnsOf(bytes.size(), spec.width, format);
     if (columns == 0) {
-        const std::string size = "it has " + std::to_string(bytes.size()) + " bytes, which are no ";
+        const std::string size = "it has " + std::to_string(bytes.size()) + " bytes, which do not form ";
         const std::string samples = " samples of " + std::to_string(8 * format.bytes()) + " bits; give ";
         return invalidInput(spec.width ? size + "rows of " + std::to_string(*spec.width) + samples +
                                              "another width or type, or copy it again"
-                                       : size + "square of" + samples +
+                                       : size + "a square of" + samples +
                                              "--heights width=N or type=, or copy it again");
     }
     return std::make_unique<RawRows>(bytes, columns, format);

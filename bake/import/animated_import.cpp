@@ -86,7 +86,7 @@ Result<void> addFile(const std::string& file, const ImportLimits& limits, Animat
     const Result<void> added = addClipsOf(clips.mesh, all.mesh, warnings);
     if (!added) {
         return fail(added.error().code,
-                    "cannot take clips of " + quotedPath(file) + ": " + added.error().message);
+                    "cannot add the clips of " + quotedPath(file) + ": " + added.error().message);
     }
     for (const std::string& warning : warnings) {
         from.warnings.push_back(from.name + ": " + warning);
@@ -108,7 +108,8 @@ void addClip(AnimatedMesh& mesh, MeshClip clip, std::vector<std::string>& warnin
         clip.name = name + " " + std::to_string(number);
     }
     if (clip.name != name) {
-        warnings.push_back("another clip has the name '" + name + "'; this one gets '" + clip.name + "'");
+        warnings.push_back("another clip has the name '" + name + "'; this one is renamed to '" + clip.name +
+                           "'");
     }
     mesh.clips.push_back(std::move(clip));
 }
@@ -133,18 +134,18 @@ Result<void> addClipsOf(const AnimatedMesh& from, AnimatedMesh& mesh, std::vecto
             continue;
         }
         if (mesh.clips.size() == kMeshClipsMax) {
-            return fail(ErrorCode::kLimit, "with it there are more than " + std::to_string(kMeshClipsMax) +
-                                               " clips; leave some out");
+            return fail(ErrorCode::kLimit, "its clips exceed the limit of " + std::to_string(kMeshClipsMax) +
+                                               " for all files; leave some out");
         }
         ++added;
         addClip(mesh, std::move(taken), warnings);
     }
     if (added == 0) {
-        return invalidInput("none of the nodes that it moves is one of the mesh, by name: " +
-                            match.unknown() + "; give clips of the same skeleton");
+        return invalidInput("none of its animated nodes has the name of a node of the mesh: " +
+                            match.unknown() + "; use clips of the same skeleton");
     }
     if (!match.allKnown()) {
-        warnings.push_back("left out what moves nodes that the mesh does not have: " + match.unknown());
+        warnings.push_back("left out channels of nodes that the mesh does not have: " + match.unknown());
     }
     return {};
 }
@@ -163,8 +164,8 @@ Result<AnimatedImport> importAnimatedInWorker(const fs::path& path,
     }
     if (all.mesh.clips.empty()) {
         all.rest.warnings.push_back(all.rest.name +
-                                    ": it has no animation, and moves only as a program poses it; for "
-                                    "animations of other files add --clips");
+                                    ": it has no animation, so it moves only if a program poses it; to "
+                                    "add animations from other files, use --clips");
     }
     RELIEF_TRY(validate(all.mesh));
     return all;

@@ -62,7 +62,7 @@ class ExrRows : public SampleRows {
                 stream_.seekg(0);
                 if (const int parts = Imf::MultiPartInputFile(stream_).parts(); parts > 1) {
                     return fail(ErrorCode::kUnsupported,
-                                "it has " + std::to_string(parts) + " parts; save the heights alone");
+                                "it has " + std::to_string(parts) + " parts; save only the heights");
                 }
             }
             const Imf::ChannelList& channels = file_->header().channels();
@@ -74,7 +74,7 @@ class ExrRows : public SampleRows {
             }
             if (count != 1) {
                 return fail(ErrorCode::kUnsupported,
-                            "it has several channels, or none of full resolution; save the heights alone");
+                            "it has several channels, or none of full resolution; save only the heights");
             }
             const auto& window = file_->header().dataWindow();
             left_ = window.min.x;

@@ -170,7 +170,7 @@ class AnimatedReader {
             for (const Transform& bind : skin.joints.binds) {
                 skin.binds.push_back(rowsOf(bind));
                 if (!areNumbers(skin.binds.back())) {
-                    return place->wrong("has inverseBindMatrices that are no numbers");
+                    return place->wrong("has inverseBindMatrices that are not numbers");
                 }
             }
             skins_.emplace(place->index(), std::move(skin));
@@ -211,7 +211,7 @@ class AnimatedReader {
     /// \param order  nodes of the file, parents first. They are added below the frame node, if there is one.
     Result<void> addNodes(const std::vector<std::uint32_t>& order) {
         if (order.size() + 1 > kMeshNodesMax) {
-            return fail(ErrorCode::kLimit, "it has " + std::to_string(order.size()) + " nodes, and at most " +
+            return fail(ErrorCode::kLimit, "it has " + std::to_string(order.size()) + " nodes, but at most " +
                                                std::to_string(kMeshNodesMax - 1) +
                                                " can move; export less of the scene");
         }
@@ -239,8 +239,8 @@ class AnimatedReader {
         node.first_weight = static_cast<std::uint32_t>(mesh_.weights.size());
         node.weights = static_cast<std::uint32_t>(count);
         if (count > kMorphTargetsMax - mesh_.weights.size()) {
-            return mesh.wrong("has more morph targets than can be: " + std::to_string(kMorphTargetsMax) +
-                                  " for all nodes together; export it with fewer",
+            return mesh.wrong("exceeds the limit of " + std::to_string(kMorphTargetsMax) +
+                                  " morph targets for all nodes together; export it with fewer",
                               ErrorCode::kLimit);
         }
         std::vector<float> weights(count, 0.0F);
@@ -303,8 +303,8 @@ class AnimatedReader {
     Result<void> checkRoom(const GltfValue& mesh, const ScenePart& part) {
         if (part.positions.size() > kAnimatedVerticesMax - mesh_.positions.size()) {
             return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kAnimatedVerticesMax) +
-                                               " vertices, instances counted one by one, and no more can "
-                                               "move; simplify the mesh");
+                                               " moving vertices, counting each instance; "
+                                               "simplify the mesh");
         }
         if (part.triangles.size() > job_.triangle_max - mesh_.triangles.size()) {
             return tooManyTriangles(job_);
@@ -312,7 +312,7 @@ class AnimatedReader {
         return std::all_of(part.positions.begin(), part.positions.end(),
                            [](const glm::vec3& position) { return isFinite(position); })
                    ? Result<void>()
-                   : mesh.wrong("has positions that are no numbers");
+                   : mesh.wrong("has positions that are not numbers");
     }
 
     /// Returns the mirrored weight minus the unmirrored weight in the rest pose: above 0 if most of it is mirrored.
@@ -417,10 +417,10 @@ class AnimatedReader {
         warnOfParts(counts, out_.warnings);
         left_out_.warn(out_.warnings);
         if (odd_sums_ > 0) {
-            out_.warnings.push_back(std::to_string(odd_sums_) +
-                                    (odd_sums_ == 1 ? " vertex has joints whose weights have"
-                                                    : " vertices have joints whose weights have") +
-                                    " another sum than 1, to which they are scaled");
+            out_.warnings.push_back(
+                std::to_string(odd_sums_) +
+                (odd_sums_ == 1 ? " vertex has joint weights" : " vertices have joint weights") +
+                " that do not sum to 1; they are normalized");
         }
         return {};
     }

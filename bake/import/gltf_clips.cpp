@@ -49,13 +49,12 @@ class ClipReader {
         }
         if (clip.channels.empty() || !(clip.seconds > 0.0F)) {
             warnings_.push_back("the animation '" + cleanUtf8(clip.name, kAnimatedNameMax) +
-                                (clip.channels.empty() ? "' moves nothing of the mesh" : "' has no length") +
-                                ", and is left out");
+                                (clip.channels.empty() ? "' does not move the mesh" : "' has zero length") +
+                                "; it is left out");
             return {};
         }
         if (clip.seconds > kClipSecondsMax) {
-            return place.wrong("lasts longer than a day; cut it, or mend the times of its keys",
-                               ErrorCode::kLimit);
+            return place.wrong("lasts longer than a day; cut it, or fix its key times", ErrorCode::kLimit);
         }
         if (mesh_.clips.size() == kMeshClipsMax) {
             return fail(ErrorCode::kLimit,
@@ -79,8 +78,7 @@ class ClipReader {
         const std::optional<GltfValue> node = RELIEF_TRY(target->named("node", "nodes"));
         const std::uint64_t number = RELIEF_TRY(from.number("sampler"));
         if (number >= samplers.size()) {
-            return from.wrong("names by sampler samplers[" + std::to_string(number) +
-                              "], which does not exist");
+            return from.wrong("references samplers[" + std::to_string(number) + "], which does not exist");
         }
         const std::optional<std::uint8_t> member = indexOf(kPaths, *path);
         if (!node || !member) {
@@ -89,7 +87,7 @@ class ClipReader {
         }
         if (!moved.emplace(node->index(), *path).second) {
             return from.wrong("moves the " + *path + " of nodes[" + std::to_string(node->index()) +
-                              "], which another one moves too");
+                              "], which another channel also moves");
         }
         ClipChannel channel;
         channel.member = static_cast<NodeMember>(*member);
@@ -102,8 +100,9 @@ class ClipReader {
         }
         channel.node = *of_mesh;
         if (mesh_.nodes[channel.node].matrix && channel.member != NodeMember::kWeights) {
-            return from.wrong("moves nodes[" + std::to_string(node->index()) +
-                              "], whose matrix is no translation, rotation and scale; export it with these");
+            return from.wrong(
+                "moves nodes[" + std::to_string(node->index()) +
+                "], whose matrix is not a translation, rotation and scale; export these instead");
         }
         if (channel.member == NodeMember::kWeights && mesh_.nodes[channel.node].weights == 0) {
             return from.wrong("moves the morph targets of nodes[" + std::to_string(node->index()) +
@@ -123,9 +122,9 @@ class ClipReader {
         }
         for (std::size_t i = 0; i < times.size(); ++i) {
             if (!std::isfinite(times[i]) || times[i] < 0.0F || (i > 0 && times[i] <= times[i - 1])) {
-                return input.wrong("has as time " + std::to_string(i) + " " +
-                                   (std::isfinite(times[i]) ? shortest(times[i]) : "no number") +
-                                   "; times of keys are 0 or more and rise from key to key");
+                return input.wrong("has at key " + std::to_string(i) + " the time " +
+                                   (std::isfinite(times[i]) ? shortest(times[i]) : "NaN or infinity") +
+                                   "; key times must not be negative, and must increase");
             }
         }
         return times;
@@ -137,7 +136,7 @@ class ClipReader {
         const std::optional<std::uint8_t> curve = indexOf(kCurves, word);
         if (!curve) {
             return sampler.wrong("has the interpolation '" + cleanUtf8(word, 20) +
-                                 "', which is none of STEP, LINEAR and CUBICSPLINE");
+                                 "', which is not STEP, LINEAR or CUBICSPLINE");
         }
         channel.curve = static_cast<KeyCurve>(*curve);
         const GltfValue output = RELIEF_TRY(sampler.needed("output", "accessors"));
@@ -161,7 +160,7 @@ class ClipReader {
         }
         if (!std::all_of(channel.values.begin(), channel.values.end(),
                          [](float value) { return std::isfinite(value); })) {
-            return output.wrong("has values of keys that are no numbers");
+            return output.wrong("has key values that are not numbers");
         }
         return channel.member == NodeMember::kRotation ? unitRotations(output, channel) : Result<void>();
     }
@@ -177,8 +176,8 @@ class ClipReader {
             }
             const double length = std::sqrt(square);
             if (!(std::abs(length - 1.0) <= kRotationTolerance)) {
-                return output.wrong("has as rotation of key " + std::to_string(key) +
-                                    " no unit quaternion: its length is " +
+                return output.wrong("has at key " + std::to_string(key) +
+                                    " a rotation that is not a unit quaternion: its length is " +
                                     shortest(static_cast<float>(length)));
             }
             for (int i = 0; i < 4 && !cubic; ++i) {

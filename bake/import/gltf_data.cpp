@@ -44,7 +44,8 @@ Result<std::string> percentDecoded(std::string_view text) {
         const std::size_t high = digits.size() == 2 ? kDigits.find(digits[0]) : std::string_view::npos;
         const std::size_t low = digits.size() == 2 ? kDigits.find(digits[1]) : std::string_view::npos;
         if (high >= kDigits.size() || low >= kDigits.size()) {
-            return invalidInput("has a % without two hexadecimal digits behind it; write %25 for the sign");
+            return invalidInput(
+                "has a % without two hexadecimal digits after it; write %25 for a percent sign");
         }
         out += static_cast<char>(16 * high + low);
         i += 2;
@@ -155,15 +156,15 @@ Result<Elements> elementsOf(const GltfValue& owner, GltfBuffers& buffers, std::u
     const std::uint64_t stride = view.stride.value_or(size);
     const std::uint64_t offset = RELIEF_TRY(owner.get<std::uint64_t>("byteOffset", 0));
     if (stride < size || (!strided && stride != size)) {
-        return owner.wrong("has a buffer view of " + std::to_string(stride) + " bytes from one element of " +
-                           std::to_string(size) + " to the next");
+        return owner.wrong("has a buffer view with a stride of " + std::to_string(stride) +
+                           " bytes, which does not fit elements of " + std::to_string(size) + " bytes");
     }
     const std::uint64_t length = view.bytes.size();
     // Division cannot overflow.
     const bool fits = count == 0 || (offset <= length && size <= length - offset &&
                                      count - 1 <= (length - offset - size) / stride);
     if (!fits) {
-        return owner.wrong("ends behind its buffer view");
+        return owner.wrong("extends beyond its buffer view");
     }
     return Elements{view.bytes.data() + (count == 0 ? 0 : offset), stride};
 }
@@ -176,12 +177,12 @@ Result<void> replaceSparse(const GltfValue& sparse, GltfBuffers& buffers, std::u
     const std::optional<GltfValue> indices = RELIEF_TRY(sparse.object("indices"));
     const std::optional<GltfValue> values = RELIEF_TRY(sparse.object("values"));
     if (count == 0 || count > all || !indices || !values) {
-        return sparse.wrong("has no indices, no values, or a count that is not 1 to the accessor's");
+        return sparse.wrong("has no indices, no values, or a count outside 1 to the accessor's count");
     }
     const std::uint64_t type = RELIEF_TRY(indices->number("componentType"));
     if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
         return indices->wrong("has components of type " + std::to_string(type) +
-                              ", which is none for indices");
+                              ", which is not valid for indices");
     }
     const Elements where = RELIEF_TRY(elementsOf(*indices, buffers, count, sizeOf(type), false));
     const Elements what = RELIEF_TRY(elementsOf(*values, buffers, count, size, false));
@@ -190,7 +191,7 @@ Result<void> replaceSparse(const GltfValue& sparse, GltfBuffers& buffers, std::u
         std::uint32_t index = 0;
         loadComponent(where.at(i), type, false, index);
         if (index < next || index >= all) {
-            return indices->wrong("are not in ascending order, or name an element that does not exist");
+            return indices->wrong("are not in ascending order, or reference a missing element");
         }
         replace(index, what.at(i));
         next = std::uint64_t{index} + 1;
@@ -212,32 +213,32 @@ Result<GltfChunks> gltfChunks(std::span<const std::byte> bytes) {
     const auto word = [bytes](std::size_t at) { return load<std::uint32_t>(bytes.data() + at); };
     if (word(4) != 2) {
         return fail(ErrorCode::kUnsupported, "binary glTF of version " + std::to_string(word(4)) +
-                                                 " is not read; save it as glTF 2.0");
+                                                 " is not supported; save it as glTF 2.0");
     }
     const std::size_t length = word(8);
     if (length > bytes.size()) {
         return invalidInput("it has " + std::to_string(bytes.size()) + " of the " + std::to_string(length) +
-                            " bytes that its header announces, " + kCutOff);
+                            " bytes that its header declares, " + kCutOff);
     }
     if (length < bytes.size()) {
         chunks.warnings.push_back(std::to_string(bytes.size() - length) +
-                                  " bytes behind the end that its header announces are left out");
+                                  " bytes after the end that its header declares are left out");
     }
     std::size_t number = 0;
     for (std::size_t at = kHeader; at < length; ++number) {
         const std::string chunk = "its chunk " + std::to_string(number);
         if (length - at < kChunkHeader || word(at) > length - at - kChunkHeader) {
-            return invalidInput(chunk + " ends behind the file; export it again");
+            return invalidInput(chunk + " extends beyond the end of the file; export it again");
         }
         const std::size_t size = word(at);
         const std::uint32_t type = word(at + 4);
         at += kChunkHeader;
         if (size % 4 != 0 && at + size < length) {
-            return invalidInput("the length of " + chunk + " is no multiple of 4; export it again");
+            return invalidInput("the length of " + chunk + " is not a multiple of 4; export it again");
         }
         if ((number == 0) != (type == kJsonChunk) || (number > 1 && type == kBinaryChunk)) {
             return invalidInput(
-                "its first chunk is no JSON, or its second not the binary one; export it again");
+                "its first chunk is not JSON, or its second chunk is not binary; export it again");
         }
         if (type == kJsonChunk) {
             chunks.json = text.substr(at, size);
@@ -254,18 +255,18 @@ Result<GltfDocument> openGltf(std::span<const std::byte> bytes) {
     GltfDocument document{RELIEF_TRY(gltfChunks(bytes)), {}};
     document.json = std::make_shared<nlohmann::json>(RELIEF_TRY(parseGltfJson(document.chunks.json)));
     return document.json->is_object() ? Result<GltfDocument>(std::move(document))
-                                      : invalidInput("its JSON is no object");
+                                      : invalidInput("its JSON is not an object");
 }
 
 Result<std::vector<std::byte>> dataUriBytes(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (!isDataUri(uri) || comma == std::string_view::npos ||
         !lowerCase(uri.substr(0, comma)).ends_with(";base64")) {
-        return invalidInput("is a data URI without data in base64; export it as GLB");
+        return invalidInput("is a data URI without base64 data; export it as GLB");
     }
     std::optional<std::vector<std::byte>> bytes =
         base64Bytes(RELIEF_TRY(percentDecoded(uri.substr(comma + 1))));
-    return bytes ? Result<std::vector<std::byte>>(*std::move(bytes)) : invalidInput("is no valid base64");
+    return bytes ? Result<std::vector<std::byte>>(*std::move(bytes)) : invalidInput("is not valid base64");
 }
 
 Result<GltfView> GltfBuffers::view(const GltfValue& from) {
@@ -277,7 +278,7 @@ Result<GltfView> GltfBuffers::view(const GltfValue& from) {
     const std::optional<GltfValue> extensions = RELIEF_TRY(place.object("extensions"));
     if (extensions && extensions->has("KHR_meshopt_compression")) {
         return place.wrong(
-            "is compressed by KHR_meshopt_compression, which is not read; export it without, or by "
+            "uses KHR_meshopt_compression, which is not supported; export it uncompressed, or with "
             "EXT_meshopt_compression",
             ErrorCode::kUnsupported);
     }
@@ -301,11 +302,11 @@ Result<std::span<const std::byte>> GltfBuffers::part(const GltfValue& place) {
     const std::uint64_t length = RELIEF_TRY(place.number("byteLength"));
     const std::uint64_t announced = RELIEF_TRY(buffer.number("byteLength"));
     if (offset > announced || length > announced - offset) {
-        return place.wrong("ends behind its buffer");
+        return place.wrong("extends beyond its buffer");
     }
     const std::optional<std::string> uri = RELIEF_TRY(buffer.get<std::string>("uri"));
     if (!uri && (buffer.index() != 0 || !chunks_.binary)) {
-        return buffer.wrong("has no uri, and the file no bytes for it");
+        return buffer.wrong("has no uri, and the file contains no bytes for it");
     }
     if (uri && !read_.contains(buffer.index())) {
         Result<std::vector<std::byte>> bytes = read(*uri);
@@ -317,7 +318,7 @@ Result<std::span<const std::byte>> GltfBuffers::part(const GltfValue& place) {
     const std::span<const std::byte> bytes = uri ? read_[buffer.index()] : *chunks_.binary;
     if (bytes.size() < announced) {
         return buffer.wrong("has " + std::to_string(bytes.size()) + " of the " + std::to_string(announced) +
-                            " bytes that it announces, " + kCutOff);
+                            " bytes that it declares, " + kCutOff);
     }
     return bytes.subspan(offset, length);
 }
@@ -355,15 +356,15 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
     if (type == 0 ||
         std::find(rules.components.begin(), rules.components.end(), type) == rules.components.end()) {
         return accessor.wrong("has components of type " + std::to_string(type) +
-                                  ", which is not read for this; export it as floats, with unsigned indices",
+                                  ", which is not supported here; export it as floats, with unsigned indices",
                               ErrorCode::kUnsupported);
     }
     const bool normalized = RELIEF_TRY(accessor.get("normalized", false));
     if (normalized && (!rules.normalized || type == kFloat)) {
-        return accessor.wrong("is normalized, which only whole numbers of an attribute can be");
+        return accessor.wrong("is normalized, but only integer attributes can be");
     }
     if ((use == GltfUse::kWeights || use == GltfUse::kMorphs) && !normalized && type != kFloat) {
-        return accessor.wrong("is not normalized, as weights of whole numbers are");
+        return accessor.wrong("is not normalized, but integer weights must be");
     }
     const std::uint64_t count = RELIEF_TRY(accessor.number("count"));
     const std::uint64_t size = kComponents * sizeOf(type);
@@ -373,7 +374,7 @@ Result<std::vector<T>> readAccessor(const GltfValue& accessor, GltfUse use, Gltf
         // Only attributes may have a stride.
         elements = RELIEF_TRY(elementsOf(accessor, buffers, count, size, kComponents > 1));
     } else if (!sparse && use != GltfUse::kDeltas) {
-        return accessor.wrong("has no data of its own; export it uncompressed", ErrorCode::kUnsupported);
+        return accessor.wrong("has no data; export it uncompressed", ErrorCode::kUnsupported);
     }
     if (count > count_max) {
         return accessor.wrong("has " + std::to_string(count) + " elements, more than the limit of " +

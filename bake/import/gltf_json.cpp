@@ -19,12 +19,12 @@ constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
 // Each overload reads a value of one type. Returns the fault ("[3] is not a number"), or "".
 std::string takeGltf(const Json& json, bool& value) {
     value = json.is_boolean() && json.get<bool>();
-    return json.is_boolean() ? "" : " is neither true nor false";
+    return json.is_boolean() ? "" : " is not true or false";
 }
 
 std::string takeGltf(const Json& json, float& value) {
     value = json.is_number() ? static_cast<float>(json.get<double>()) : 0.0F;
-    return json.is_number() ? "" : " is no number";
+    return json.is_number() ? "" : " is not a number";
 }
 
 std::string takeGltf(const Json& json, std::uint64_t& value) {
@@ -35,7 +35,7 @@ std::string takeGltf(const Json& json, std::uint64_t& value) {
 
 std::string takeGltf(const Json& json, std::string& value) {
     value = json.is_string() ? json.get<std::string>() : "";
-    return json.is_string() ? "" : " is no string";
+    return json.is_string() ? "" : " is not a string";
 }
 
 template <class T>
@@ -144,7 +144,7 @@ Result<GltfValue> GltfValue::at(std::uint64_t index, const char* list, const cha
     const auto found = document_->find(list);
     const std::string path = std::string(list) + "[" + std::to_string(index) + "]";
     if (found == document_->end() || !found->is_array() || index >= found->size()) {
-        return wrong(std::string("names by ") + member + " " + path + ", which does not exist");
+        return wrong(std::string("has ") + member + " " + path + ", which does not exist");
     }
     return child((*found)[index], path, index);
 }

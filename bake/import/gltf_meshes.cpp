@@ -69,7 +69,7 @@ Result<std::optional<GltfInfluences>> readInfluences(const GltfValue& attributes
         joint = RELIEF_TRY(readAccessor<glm::vec4>(*of_joints, GltfUse::kJoints, buffers, vertices));
         weight = RELIEF_TRY(readAccessor<glm::vec4>(*of_weights, GltfUse::kWeights, buffers, vertices));
         if (joint.size() != vertices || weight.size() != vertices) {
-            return attributes.wrong("have other counts of " + joints + ", " + weights + " and positions");
+            return attributes.wrong("have different counts of " + joints + ", " + weights + " and positions");
         }
     }
     if (sets.empty()) {
@@ -86,7 +86,7 @@ Result<std::optional<GltfInfluences>> readInfluences(const GltfValue& attributes
     return weigh(influences)
                ? Result<std::optional<GltfInfluences>>(std::move(influences))
                : attributes.wrong(
-                     "have weights that are less than 0, no numbers, or 0 for all joints of a vertex");
+                     "have weights that are negative, not numbers, or 0 for all joints of a vertex");
 }
 
 Result<void> checkIndices(const GltfValue& accessor, const std::vector<std::uint32_t>& indices,
@@ -95,12 +95,12 @@ Result<void> checkIndices(const GltfValue& accessor, const std::vector<std::uint
     const std::uint32_t restart = type == 5121 ? 0xFF : type == 5123 ? 0xFFFF : 0xFFFFFFFF;
     for (const std::uint32_t vertex : indices) {
         if (vertex == restart) {
-            return accessor.wrong("holds the index " + std::to_string(restart) +
-                                  ", which is not allowed: it means a restart; export it with wider indices");
+            return accessor.wrong("has the index " + std::to_string(restart) +
+                                  ", which is reserved for primitive restart; export it with wider indices");
         }
         if (vertex >= vertices) {
-            return accessor.wrong("holds the index " + std::to_string(vertex) +
-                                  " of a vertex that does not exist: there are " + std::to_string(vertices));
+            return accessor.wrong("has the index " + std::to_string(vertex) +
+                                  ", which is not below the number of vertices, " + std::to_string(vertices));
         }
     }
     return {};
@@ -138,8 +138,8 @@ Result<void> checkJoints(const GltfInfluences& influences, const GltfSkin& joint
                          const GltfValue& skin) {
     for (const GltfInfluence& by : influences.all) {
         if (by.weight > 0.0F && by.joint >= joints.nodes.size()) {
-            return mesh.wrong("has vertices that are moved by a joint which its skin, skins[" +
-                              std::to_string(skin.index()) + "], does not have");
+            return mesh.wrong("has vertices with a joint that is missing in its skin, skins[" +
+                              std::to_string(skin.index()) + "]");
         }
     }
     return {};
@@ -156,8 +156,9 @@ Result<const GltfMesh*> GltfMeshes::read(const GltfValue& mesh, Needs needs) {
         GltfPrimitive primitive = RELIEF_TRY(readPrimitive(place, needs));
         const std::size_t count = needs.targets ? RELIEF_TRY(place.objects("targets")).size() : 0;
         if (targets.value_or(count) != count) {
-            return place.wrong("has " + std::to_string(count) + " morph targets, and one before it " +
-                               std::to_string(*targets) + "; all primitives of a mesh must have as many");
+            return place.wrong("has " + std::to_string(count) +
+                               " morph targets, but an earlier primitive has " + std::to_string(*targets) +
+                               "; all primitives of a mesh must have the same number");
         }
         targets = count;
         if (!primitive.part.triangles.empty()) {
@@ -196,7 +197,7 @@ Result<GltfPrimitive> GltfMeshes::readPrimitive(const GltfValue& place, Needs ne
     }
     const std::vector<GltfValue> targets = RELIEF_TRY(place.objects("targets"));
     if (!targets.empty() && !needs.targets) {
-        warn("it is morphed; baked as it is modelled, without its targets");
+        warn("it has morph targets; baked as modelled, without them");
     }
     GltfPrimitive out;
     if (const auto material = RELIEF_TRY(place.named("material", "materials"))) {
@@ -239,14 +240,14 @@ Result<void> GltfMeshes::readTargets(const std::vector<GltfValue>& places, std::
         }
         const std::uint64_t count = RELIEF_TRY(accessor->number("count"));
         if (count != vertices) {
-            return places[i].wrong("moves " + std::to_string(count) + " vertices, and the primitive has " +
+            return places[i].wrong("moves " + std::to_string(count) + " vertices, but the primitive has " +
                                    std::to_string(vertices));
         }
         const std::vector<glm::vec3> deltas =
             RELIEF_TRY(readAccessor<glm::vec3>(*accessor, GltfUse::kDeltas, buffers_, vertices));
         for (const std::uint32_t vertex : kept) {
             if (!isFinite(deltas[vertex])) {
-                return places[i].wrong("moves a vertex by what is no number");
+                return places[i].wrong("moves a vertex by a value that is not a number");
             }
             target.push_back(deltas[vertex]);
         }
@@ -295,11 +296,11 @@ Result<void> GltfMeshes::readTriangles(const GltfValue& place, std::uint64_t mod
         return {};
     }
     if (mode == kTriangles && corners % 3 != 0) {
-        return place.wrong("has " + std::to_string(corners) + " corners, which is no multiple of 3");
+        return place.wrong("has " + std::to_string(corners) + " corners, which is not a multiple of 3");
     }
     const std::uint64_t count = mode == kTriangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
     if (count > triangle_max_ - counts_.polygons) {
-        return place.wrong("is beyond the limit of " + std::to_string(triangle_max_) +
+        return place.wrong("exceeds the limit of " + std::to_string(triangle_max_) +
                                " triangles for all meshes; simplify the mesh, or raise --max-triangles",
                            ErrorCode::kLimit);
     }

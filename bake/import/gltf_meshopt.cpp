@@ -29,19 +29,19 @@ Result<void> checkPacking(const GltfValue& extension, const MeshoptPacking& pack
                           std::uint64_t size) {
     const std::uint64_t stride = packing.stride;
     if (!packing.attributes() && !packing.triangles() && packing.mode != "INDICES") {
-        return extension.wrong(
-            "has the mode '" + cleanUtf8(packing.mode, 20) + "', which is not read; export it without",
-            ErrorCode::kUnsupported);
+        return extension.wrong("has the mode '" + cleanUtf8(packing.mode, 20) +
+                                   "', which is not supported; export it uncompressed",
+                               ErrorCode::kUnsupported);
     }
     const bool wide = packing.attributes() ? stride > 0 && stride % 4 == 0 && stride <= kStrideMax
                                            : stride == 2 || stride == 4;
     if (!wide || (packing.triangles() && packing.count % 3 != 0)) {
         return extension.wrong("has a byteStride or a count that its mode, " + packing.mode +
-                               ", does not have");
+                               ", does not allow");
     }
     // Division cannot overflow.
     if (packing.count != size / stride || size % stride != 0) {
-        return extension.wrong("unpacks to another length than its buffer view has");
+        return extension.wrong("unpacks to a length that differs from its buffer view's");
     }
     const std::uint64_t least = packing.attributes()  ? size / kRatioMax
                                 : packing.triangles() ? packing.count / 3
@@ -52,14 +52,14 @@ Result<void> checkPacking(const GltfValue& extension, const MeshoptPacking& pack
     const std::string& filter = packing.filter;
     if (filter != "NONE" && filter != "OCTAHEDRAL" && filter != "QUATERNION" && filter != "EXPONENTIAL") {
         return extension.wrong(
-            "has the filter '" + cleanUtf8(filter, 20) + "', which is not read; export it without",
+            "has the filter '" + cleanUtf8(filter, 20) + "', which is not supported; export it uncompressed",
             ErrorCode::kUnsupported);
     }
     const bool fits = filter == "OCTAHEDRAL"   ? stride == 4 || stride == 8
                       : filter == "QUATERNION" ? stride == 8
                                                : true;
     if ((filter != "NONE" && !packing.attributes()) || !fits) {
-        return extension.wrong("has a filter that does not go with its mode and byteStride");
+        return extension.wrong("has a filter that does not fit its mode and byteStride");
     }
     return {};
 }
@@ -83,7 +83,7 @@ Result<std::vector<std::byte>> unpackMeshopt(const GltfValue& extension, std::sp
             ? meshopt_decodeIndexBuffer(bytes.data(), packing.count, packing.stride, from, packed.size())
             : meshopt_decodeIndexSequence(bytes.data(), packing.count, packing.stride, from, packed.size());
     if (failed != 0) {
-        return extension.wrong("holds bytes that meshopt cannot unpack; export it again");
+        return extension.wrong("has bytes that meshopt cannot unpack; export it again");
     }
     if (packing.filter == "OCTAHEDRAL") {
         meshopt_decodeFilterOct(bytes.data(), packing.count, packing.stride);

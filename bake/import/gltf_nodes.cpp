@@ -28,7 +28,7 @@ Result<void> checkVersion(const GltfValue& document) {
     const std::optional<GltfValue> asset = RELIEF_TRY(document.object("asset"));
     const auto version = asset ? RELIEF_TRY(asset->get<std::string>("version")) : std::nullopt;
     if (!version) {
-        return invalidInput("it names no glTF version");
+        return invalidInput("it states no glTF version");
     }
     const std::string least = RELIEF_TRY(asset->get<std::string>("minVersion", "2.0"));
     for (const auto& [text, any_minor] : {std::pair(*version, true), std::pair(least, false)}) {
@@ -36,12 +36,11 @@ Result<void> checkVersion(const GltfValue& document) {
         const std::optional<std::uint64_t> major = parseUnsigned(parts[0]);
         const std::optional<std::uint64_t> minor = parts.size() == 2 ? parseUnsigned(parts[1]) : std::nullopt;
         if (!major || !minor) {
-            return asset->wrong("has '" + cleanUtf8(text, 20) +
-                                "' where a version belongs; save it as glTF 2.0");
+            return asset->wrong("has the invalid version '" + cleanUtf8(text, 20) + "'; save it as glTF 2.0");
         }
         if (*major != 2 || (*minor > 0 && !any_minor)) {
-            return fail(ErrorCode::kUnsupported,
-                        "glTF of version '" + cleanUtf8(text, 20) + "' is not read; save it as glTF 2.0");
+            return fail(ErrorCode::kUnsupported, "glTF of version '" + cleanUtf8(text, 20) +
+                                                     "' is not supported; save it as glTF 2.0");
         }
     }
     return {};
@@ -58,7 +57,7 @@ Result<void> checkExtensions(const GltfValue& document) {
                            std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
         if (!known) {
             return fail(ErrorCode::kUnsupported, "it requires the extension '" + cleanUtf8(name, 100) +
-                                                     "', which is not read; export it without");
+                                                     "', which is not supported; export it without it");
         }
     }
     return {};
@@ -103,7 +102,7 @@ Result<Transform> placedBy(const GltfValue& node, const glm::vec3& t, const glm:
     const double length =
         std::sqrt(double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w);
     if (!(std::abs(length - 1.0) <= kUnitTolerance)) {
-        return node.wrong("has a rotation that is no unit quaternion: its length is " +
+        return node.wrong("has a rotation that is not a unit quaternion: its length is " +
                           shortest(static_cast<float>(length)));
     }
     Transform transform{rotationOf(glm::dvec3(q.x, q.y, q.z) / length, q.w / length), t};
@@ -121,7 +120,7 @@ Result<GltfPlacement> placementOf(const GltfValue& node) {
     GltfPlacement at;
     if (!matrix.empty()) {
         if (!t.empty() || !q.empty() || !scale.empty()) {
-            return node.wrong("has a matrix and a translation, rotation or scale; only one may be");
+            return node.wrong("has a matrix and a translation, rotation or scale; use one of them");
         }
         const std::optional<Transform> transform = affineOf(matrix.data());
         if (!transform) {
@@ -145,7 +144,7 @@ Result<void> linkNodes(std::vector<GltfNode>& nodes) {
         for (const std::uint64_t child : RELIEF_TRY(place.get<std::vector<std::uint64_t>>("children", {}))) {
             const std::string name = "nodes[" + std::to_string(child) + "]";
             if (child >= nodes.size()) {
-                return place.wrong("names a child, " + name + ", that does not exist");
+                return place.wrong("has a missing child, " + name);
             }
             // Otherwise, n nodes could show a mesh 2ⁿ times.
             if (std::exchange(nodes[child].parent, index)) {
@@ -181,8 +180,8 @@ Result<void> checkLevels(const std::vector<GltfNode>& nodes,
                 at < children.size() ? children[at] : levels[node][at - children.size()];
             if (states[next] == State::kOpen) {
                 return nodes[next].place.wrong(
-                    "is a lower level of detail of itself (MSFT_lod), so that none is shown; remove its "
-                    "number from the ids, or give --hidden keep");
+                    "is a lower level of detail of itself (MSFT_lod), so no level is shown; remove its "
+                    "index from the ids, or use --hidden keep");
             }
             if (states[next] == State::kNew) {
                 states[next] = State::kOpen;
@@ -220,7 +219,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
         bool met = nodes[i].shown != Shown::kHidden;  // a more detailed level is shown
         for (const std::uint64_t level : levels ? RELIEF_TRY(levels->get<Indices>("ids", {})) : Indices()) {
             if (level >= nodes.size()) {
-                return levels->wrong("names nodes[" + std::to_string(level) + "], which does not exist");
+                return levels->wrong("references nodes[" + std::to_string(level) + "], which does not exist");
             }
             if (level != i) {
                 lesser[i].push_back(static_cast<std::uint32_t>(level));
@@ -250,7 +249,7 @@ Result<std::vector<T>> instanceValues(const GltfValue& attributes, const char* n
 Result<void> checkCombineModes(const GltfValue& material, std::vector<std::string>& warnings) {
     constexpr const char* kWarning =
         "physics materials have a frictionCombine or restitutionCombine of minimum or maximum, which has no "
-        "effect: their values are factors of those of a particle";
+        "effect: their values multiply those of a particle";
     for (const char* name : {"frictionCombine", "restitutionCombine"}) {
         const auto mode = RELIEF_TRY(material.get<std::string>(name, "average"));
         if (mode != "average" && mode != "multiply" &&
@@ -300,15 +299,15 @@ Result<std::vector<std::uint32_t>> gltfRoots(const GltfValue& document, const st
     const std::vector<GltfValue> scenes = RELIEF_TRY(document.objects("scenes"));
     const std::uint64_t shown = RELIEF_TRY(document.get<std::uint64_t>("scene", 0));
     if (scenes.empty()) {
-        return invalidInput("it has no scene, and so shows nothing; export it with a scene");
+        return invalidInput("it has no scene, so it shows nothing; export it with a scene");
     }
     const GltfValue scene = RELIEF_TRY(document.at(shown, "scenes", "scene"));
     std::vector<std::uint32_t> roots;
     std::set<std::uint64_t> seen;
     for (const std::uint64_t root : RELIEF_TRY(scene.get<std::vector<std::uint64_t>>("nodes", {}))) {
         if (root >= nodes.size() || nodes[root].parent || !seen.insert(root).second) {
-            return scene.wrong("names nodes[" + std::to_string(root) +
-                               "], which does not exist, has a parent or is named twice");
+            return scene.wrong("references nodes[" + std::to_string(root) +
+                               "], which does not exist, has a parent, or is listed twice");
         }
         roots.push_back(static_cast<std::uint32_t>(root));
     }
@@ -361,7 +360,7 @@ Result<std::optional<NodeResponse>> gltfResponse(const GltfValue& document, cons
     const std::vector<GltfValue> all =
         lists ? RELIEF_TRY(lists->objects("physicsMaterials")) : std::vector<GltfValue>();
     if (*index >= all.size()) {
-        return collider->wrong("has the physicsMaterial " + std::to_string(*index) + ", and there are " +
+        return collider->wrong("has the physicsMaterial " + std::to_string(*index) + ", but there are " +
                                std::to_string(all.size()));
     }
     const GltfValue& material = all[*index];
@@ -401,7 +400,7 @@ Result<std::optional<std::vector<Transform>>> gltfInstances(const GltfNode& node
     const std::size_t count = std::max({moves.size(), turns.size(), scales.size()});
     for (const std::size_t size : {moves.size(), turns.size(), scales.size()}) {
         if (size != count && size != 0) {
-            return attributes->wrong("have other counts of TRANSLATION, ROTATION and SCALE");
+            return attributes->wrong("have different counts of TRANSLATION, ROTATION and SCALE");
         }
     }
     if (count == 0) {

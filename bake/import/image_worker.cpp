@@ -52,7 +52,7 @@ class WorkerRows : public SampleRows {
         RELIEF_TRY(receiveAnswer(std::as_writable_bytes(std::span(&size, 1))));
         if (size.columns == 0 || size.rows == 0 ||
             (size.most != 0 && size.most != 255 && size.most != 65535)) {
-            return invalidInput("the importer answers with a size that no image has; save it again");
+            return invalidInput("the importer returned an invalid image size; save it again");
         }
         columns_ = size.columns;
         rows_ = size.rows;
@@ -72,7 +72,7 @@ class WorkerRows : public SampleRows {
         RELIEF_TRY(receive(std::as_writable_bytes(std::span(text))));
         return code <= static_cast<std::uint32_t>(ErrorCode::kDifference)
                    ? fail(static_cast<ErrorCode>(code), cleanUtf8(text, kImageErrorBytesMax))
-                   : invalidInput("the importer answers with an error that there is not; save it again");
+                   : invalidInput("the importer returned an unknown error; save it again");
     }
 
     Result<std::uint32_t> receiveNumber() {
@@ -90,8 +90,9 @@ class WorkerRows : public SampleRows {
             }
             if (got <= 0) {
                 RELIEF_TRY(worker_.finish(begun_));
-                return fail(ErrorCode::kFailure,
-                            "the importer gave no answer; try again, or save the image in another format");
+                return fail(
+                    ErrorCode::kFailure,
+                    "the importer returned no result; try again, or save the image in another format");
             }
             bytes = bytes.subspan(static_cast<std::size_t>(got));
         }

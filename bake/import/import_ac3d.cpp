@@ -55,11 +55,11 @@ class Ac3dReader {
         if (missing > 0) {  // common in practice
             scene_.warnings.push_back(
                 "it has " + std::to_string(missing) +
-                " objects fewer than its 'kids' announce; if some are missing, copy or export it again");
+                " objects fewer than its 'kids' declare; if some are missing, copy or export it again");
         }
         if (subdivided_ > 0) {
             scene_.warnings.push_back(std::to_string(subdivided_) +
-                                      " of its objects are shown subdivided; baked as they are modelled");
+                                      " of its objects use subdivision; baked as modelled, without it");
         }
         return std::move(scene_);
     }
@@ -75,7 +75,7 @@ class Ac3dReader {
 
     [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& what) const {
         return wrongLine(line(),
-                         "it ends too early: " + what + "; it was probably cut off: copy or export it again");
+                         "it ends too early: " + what + "; it was probably cut off; copy or export it again");
     }
 
     /// Removes quotes, if any.
@@ -92,7 +92,7 @@ class Ac3dReader {
         if (const std::optional<std::uint64_t> value = parseUnsigned(word)) {
             return *value;
         }
-        return wrongLine(line(), quotedWord(word) + " is no number of " + std::string(what) +
+        return wrongLine(line(), quotedWord(word) + " is not a number of " + std::string(what) +
                                      "; repair the file or export it again");
     }
 
@@ -220,12 +220,12 @@ class Ac3dReader {
         const std::string_view digits =
             word.starts_with("0x") || word.starts_with("0X") ? word.substr(2) : std::string_view();
         if (digits.empty() || digits.size() > 8) {
-            return wrongLine(line(), quotedWord(word) + " is no number such as 0x20; repair the file");
+            return wrongLine(line(), quotedWord(word) + " is not a number such as 0x20; repair the file");
         }
         for (const char c : digits) {
             const std::size_t digit = std::string_view("0123456789abcdef").find(lowerCase({&c, 1}));
             if (digit == std::string_view::npos) {
-                return wrongLine(line(), quotedWord(word) + " is no number such as 0x20; repair the file");
+                return wrongLine(line(), quotedWord(word) + " is not a number such as 0x20; repair the file");
             }
             value = 16 * value + digit;
         }
@@ -253,11 +253,12 @@ class Ac3dReader {
             const std::string_view word = text_.anyWord();
             const std::optional<std::uint64_t> corner = parseUnsigned(word);
             if (!corner || *corner >= positions_.size()) {
-                return word.empty() ? cutOff("corners of a surface are missing")
-                                    : wrongLine(line(), "a surface names the vertex " + quotedWord(word) +
-                                                            ", but its object has " +
-                                                            std::to_string(positions_.size()) +
-                                                            ", from 0; repair the file or export it again");
+                return word.empty()
+                           ? cutOff("corners of a surface are missing")
+                           : wrongLine(line(),
+                                       "a surface uses the vertex " + quotedWord(word) +
+                                           ", but its object has " + std::to_string(positions_.size()) +
+                                           " vertices, numbered from 0; repair the file or export it again");
             }
             corners_.push_back(static_cast<std::uint32_t>(*corner));
             text_.nextLine();  // TORCS appends one or more texture coordinates

@@ -135,14 +135,14 @@ SourceFrame fbxFrame(const ImportJob& job, const aiScene& scene) {
     if (unit.value && *unit.value > 0.0) {
         frame.metres = 0.01 * *unit.value;
     } else {
-        frame.unit_fault = "its UnitScaleFactor is " + unit.text + ", which is no length";
+        frame.unit_fault = "its UnitScaleFactor is " + unit.text + ", which is not a length";
     }
     const int axis = metadata<std::int32_t>(scene.mMetaData, "UpAxis").value_or(1);
     const int sign = metadata<std::int32_t>(scene.mMetaData, "UpAxisSign").value_or(1);
     if (axis >= 0 && axis <= 2) {
         frame.up = static_cast<UpAxis>(2 * axis + (sign < 0 ? 1 : 0));
     } else {
-        frame.up_fault = "its UpAxis is " + std::to_string(axis) + ", which is none of 0, 1 and 2";
+        frame.up_fault = "its UpAxis is " + std::to_string(axis) + ", which is not 0, 1 or 2";
     }
     return frame;
 }
@@ -166,7 +166,7 @@ SourceFrame frameOf3ds(aiMatrix4x4& root) {
     const float scale = root.a1;
     root = aiMatrix4x4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1) * root;
     if (!(scale > 0.0F && std::isfinite(scale))) {
-        frame.unit_fault = "its master scale is " + shortest(1.0F / scale) + ", which is none";
+        frame.unit_fault = "its master scale is " + shortest(1.0F / scale) + ", which is not a scale";
         root = aiMatrix4x4();
     }
     return frame;
@@ -420,7 +420,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
         const std::string them = count == 1 ? "it" : "them";
         scene.warnings.push_back("could not leave out " + std::to_string(count) + " hidden object" +
                                  (count == 1 ? "" : "s") + firstName(hidden.unmet.front(), count) +
-                                 ", because no node stands for " + them + "; remove " + them);
+                                 ", because no node represents " + them + "; remove " + them);
     }
 }
 
@@ -454,7 +454,7 @@ tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFile
         }
     }
     const std::string words = oneCleanLine(importer.GetErrorString());
-    std::string text = words.empty() ? "its contents are not of the format of its extension" : words;
+    std::string text = words.empty() ? "its contents do not match its extension" : words;
     for (const std::string& refused : files.refused()) {
         text += "; it refers to " + refused;
     }
@@ -479,7 +479,7 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
     // Owned by the importer; the cast is safe because the object is not constant.
     auto* const source = const_cast<aiScene*>(importer.ReadFile(job.file_name, 0));
     if (hasLogged("UnitScaleFactor must be non-zero")) {
-        return invalidInput("its UnitScaleFactor is 0, which is no length; export it again with a unit");
+        return invalidInput("its UnitScaleFactor is 0, which is not a length; export it again with a unit");
     }
     if (source == nullptr || source->mRootNode == nullptr) {
         return notRead(importer, files);
@@ -494,21 +494,21 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
                                          : nodesOf(*source->mRootNode, collada.nodes),
              scene);
     if (collada.missing) {
-        scene.warnings.push_back("left out what is missing: " + *collada.missing);
+        scene.warnings.push_back("left out missing objects: " + *collada.missing);
     }
     if (collada.animates_visibility || (format == AssimpFrame::kFbx && fbxAnimatesVisibility(job.bytes))) {
         scene.warnings.emplace_back(kAnimatedVisibility);
     }
     const std::span meshes(source->mMeshes, source->mNumMeshes);
     if (std::any_of(meshes.begin(), meshes.end(), [](const aiMesh* mesh) { return mesh->HasBones(); })) {
-        scene.warnings.emplace_back("it is skinned; baked as it is modelled, without its skeleton");
+        scene.warnings.emplace_back("it is skinned; baked as modelled, without its skeleton");
     }
     if (std::any_of(meshes.begin(), meshes.end(),
                     [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })) {
-        scene.warnings.emplace_back("it is morphed; baked as it is modelled, without its targets");
+        scene.warnings.emplace_back("it has morph targets; baked as modelled, without them");
     }
     for (const std::string& error : logged) {
-        scene.warnings.push_back("its importer says: " + error);
+        scene.warnings.push_back("the importer reports: " + error);
     }
     return scene;
 }

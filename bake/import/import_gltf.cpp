@@ -66,8 +66,8 @@ class GltfReader {
         RELIEF_TRY(readShown());
         scene_.counts = meshes_.counts(RELIEF_TRY(document_.objects("meshes")).size());
         if (!skins_.empty()) {
-            warn(all_jointed_ ? "it is skinned; baked in the pose that its nodes have"
-                              : "it is skinned; parts without joints are baked as they are modelled, without "
+            warn(all_jointed_ ? "it is skinned; baked in the pose of its nodes"
+                              : "it is skinned; parts without joints are baked as modelled, without "
                                 "their skeleton");
         }
         return std::move(scene_);

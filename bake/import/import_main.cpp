@@ -140,7 +140,7 @@ int work(std::span<char*> arguments) {
         enterSandbox({memory + kMemoryBeside, static_cast<std::uint32_t>(seconds)}, folder, kImportResultFd);
     if (!limited) {
         const Error error{limited.error().code, limited.error().message +
-                                                    ", and so does not begin; raise the limits of this "
+                                                    "; raise the limits of this "
                                                     "process (ulimit -a)"};
         return image ? sendError(error)
                      : sendMessage(withPrefix("cannot read the mesh " + quotedPath(path),

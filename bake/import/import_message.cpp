@@ -142,7 +142,7 @@ bool isShare(float value) {
 }
 
 tl::unexpected<Error> noMessage() {
-    return invalidInput("the importer answers with bytes that are no mesh");
+    return invalidInput("the importer returned bytes that are not a mesh");
 }
 
 }  // namespace

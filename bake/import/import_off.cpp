@@ -37,8 +37,8 @@ class OffReader {
             RELIEF_TRY(checkTriangleCount(triangles));
         }
         if (const std::string_view word = text_.anyWord(); !word.empty()) {
-            return wrongLine(text_.line(), quotedWord(word) + " stands behind the last of the " + counts() +
-                                               " of its header; repair the counts or export it again");
+            return wrongLine(text_.line(), quotedWord(word) + " follows the last of the " + counts() +
+                                               " of its header; fix the counts or export it again");
         }
         return std::move(mesh_);
     }
@@ -55,14 +55,14 @@ class OffReader {
             // four.
             if (name.find_first_not_of("stcnof") != std::string::npos || word.ends_with("nOFF")) {
                 return wrongLine(text_.line(),
-                                 quotedWord(word) + " is no OFF of three dimensions; save it as OFF");
+                                 quotedWord(word) + " is not a three-dimensional OFF; save it as OFF");
             }
             behind_ = (name.find("st") != std::string::npos ? 2 : 0) +
                       (name.find('c') != std::string::npos ? 4 : 0) +
                       (name.find('n') != std::string::npos ? 3 : 0);
             word = text_.anyWord();
             if (lowerCase(word) == "binary") {
-                return wrongLine(text_.line(), "a binary OFF is not read; save it as text, or as PLY");
+                return wrongLine(text_.line(), "binary OFF is not supported; save it as text, or as PLY");
             }
         }
         vertices_ = RELIEF_TRY(countOf(word));
@@ -82,9 +82,10 @@ class OffReader {
         if (const std::optional<std::uint64_t> count = parseUnsigned(word)) {
             return *count;
         }
-        return wrongLine(text_.line(), quotedWord(word) +
-                                           " is no count; an OFF begins with OFF and its counts of vertices, "
-                                           "faces and edges: repair the file or export it again");
+        return wrongLine(text_.line(),
+                         quotedWord(word) +
+                             " is not a count; an OFF begins with OFF and the counts of vertices, "
+                             "faces and edges; repair the file or export it again");
     }
 
     [[nodiscard]] std::string counts() const {
@@ -93,8 +94,8 @@ class OffReader {
 
     /// Returns the error for a truncated file.
     [[nodiscard]] tl::unexpected<Error> cutOff(const std::string& where) const {
-        return wrongLine(text_.line(), "it ends " + where + ", though its header announces " + counts() +
-                                           ": it was probably cut off; copy or export it again");
+        return wrongLine(text_.line(), "it ends " + where + ", but its header declares " + counts() +
+                                           " and was probably cut off; copy or export it again");
     }
 
     Result<float> number(std::string_view word, const char* element, std::uint64_t index) const {
@@ -130,9 +131,10 @@ class OffReader {
         }
         const std::optional<std::uint64_t> corners = parseUnsigned(word);
         if (!corners || *corners == 0) {
-            return wrongLine(text_.line(), quotedWord(word) +
-                                               " is no count of a face's corners; repair the file or export "
-                                               "it again");
+            return wrongLine(text_.line(),
+                             quotedWord(word) +
+                                 " is not a face's number of corners; repair the file or export "
+                                 "it again");
         }
         for (std::uint64_t i = 0; i < *corners; ++i) {
             spans_lines_ = spans_lines_ || text_.atLineEnd();
@@ -142,10 +144,10 @@ class OffReader {
                 return cutOff("in face " + std::to_string(index));
             }
             if (!vertex || *vertex >= vertices_) {
-                return wrongLine(text_.line(), "face " + std::to_string(index) + " names the vertex " +
-                                                   quotedWord(corner) + ", but there are " +
-                                                   std::to_string(vertices_) +
-                                                   ", from 0; repair the file or export it again");
+                return wrongLine(text_.line(),
+                                 "face " + std::to_string(index) + " uses the vertex " + quotedWord(corner) +
+                                     ", but there are " + std::to_string(vertices_) +
+                                     " vertices, numbered from 0; repair the file or export it again");
             }
             mesh_.corners.push_back(static_cast<std::uint32_t>(*vertex));
         }

@@ -98,7 +98,7 @@ Result<void> ImportProcess::start(const std::string& path, std::string_view kind
     start.program = workerProgram();
     if (start.program.empty()) {
         return fail(ErrorCode::kFailure,
-                    std::string("the program ") + kWorkerName + " is not beside this one; install it again");
+                    std::string("the program ") + kWorkerName + " is not beside this one; reinstall Relief");
     }
     start.arguments = {kWorkerName,
                        path,
@@ -136,9 +136,10 @@ Result<void> ImportProcess::await(int pipe, short events) {
 Result<void> ImportProcess::finish(bool begun) {
     const ProcessEnd end = worker_.wait();
     if (!begun && end.signal != SIGKILL && end.exit_code <= kImportExitErrno) {
-        return fail(ErrorCode::kFailure,
-                    "the importer could not be started, as its libraries cannot be loaded; close files or "
-                    "raise their limit (ulimit -n), free memory, or install Relief again");
+        return fail(
+            ErrorCode::kFailure,
+            "the importer could not be started, because its libraries cannot be loaded; close files or "
+            "raise their limit (ulimit -n), free memory, or reinstall Relief");
     }
     if (end.signal != 0) {
         return ended(end.signal);
@@ -151,15 +152,15 @@ Result<void> ImportProcess::finish(bool begun) {
                                                " bytes; " + smaller_ + ", or raise --import-memory");
         case kImportExitArguments:
             return fail(ErrorCode::kFailure,
-                        "the importer was started by another version, or left alone; install Relief again");
+                        "the importer was started by another version, or lost its parent; reinstall Relief");
         case kImportExitTooLarge:
-            return fail(ErrorCode::kLimit, std::string("the ") + noun_ + " is too large to be handed over; " +
+            return fail(ErrorCode::kLimit, std::string("the ") + noun_ + " is too large to transfer; " +
                                                smaller_ +
                                                ", or raise --import-memory and this process's file size "
                                                "limit (ulimit -f)");
         default:
             return end.exit_code > kImportExitErrno
-                       ? shortOf("could not go on", end.exit_code - kImportExitErrno)
+                       ? shortOf("could not continue", end.exit_code - kImportExitErrno)
                        : unreadable("ended with exit code " + std::to_string(end.exit_code));
     }
 }
@@ -182,11 +183,12 @@ tl::unexpected<Error> ImportProcess::ended(int number) const {
                         "the importer was ended by " + signalName(number) +
                             " from outside (the system may be out of memory); try again");
         case SIGSYS:
-            return fail(ErrorCode::kInvalidInput,
-                        "the importer tried what it may not (SIGSYS), as a hostile file can make it; do not "
-                        "trust the file, or report it if you do");
+            return fail(
+                ErrorCode::kInvalidInput,
+                "the importer made a forbidden system call (SIGSYS), as a hostile file can cause; do not "
+                "trust the file, or report it if you do");
         case SIGBUS:  // not a truncated file: its memory is anonymous
-            return shortOf("could not go on", ENOMEM);
+            return shortOf("could not continue", ENOMEM);
         default:
             return unreadable("crashed on it (" + signalName(number) + ")");
     }

@@ -70,14 +70,14 @@ Result<void> enterLandlock(int folder) {
     const Descriptor ruleset(
         static_cast<int>(::syscall(SYS_landlock_create_ruleset, &rules, sizeof(rules), 0)));
     if (!ruleset) {
-        return cannot("make Landlock rules");
+        return cannot("create Landlock rules");
     }
     if (folder >= 0) {
         landlock_path_beneath_attr beneath{};
         beneath.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
         beneath.parent_fd = folder;
         if (::syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &beneath, 0) != 0) {
-            return cannot("allow its folder by Landlock");
+            return cannot("allow its folder in Landlock");
         }
     }
     if (::syscall(SYS_landlock_restrict_self, ruleset.get(), 0) != 0) {
@@ -270,7 +270,7 @@ Result<void> enterSeccomp(int folder, int result) {
 
 Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) {
-        return cannot("ask to end with its parent");
+        return cannot("request to end with its parent");
     }
 #ifndef RELIEF_SANITIZED  // the sanitizers' shadow memory needs terabytes of address space
     const std::uint64_t taken = addressSpace();
@@ -282,7 +282,7 @@ Result<void> enterSandbox(const SandboxLimits& limits, int folder, int result) {
     if (!lowerLimit(RLIMIT_CPU, limits.seconds, std::uint64_t{limits.seconds} + 1U) ||
         !lowerLimit(RLIMIT_STACK, kSandboxStack, kSandboxStack) || !lowerLimit(RLIMIT_CORE, 0, 0) ||
         !lowerLimit(RLIMIT_FSIZE, 0, 0)) {
-        return cannot("limit itself");
+        return cannot("lower its limits");
     }
     if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || ::prctl(PR_SET_DUMPABLE, 0) != 0) {
         return cannot("give up privileges");

@@ -163,13 +163,13 @@ class NameMarks {
         if (unmet == asked.end()) {
             return {};
         }
-        std::string text = "it names no triangles '" + cleanUtf8(*unmet, kAskedNameBytesMax) + "'";
+        std::string text = "no triangle has the name '" + cleanUtf8(*unmet, kAskedNameBytesMax) + "'";
         const std::vector<std::string_view> known(names_.begin(), names_.end());
         text += didYouMean(*unmet, known);
         if (known.empty()) {
-            return fail(ErrorCode::kUsage, text + ", nor anything else; leave the name out");
+            return fail(ErrorCode::kUsage, text + "; the file has no names, so leave it out");
         }
-        text += text.ends_with("?") ? " It has " : "; it has ";
+        text += text.ends_with("?") ? " Its names: " : "; its names: ";
         for (std::size_t i = 0; i < std::min(known.size(), kListedMax); ++i) {
             text += (i == 0 ? "'" : ", '") + cleanUtf8(known[i], kListedBytesMax) + "'";
         }
@@ -254,9 +254,8 @@ class Flattener {
         RELIEF_TRY(marks_.allMet());
         dropSingleLabel(mesh_);
         if (flat_ > 0) {
-            mesh_.warnings.push_back(
-                std::to_string(flat_) +
-                " of its parts are scaled to nothing in some direction, and hold no volume");
+            mesh_.warnings.push_back(std::to_string(flat_) +
+                                     " of its parts are scaled to 0 in some direction and have no volume");
         }
         return std::move(mesh_);
     }
@@ -299,7 +298,7 @@ class Flattener {
         if (!isPlaced(use.transform.offset, rigid.scale)) {
             return invalidInput(
                 "the node '" + cleanUtf8(use.node->shown, kAskedNameBytesMax) +
-                "' stands beyond 1e15, or its scale is not between 1e-9 and 1e9; mend its transform");
+                "' is beyond 1e15, or its scale is not between 1e-9 and 1e9; fix its transform");
         }
         const std::uint32_t mesh = RELIEF_TRY(meshOf(use, applied));
         const glm::dvec3& at = use.transform.offset;
@@ -322,9 +321,8 @@ class Flattener {
             return tooManyTriangles(job_);
         }
         if (next == kLevelMeshesMax) {
-            return fail(ErrorCode::kLimit,
-                        "it has more than " + std::to_string(kLevelMeshesMax) +
-                            " different meshes, those with unequal scales counted one by one; join some");
+            return fail(ErrorCode::kLimit, "it has more than " + std::to_string(kLevelMeshesMax) +
+                                               " distinct meshes, counting each unequal scale; join some");
         }
         LevelMesh mesh{use.node->shown, mesh_.positions.size(), mesh_.triangles.size()};
         for (const std::uint32_t part : use.parts) {
@@ -350,7 +348,7 @@ class Flattener {
     /// Whether a node or one below it has triangles. Recursive: importers run on a deep stack.
     Result<bool> look(std::uint32_t index) {
         if (states_[index] == State::kOpen) {
-            return invalidInput("an object is placed within itself; export it again");
+            return invalidInput("an object contains itself; export it again");
         }
         if (states_[index] == State::kUnseen) {
             states_[index] = State::kOpen;
@@ -640,7 +638,8 @@ std::optional<std::string> partsRefusal(const MeshParts& parts) {
     }
     if (parts.vertices > 0) {
         return std::to_string(parts.vertices) + (parts.vertices == 1 ? " vertex" : " vertices") +
-               " but no faces; if it is a scan, make a surface of its points first, for example in MeshLab";
+               " but no faces; if it is a scan, reconstruct a surface from its points first, for example in "
+               "MeshLab";
     }
     return std::nullopt;
 }
@@ -656,8 +655,8 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings) {
     if (parts.loose > parts.vertices / kLooseShare) {
         warnings.push_back(std::to_string(parts.loose) + " of its " + std::to_string(parts.vertices) +
                            (parts.loose == 1 ? " vertices belongs" : " vertices belong") +
-                           " to no polygon: faces may be missing; compare the count of "
-                           "triangles with that of the program that wrote it");
+                           " to no polygon: faces may be missing; compare its triangle count "
+                           "with that of the exporting program");
     }
 }
 
@@ -701,14 +700,14 @@ void LeftOutObjects::warn(std::vector<std::string>& warnings) const {
 
 tl::unexpected<Error> noTriangles(bool left_out) {
     return invalidInput(left_out
-                            ? "all of its objects are hidden; show what is to be baked, or give --hidden keep"
+                            ? "all of its objects are hidden; show the objects to bake, or use --hidden keep"
                             : "no triangles; export the surface as polygons, not as points or lines");
 }
 
 tl::unexpected<Error> tooManyTriangles(const ImportJob& job) {
     return fail(ErrorCode::kLimit,
                 "it has more than " + std::to_string(job.triangle_max) +
-                    " triangles or thrice as many vertices, instances counted one by one; simplify the mesh" +
+                    " triangles, or three times as many vertices, counting each instance; simplify the mesh" +
                     (job.triangle_max < kTriangleMax ? ", or raise --max-triangles" : ""));
 }
 

@@ -122,7 +122,7 @@ void warnOfParts(const MeshParts& parts, std::vector<std::string>& warnings);
 
 /// A warning, without the file name.
 inline constexpr const char* kAnimatedVisibility =
-    "its animations show and hide objects; it is baked as its nodes are without them";
+    "its animations show and hide objects; baked with the visibility of its nodes";
 
 /// Returns " ('NAME')" for one object, " (first 'NAME')" for several, "" if the name is empty.
 [[nodiscard]] std::string firstName(const std::string& name, std::uint64_t count);

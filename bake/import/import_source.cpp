@@ -56,7 +56,7 @@ Result<ImportSource> ImportSource::open(const fs::path& path) {
 
 tl::unexpected<Error> ImportSource::lies(const char* what) const {
     return fail(ErrorCode::kInvalidInput,
-                quotedPath(path_) + ": the importer answers with " + what + "; export the mesh again");
+                quotedPath(path_) + ": the importer returned " + what + "; export the mesh again");
 }
 
 Result<TriangleMesh> ImportSource::finish(TriangleMesh raw, std::size_t names) const {
@@ -86,7 +86,7 @@ Result<AnimatedImport> ImportSource::finishAnimated(TriangleMesh raw, ImportKind
     const bool clips = kind == ImportKind::kClips;
     Result<AnimatedMesh> mesh = clips ? readAnimatedClips(raw.animation) : readAnimatedMesh(raw.animation);
     if (!mesh) {
-        return lies("bytes that are no animated mesh");
+        return lies("bytes that are not an animated mesh");
     }
     if (!raw.level_meshes.empty() || !raw.level_bodies.empty() || !raw.positions.empty() ||
         !raw.triangles.empty() || !raw.surface_names.empty()) {
@@ -104,7 +104,7 @@ Result<AnimatedImport> ImportSource::finishAnimated(TriangleMesh raw, ImportKind
 
 Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) const {
     if (!(raw.unit.empty() || raw.unit == "m") || raw.dependencies.size() != raw.dependency_hashes.size()) {
-        return lies("a unit or a list of files that cannot be");
+        return lies("an invalid unit or list of files");
     }
     if (raw.marks.size() != (names > 0 ? raw.triangles.size() : 0) ||
         std::any_of(raw.marks.begin(), raw.marks.end(), [&](std::uint8_t mark) { return mark > names; })) {
@@ -119,7 +119,7 @@ Result<TriangleMesh> ImportSource::named(TriangleMesh raw, std::size_t names) co
                              std::find(relative.begin(), relative.end(), "..") == relative.end() &&
                              file.find('\0') == std::string::npos;
         if (!beneath || !isHash(raw.dependency_hashes[i])) {
-            return lies("a file that is not below the mesh's folder, or without its hash");
+            return lies("a file that is not below the mesh's folder, or has no hash");
         }
         files.emplace_back((path_.parent_path() / relative).string(), raw.dependency_hashes[i]);
     }

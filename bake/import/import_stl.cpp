@@ -44,7 +44,7 @@ Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
     }
     const std::uint64_t count = announced(bytes);
     if (const std::uint64_t held = (bytes.size() - kStlHeader) / kTriangle; held < count) {
-        return invalidInput("its header announces " + std::to_string(count) + " triangles, but it holds " +
+        return invalidInput("its header declares " + std::to_string(count) + " triangles, but it has " +
                             std::to_string(held) + " and was probably cut off; copy or export it again");
     }
     RELIEF_TRY(checkTriangleCount(count));
@@ -60,7 +60,7 @@ Result<PolygonMesh> readBinary(std::span<const std::byte> bytes) {
         addTriangle(corners, mesh);
     }
     if (const auto behind = static_cast<std::uint64_t>(bytes.data() + bytes.size() - at); behind > 0) {
-        mesh.warnings.push_back("left out " + std::to_string(behind) + " bytes behind the " +
+        mesh.warnings.push_back("left out " + std::to_string(behind) + " bytes after the " +
                                 std::to_string(count) + " triangles of its header");
     }
     return mesh;
@@ -92,8 +92,8 @@ class StlText {
             return wrongLine(text_.line(), std::string("it ends without ") + wanted +
                                                " and was probably cut off; copy or export it again");
         }
-        return wrongLine(text_.line(), quotedWord(word_) + " stands where " + wanted +
-                                           " should; repair the file or export it again");
+        return wrongLine(text_.line(), quotedWord(word_) + " appears instead of " + wanted +
+                                           "; repair the file or export it again");
     }
 
     Result<void> expect(const char* wanted) {

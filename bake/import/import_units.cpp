@@ -77,9 +77,8 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
         change.unit = "m";
     }
     if (given && source.metres && std::abs(*given / *source.metres - 1.0) > 1e-6) {
-        change.warnings.push_back("--unit " + std::string(unit) +
-                                  " is taken, but the file says that its unit is " + number(*source.metres) +
-                                  " m");
+        change.warnings.push_back("--unit " + std::string(unit) + " overrides the file's unit, " +
+                                  number(*source.metres) + " m");
     }
     // The axis after mirroring.
     const auto now = [&source](UpAxis axis) {
@@ -91,18 +90,18 @@ FrameChange changeOf(const SourceFrame& source, std::string_view unit, std::opti
         change.turn = turnUpwards(now(up ? *up : *source.up));
     }
     if (up && source.up && *up != *source.up) {
-        change.warnings.push_back("--up " + std::string(wordOf(*up)) + " is taken, but the file says that " +
-                                  std::string(wordOf(*source.up)) + " points upwards");
+        change.warnings.push_back("--up " + std::string(wordOf(*up)) + " overrides the file's up axis, " +
+                                  std::string(wordOf(*source.up)));
     }
     return change;
 }
 
 Result<void> checkFrame(const SourceFrame& source, std::string_view unit, std::optional<UpAxis> up) {
     if (!source.unit_fault.empty() && unit.empty()) {
-        return invalidInput(source.unit_fault + "; say what it is meant to be (--unit m, cm, mm, …)");
+        return invalidInput(source.unit_fault + "; state the unit (--unit m, cm, mm, …)");
     }
     if (!source.up_fault.empty() && !up) {
-        return invalidInput(source.up_fault + "; say which axis points upwards (--up +y, +z, …)");
+        return invalidInput(source.up_fault + "; state the up axis (--up +y, +z, …)");
     }
     return {};
 }
@@ -144,7 +143,7 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
     if (!frame.metres || !(*frame.metres > 0.0)) {
         frame.metres.reset();
         frame.unit_fault = "its unit is '" + cleanUtf8(std::string_view(meter).substr(0, kQuotedMax)) +
-                           "' metres, which is no length";
+                           "' metres, which is not a length";
     }
     std::string_view rest = asset.child("up_axis").child_value();
     const std::string_view axis = takeWord(rest);
@@ -152,7 +151,8 @@ SourceFrame colladaFrame(std::span<const std::byte> document) {
         frame.up = axis == "X_UP" ? UpAxis::kPlusX : UpAxis::kPlusZ;
     } else if (!axis.empty() && axis != "Y_UP") {
         frame.up.reset();
-        frame.up_fault = "its up_axis '" + cleanUtf8(axis.substr(0, kQuotedMax)) + "' is none of COLLADA";
+        frame.up_fault =
+            "its up_axis '" + cleanUtf8(axis.substr(0, kQuotedMax)) + "' is not an axis of COLLADA";
     }
     return frame;
 }

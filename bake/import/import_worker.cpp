@@ -113,7 +113,7 @@ class Import {
         const int seals = ::fcntl(result, F_GET_SEALS);
         if (seals < 0 || (seals & kSeals) != kSeals || ::fstat(result, &status) != 0 || status.st_size == 0) {
             return fail(ErrorCode::kFailure,
-                        "the importer gave no answer; try again, or export the mesh in another format");
+                        "the importer returned no result; try again, or export the mesh in another format");
         }
         const auto size = static_cast<std::size_t>(status.st_size);
         const auto unmap = [size](void* pages) { ::munmap(pages, size); };

@@ -142,7 +142,7 @@ std::uint32_t LevelMeshes::add(TriangleMesh mesh, bool materials) {
 
 Result<Level> cutLevel(TriangleMesh all, bool materials) {
     if (!fits(all)) {
-        return invalidInput("the importer answers with a level that does not fit together; export it again");
+        return invalidInput("the importer returned an inconsistent level; export it again");
     }
     const std::string stem = std::filesystem::path(all.name).stem().string();
     Level level;
@@ -187,7 +187,7 @@ Result<Level> cutLevel(TriangleMesh all, bool materials) {
         return invalidInput("it has no mesh with an area; export it again");
     }
     if (std::find(placed.begin(), placed.end(), false) != placed.end()) {
-        return invalidInput("the importer answers with a mesh that nothing places; export it again");
+        return invalidInput("the importer returned a mesh that nothing places; export it again");
     }
     return level;
 }

@@ -36,7 +36,7 @@ Result<std::vector<fs::path>> meshFilesOf(const fs::path& folder) {
     }
     if (files.empty()) {
         return invalidInput(quotedPath(folder) +
-                            " has no mesh files in it; name a folder of OBJ, PLY or glTF files");
+                            " contains no mesh files; give a folder of OBJ, PLY or glTF files");
     }
     if (files.size() > kLevelMeshesMax) {
         return fail(ErrorCode::kLimit, quotedPath(folder) + " has " + std::to_string(files.size()) +
@@ -53,8 +53,8 @@ void append(std::vector<std::string>& to, std::vector<std::string> more) {
 
 Result<Level> importFolder(const fs::path& folder, const ImportOptions& options, ImportLimits limits) {
     if (!options.names.empty()) {
-        return fail(ErrorCode::kUsage, "--as NAME=KIND is for names in one file, and " + quotedPath(folder) +
-                                           " is a folder; leave NAME= out");
+        return fail(ErrorCode::kUsage, "--as NAME=KIND applies to names in one file, but " +
+                                           quotedPath(folder) + " is a folder; leave out NAME=");
     }
     Level level;
     level.name = cleanUtf8(fs::path(folder / ".").parent_path().filename().string(), kMeshNameMax);
@@ -64,7 +64,7 @@ Result<Level> importFolder(const fs::path& folder, const ImportOptions& options,
         limits.triangles -= std::min(limits.triangles - 1, std::uint64_t{mesh.triangles.size()});
         if (!level.bodies.empty() && mesh.unit != level.unit) {
             return invalidInput(quotedPath(file) + (mesh.unit.empty() ? " has no unit" : " has a unit") +
-                                ", unlike files before it; give --unit");
+                                ", unlike earlier files; give --unit");
         }
         level.unit = mesh.unit;
         append(level.dependencies, std::exchange(mesh.dependencies, {}));

@@ -41,7 +41,7 @@ Result<ImportScene> sceneOf(const Result<PolygonMesh>& polygons, bool apart, con
     }
     if (polygons->positions.empty()) {
         // The OBJ reader accepts any text; other formats have signatures.
-        return invalidInput(job.extension == "obj" ? "it has no vertices, and is probably no .obj file"
+        return invalidInput(job.extension == "obj" ? "it has no vertices, and is probably not an .obj file"
                                                    : "it has no triangles; export the mesh again");
     }
     ImportScene scene;
@@ -86,7 +86,7 @@ Result<TriangleMesh> readAsAsked(const MeshFormat& format, const ImportJob& job,
         return format.reader == MeshReader::kGltf
                    ? readAnimatedGltf(job, files)
                    : fail(ErrorCode::kUnsupported,
-                          "animations of a ." + job.extension + " are not read; convert it to glTF");
+                          "animations of a ." + job.extension + " are not supported; convert it to glTF");
     }
     ImportScene scene = RELIEF_TRY(readScene(format, job, files));
     return job.kind == ImportKind::kLevel ? flattenLevel(std::move(scene), job)
@@ -125,7 +125,7 @@ struct Import {
         } catch (const std::exception& e) {
             result.emplace(invalidInput(oneCleanLine(e.what()) + "; export it again"));
         } catch (...) {
-            result.emplace(invalidInput("the importer gave up; export it again"));
+            result.emplace(invalidInput("the importer failed; export it again"));
         }
     }
     static void* start(void* self) {
@@ -180,7 +180,7 @@ Result<TriangleMesh> importRaw(const ImportJob& job) {
     }
     if (format) {
         mesh->warnings.push_back("its contents are those of a ." + *format + ", not of a ." + job.extension +
-                                 ", and are read so; rename it");
+                                 ", and are read as such; rename it");
     }
     return std::move(mesh);
 }

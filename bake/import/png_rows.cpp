@@ -32,14 +32,14 @@ class PngRows : public SampleRows {
         const int colour = png_get_color_type(png_, info_);
         const int bits = png_get_bit_depth(png_, info_);
         if ((colour & PNG_COLOR_MASK_PALETTE) != 0 || bits < 8) {
-            const char* const kind = bits < 8 ? "an image of less than 8 bits" : "an image with a palette";
+            const char* const kind = bits < 8 ? "an image of fewer than 8 bits" : "an image with a palette";
             return fail(ErrorCode::kUnsupported,
                         std::string("it is ") + kind + "; save it as grey of 16 bits, without alpha");
         }
         channels_ = png_get_channels(png_, info_);
         if (png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE) {
             return fail(ErrorCode::kUnsupported,
-                        "it is interlaced, and so not readable by rows; save it without");
+                        "it is interlaced, so it cannot be read row by row; save it without interlacing");
         }
         columns_ = png_get_image_width(png_, info_);
         rows_ = png_get_image_height(png_, info_);

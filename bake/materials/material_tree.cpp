@@ -353,8 +353,7 @@ class TreeBuilder {
         }
     }
 
-    /// Returns the byte of a leaf. If there are too many pairs of sides, uses the material of the side with the most
-    /// surface.
+    /// Returns the byte of a leaf. If there are too many pairs of sides, returns the `towards` material.
     [[nodiscard]] std::uint8_t leafOf(const Fit& fit) {
         if (!fit.sides) {
             return fit.single;
@@ -509,7 +508,7 @@ Result<std::size_t> idOf(const SurfaceName& name, const TriangleMesh& mesh,
                             shortest(one.restitution) + " and friction " + shortest(one.friction) +
                             " in one place, and " + shortest(name.restitution) + " and " +
                             shortest(name.friction) + " at '" + name.node +
-                            "'; give the two names of their own, or bake with --materials none");
+                            "'; give them different names, or bake with --materials none");
     }
     return found->second;
 }
@@ -547,7 +546,7 @@ Result<MaterialSource> materialSource(const TriangleMesh& mesh, bool single) {
     }
     if (source.list.size() > kMaterialsMax) {
         return fail(ErrorCode::kLimit, mesh.name + ": it has " + std::to_string(source.list.size()) +
-                                           " materials, and a collider keeps at most " +
+                                           " materials, but a collider stores at most " +
                                            std::to_string(kMaterialsMax) +
                                            "; join some, or bake with --materials none");
     }

@@ -96,8 +96,9 @@ Result<TriangleMesh> wrapMesh(const TriangleMesh& mesh, double alpha) {
         SurfaceMesh wrap;
         CGAL::alpha_wrap_3(soup.points, soup.triangles, length, length / 30.0, wrap);
         if (wrap.number_of_faces() == 0 || !CGAL::is_closed(wrap)) {
-            return fail(ErrorCode::kFailure,
-                        mesh.name + ": nothing closed came of wrapping it; try another --repair wrap=ALPHA");
+            return fail(
+                ErrorCode::kFailure,
+                mesh.name + ": wrapping it produced no closed surface; try another --repair wrap=ALPHA");
         }
         return meshOf(mesh, soup, wrap);
     } catch (const std::bad_alloc&) {

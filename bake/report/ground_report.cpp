@@ -35,9 +35,9 @@ std::vector<std::string> nearRow(const std::string& kind, const GroundNear& near
 /// Adds the fields that reports of a bake and of a check share.
 void sourceFields(FieldVisitor& visit, const std::string& heights, std::uint32_t columns,
                   std::uint32_t rows) {
-    visit("heights", heights, {"Effective settings, as --heights takes them"});
+    visit("heights", heights, {"Effective settings, in the syntax of --heights"});
     visit("unit", std::string("m"), {.help = "Unit of lengths", .words = kWords<"m">});
-    visit("columns", columns, {"Samples in a row, along +x", {}, {2.0}});
+    visit("columns", columns, {"Samples per row, along +x", {}, {2.0}});
     visit("rows", rows, {"Rows of samples, along +z", {}, {2.0}});
 }
 
@@ -50,26 +50,23 @@ std::string groundText(const GroundResult& result, const std::string& output, do
     const std::string error = millimetres(result.errorMax()) + " along y";
     return output + ": ground of " + std::to_string(result.columns) + "x" + std::to_string(result.rows) +
            " samples" + tiles + ", " +
-           (!steep                    ? "nowhere off by more than " + error
-            : result.errorMax() > 0.0 ? "off by at most " + error + " except at steep squares"
+           (!steep                    ? "height error at most " + error
+            : result.errorMax() > 0.0 ? "height error at most " + error + " except at steep squares"
                                       : "steep everywhere") +
            "; " + bytesText(result.gpuBytes()) + "; " + shortNumber(ms / 1000.0) + " s\n";
 }
 
 void fields(FieldVisitor& visit, const GroundTile& tile) {
-    visit("file", tile.file, {"Its container, in the folder of the world; empty without --world"});
+    visit("file", tile.file, {"Container in the folder of the world; empty without --world"});
     visit("hash", tile.hash, {.help = "XXH3-128 of the container", .pattern = kHashPattern});
     visit("bytes", tile.bytes, {"Size of the container", "bytes"});
-    visit("gpu_bytes", tile.gpu_bytes, {"Bytes that it takes on the GPU", "bytes"});
+    visit("gpu_bytes", tile.gpu_bytes, {"GPU memory", "bytes"});
     visit("coarse", tile.coarse,
-          {"Container that stands in for it while it is not on the GPU; null where that would save little"});
+          {"Coarse container that is used while this one is not on the GPU; null if it would save little"});
     visit("squares", tile.squares, {"Squares with ground", {}, kFromOne});
-    visit("steep_squares", tile.steep, {"Those of them that rise by more than 2.9 of their side"});
+    visit("steep_squares", tile.steep, {"Of these, squares that rise by more than 2.9 times their side"});
     visit("error_max", bound(tile.error_max),
-          {"Largest distance of the surface from its place, along y, except at steep squares; null where all "
-           "are "
-           "steep",
-           "m", kFromZero});
+          {"Largest height error along y, except at steep squares; null if all are steep", "m", kFromZero});
     fields(visit, tile.box);
 }
 
@@ -78,10 +75,10 @@ void fields(FieldVisitor& visit, const GroundJson& report) {
     toolField(visit);
     visit("output", report.output, {"--output or --world as given"});
     sourceFields(visit, report.heights, r.columns, r.rows);
-    visit("gpu_bytes", r.gpuBytes(), {"Bytes that all tiles take on the GPU", "bytes"});
+    visit("gpu_bytes", r.gpuBytes(), {"GPU memory of all tiles", "bytes"});
     visit("error_max", bound(r.errorMax()), {"The largest error_max of the tiles", "m", kFromZero});
     visit("tiles", r.tiles,
-          {.help = "Tiles with ground, row by row; without --world the only one", .items = kFromOne});
+          {.help = "Tiles with ground, row by row; a single one without --world", .items = kFromOne});
     folderFields(visit, r.removed, report.ms, r.inputs, r.warnings);
 }
 
@@ -92,11 +89,11 @@ std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& n
         " with ground, " + std::to_string(accuracy.steep) + " of them steep, " +
         std::to_string(accuracy.holes) + " without\n" + percentText(accuracy.near.wrong.total()) +
         " of the points within " + lengthText(accuracy.within, "m") +
-        " of the surface are on the wrong side; along y it is off by " + millimetres(accuracy.near.mean_abs) +
+        " of the surface are on the wrong side; the error along y is " + millimetres(accuracy.near.mean_abs) +
         " on average, at most " + millimetres(accuracy.near.most) + "\n\n";
     std::vector<std::vector<std::string>> rows = {
-        {"points", "number>", "wrong>", "inside by error>", "outside>", "mean error>", "absolute>", "99 %>",
-         "most>", "no surface>"},
+        {"points", "number>", "wrong>", "false inside>", "false outside>", "mean error>", "absolute>",
+         "99 %>", "most>", "no surface>"},
         nearRow("near the surface", accuracy.near)};
     if (accuracy.seams) {
         rows.push_back(nearRow("near seams", *accuracy.seams));
@@ -117,20 +114,21 @@ void fields(FieldVisitor& visit, const GroundNear& near) {
     visit("points", near.points, {"Points, as many in each square with ground"});
     fields(visit, near.wrong);
     const auto distances = [&](FieldVisitor& inner) {
-        inner("mean", near.mean, {"Mean of them; upwards is positive", "m"});
-        inner("mean_abs", near.mean_abs, {"Mean of their absolute values", "m", kFromZero});
-        inner("p99", near.p99, {"99 % of their absolute values are smaller", "m", kFromZero});
-        inner("max", near.most, {"The largest absolute value", "m", kFromZero});
+        inner("mean", near.mean, {"Mean, positive upwards", "m"});
+        inner("mean_abs", near.mean_abs, {"Mean of the absolute values", "m", kFromZero});
+        inner("p99", near.p99, {"99th percentile of the absolute values", "m", kFromZero});
+        inner("max", near.most, {"Largest absolute value", "m", kFromZero});
     };
     visit("error", group(distances), {"Distances along y from the height map's surface to the collider's"});
-    visit("missing", near.missing, {"Points where the collider has no surface so near; not in error"});
+    visit("missing", near.missing, {"Points without a collider surface within range; not counted in error"});
 }
 
 void fields(FieldVisitor& visit, const GroundWorstPlace& place) {
     visit("place", place.place, {"On the surface of the height map", "[x, y, z]"});
-    visit("node", place.node, {"The tile there; empty of a single collider"});
-    visit("error", place.error, {"Distance along y to the collider's surface; null: none is so near", "m"});
-    visit("rise", place.rise, {"Rise of the square there, in its sides", {}, kFromZero});
+    visit("node", place.node, {"Tile at the place; empty for a single collider"});
+    visit("error", place.error,
+          {"Distance along y to the collider's surface; null if none is within range", "m"});
+    visit("rise", place.rise, {"Rise of the square, relative to its side", {}, kFromZero});
 }
 
 void fields(FieldVisitor& visit, const GroundCheckJson& report) {
@@ -141,21 +139,21 @@ void fields(FieldVisitor& visit, const GroundCheckJson& report) {
     visit("hash", a.hash, {.help = "XXH3-128 of the height map's file", .pattern = kHashPattern});
     sourceFields(visit, report.heights, a.columns, a.rows);
     visit("squares", a.squares, {"Squares with ground", {}, kFromOne});
-    visit("steep_squares", a.steep, {"Those of them that rise by more than 2.9 of their side"});
+    visit("steep_squares", a.steep, {"Of these, squares that rise by more than 2.9 times their side"});
     visit("holes", a.holes, {"Squares without ground"});
-    visit("within", a.within,
-          {"Largest distance of points near the surface from it, along y", "m", kFromZero});
+    visit("within", a.within, {"Maximum distance of points near the surface, along y", "m", kFromZero});
     visit("near", a.near, {"Points near the surface"});
     visit("seams", a.seams,
-          {"Those within a leaf, four squares, of a seam between tiles; null where there is none"});
+          {"Of these, points within a leaf (four squares) of a seam between tiles; null if there are no "
+           "seams"});
     const auto anywhere = [&](FieldVisitor& inner) {
         inner("points", a.anywhere_points, {"Points"});
         fields(inner, a.anywhere);
     };
     visit("anywhere", group(anywhere),
-          {"Points of the map's whole box and a square around it: from what ground must be solid down to, "
-           "holes and edges included"});
-    visit("worst", a.worst, {"At most ten places, the worst first"});
+          {"Points in the map's box and one square around it, down to the required solid depth, "
+           "including holes and edges"});
+    visit("worst", a.worst, {"At most ten places, worst first"});
     visit("max_error_percent", report.max_error, {"--max-error; null without it", "%", kPercentRange});
     visit("warnings", a.warnings, {"Warnings, one line each"});
     visit("seconds", a.seconds, {"Time of the measurement", "s", kFromZero});

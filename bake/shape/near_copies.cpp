@@ -167,7 +167,7 @@ std::string NearCopies::text() const {
     const bool one = parts == 1;
     return std::to_string(parts) + (one ? " closed part lies" : " closed parts lie") + " within " +
            shortest(static_cast<float>(farthest)) +
-           " of another one; of such copies the largest counts alone, and nothing between them is hollow";
+           " of another part; only the largest of such copies counts, and nothing between them is hollow";
 }
 
 NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> solids) {

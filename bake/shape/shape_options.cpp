@@ -60,15 +60,16 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
         }
         if (!is_named) {
             if (said) {
-                return wrong("another --as says " + std::string(wordOf(options.as)) +
-                             " for all that has no name; leave one out");
+                return wrong("another --as gives " + std::string(wordOf(options.as)) +
+                             " for everything without a name; leave one out");
             }
             options.as = *as;
             said = true;
             continue;
         }
         if (name.empty()) {
-            return wrong("before the = must be a name of the mesh file; leave out the = for all of it");
+            return wrong(
+                "must have a name of the mesh file before the =; leave out the = for the whole mesh");
         }
         if (name.size() > kAskedNameBytesMax) {
             return wrong("a name has at most " + std::to_string(kAskedNameBytesMax) + " bytes; shorten it");
@@ -77,8 +78,8 @@ Result<ShapeOptions> parseShapeOptions(const std::vector<std::string>& words) {
             return wrong("another --as has the same name; leave one out");
         }
         if (options.named.size() == kAskedNamesMax) {
-            return fail(ErrorCode::kLimit, "--as names more than " + std::to_string(kAskedNamesMax) +
-                                               "; use a node above them, or another default");
+            return fail(ErrorCode::kLimit, "--as gives more than " + std::to_string(kAskedNamesMax) +
+                                               " names; use a parent node, or another default");
         }
         options.named.push_back({name, *as});
     }

@@ -47,9 +47,9 @@ Result<void> checkShellThickness(double thickness, double smallest_sheet, const 
         return {};
     }
     return fail(ErrorCode::kUsage, "--thickness is " + shortest(static_cast<float>(thickness)) +
-                                       " but a shell of " + mesh.name + " can be no thinner than " +
+                                       " but a shell of " + mesh.name + " must be at least " +
                                        shortest(static_cast<float>(least)) +
-                                       "; give that or more, or bake its small parts by themselves");
+                                       " thick; increase it, or bake the small parts separately");
 }
 
 }  // namespace relief

@@ -123,7 +123,7 @@ done <calls
 # An interrupted call goes on; an error is named, the loader's troubles too.
 ! grep -q '^fallocate EINTR own' reported || die "an interruption is an error: $(grep '^fallocate EINTR' reported)"
 for what in 'mmap ENOMEM loader.*libraries cannot be loaded.*ulimit -n' 'fallocate ENOSPC own.*No space left' \
-    'ftruncate EIO own.*could not go on .*Input/output error' 'prlimit64 EPERM own.*cannot limit.*Operation not permitted' \
+    'ftruncate EIO own.*could not continue .*Input/output error' 'prlimit64 EPERM own.*cannot limit.*Operation not permitted' \
     'seccomp ENOMEM own.*system calls.*Cannot allocate' 'landlock_restrict_self E2BIG own.*enter Landlock'; do
     grep -qE "^$what" reported || die "not reported: $what: $(cut -c1-200 reported)"
 done
@@ -199,19 +199,19 @@ lies() { # CODE PATTERN
     ANSWER=answer expect_error "$1" "'hills\.png': $2" bin/relief bake hills.png --heights low=0,high=9 -o x.relief
 }
 : >answer
-lies 4 'the importer gave no answer'
+lies 4 'the importer returned no result'
 size 33 33 65535 | head -c 20 >answer
-lies 4 'the importer gave no answer'
+lies 4 'the importer returned no result'
 size 33 33 7 >answer
-lies 3 'the importer answers with a size that no image has'
+lies 3 'the importer returned an invalid image size'
 size 1099511627776 33 65535 >answer
 lies 6 'it has 1099511627776x33 samples'
 { size 33 33 255 && head -c 1000 /dev/zero; } >answer
-lies 4 'the importer gave no answer'
+lies 4 'the importer returned no result'
 printf '\x63\0\0\0\0\0\0\0' >answer
-lies 3 'the importer answers with an error that there is not'
+lies 3 'the importer returned an unknown error'
 printf '\x03\0\0\0\xff\xff\xff\xff boom' >answer
-lies 4 'the importer gave no answer'
+lies 4 'the importer returned no result'
 printf '\x03\0\0\0\x06\0\0\0a\nb\x1bcd' >answer
 lies 3 'a.b.*cd$'
 

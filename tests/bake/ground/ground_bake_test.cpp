@@ -253,8 +253,8 @@ TEST_F(GroundBakes, SteepSquaresAreCountedByTheirRiseAndHaveNoBound) {
     };
     const std::string all = report(1.6, 0.0);
     expectHas(all,
-              "64 squares are steep: they rise by more than 2.9 of their side, 64 degrees along a "
-              "diagonal and 71 along a row; ");
+              "64 squares are steep: they rise by more than 2.9 times their side (64 degrees along a "
+              "diagonal, 71 along a row); ");
     expectHas(all, "samples, steep everywhere; ");
     EXPECT_EQ(all.find(" mm"), std::string::npos) << all;
     const std::string some = report(1.6, 4.0);

@@ -102,7 +102,7 @@ TEST_F(GroundChecks, HolesAreOutside) {
     EXPECT_GT(more.anywhere.false_inside, 2.0);
     EXPECT_LT(more.anywhere.false_outside, 0.1);
     ASSERT_EQ(more.warnings.size(), 1U);
-    EXPECT_NE(more.warnings[0].find("holed.raw is another file"), std::string::npos);
+    EXPECT_NE(more.warnings[0].find("holed.raw is not the file"), std::string::npos);
     const GroundAccuracy less = check("whole.raw", "", field);
     EXPECT_NEAR(100.0 * double(less.near.missing) / double(less.near.points), 100.0 * 800 / (99 * 99), 0.2);
     EXPECT_GT(less.anywhere.false_outside, 2.0);
@@ -136,7 +136,7 @@ TEST_F(GroundChecks, WrongMapsAndBodiesAreRefused) {
             "other.raw: its ground lies from (0, 0) to (119, 119)");
     refused("hills.raw", "spacing=2", field, 100, ErrorCode::kInvalidInput, "to (198, 198)");
     refused("none.raw", "", field, 100, ErrorCode::kIo, "none.raw");
-    refused("hills.raw", "", turned, 100, ErrorCode::kInvalidInput, "turned or scaled");
+    refused("hills.raw", "", turned, 100, ErrorCode::kInvalidInput, "rotated or scaled");
     refused("hills.raw", "", field, kGroundSamplesMax + 1, ErrorCode::kLimit, "");
 }
 

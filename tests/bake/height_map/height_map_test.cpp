@@ -201,11 +201,12 @@ TEST_F(HeightMaps, OfFloatsAreMetresAndNaNIsAHole) {
     const fs::path path = write("a.exr", *encodeExr(image));
     EXPECT_EQ(heightsOf(path, "hole=-9999", 9.0F),
               (std::vector<float>{1.5F, -20.0F, 9.0F, 8848.0F, 9.0F, 0.1F}));
-    refuses(path, "low=0,high=1", "a.exr': --heights low is for unsigned samples", ErrorCode::kUsage);
+    refuses(path, "low=0,high=1", "a.exr': --heights low applies only to unsigned samples",
+            ErrorCode::kUsage);
     image.channels.push_back({"Z", std::vector<float>(6, 0.0F)});
     refuses(write("b.exr", *encodeExr(image)), "spacing=1", "several channels", ErrorCode::kUnsupported);
     writeParts(folder_ / "parts.exr");
-    refuses(folder_ / "parts.exr", "spacing=1", "parts.exr': it has 2 parts; save the heights alone",
+    refuses(folder_ / "parts.exr", "spacing=1", "parts.exr': it has 2 parts; save only the heights",
             ErrorCode::kUnsupported);
     image.channels = {{"Y", std::vector<float>(6, std::numeric_limits<float>::infinity())}};
     refuses(write("c.exr", *encodeExr(image)), "spacing=1",
@@ -223,7 +224,8 @@ TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
     EXPECT_EQ(heightsOf(square, "low=0,high=1").size(), 49U);
     const fs::path cut = writeRaw("b.raw", std::vector<std::uint16_t>(48, 7));
     refuses(cut, "low=0,high=1",
-            "b.raw': it has 96 bytes, which are no square of samples of 16 bits; give --heights width=N or "
+            "b.raw': it has 96 bytes, which do not form a square of samples of 16 bits; give --heights "
+            "width=N or "
             "type=");
     refuses(cut, "low=0,high=1,width=7", "no rows of 7 samples");
     refuses(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
@@ -255,11 +257,12 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
               (std::vector<float>{1.5F, -42.0F, 0.0F, 9.0F}));
     refuses(floats, "type=float32,width=3", "no rows of 3 samples of 32 bits; give another width or type");
     refuses(big, "type=float32", "no square of samples of 32 bits");
-    refuses(big, "type=int16,low=0", "low is for unsigned samples, and these are heights", ErrorCode::kUsage);
+    refuses(big, "type=int16,low=0", "low applies only to unsigned samples, but these are heights",
+            ErrorCode::kUsage);
     refuses(big, "type=int16,hole=40000", "whole number from -32768 to 32767", ErrorCode::kUsage);
     const fs::path png = writePng("p.png", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
-    refuses(png, "type=int16", "type is for raw samples", ErrorCode::kUsage);
-    refuses(png, "low=0,high=1,order=big", "order is for raw samples", ErrorCode::kUsage);
+    refuses(png, "type=int16", "type applies only to raw samples", ErrorCode::kUsage);
+    refuses(png, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
 
     // As SRTM has it, with or without the width; what is given comes first.
     const fs::path hgt = write("N00E000.HGT", {0x00, 0x07, 0xff, 0xf1, 0x80, 0x00, 0x01, 0x00});
@@ -270,7 +273,7 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
     // An image is one under any name.
     const fs::path image = writePng("image.hgt", PNG_FORMAT_GRAY, 2, 2, std::vector<std::byte>(4));
     EXPECT_EQ(heightsOf(image, "spacing=1,low=7,high=100"), std::vector<float>(4, 7.0F));
-    refuses(image, "low=0,high=1,order=big", "order is for raw samples", ErrorCode::kUsage);
+    refuses(image, "low=0,high=1,order=big", "order applies only to raw samples", ErrorCode::kUsage);
     EXPECT_EQ(toString(HeightMap::open(image, parseHeightsSpec("low=0,high=9").value())->spec()),
               "spacing=1,low=0,high=9");
     const HeightsSpec implied = HeightMap::open(hgt, parseHeightsSpec("spacing=30").value())->spec();
@@ -483,7 +486,7 @@ TEST_F(HeightMaps, OfTheWrongSizeOrKindAreRefused) {
     refuses(writePng("thin.png", PNG_FORMAT_GRAY, 1, 9, pixels), "low=0,high=1", "1x9");
     refuses(folder_ / "none.png", "low=0,high=1", "none.png", ErrorCode::kIo);
     const fs::path fine = writePng("fine.png", PNG_FORMAT_GRAY, 8, 8, pixels);
-    refuses(fine, "low=0,high=1,width=8", "width is for raw samples", ErrorCode::kUsage);
+    refuses(fine, "low=0,high=1,width=8", "width applies only to raw samples", ErrorCode::kUsage);
     refuses(fine, "low=0,high=1,hole=256", "from 0 to 255", ErrorCode::kUsage);
 }
 
@@ -571,7 +574,8 @@ TEST_F(HeightMaps, DamagedImagesAreRefusedInOneLine) {
         large[29 + i] = static_cast<std::byte>(crc >> (24U - 8U * i) & 0xffU);
     }
     refuses(write("large.png", large), "low=0,high=1",
-            "large.png': it has 32768x32768 samples, and 268435456 are the most; cut it", ErrorCode::kLimit);
+            "large.png': it has 32768x32768 samples, more than the limit of 268435456; split it",
+            ErrorCode::kLimit);
 }
 
 }  // namespace

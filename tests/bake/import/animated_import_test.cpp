@@ -160,7 +160,7 @@ TEST(AnimatedImport, ANodeWithAMatrixMovesIfItIsNoShear) {
     expectNear(posed(mesh, restPose(mesh))[7], {5 - 6, 2, 3}, 1e-5);
     expectNear(at(mesh, "drive", 1.5)[7], {4 - 6, 2, 3}, 1e-5);
     scribe.json["nodes"][2]["matrix"] = {1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
-    expectRefused(load(scribe), "nodes[2], whose matrix is no translation");
+    expectRefused(load(scribe), "nodes[2], whose matrix is not a translation");
 }
 
 TEST(AnimatedImport, InstancesAndJointsOutsideTheSceneMove) {
@@ -281,7 +281,7 @@ TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
     EXPECT_EQ(mesh.clips[2].name, "drive 2");
     EXPECT_TRUE(warns(merged.rest, "moves.glb: another clip has the name 'drive'"));
     EXPECT_TRUE(
-        warns(merged.rest, "moves.glb: left out what moves nodes that the mesh does not have: 'elsewhere'"));
+        warns(merged.rest, "moves.glb: left out channels of nodes that the mesh does not have: 'elsewhere'"));
     const AnimatedMesh own = loaded(robot()).mesh;
     EXPECT_EQ(at(mesh, "drive", 1.2), at(own, "drive", 1.2));
     EXPECT_EQ(at(mesh, "turn 2", 2.0), at(own, "turn", 2.0));
@@ -290,7 +290,7 @@ TEST(AnimatedImport, ClipsOfOtherFilesMoveNodesOfTheSameName) {
     moves.json["nodes"] = {{{"name", "elsewhere"}}, {{"name", "BASE"}}, Json::object()};
     const fs::path strange = writeGltf(moves.file(), folder, "strange");
     expectRefused(importAnimatedInWorker(file, {strange}),
-                  "strange.glb': none of the nodes that it moves is one of the mesh");
+                  "strange.glb': none of its animated nodes has the name of a node of the mesh");
     EXPECT_FALSE(importAnimatedInWorker(file, {file})) << "no animation";
 }
 
@@ -302,7 +302,7 @@ TEST(AnimatedImport, ClipsHaveNamesOfTheirOwn) {
     ASSERT_EQ(import.mesh.clips.size(), 2U);
     EXPECT_EQ(import.mesh.clips[0].name, "clip 0");
     EXPECT_EQ(import.mesh.clips[1].name, "clip 0 2");
-    EXPECT_TRUE(warns(import.rest, "another clip has the name 'clip 0'; this one gets 'clip 0 2'"));
+    EXPECT_TRUE(warns(import.rest, "another clip has the name 'clip 0'; this one is renamed to 'clip 0 2'"));
 }
 
 // --- right and wrong ---
@@ -317,8 +317,8 @@ TEST(AnimatedImport, WhatMovesNothingIsLeftOut) {
         {{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", Json::object()}}}});
     const AnimatedImport import = loaded(scribe);
     EXPECT_EQ(import.mesh.clips.size(), 2U);
-    EXPECT_TRUE(warns(import.rest, "the animation 'pose' has no length, and is left out"));
-    EXPECT_TRUE(warns(import.rest, "the animation 'away' moves nothing of the mesh, and is left out"));
+    EXPECT_TRUE(warns(import.rest, "the animation 'pose' has zero length; it is left out"));
+    EXPECT_TRUE(warns(import.rest, "the animation 'away' does not move the mesh; it is left out"));
 }
 
 TEST(AnimatedImport, WeightsOfAnotherSumAreScaled) {
@@ -329,7 +329,7 @@ TEST(AnimatedImport, WeightsOfAnotherSumAreScaled) {
     }
     floats(kWeights, "VEC4", weights)(scribe);
     const AnimatedImport import = loaded(scribe);
-    EXPECT_TRUE(warns(import.rest, "1 vertex has joints whose weights have another sum than 1"));
+    EXPECT_TRUE(warns(import.rest, "1 vertex has joint weights that do not sum to 1"));
     EXPECT_EQ(import.mesh.influences[0].weight, 1.0F);
 }
 
@@ -351,11 +351,11 @@ TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
     const std::vector<Case> all = {
         {"skins[0] has no joints", bendingBar, set("/skins/0/joints", Json::array())},
         {"skins[0] has fewer inverseBindMatrices than joints", bendingBar, set("/skins/0/joints", {2, 1, 0})},
-        {"moved by a joint which its skin, skins[0], does not have", bendingBar,
+        {"has vertices with a joint that is missing in its skin, skins[0]", bendingBar,
          set("/skins/0/joints", Json::array({2}))},
-        {"have weights that are less than 0, no numbers, or 0", bendingBar,
+        {"have weights that are negative, not numbers, or 0", bendingBar,
          floats(kWeights, "VEC4", std::vector<float>(48, kNan))},
-        {"has inverseBindMatrices that are no numbers", bendingBar, floats(kBinds, "MAT4", binds)},
+        {"has inverseBindMatrices that are not numbers", bendingBar, floats(kBinds, "MAT4", binds)},
         {"skins[0] has inverseBindMatrices whose last row is not 0 0 0 1", bendingBar,
          floats(kBinds, "MAT4", std::vector<float>(32, 1.0F))},
         {"have only one of JOINTS_0 and WEIGHTS_0", bendingBar,
@@ -364,19 +364,18 @@ TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
          [](GltfScribe& s) {
              s.json[Json::json_pointer(kWeights)] = s.bytes("VEC4", std::vector<int>(48, 1));
          }},
-        {"has as time 1 0.5; times of keys are 0 or more and rise", robot,
+        {"has at key 1 the time 0.5; key times must not be negative", robot,
          floats(kInput, "SCALAR", {0.5F, 0.5F, 1})},
-        {"has as time 1 0.25;", robot, floats(kInput, "SCALAR", {0.5F, 0.25F, 1})},
-        {"has as time 0 -1;", robot, floats(kInput, "SCALAR", {-1, 0, 1})},
-        {"has as time 2 no number;", robot, floats(kInput, "SCALAR", {0, 1, kNan})},
+        {"has at key 1 the time 0.25;", robot, floats(kInput, "SCALAR", {0.5F, 0.25F, 1})},
+        {"has at key 0 the time -1;", robot, floats(kInput, "SCALAR", {-1, 0, 1})},
+        {"has at key 2 the time NaN or infinity;", robot, floats(kInput, "SCALAR", {0, 1, kNan})},
         {"has no keys", robot, floats(kInput, "SCALAR", {})},
         {"has 9 numbers instead of 3 for each of 2 keys", robot, floats(kInput, "SCALAR", {0, 1})},
         {"lasts longer than a day", robot, floats(kInput, "SCALAR", {0, 1, 90'000}), ErrorCode::kLimit},
-        {"has values of keys that are no numbers", robot,
-         floats(kOutput, "VEC3", std::vector<float>(9, kNan))},
-        {"has as rotation of key 0 no unit quaternion: its length is 0", robot,
+        {"has key values that are not numbers", robot, floats(kOutput, "VEC3", std::vector<float>(9, kNan))},
+        {"has at key 0 a rotation that is not a unit quaternion: its length is 0", robot,
          floats("/animations/1/samplers/0/output", "VEC4", std::vector<float>(12, 0.0F))},
-        {"moves the translation of nodes[2], which another one moves too", robot,
+        {"moves the translation of nodes[2], which another channel also moves", robot,
          appended(kAnimation + "/channels", twice)},
         {"nodes[9], which does not exist", robot, set(kAnimation + "/channels/0/target/node", 9)},
         {"samplers[7], which does not exist", robot, set(kAnimation + "/channels/0/sampler", 7)},
@@ -386,23 +385,23 @@ TEST(AnimatedImport, BadFilesAreRefusedInOneLine) {
         {"has no target, or one without a path", robot, erased(kAnimation + "/channels/0", "target")},
         {"moves the morph targets of nodes[2], which has none", robot,
          set(kAnimation + "/channels/0/target/path", "weights")},
-        {"moves 7 vertices, and the primitive has 8", morphingCube,
+        {"moves 7 vertices, but the primitive has 8", morphingCube,
          floats(kTarget, "VEC3", std::vector<float>(21, 0.0F))},
-        {"ends behind its buffer view", morphingCube,
+        {"extends beyond its buffer view", morphingCube,
          [](GltfScribe& s) {
              floats(kTarget, "VEC3", std::vector<float>(21, 0.0F))(s);
              s.json["accessors"].back()["count"] = 8;
          }},
-        {"moves a vertex by what is no number", morphingCube,
+        {"moves a vertex by a value that is not a number", morphingCube,
          floats(kTarget, "VEC3", std::vector<float>(24, kNan))},
-        {"has 1 morph targets, and one before it 2", morphingCube,
+        {"has 1 morph targets, but an earlier primitive has 2", morphingCube,
          [](GltfScribe& s) {
              Json other = s.json[Json::json_pointer(kPrimitive)];
              other["targets"].erase(1);
              s.json["meshes"][0]["primitives"].push_back(other);
          }},
         {"has 3 weights for 2 morph targets", morphingCube, set("/nodes/0/weights", {1, 2, 3})},
-        {"has more morph targets than can be: 1024", morphingCube,
+        {"exceeds the limit of 1024 morph targets", morphingCube,
          set(kPrimitive + "/targets", std::vector<Json>(1025, Json::object())), ErrorCode::kLimit},
         {"and at most 8191 can move", robot,
          [](GltfScribe& s) {
@@ -457,7 +456,7 @@ TEST(AnimatedImport, ChangedFilesAreReadOrRefusedInOneLine) {
 TEST(AnimatedImport, OtherFormatsAreNotRead) {
     const TemporaryFolder folder;
     expectRefused(importAnimatedInWorker(folder.write("t.obj", tetrahedronObj()), {}),
-                  "animations of a .obj are not read; convert it to glTF", ErrorCode::kUnsupported);
+                  "animations of a .obj are not supported; convert it to glTF", ErrorCode::kUnsupported);
 }
 
 TEST(AnimatedImport, AnswersOfAWorkerThatLiesAreRefused) {

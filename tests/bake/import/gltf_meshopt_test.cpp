@@ -176,9 +176,9 @@ TEST(GltfMeshopt, HostileSizesAreRefusedBeforeTheyAreUnpacked) {
         extension.update(changes);
         expectError(unpack(extension, packed, size), code, says);
     };
-    refuse({{"count", 101}}, "unpacks to another length");
-    refuse(Json::object(), "unpacks to another length", 1201);
-    refuse({{"byteStride", 0}}, "has a byteStride or a count that its mode, ATTRIBUTES, does not have");
+    refuse({{"count", 101}}, "unpacks to a length that differs");
+    refuse(Json::object(), "unpacks to a length that differs", 1201);
+    refuse({{"byteStride", 0}}, "has a byteStride or a count that its mode, ATTRIBUTES, does not allow");
     refuse({{"byteStride", 6}}, "has a byteStride or a count");
     refuse({{"byteStride", 260}}, "has a byteStride or a count");
     refuse({{"byteStride", 4}, {"count", std::uint64_t{1} << 40}}, "has too few bytes for its count",
@@ -188,8 +188,8 @@ TEST(GltfMeshopt, HostileSizesAreRefusedBeforeTheyAreUnpacked) {
     refuse({{"mode", "INDICES"}, {"byteStride", 8}, {"count", 150}}, "has a byteStride or a count");
     refuse({{"mode", "MESHLETS"}}, "has the mode 'MESHLETS'", 1200, ErrorCode::kUnsupported);
     refuse({{"filter", "COLOR"}}, "has the filter 'COLOR'", 1200, ErrorCode::kUnsupported);
-    refuse({{"filter", "OCTAHEDRAL"}}, "has a filter that does not go with");
-    refuse({{"filter", "QUATERNION"}}, "has a filter that does not go with");
+    refuse({{"filter", "OCTAHEDRAL"}}, "has a filter that does not fit");
+    refuse({{"filter", "QUATERNION"}}, "has a filter that does not fit");
     refuse({{"mode", "TRIANGLES"}, {"byteStride", 4}, {"count", 30}}, "meshopt cannot unpack", 120);
     for (std::size_t size = 0; size < packed.size(); ++size) {
         EXPECT_FALSE(

@@ -81,8 +81,8 @@ TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
     const TriangleMesh fewer =
         imported("a.ac", kHead + "OBJECT world\nkids 3\n" + tetrahedron("t", "subdiv 2\n"));
     EXPECT_EQ(fewer.warnings.size(), 2U);
-    EXPECT_TRUE(warns(fewer, "it has 2 objects fewer than its 'kids' announce"));
-    EXPECT_TRUE(warns(fewer, "1 of its objects are shown subdivided"));
+    EXPECT_TRUE(warns(fewer, "it has 2 objects fewer than its 'kids' declare"));
+    EXPECT_TRUE(warns(fewer, "1 of its objects use subdivision"));
     for (std::size_t length = kHead.size(); length + 8 < one.size(); length += 7) {
         ASSERT_FALSE(importText("a.ac", one.substr(0, length))) << "of " << length << " bytes";
     }
@@ -94,11 +94,12 @@ TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
         return std::string(one).replace(one.find(from), from.size(), to);
     };
     expectWrong("a.ac", {{with("1 0 0\n", "1 zero 0\n"), "line 10: 'zero'"},
-                         {with("2 0 1\n", "4 0 1\n"), "the vertex '4', but its object has 4, from 0"},
-                         {with("SURF 0x0", "SURF green"), "'green' is no number such as 0x20"},
+                         {with("2 0 1\n", "4 0 1\n"),
+                          "the vertex '4', but its object has 4 vertices, numbered from 0"},
+                         {with("SURF 0x0", "SURF green"), "'green' is not a number such as 0x20"},
                          {with("numvert 4", "numvert 5"), "no number"},
                          {with("numvert 4", "numvert 99999999999"), "", ErrorCode::kLimit},
-                         {with("kids 1", "kids many"), "'many' is no number of kids"},
+                         {with("kids 1", "kids many"), "'many' is not a number of kids"},
                          {with("refs 3", "refs 4000000000"), "line "},
                          {with("\nkids 0", "\n"), "no 'kids'"},
                          {kHead, "no triangles"},

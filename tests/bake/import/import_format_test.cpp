@@ -72,7 +72,7 @@ TEST(ImportFormat, WhatIsNoMeshIsRefused) {
             EXPECT_TRUE(!mesh && mesh.error().message.find(name) != std::string::npos) << begin;
         }
     }
-    expectRefused(importText("a.obj", "hello\n"), "no vertices, and is probably no .obj file");
+    expectRefused(importText("a.obj", "hello\n"), "no vertices, and is probably not an .obj file");
     for (const auto& [name, text] : {std::pair<const char*, std::string>{"a.stl", std::string(84, '\0')},
                                      {"b.stl", "solid none\nendsolid none\n"},
                                      {"a.off", "OFF\n0 0 0\n"}}) {

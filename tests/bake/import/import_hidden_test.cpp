@@ -336,7 +336,7 @@ TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
         file[size_at] = static_cast<char>(file[size_at] + 6);
     }
     EXPECT_TRUE(warns(imported("some.3ds", file),
-                      "could not leave out 1 hidden object ('t'), because no node stands for it; remove it"));
+                      "could not leave out 1 hidden object ('t'), because no node represents it; remove it"));
     const std::string keyframer(
         "\x00\xB0\x22\0\0\0\x02\xB0\x1C\0\0\0\x30\xB0\x08\0\0\0\0\0"
         "\x10\xB0\x0E\0\0\0t\0\0\0\0\0\xFF\xFF",
@@ -349,8 +349,8 @@ TEST(ImportHidden, AFileThatShowsNothingIsRefusedWithTheOption) {
 TEST(ImportHidden, NamesOfWhatIsLeftOutSelectNothing) {
     ImportOptions options;
     options.names = {"other"};
-    expectRefused(importText("names.fbx", twoFbx(visibility("0")), options), "it names no triangles 'other'",
-                  ErrorCode::kUsage);
+    expectRefused(importText("names.fbx", twoFbx(visibility("0")), options),
+                  "no triangle has the name 'other'", ErrorCode::kUsage);
 }
 
 TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
@@ -370,7 +370,7 @@ TEST(ImportHidden, OnlyTheFirstLevelOfDetailIsBaked) {
         warns(imported("levels.gltf", tetrahedronGltf(gltf)), "left out 1 lower level of detail ('far'"));
     expectWrong("levels.gltf",
                 {{tetrahedronGltf({.nodes = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[7]}}})"}),
-                  "nodes[0].extensions.MSFT_lod names nodes[7], which does not exist"}});
+                  "nodes[0].extensions.MSFT_lod references nodes[7], which does not exist"}});
     // The first level is hidden, here with a node without a name above it.
     const std::string near = R"({"mesh":0,"extensions":{"MSFT_lod":{"ids":[1,2]})";
     const std::string hidden = R"("KHR_node_visibility":{"visible":false})";

@@ -63,7 +63,7 @@ TEST(ImportNames, OfObjAreGroupsObjectsAndMaterials) {
                  {{"body", "glass"}, {1, 2, 2, 0}},
                  {{"glass", "body"}, {2, 2, 1, 0}}});
     expectUnknown("a.obj", text, {"body", "glas"},
-                  "'glas'; did you mean 'glass'? It has 'body', 'paint', 'glass', 'wheel', 'house'");
+                  "'glas'; did you mean 'glass'? Its names: 'body', 'paint', 'glass', 'wheel', 'house'");
     expectUnknown("a.obj", text, {"Body"}, "'body'");
     // A group may have several names and go on later.
     expectMarks("g.obj",
@@ -90,9 +90,9 @@ TEST(ImportNames, OfGltfAreNodesMeshesAndMaterials) {
                  {{"near", "second"}, {0, 0, 2, 2, 2, 2}},
                  {{"second", "glass"}, {0, 2, 1, 2, 1, 2}},
                  {{"door-1"}, {1, 1, 1, 1, 1, 1}}});
-    expectUnknown("c.gltf", text, {"door"}, "It has");
-    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "it has");
-    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "nor anything else; leave the name out");
+    expectUnknown("c.gltf", text, {"door"}, "Its names: ");
+    expectUnknown("s.stl", tetrahedronStl(), {"nothing"}, "its names: ");
+    expectUnknown("p.ply", tetrahedronPly(), {"nothing"}, "the file has no names, so leave it out");
 }
 
 TEST(ImportNames, HostileOnesAreMadeClean) {
@@ -103,7 +103,7 @@ TEST(ImportNames, HostileOnesAreMadeClean) {
     expectMarks(
         "h.gltf", text,
         {{{clean}, {1, 1, 0, 0, 0, 0}}, {{std::string(kAskedNameBytesMax, 'y')}, {0, 0, 1, 1, 0, 0}}});
-    expectUnknown("h.gltf", text, {std::string(kAskedNameBytesMax, 'z')}, "it has");
+    expectUnknown("h.gltf", text, {std::string(kAskedNameBytesMax, 'z')}, "its names: ");
     std::string many;
     for (int i = 0; i < 3000; ++i) {
         many += "g group" + std::to_string(i) + std::string(100, 'n') + "\nf 1 2 3\n";

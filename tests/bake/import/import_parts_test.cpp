@@ -79,8 +79,8 @@ TEST(ImportParts, ObjStatementsAreCounted) {
 
 TEST(ImportParts, UnusedVerticesOfEachFormat) {
     const std::string warning =
-        "2 of its 6 vertices belong to no polygon: faces may be missing; compare the count of triangles "
-        "with that of the program that wrote it";
+        "2 of its 6 vertices belong to no polygon: faces may be missing; compare its triangle count "
+        "with that of the exporting program";
     std::string ply = replaced(tetrahedronPly(), "vertex 4", "vertex 6");
     ply.insert(ply.find("3 0 2 1"), "8 8 8\n9 9 9\n");
     const std::string half = R"("bufferView":1,"componentType":5123,"count":3,"type":"SCALAR")";

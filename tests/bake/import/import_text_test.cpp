@@ -86,13 +86,13 @@ TEST(ImportText, Off) {
          "STCNOFF 4 4 6\n0 0 0 0 0 1 9 9 9 9 .5 .5\n1 0 0 0 0 1 9 9 9 9 0 0\n"
          "0 2 0 0 0 1 9 9 9 9 0 0\n0 0 3 0 0 1 9 9 9 9 0 0\n" +
              faces});
-    expectWrong("a.off", {{replaced(kOff, "3 1 2 3", "3 1 2 4"), "line 9: face 2 names the vertex '4'"},
+    expectWrong("a.off", {{replaced(kOff, "3 1 2 3", "3 1 2 4"), "line 9: face 2 uses the vertex '4'"},
                           {replaced(kOff, "3 0 3 2\n", "3 0 3\n"), "line 10: it ends in face 3"},
                           {replaced(kOff, "3 0 1 3\n", "3 0 1\n"), "line 10: it ends after face 3 of 4"},
                           {replaced(kOff, "4 4 0", "4 5 6"), "line 10: it ends after face 4 of 5"},
-                          {replaced(kOff, "4 4 0", "4 3 6"), "line 10: '3' stands behind the last"},
+                          {replaced(kOff, "4 4 0", "4 3 6"), "line 10: '3' follows the last"},
                           {replaced(kOff, "OFF", "OFF BINARY"), "binary"},
-                          {replaced(kOff, "OFF", "nOFF"), "three dimensions"}});
+                          {replaced(kOff, "OFF", "nOFF"), "three-dimensional"}});
     // A convex polygon of many corners, on a parabola: assimp read up to 9, and the file without the others.
     std::string corners;
     std::string face = "100";
@@ -159,9 +159,9 @@ TEST(ImportText, Stl) {
     }
     expectWrong("a.stl",
                 {{replaced(stl, "\n", " "), "it ends without 'facet' or 'endsolid'"},
-                 {replaced(stl, "vertex 0 0 3\nendloop", "endloop"), "'endloop' stands where 'vertex'"},
-                 {replaced(stl, "endloop", "vertex 0 0 0\nendloop"), "line 7: 'vertex' stands where"},
-                 {replaced(stl, "vertex 0 0 3", "vertx 0 0 1"), "'vertx' stands where 'vertex'"},
+                 {replaced(stl, "vertex 0 0 3\nendloop", "endloop"), "'endloop' appears instead of 'vertex'"},
+                 {replaced(stl, "endloop", "vertex 0 0 0\nendloop"), "line 7: 'vertex' appears instead of"},
+                 {replaced(stl, "vertex 0 0 3", "vertx 0 0 1"), "'vertx' appears instead of 'vertex'"},
                  {replaced(stl, "endsolid t\n", ""), "line 29: it ends without"}});
 }
 
@@ -188,7 +188,7 @@ TEST(ImportText, BinaryStlOfAnyHeaderAndLength) {
     EXPECT_EQ(more.triangles.size(), 4U);
     EXPECT_TRUE(warns(more, "left out 9 bytes"));
     const std::string stl = tetrahedronBinaryStl("binary solid");
-    expectWrong("a.stl", {{stl.substr(0, stl.size() - 1), "announces 4 triangles, but it holds 3"}});
+    expectWrong("a.stl", {{stl.substr(0, stl.size() - 1), "declares 4 triangles, but it has 3"}});
 }
 
 TEST(ImportText, PlyByLinesWithTrueCounts) {

@@ -182,8 +182,8 @@ TEST(ImportUnits, AnOptionWinsOverTheFileWithAWarning) {
                   {"t.fbx", tetrahedronFbx(2, 1, "1"), "m", UpAxis::kPlusY, kLow, kHigh, "m", 2},
                   {"in.dae", dae, "cm", UpAxis::kPlusX, {-0.02F, 0, 0}, {0, 0.01F, 0.03F}, "m", 2}});
     const TriangleMesh mesh = imported("in.dae", dae, {"cm", UpAxis::kPlusX});
-    EXPECT_TRUE(warns(mesh, "--unit cm is taken, but the file says that its unit is 0.0254 m"));
-    EXPECT_TRUE(warns(mesh, "--up +x is taken, but the file says that +z points upwards"));
+    EXPECT_TRUE(warns(mesh, "--unit cm overrides the file's unit, 0.0254 m"));
+    EXPECT_TRUE(warns(mesh, "--up +x overrides the file's up axis, +z"));
 }
 
 TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
@@ -199,12 +199,13 @@ TEST(ImportUnits, ColladaHeadersAreReadAsWritten) {
     EXPECT_EQ(frame("").up, UpAxis::kPlusY);
     EXPECT_EQ(frame("").metres, 1.0);
     EXPECT_EQ(frame("<unit name='a>b' meter=' 1e-2 '/>").metres, 0.01);
-    EXPECT_EQ(frame("<up_axis>W_UP</up_axis>").up_fault, "its up_axis 'W_UP' is none of COLLADA");
+    EXPECT_EQ(frame("<up_axis>W_UP</up_axis>").up_fault, "its up_axis 'W_UP' is not an axis of COLLADA");
     EXPECT_EQ(frame("<unit meter='0,010000'/>").metres, 0.01);
     for (const char* meter : {"-1", "0", "0,0,1", "1,000.5", "nan", "inf", "", "1e-400", "1 m"}) {
         const SourceFrame faulty = frame("<unit meter='" + std::string(meter) + "'/>");
         EXPECT_FALSE(faulty.metres) << meter;
-        EXPECT_EQ(faulty.unit_fault, "its unit is '" + std::string(meter) + "' metres, which is no length");
+        EXPECT_EQ(faulty.unit_fault,
+                  "its unit is '" + std::string(meter) + "' metres, which is not a length");
     }
 }
 
@@ -240,7 +241,7 @@ TEST(ImportUnits, UnitsThatCannotBeMeantAreRefusedUntilToldOtherwise) {
     }
     // The importer of FBX does not go on there.
     expectRefused(importText("zero.fbx", tetrahedronFbx(1, 1, "0"), {"cm", kOwnAxis}),
-                  "UnitScaleFactor is 0, which is no length; export it again");
+                  "UnitScaleFactor is 0, which is not a length; export it again");
 }
 
 TEST(ImportUnits, FbxUnitsAreReadInTextAndInBytes) {
