@@ -17,9 +17,9 @@ namespace {
 /// Depth of the ground below its lowest point, relative to the longest side.
 constexpr double kGroundDepth = 0.05;
 /// Patches store heights up to this distance from the bottom of their cell, in units of its side, and slightly beyond.
-constexpr double kHeld = 3.99;
+constexpr double kStoredHeightMax = 3.99;
 /// Test positions along each axis of a steep cell, at which its two approximations are compared with it.
-constexpr int kTried = 8;
+constexpr int kTestPositions = 8;
 /// Heights upwards, rows and columns across.
 constexpr PatchFrame kUp{0, 1, 0};
 constexpr int kBasesPerCell = 512;
@@ -260,7 +260,7 @@ class GroundTree {
         }
         if (steep) {
             std::array<double, 4> corners = {heights[0], heights[1], heights[2], heights[3]};
-            corners = likenessOf(corners);
+            corners = approximationOf(corners);
             std::copy(corners.begin(), corners.end(), heights.begin());
         }
         PatchHeights patch = PatchHeights::of(std::span(heights).first(count), across + 1);
@@ -271,7 +271,7 @@ class GroundTree {
     /// Approximates the heights of a steep cell by heights that a patch can store. Clamped heights preserve its gentle
     /// edges. Heights scaled towards the cell's middle preserve the line where the surface crosses the middle. The
     /// approximation with the smaller error is used.
-    [[nodiscard]] static std::array<double, 4> likenessOf(const std::array<double, 4>& heights) {
+    [[nodiscard]] static std::array<double, 4> approximationOf(const std::array<double, 4>& heights) {
         std::array<double, 4> cut = heights;
         std::array<double, 4> drawn = heights;
         double most = 0.0;
@@ -279,16 +279,16 @@ class GroundTree {
             most = std::max(most, std::abs(height - 0.5));
         }
         for (std::size_t i = 0; i < 4; ++i) {
-            cut[i] = std::clamp(heights[i], -kHeld, kHeld);
-            drawn[i] = 0.5 + (heights[i] - 0.5) * std::min((kHeld - 0.5) / most, 1.0);
+            cut[i] = std::clamp(heights[i], -kStoredHeightMax, kStoredHeightMax);
+            drawn[i] = 0.5 + (heights[i] - 0.5) * std::min((kStoredHeightMax - 0.5) / most, 1.0);
         }
         int of_cut = 0;
         int of_drawn = 0;
-        for (int place = 0; place < kTried * kTried * kTried; ++place) {
-            const auto at = [&](int i) { return (i % kTried + 0.5) / kTried; };
+        for (int place = 0; place < kTestPositions * kTestPositions * kTestPositions; ++place) {
+            const auto at = [&](int i) { return (i % kTestPositions + 0.5) / kTestPositions; };
             const double s = at(place);
-            const double t = at(place / kTried);
-            const double w = at(place / (kTried * kTried));
+            const double t = at(place / kTestPositions);
+            const double w = at(place / (kTestPositions * kTestPositions));
             const auto inside = [&](const std::array<double, 4>& h) {
                 const double lower = h[0] + s * (h[1] - h[0]);
                 return w < lower + t * (h[2] + s * (h[3] - h[2]) - lower);

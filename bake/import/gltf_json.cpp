@@ -17,34 +17,34 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kWholeMax = std::uint64_t{1} << 53U;
 
 // Each overload reads a value of one type. Returns the fault ("[3] is not a number"), or "".
-std::string takeGltf(const Json& json, bool& value) {
+std::string parseMember(const Json& json, bool& value) {
     value = json.is_boolean() && json.get<bool>();
     return json.is_boolean() ? "" : " is not true or false";
 }
 
-std::string takeGltf(const Json& json, float& value) {
+std::string parseMember(const Json& json, float& value) {
     value = json.is_number() ? static_cast<float>(json.get<double>()) : 0.0F;
     return json.is_number() ? "" : " is not a number";
 }
 
-std::string takeGltf(const Json& json, std::uint64_t& value) {
+std::string parseMember(const Json& json, std::uint64_t& value) {
     const double number = json.is_number() ? json.get<double>() : -1.0;
     value = number >= 0.0 && number <= static_cast<double>(kWholeMax) ? json.get<std::uint64_t>() : 0;
     return value <= kWholeMax && number == static_cast<double>(value) ? "" : " is not a whole number";
 }
 
-std::string takeGltf(const Json& json, std::string& value) {
+std::string parseMember(const Json& json, std::string& value) {
     value = json.is_string() ? json.get<std::string>() : "";
     return json.is_string() ? "" : " is not a string";
 }
 
 template <class T>
-std::string takeGltf(const Json& json, std::vector<T>& values) {
+std::string parseMember(const Json& json, std::vector<T>& values) {
     if (!json.is_array()) {
         return " is not an array";
     }
     for (std::size_t i = 0; i < json.size(); ++i) {
-        if (std::string fault = takeGltf(json[i], values.emplace_back()); !fault.empty()) {
+        if (std::string fault = parseMember(json[i], values.emplace_back()); !fault.empty()) {
             return "[" + std::to_string(i) + "]" + fault;
         }
     }
@@ -72,7 +72,7 @@ template <class T>
 Result<std::optional<T>> GltfValue::get(const char* name) const {
     std::optional<T> value;
     if (const auto found = json_->find(name); found != json_->end()) {
-        if (const std::string fault = takeGltf(*found, value.emplace()); !fault.empty()) {
+        if (const std::string fault = parseMember(*found, value.emplace()); !fault.empty()) {
             return invalidInput(pathOf(name) + fault);
         }
     }

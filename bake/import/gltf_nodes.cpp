@@ -211,7 +211,7 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
         }
     }
     hideBelow(all, nodes);
-    std::vector<std::vector<std::uint32_t>> lesser(nodes.size());
+    std::vector<std::vector<std::uint32_t>> lower_levels(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto extensions = RELIEF_TRY(nodes[i].place.object("extensions"));
         const auto levels = RELIEF_TRY(inside(extensions, "MSFT_lod"));
@@ -222,16 +222,16 @@ Result<void> hideNodes(const std::vector<std::uint32_t>& all, HiddenAs hidden, s
                 return levels->wrong("references nodes[" + std::to_string(level) + "], which does not exist");
             }
             if (level != i) {
-                lesser[i].push_back(static_cast<std::uint32_t>(level));
+                lower_levels[i].push_back(static_cast<std::uint32_t>(level));
                 Shown& shown = nodes[level].shown;
                 if (shown != Shown::kHidden) {
-                    shown = met ? Shown::kLesserLevel : shown;
+                    shown = met ? Shown::kLowerLevel : shown;
                     met = true;
                 }
             }
         }
     }
-    RELIEF_TRY(hidden == HiddenAs::kKeep ? Result<void>() : checkLevels(nodes, lesser));
+    RELIEF_TRY(hidden == HiddenAs::kKeep ? Result<void>() : checkLevels(nodes, lower_levels));
     hideBelow(all, nodes);
     return {};
 }

@@ -174,7 +174,7 @@ class Ac3dReader {
         } else if (key == "subdiv") {
             subdivided_ += RELIEF_TRY(count("subdivisions")) > 0 ? 1 : 0;
         } else if (key == "data") {
-            return passData();
+            return skipData();
         } else if (key == "numvert") {
             return readVertices();
         } else if (key == "SURF") {
@@ -185,7 +185,7 @@ class Ac3dReader {
     }
 
     /// Skips a block of bytes, which starts on the next line.
-    Result<void> passData() {
+    Result<void> skipData() {
         const std::uint64_t bytes = RELIEF_TRY(count("bytes"));
         text_.nextLine();
         const std::string_view rest = text_.rest();

@@ -356,7 +356,7 @@ bool hasMeshes(const aiNode& node) {
 }
 
 /// Finds all levels of a LodGroup except the most detailed one, which is the first that is shown.
-std::set<const aiNode*> lesserLevels(const aiNode& group, const HiddenNodes& hidden) {
+std::set<const aiNode*> lowerLevels(const aiNode& group, const HiddenNodes& hidden) {
     std::set<const aiNode*> levels;
     if (std::string_view(group.mName.C_Str()).find(kLodGroupMark) == std::string_view::npos) {
         return levels;
@@ -390,7 +390,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
         node.index = index;
         const bool free = above == Shown::kHidden && isZero(*from, "Visibility Inheritance");
         const Shown below = above != Shown::kYes && !free ? above
-                            : lesser.contains(from)       ? Shown::kLesserLevel
+                            : lesser.contains(from)       ? Shown::kLowerLevel
                             : hidesBelow(*from, hidden)   ? Shown::kHidden
                                                           : Shown::kYes;
         node.is_shown = below == Shown::kYes && isZero(*from, "Show") ? Shown::kHidden : below;
@@ -407,7 +407,7 @@ void addNodes(const aiScene& source, const HiddenNodes& hidden, ImportScene& sce
             }
         }
         scene.nodes.push_back(std::move(node));
-        lesser.merge(lesserLevels(*from, hidden));
+        lesser.merge(lowerLevels(*from, hidden));
         for (unsigned i = from->mNumChildren; i > 0; --i) {
             if (from->mChildren[i - 1] != nullptr) {
                 pending.push_back({from->mChildren[i - 1], index, below});
@@ -441,7 +441,7 @@ void keepReadersOf(const std::string& extension, Assimp::Importer& importer) {
 }
 
 /// Returns assimp's message, and the refused files. Throws std::bad_alloc if assimp ran out of memory.
-tl::unexpected<Error> notRead(const Assimp::Importer& importer, const ImportFiles& files) {
+tl::unexpected<Error> readError(const Assimp::Importer& importer, const ImportFiles& files) {
     if (const std::exception_ptr& thrown = importer.GetException(); thrown != nullptr) {
         try {
             std::rethrow_exception(thrown);
@@ -482,7 +482,7 @@ Result<ImportScene> readWithAssimp(AssimpFrame format, const ImportJob& job, Imp
         return invalidInput("its UnitScaleFactor is 0, which is not a length; export it again with a unit");
     }
     if (source == nullptr || source->mRootNode == nullptr) {
-        return notRead(importer, files);
+        return readError(importer, files);
     }
     ImportScene scene;
     if (!addMeshes(*source, scene) || hasLogged("out of range") || hasLogged("out-of-range")) {

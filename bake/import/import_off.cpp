@@ -57,9 +57,9 @@ class OffReader {
                 return wrongLine(text_.line(),
                                  quotedWord(word) + " is not a three-dimensional OFF; save it as OFF");
             }
-            behind_ = (name.find("st") != std::string::npos ? 2 : 0) +
-                      (name.find('c') != std::string::npos ? 4 : 0) +
-                      (name.find('n') != std::string::npos ? 3 : 0);
+            extra_numbers_ = (name.find("st") != std::string::npos ? 2 : 0) +
+                             (name.find('c') != std::string::npos ? 4 : 0) +
+                             (name.find('n') != std::string::npos ? 3 : 0);
             word = text_.anyWord();
             if (lowerCase(word) == "binary") {
                 return wrongLine(text_.line(), "binary OFF is not supported; save it as text, or as PLY");
@@ -115,9 +115,9 @@ class OffReader {
         }
         mesh_.positions.push_back(position);
         if (ends_.vertex) {
-            return passLine("vertex", index);
+            return skipLine("vertex", index);
         }
-        for (int i = 0; i < behind_; ++i) {
+        for (int i = 0; i < extra_numbers_; ++i) {
             (void)RELIEF_TRY(number(text_.anyWord(), "vertex", index));
         }
         return {};
@@ -153,13 +153,13 @@ class OffReader {
         }
         mesh_.sizes.push_back(static_cast<std::uint32_t>(*corners));
         if (ends_.face) {
-            RELIEF_TRY(passLine("face", index));
+            RELIEF_TRY(skipLine("face", index));
         }
         return *corners < 3 ? 0 : *corners - 2;
     }
 
     /// Skips the rest of an element's line: numbers such as colours.
-    Result<void> passLine(const char* element, std::uint64_t index) {
+    Result<void> skipLine(const char* element, std::uint64_t index) {
         for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
             (void)RELIEF_TRY(number(word, element, index));
         }
@@ -169,7 +169,7 @@ class OffReader {
     TextScanner text_;
     EndsWithLine ends_;
     bool spans_lines_ = false;
-    int behind_ = 0;  ///< numbers after a vertex's coordinates, by the header
+    int extra_numbers_ = 0;  ///< numbers after a vertex's coordinates, by the header
     std::uint64_t vertices_ = 0;
     std::uint64_t faces_ = 0;
     PolygonMesh mesh_;

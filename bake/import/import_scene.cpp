@@ -137,7 +137,7 @@ class NameMarks {
     /// Records the names of some triangles.
     /// \param names  as stored in the file.
     /// \return the triangles' mark (TriangleMesh::marks); the largest if several names apply.
-    std::uint8_t meet(const std::vector<std::string>& names) {
+    std::uint8_t record(const std::vector<std::string>& names) {
         std::uint8_t mark = 0;
         for (std::size_t i = 0; any() && i < names.size(); ++i) {
             const std::string name = cleanUtf8(names[i], kAskedNameBytesMax);
@@ -148,17 +148,17 @@ class NameMarks {
             }
             if (const auto found = marks_.find(name); found != marks_.end()) {
                 mark = std::max(mark, found->second);
-                met_.insert(found->second);
+                found_.insert(found->second);
             }
         }
         return mark;
     }
 
     /// Checks that every selected name was found. Errors: kUsage, with the existing names.
-    [[nodiscard]] Result<void> allMet() const {
+    [[nodiscard]] Result<void> checkAllFound() const {
         const std::vector<std::string>& asked = job_.options.names;
         const auto unmet = std::find_if(asked.begin(), asked.end(), [&](const std::string& name) {
-            return !met_.contains(marks_.at(name));
+            return !found_.contains(marks_.at(name));
         });
         if (unmet == asked.end()) {
             return {};
@@ -184,7 +184,7 @@ class NameMarks {
 
     const ImportJob& job_;
     std::map<std::string, std::uint8_t, std::less<>> marks_;  // of the selected names
-    std::set<std::uint8_t> met_;                              // marks that were found
+    std::set<std::uint8_t> found_;                            // marks that were found
     std::vector<std::string> names_;                          // the first names in the file, in order
     std::set<std::string, std::less<>> known_;                // the same, for lookup
 };
@@ -251,7 +251,7 @@ class Flattener {
             return noTriangles(left_out_.any());
         }
         left_out_.warn(mesh_.warnings);
-        RELIEF_TRY(marks_.allMet());
+        RELIEF_TRY(marks_.checkAllFound());
         dropSingleLabel(mesh_);
         if (flat_ > 0) {
             mesh_.warnings.push_back(std::to_string(flat_) +
@@ -418,7 +418,7 @@ class Flattener {
             const Transform transform = node.transform ? next.parent * *node.transform : next.parent;
             const bool skips =
                 hasTriangles(node) && left_out_.leaveOut(node.is_shown, node.shown, job_.options.hidden);
-            const std::uint8_t mark = skips ? next.mark : std::max(next.mark, marks_.meet(node.names));
+            const std::uint8_t mark = skips ? next.mark : std::max(next.mark, marks_.record(node.names));
             if (!skips && !node.parts.empty() && !visit(node, node.posed ? root_ : transform, mark)) {
                 return false;
             }
@@ -452,7 +452,7 @@ class Flattener {
                                          base + (mirrors ? t.y : t.z));
         }
         mesh_.marks.resize(marks_.any() ? mesh_.triangles.size() : 0,
-                           std::max(mark, marks_.meet(part.names)));
+                           std::max(mark, marks_.record(part.names)));
         const NodeResponse response = node.response.value_or(NodeResponse());
         mesh_.labels.resize(
             mesh_.triangles.size(),

@@ -63,8 +63,8 @@ struct NodeResponse {
 /// Whether the file shows a node's parts.
 enum class Shown : std::uint8_t {
     kYes,
-    kHidden,       ///< the node or an ancestor is hidden
-    kLesserLevel,  ///< a lower level of detail of another node
+    kHidden,      ///< the node or an ancestor is hidden
+    kLowerLevel,  ///< a lower level of detail of another node
 };
 
 /// Places parts and child nodes. A node may be placed several times.

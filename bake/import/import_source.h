@@ -44,7 +44,7 @@ class ImportSource {
     [[nodiscard]] Result<AnimatedImport> finishAnimated(TriangleMesh raw, ImportKind kind) const;
 
   private:
-    [[nodiscard]] tl::unexpected<Error> lies(const char* what) const;
+    [[nodiscard]] tl::unexpected<Error> badAnswer(const char* what) const;
     /// Sets name, hash and full paths.
     [[nodiscard]] Result<TriangleMesh> named(TriangleMesh raw, std::size_t names) const;
 

@@ -71,7 +71,7 @@ void takeLabels(const TriangleMesh& all, std::size_t first, TriangleMesh& mesh) 
 }
 
 /// Whether finishMesh would find a triangle with area, or a fault.
-bool isWorthAnything(const TriangleMesh& mesh) {
+bool hasAreaOrFault(const TriangleMesh& mesh) {
     return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const glm::uvec3& t) {
         return std::max({t.x, t.y, t.z}) >= mesh.positions.size() || hasArea(planeOf(mesh.positions, t));
     });
@@ -165,7 +165,7 @@ Result<Level> cutLevel(TriangleMesh all, bool materials) {
         takeLabels(all, triangle, mesh);
         position += one.positions;
         triangle += one.triangles;
-        if (!isWorthAnything(mesh)) {
+        if (!hasAreaOrFault(mesh)) {
             level.warnings.push_back(level.name + ": left out the mesh '" + mesh.name +
                                      "': none of its triangles has an area");
             places.emplace_back(std::nullopt);

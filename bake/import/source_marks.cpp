@@ -38,7 +38,7 @@ struct FbxString {
 };
 
 /// Returns the string after `at`; in text, skips blanks and a comma. nullopt if there is none.
-std::optional<FbxString> stringBehind(std::string_view text, std::size_t at) {
+std::optional<FbxString> stringAfter(std::string_view text, std::size_t at) {
     if (isBinary(text)) {
         const bool is_string =
             at + 5 <= text.size() && text[at] == 'S' && lengthAt(text, at + 1) <= text.size() - at - 5;
@@ -80,9 +80,9 @@ bool typeAsNumber(std::string& text, std::string_view name) {
     const std::string start = quoted(text, name);
     bool any = false;
     for (std::size_t at = text.find(start); at != std::string::npos; at = text.find(start, at + 1)) {
-        const auto type = stringBehind(text, at + start.size());
-        const auto label = type ? stringBehind(text, endOf(text, *type)) : std::nullopt;
-        const auto flags = label ? stringBehind(text, endOf(text, *label)) : std::nullopt;
+        const auto type = stringAfter(text, at + start.size());
+        const auto label = type ? stringAfter(text, endOf(text, *type)) : std::nullopt;
+        const auto flags = label ? stringAfter(text, endOf(text, *label)) : std::nullopt;
         if (!flags || std::string_view(text).substr(type->begin, type->size) != name) {
             continue;
         }
@@ -118,8 +118,8 @@ bool markLodGroups(std::string& text) {
     bool any = false;
     for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
         const std::size_t end = at + word.size();
-        const auto written = binary ? std::nullopt : stringBehind(text, at);
-        const auto its_class = stringBehind(text, written ? endOf(text, *written) : end);
+        const auto written = binary ? std::nullopt : stringAfter(text, at);
+        const auto its_class = stringAfter(text, written ? endOf(text, *written) : end);
         if (!its_class || std::string_view(text).substr(its_class->begin, its_class->size) != kLodGroup) {
             continue;
         }

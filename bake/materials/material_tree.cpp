@@ -370,7 +370,7 @@ class TreeBuilder {
     }
 
     /// Chooses, bottom-up, the cells with octants that minimize wrong + least · nodes. \return the number of nodes.
-    std::size_t keepWorth(double least) {
+    std::size_t keepCheapest(double least) {
         std::vector<double> cost(cells_.size());
         for (std::size_t i = cells_.size(); i-- > 0;) {
             Cell& cell = cells_[i];
@@ -413,22 +413,22 @@ class TreeBuilder {
     /// Trees" (1984), chapter 3: each cost per node has its own best tree, and these trees are nested.
     void keepBest(std::size_t most) {
         double small = 0.0;  // keeps too many
-        if (keepWorth(small) <= most) {
+        if (keepCheapest(small) <= most) {
             return;
         }
         double large = static_cast<double>(kClearContact) * static_cast<double>(samples_.size()) + 1.0;
         constexpr int kHalvings = 30;
         for (int i = 0; i < kHalvings; ++i) {
             const double middle = 0.5 * (small + large);
-            (keepWorth(middle) > most ? small : large) = middle;
+            (keepCheapest(middle) > most ? small : large) = middle;
         }
-        static_cast<void>(keepWorth(small));
+        static_cast<void>(keepCheapest(small));
         const std::vector<std::uint32_t> worth = keptNodes();
         std::vector<char> may(cells_.size(), 0);
         for (const std::uint32_t node : worth) {
             may[node] = 1;
         }
-        std::size_t left = most - keepWorth(large);
+        std::size_t left = most - keepCheapest(large);
         // Fills the remaining nodes with nodes of equal value, upper levels first.
         std::vector<std::uint32_t> order{0};
         for (std::size_t i = 0; i < order.size(); ++i) {

@@ -163,9 +163,9 @@ void visitNear(S& search, float radius) {
 
 /// The parity directions, each possibly reversed to leave the box sooner, shortest first. Rays then hit fewer of many
 /// layers, such as leaves or grass.
-class WaysOut {
+class ParityRays {
   public:
-    WaysOut(const Bounds& box, const glm::vec3& p) {
+    ParityRays(const Bounds& box, const glm::vec3& p) {
         for (std::size_t i = 0; i < ways_.size(); ++i) {
             const glm::dvec3& along = kParityDirections[i];
             double ahead = std::numeric_limits<double>::infinity();
@@ -271,9 +271,9 @@ bool MeshQuery::inBody(const glm::vec3& p) const {
     // winding is irrelevant.
     const std::size_t rays = !bodies_.empty() && shells_ ? 3 : kParityDirections.size();
     std::size_t votes[2] = {0, 0};
-    const WaysOut ways(box, p);
+    const ParityRays rays_out(box, p);
     for (std::size_t i = 0; votes[0] <= rays / 2 && votes[1] <= rays / 2; ++i) {
-        ++votes[rayIsInside(p, ways[i]) ? 1 : 0];
+        ++votes[rayIsInside(p, rays_out[i]) ? 1 : 0];
     }
     return votes[1] > rays / 2;
 }
@@ -351,10 +351,10 @@ BodyCounter MeshQuery::bodiesAt(const glm::vec3& p) const {
         return counter;
     }
     const bool is_inside = inBody(p);
-    const WaysOut ways(mesh().bounds, p);
+    const ParityRays rays_out(mesh().bounds, p);
     // A ray through an edge may count it twice.
     for (std::size_t i = 0; i < kParityDirections.size(); ++i) {
-        counter = countAlong(p, ways[i]);
+        counter = countAlong(p, rays_out[i]);
         counter.winding = -counter.winding;  // from outside to p
         if (counter.inside() == is_inside) {
             break;

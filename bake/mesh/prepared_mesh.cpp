@@ -25,7 +25,7 @@ struct PreparedMesh::State {
     Voids voids;
 
     /// Computes everything that depends on the edges. If the edges are not stored, computes them temporarily.
-    void learn() {
+    void computeFromEdges() {
         const MeshEdges own = edges ? MeshEdges{} : edgesOf(mesh);
         const MeshEdges& from = edges ? *edges : own;
         odd_edges = relief::oddEdges(from);
@@ -45,14 +45,14 @@ const MeshEdges& PreparedMesh::edges() const {
 
 void PreparedMesh::freeEdges() const {
     if (state_->edges) {
-        state_->learn();
+        state_->computeFromEdges();
         state_->edges.reset();
     }
 }
 
 const std::vector<OddEdge>& PreparedMesh::oddEdges() const {
     if (!state_->odd_edges) {
-        state_->learn();
+        state_->computeFromEdges();
     }
     return *state_->odd_edges;
 }
@@ -65,7 +65,7 @@ bool PreparedMesh::woundShells() const {
         return false;
     }
     if (!state_->several_shells) {
-        state_->learn();
+        state_->computeFromEdges();
     }
     return *state_->several_shells;
 }

@@ -10,8 +10,8 @@ namespace relief {
 namespace {
 
 /// Maximum area of outliers, and of the longest side of the remaining box, as fractions.
-constexpr double kStrayArea = 0.01;
-constexpr double kStrayRest = 0.1;
+constexpr double kOutlierAreaMax = 0.01;
+constexpr double kRestMax = 0.1;
 
 double distanceTo(const glm::dvec3& center, const Bounds& bounds) {
     const glm::dvec3 low = center - glm::dvec3(bounds.min);
@@ -87,8 +87,8 @@ OutlierParts straysOf(const std::vector<SurfacePart>& parts) {
     Bounds rest;
     for (std::size_t k = 0; k < order.size(); ++k) {
         const SurfacePart& part = parts[order[k]];
-        const bool may_go = kept >= (1.0 - kStrayArea) * area;
-        if (may_go && double{rest.longestSide()} <= kStrayRest * double{whole.longestSide()} &&
+        const bool may_go = kept >= (1.0 - kOutlierAreaMax) * area;
+        if (may_go && double{rest.longestSide()} <= kRestMax * double{whole.longestSide()} &&
             distanceTo(median, part.bounds) > 2.0 * double{rest.longestSide()}) {
             strays.parts.assign(order.begin() + static_cast<std::ptrdiff_t>(k), order.end());
             std::ranges::sort(strays.parts);

@@ -21,7 +21,7 @@ namespace relief {
 namespace {
 
 /// Maximum number of points whose side the caps change, relative to the points inside.
-constexpr double kTurnedMax = 0.05;
+constexpr double kContradictedMax = 0.05;
 
 /// A point, and the fraction of its rays that cross the surface an odd number of times.
 struct Vote {
@@ -169,7 +169,7 @@ class Capper {
 };
 
 /// Returns the number of clear votes that the closed mesh contradicts, relative to the clear votes for inside.
-double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
+double contradictedFraction(const std::vector<Vote>& votes, const MeshQuery& closed) {
     std::size_t inside = 0;
     std::size_t turned = 0;
     for (const Vote& vote : votes) {
@@ -182,14 +182,14 @@ double turnedShare(const std::vector<Vote>& votes, const MeshQuery& closed) {
 }
 
 /// Tests points on and off the surface: caps of patches whose seams do not meet would cross the inside.
-bool turnsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
+bool swapsSides(const std::vector<std::array<Vote, 2>>& votes, const MeshQuery& open,
                 const MeshQuery& closed) {
     std::vector<Vote> sides;
     for (const auto& [front, back] : votes) {
         sides.insert(sides.end(), {front, back});
     }
-    return turnedShare(sides, closed) > kTurnedMax ||
-           turnedShare(voteInBox(open, votes.size()), closed) > kTurnedMax;
+    return contradictedFraction(sides, closed) > kContradictedMax ||
+           contradictedFraction(voteInBox(open, votes.size()), closed) > kContradictedMax;
 }
 
 }  // namespace
@@ -283,7 +283,7 @@ Result<PreparedMesh> closeHoles(const PreparedMesh& mesh, std::size_t probes) {
     }
     const PreparedMesh closed = mesh.capped(std::move(with_caps));
     const MeshQuery closed_query = RELIEF_TRY(MeshQuery::build(closed));
-    return turnsSides(votes, query, closed_query) ? mesh : closed;
+    return swapsSides(votes, query, closed_query) ? mesh : closed;
 }
 
 }  // namespace relief

@@ -108,7 +108,7 @@ class Corners {
 };
 
 /// Returns the distance between two parts; nullopt if they are not near copies.
-std::optional<double> apart(const TriangleMesh& mesh, const Solid& a, const Solid& b) {
+std::optional<double> distanceBetween(const TriangleMesh& mesh, const Solid& a, const Solid& b) {
     const double reach = kCopyReach * double{std::max(a.bounds.longestSide(), b.bounds.longestSide())};
     for (int axis = 0; axis < 3; ++axis) {
         if (std::abs(double{a.bounds.min[axis]} - double{b.bounds.min[axis]}) > reach ||
@@ -187,7 +187,7 @@ NearCopies nearCopies(const TriangleMesh& mesh, std::span<const Part* const> sol
     for (const std::size_t i : order) {
         const Solid& solid = measures[i];
         const bool is_copy = kept.anyNear(solid, [&](const Solid* other) {
-            const std::optional<double> distance = apart(mesh, *other, solid);
+            const std::optional<double> distance = distanceBetween(mesh, *other, solid);
             copies.farthest = std::max(copies.farthest, distance.value_or(0.0));
             return distance.has_value();
         });

@@ -31,7 +31,7 @@ constexpr std::size_t kRays = 2'000;
 constexpr double kRaysOut = 0.01;
 /// Test points of a triangle are its centre, its corners and the middles of its sides; the latter are moved towards the
 /// centre by this factor.
-constexpr double kDrawnIn = 0.95;
+constexpr double kInset = 0.95;
 
 using Place = Voids::Place;
 
@@ -220,7 +220,7 @@ bool facesVoids(const MeshQuery& query, std::uint32_t triangle) {
         kSurfaceStep * double{query.mesh().bounds.longestSide()} / length(normal) * normal;
     bool any = false;
     for (const glm::dvec3& on : {middle, a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-        const glm::dvec3 p = middle + kDrawnIn * (on - middle) + step;
+        const glm::dvec3 p = middle + kInset * (on - middle) + step;
         if (!query.inside(p)) {
             return false;
         }

@@ -279,8 +279,8 @@ glm::dvec3 middleOf(const Sheet& sheet, const glm::uvec3& t) {
 /// where the offsets of both sides meet.
 /// \param isOwn  whether to ignore a triangle, by index.
 template <class IsOwn>
-std::array<double, 2> roomAt(const MeshQuery& query, const glm::dvec3& start, const glm::dvec3& offset,
-                             const IsOwn& isOwn) {
+std::array<double, 2> clearanceAt(const MeshQuery& query, const glm::dvec3& start, const glm::dvec3& offset,
+                                  const IsOwn& isOwn) {
     std::array<double, 2> room = {2.0, 2.0};
     std::vector<LineHit> hits;
     if (offset != glm::dvec3(0.0)) {
@@ -338,9 +338,9 @@ struct Fan {
 /// \param turned  the offset's triangles have the opposite winding.
 /// \param fans    receives the fans.
 template <class EndOf>
-std::vector<bool> fullRegions(const Sheet& sheet, const std::vector<std::uint8_t>& thin, const EndOf& endOf,
-                              bool turned, const PartBuilder& builder, const MeshQuery& query, double reach,
-                              std::vector<Fan>& fans) {
+std::vector<bool> filledRegions(const Sheet& sheet, const std::vector<std::uint8_t>& thin, const EndOf& endOf,
+                                bool turned, const PartBuilder& builder, const MeshQuery& query, double reach,
+                                std::vector<Fan>& fans) {
     std::vector<bool> full(sheet.triangles.size(), false);
     std::vector<bool> seen(sheet.triangles.size(), false);
     std::vector<std::uint32_t> region;
@@ -399,8 +399,8 @@ class Thickener {
         : sheet_(sheet), query_(query), thickness_(thickness), fans_(sheet), roots_(fans_.roots()) {}
 
     SolidPart run() {
-        room_ = roomByRoot(false);
-        placeEnds(turnsOver());
+        clearance_ = clearanceByRoot(false);
+        placeEnds(flipsOver());
         markThin();
         if (!fans_.cuts().empty()) {
             shortenThinEnds();
@@ -428,25 +428,26 @@ class Thickener {
     }
 
     /// Ignores triangles at the same vertex. \param but_cut  does not ignore triangles that are cut from the corner.
-    [[nodiscard]] std::array<double, 2> roomAtCorner(std::uint32_t corner, bool but_cut) const {
+    [[nodiscard]] std::array<double, 2> clearanceAtCorner(std::uint32_t corner, bool but_cut) const {
         const glm::uvec3& t = sheet_.triangles[corner / 3];
         const std::uint32_t vertex = t[static_cast<int>(corner % 3)];
         const glm::dvec3 inwards = middleOf(sheet_, t) - placeOf(corner);
         const double start = kThinStart * std::min(1.0, length(offsetOf(corner)) / length(inwards));
-        return roomAt(query_, placeOf(corner) + start * inwards, offsetOf(corner), [&](std::uint32_t other) {
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                if (sheet_.triangles[other][static_cast<int>(k)] == vertex) {
-                    return !but_cut || !fans_.areCut(corner, 3 * other + k);
-                }
-            }
-            return false;
-        });
+        return clearanceAt(query_, placeOf(corner) + start * inwards, offsetOf(corner),
+                           [&](std::uint32_t other) {
+                               for (std::uint32_t k = 0; k < 3; ++k) {
+                                   if (sheet_.triangles[other][static_cast<int>(k)] == vertex) {
+                                       return !but_cut || !fans_.areCut(corner, 3 * other + k);
+                                   }
+                               }
+                               return false;
+                           });
     }
 
-    [[nodiscard]] std::vector<std::array<double, 2>> roomByRoot(bool but_cut) const {
+    [[nodiscard]] std::vector<std::array<double, 2>> clearanceByRoot(bool but_cut) const {
         std::vector<std::array<double, 2>> room(roots_.size());
         tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(roots_.size()),
-                          [&](std::uint32_t i) { room[i] = roomAtCorner(i, but_cut); });
+                          [&](std::uint32_t i) { room[i] = clearanceAtCorner(i, but_cut); });
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             for (const std::size_t face : {0U, 1U}) {
                 room[roots_[i]][face] = std::min(room[roots_[i]][face], room[i][face]);
@@ -456,7 +457,7 @@ class Thickener {
     }
 
     /// Returns, by root, whether an edge there would flip in the offset above or below.
-    [[nodiscard]] std::vector<std::array<bool, 2>> turnsOver() const {
+    [[nodiscard]] std::vector<std::array<bool, 2>> flipsOver() const {
         std::vector<std::array<bool, 2>> turns(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             const std::uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
@@ -476,7 +477,7 @@ class Thickener {
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             if (roots_[i] == i) {
                 const auto reach = [&](std::size_t face) {
-                    return turns[i][face] ? std::min(1.0, kThinReach * room_[i][face]) : 1.0;
+                    return turns[i][face] ? std::min(1.0, kThinReach * clearance_[i][face]) : 1.0;
                 };
                 ends_[i] = {builder_.addPosition(placeOf(i) + reach(0) * offsetOf(i)),
                             builder_.addPosition(placeOf(i) - reach(1) * offsetOf(i))};
@@ -492,14 +493,14 @@ class Thickener {
             const std::uint32_t next = (k + 1) % 3;
             const glm::dvec3 from = builder_.at(endsOf(i, k)[face]);
             const glm::dvec3 to = builder_.at(endsOf(i, next)[face]);
-            corners = corners && room_[roots_[3 * i + k]][face] < 2.0;
+            corners = corners && clearance_[roots_[3 * i + k]][face] < 2.0;
             turned = turned || dot(placeOf(3 * i + next) - placeOf(3 * i + k), to - from) < 0.0;
         }
         const glm::uvec3& t = sheet_.triangles[i];
         const auto is_own = [&](std::uint32_t other) { return other == i; };
-        return corners ||
-               (turned && roomAt(query_, middleOf(sheet_, t),
-                                 0.5 * thickness_ * unitNormal(sheet_.positions, t), is_own)[face] < 2.0);
+        return corners || (turned && clearanceAt(query_, middleOf(sheet_, t),
+                                                 0.5 * thickness_ * unitNormal(sheet_.positions, t),
+                                                 is_own)[face] < 2.0);
     }
 
     void markThin() {
@@ -512,7 +513,7 @@ class Thickener {
 
     /// Shortens corners where the sheet is cut and only thin triangles meet, as at the tip of a needle.
     void shortenThinEnds() {
-        const std::vector<std::array<double, 2>> room = roomByRoot(true);
+        const std::vector<std::array<double, 2>> room = clearanceByRoot(true);
         std::vector<std::array<bool, 2>> thick(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
             for (const std::size_t face : {0U, 1U}) {
@@ -538,7 +539,7 @@ class Thickener {
     void addFace(std::size_t face, std::vector<Fan>& fans) {
         const auto endOf = [&](std::uint32_t i, std::uint32_t corner) { return endsOf(i, corner)[face]; };
         const std::vector<bool> full =
-            fullRegions(sheet_, thin_[face], endOf, face == 1, builder_, query_, thickness_, fans);
+            filledRegions(sheet_, thin_[face], endOf, face == 1, builder_, query_, thickness_, fans);
         for (std::uint32_t i = 0; i < sheet_.triangles.size(); ++i) {
             if (!full[i]) {
                 builder_.addTriangle(i, endOf(i, 0), endOf(i, face == 0 ? 1 : 2),
@@ -611,7 +612,7 @@ class Thickener {
     double thickness_;
     CornerFans fans_;
     const std::vector<std::uint32_t>& roots_;
-    std::vector<std::array<double, 2>> room_;         // above and below, by root
+    std::vector<std::array<double, 2>> clearance_;    // above and below, by root
     std::vector<std::array<std::uint32_t, 2>> ends_;  // above and below, by root
     std::array<std::vector<std::uint8_t>, 2> thin_;   // above and below, by triangle
     std::vector<std::array<bool, 3>> bevelled_;       // by side
