@@ -20,6 +20,7 @@ struct ColumnRange {
 
 class ColumnRanges {
   public:
+    /// Computes the ranges of all levels.
     /// \param levels  number of levels; the first has columns of kLeafSquares, and each further one doubles their
     /// width.
     /// \param grid    must outlive this object.

@@ -83,7 +83,7 @@ enum class GltfUse : std::uint8_t {
 };
 
 /// Reads the elements of an accessor. Floats may be NaN or infinite.
-/// \tparam T  the type that `use` lists.
+/// \tparam T  the type listed for `use`.
 /// \param count_max  more elements are an error.
 /// Errors: kInvalidInput, kUnsupported, kLimit.
 template <class T>

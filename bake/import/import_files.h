@@ -21,6 +21,7 @@ inline constexpr std::uint64_t kImportBytesMax = std::uint64_t{4} << 30;
 
 class ImportFiles {
   public:
+    /// Gives access to a mesh and its folder.
     /// \param folder  descriptor of the mesh's folder, borrowed; -1: only the mesh can be read.
     /// \param name    file name of the mesh in that folder.
     /// \param bytes   contents of the mesh, borrowed.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The request to an importer, and the importer's entry point.
+// Defines an import request, and declares the importer's entry point.
 #pragma once
 
 #include <array>

@@ -26,6 +26,7 @@ namespace relief {
 /// A worker process. Errors omit the file name.
 class ImportProcess {
   public:
+    /// Prepares a worker.
     /// \param noun     the kind of file, for messages: "mesh".
     /// \param smaller  the cure for a file that is too large: "simplify the mesh".
     ImportProcess(const char* noun, const char* smaller, const ImportLimits& limits)

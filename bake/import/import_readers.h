@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Declares the readers of single formats, except glTF's parts and those that the runtime shares (formats/polygons).
+// Declares the readers of single formats, except the parts of glTF's reader, and readers shared with the runtime
+// (formats/polygons).
 // Errors name the line of a text file, not the file: kInvalidInput, kLimit, kUnsupported.
 #pragma once
 

@@ -12,7 +12,7 @@ namespace relief {
 inline constexpr std::uint64_t kSandboxStack = std::uint64_t{8} << 20;
 
 struct SandboxLimits {
-    std::uint64_t memory = 0;   ///< bytes of address space to add to the current use
+    std::uint64_t memory = 0;   ///< bytes of address space beyond the current use
     std::uint32_t seconds = 1;  ///< limit on processor time
 };
 

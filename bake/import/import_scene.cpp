@@ -285,7 +285,7 @@ class Flattener {
             return fail(ErrorCode::kLimit, "it places more than " + std::to_string(kLevelBodiesMax) +
                                                " meshes; join some, or bake it in parts");
         }
-        // Meshes are turned into the frame of the world, so that a pose leads from there to there.
+        // Meshes are stored in the frame of the world, so a pose maps that frame to itself.
         const glm::dmat3 turned = use.transform.linear * glm::inverse(root_.linear);
         glm::dmat3 applied(1.0);
         std::optional<RigidPose> pose = rigidPose(turned);
@@ -345,7 +345,7 @@ class Flattener {
             node.parts, [this](std::uint32_t part) { return !scene_.parts[part].triangles.empty(); });
     }
 
-    /// Whether a node or one below it has triangles. Recursive: importers run on a deep stack.
+    /// Returns whether a node or a descendant has triangles. Recursive; importers run on a deep stack.
     Result<bool> look(std::uint32_t index) {
         if (states_[index] == State::kOpen) {
             return invalidInput("an object contains itself; export it again");

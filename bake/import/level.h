@@ -23,8 +23,8 @@ inline constexpr std::size_t kLevelBodiesMax = 65'536;
 struct Level {
     std::string name;  ///< file name
     std::string unit;  ///< "m" or ""
-    /// After finishMesh(), each in its own space. `content_hash` covers positions and triangles. No two are equal,
-    /// including their marks.
+    /// After finishMesh(), each in its own space. `content_hash` covers positions and triangles. Any two differ in
+    /// geometry, marks or materials.
     std::vector<TriangleMesh> meshes;
     std::vector<LevelBody> bodies;          ///< in file order; every mesh has at least one
     std::vector<std::string> dependencies;  ///< as in TriangleMesh

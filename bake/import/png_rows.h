@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads grey PNG images of any size row by row. Only this file and runtime/files/png.cpp use libpng.
+// Reads grey PNG images of any size row by row. Only png_rows.cpp and runtime/files/png.cpp use libpng.
 #pragma once
 
 #include <cstddef>

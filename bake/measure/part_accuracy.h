@@ -77,7 +77,7 @@ struct PartsAccuracy {
     double detail = 0.0;  ///< object units
     std::vector<PartAccuracy>
         parts;  ///< by state: lost, coarse, and so on; within a state by wrong points times size
-    /// Named nodes with several parts, then such materials; by descending error.
+    /// Nodes, then materials, with a name and several parts; least accurate first.
     std::vector<GroupAccuracy> groups;
     std::uint64_t count[kPartVerdicts] = {};  ///< number of parts in each state
     bool minor_counts =

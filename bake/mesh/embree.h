@@ -40,6 +40,7 @@ enum class RayOrder { kIncoherent, kCoherent };
 /// The context of a ray or ray packet. Filter functions access it through of().
 class RayQuery {
   public:
+    /// Initializes a query.
     /// \param filter  runs for each surface on the ray, and requires a scene with kEmbreeRayFilters; null: the nearest
     /// surface is the hit.
     explicit RayQuery(RTCFilterFunctionN filter = nullptr, RayOrder order = RayOrder::kIncoherent) {

@@ -37,6 +37,7 @@ struct RepairedMesh {
     RepairReport report;
 };
 
+/// Counts the faults of a mesh, repairs it on request, and winds it outwards.
 /// Errors: kUsage (the method), kInvalidInput (--strict), kFailure (the wrap failed), kLimit.
 [[nodiscard]] Result<RepairedMesh> repairMesh(PreparedMesh mesh, const RepairOptions& options);
 

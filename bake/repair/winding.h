@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orients triangles outwards by rays and volumes, regardless of their order of corners in the file.
+// Orients triangles outwards by rays and volumes, regardless of the corner order in the file.
 #pragma once
 
 #include <cstdint>

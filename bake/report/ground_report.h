@@ -29,7 +29,7 @@ struct GroundJson {
 
 void fields(FieldVisitor& visit, const GroundJson& report);
 
-/// \param name  of the collider or world, for the text.
+/// Returns the report as text. \param name  of the collider or world.
 [[nodiscard]] std::string groundCheckText(const GroundAccuracy& accuracy, const std::string& name);
 
 void fields(FieldVisitor& visit, const GroundNear& near);

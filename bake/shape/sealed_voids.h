@@ -11,8 +11,7 @@
 
 namespace relief {
 
-/// The kind of a triangle of a union, by the space that it closes off; kNothing if free space was requested on both
-/// sides.
+/// How a triangle of a union closes off space; kNothing if free space was requested on both sides.
 enum class Wall : std::uint8_t { kSolid, kSheet, kNothing };
 
 /// Finds free space that leads outside only through a sheet, or through openings that lie between grid nodes and pass
