@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures baked ground against its height map, which may be of any size: the map is read twice, row by row, and only
-// squares with a point are evaluated. Truth is the bilinear surface between the samples, in closed form.
+// squares that contain a point are evaluated. Truth is the bilinear surface between the samples, in closed form.
 //
 //        y  |        . outside      points near the surface: side, and distance to the
 //           |    .  /  \            collider's surface along y

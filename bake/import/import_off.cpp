@@ -181,8 +181,8 @@ Result<PolygonMesh> readOff(std::span<const std::byte> bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     OffReader reader(text, {});
     Result<PolygonMesh> mesh = reader.read();
-    // A second element on a line looks like colours of the first. It is then missing at the end of the file, unless it
-    // continues on the next line and its rest there looks like another element.
+    // A second element on a line looks like colours of the first. The file then ends too early, unless it continues on
+    // the next line and its rest there looks like another element.
     for (const EndsWithLine ends : {EndsWithLine{false, false}, {true, false}, {false, true}}) {
         if (mesh && !reader.spansLines()) {
             break;

@@ -26,8 +26,8 @@ class Sight {
     /// volume reaches the front of the surface, kSurfaceStep above it.
     [[nodiscard]] bool sees(const SurfacePoint& point) const;
 
-    /// Returns the start of a free line of sight to a point in object space. nullopt: there is none, so that even the
-    /// finest texels would not classify the point as outside.
+    /// Returns the start of a free line of sight to a point in object space. nullopt: there is none, so even the finest
+    /// texels would not classify the point as outside.
     [[nodiscard]] std::optional<glm::dvec3> reaches(const glm::dvec3& p) const;
 
   private:

@@ -18,7 +18,7 @@ namespace relief {
 
 /// Configuration for rtcNewDevice(). By default, Embree uses the processor's widest instruction set. Fused multiply-add
 /// changes which rays hit an edge; vector width changes which of two surfaces at equal depth comes first. The bytes of
-/// a bake would then depend on the processor. This fixes one instruction set, which every processor since 2008
+/// a bake would then depend on the processor. This string selects an instruction set that every processor since 2008
 /// supports; on others, Embree returns an error. It costs about a tenth of a bake's time.
 #if defined(__x86_64__)
 inline constexpr const char* kEmbreeConfig = "isa=sse4.2";

@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// Calls visit(i) for i in [begin, end) on all cores. \param grain  least indices per task.
+/// Calls visit(i) for i in [begin, end) on all cores. \param grain  minimum number of indices per task.
 template <class Visit>
 void forEachIndex(std::size_t begin, std::size_t end, std::size_t grain, const Visit& visit) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, grain), [&](const auto& range) {

@@ -30,7 +30,7 @@ inline constexpr std::size_t kSurfaceNamesMax = 65'536;
 
 /// Node and material of a surface in its file.
 struct SurfaceName {
-    std::uint32_t node_index = 0;  ///< counts the nodes that show something; nodes with equal names differ
+    std::uint32_t node_index = 0;  ///< index among the nodes that show something
     std::string node;              ///< for OBJ, the group or object; "" if unnamed
     std::string material;          ///< "" if unnamed
     float restitution = 1.0F;      ///< of the material in the file, if any (formats/materials.h)

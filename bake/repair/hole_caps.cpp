@@ -35,7 +35,7 @@ struct Vote {
 
 Vote voteAt(const MeshQuery& query, const glm::vec3& position) {
     unsigned odd = 0;
-    // Opposite pairs keep a half space from outvoting the other; otherwise one side of a terrain would be inside.
+    // Opposite pairs give both half spaces the same weight; otherwise one side of a terrain would be inside.
     for (const glm::dvec3& direction : kParityDirections) {
         odd += query.crossings(position, direction) % 2;
         odd += query.crossings(position, -direction) % 2;

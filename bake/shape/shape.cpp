@@ -440,7 +440,7 @@ class Shaper {
         union_.countHoles(mesh.closed_holes);
     }
 
-    /// Closes each part with holes separately, then the rest together: panels whose seams do not meet.
+    /// Closes each part with holes separately, then the rest together (panels whose seams do not meet).
     Result<void> closeParts() {
         const std::vector<bool> joined = RELIEF_TRY(addWalls());
         std::vector<Open*> holed;

@@ -471,7 +471,7 @@ class Thickener {
         return turns;
     }
 
-    /// \param turns  where the offset ends if there is no more space.
+    /// \param turns  flipsOver(): there, the offset ends before the opposite surface.
     void placeEnds(const std::vector<std::array<bool, 2>>& turns) {
         ends_.resize(roots_.size());
         for (std::uint32_t i = 0; i < roots_.size(); ++i) {
