@@ -122,9 +122,9 @@ class ClipReader {
         }
         for (std::size_t i = 0; i < times.size(); ++i) {
             if (!std::isfinite(times[i]) || times[i] < 0.0F || (i > 0 && times[i] <= times[i - 1])) {
-                return input.wrong("has at key " + std::to_string(i) + " the time " +
-                                   (std::isfinite(times[i]) ? shortest(times[i]) : "NaN or infinity") +
-                                   "; key times must not be negative, and must increase");
+                return input.wrong(
+                    "has the time " + (std::isfinite(times[i]) ? shortest(times[i]) : "NaN or infinity") +
+                    " at key " + std::to_string(i) + "; key times must not be negative, and must increase");
             }
         }
         return times;
@@ -176,8 +176,8 @@ class ClipReader {
             }
             const double length = std::sqrt(square);
             if (!(std::abs(length - 1.0) <= kRotationTolerance)) {
-                return output.wrong("has at key " + std::to_string(key) +
-                                    " a rotation that is not a unit quaternion: its length is " +
+                return output.wrong("has a rotation at key " + std::to_string(key) +
+                                    " that is not a unit quaternion: its length is " +
                                     shortest(static_cast<float>(length)));
             }
             for (int i = 0; i < 4 && !cubic; ++i) {
