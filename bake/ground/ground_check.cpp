@@ -287,7 +287,8 @@ class GroundChecker {
                ")";
     }
 
-    /// Detects another map or other settings, which would be wrong nearly everywhere.
+    /// Fails if map and field cover different areas: with another map or other settings, nearly all points would be
+    /// wrong.
     [[nodiscard]] Result<void> compareExtents() const {
         const glm::dvec2 from(offset().x, offset().z);
         const glm::dvec2 low = from + spacing() * glm::dvec2(first_);

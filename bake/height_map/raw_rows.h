@@ -34,7 +34,7 @@ struct LikelierFormat {
 /// "type=int16,order=big"; empty if no better setting was found.
 [[nodiscard]] std::string toString(const LikelierFormat& format);
 
-/// Compares the differences between neighbours in at most 64 rows, and the values of all bytes.
+/// Searches for better settings, by the differences between neighbours in at most 64 rows and the values of all bytes.
 [[nodiscard]] LikelierFormat likelierRawFormat(std::span<const std::byte> bytes, const HeightsSpec& spec);
 
 }  // namespace relief

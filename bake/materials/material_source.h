@@ -16,8 +16,8 @@ struct MaterialSource {
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise seen from outside
     std::vector<std::uint8_t> ids;      ///< per triangle, an index into `list`
     std::vector<Material> list;         ///< in file order
-    /// The surface has no sheets. A sheet has one material on both sides; on a solid, the normal separates the two
-    /// sides of a board.
+    /// True if the surface has no sheets. Then a normal can separate the materials on a board's two sides; a sheet has
+    /// the same material on both.
     bool sides = true;
 
     [[nodiscard]] bool empty() const { return list.empty(); }

@@ -225,8 +225,8 @@ bool isMissing(const PartAccuracy& part) {
     return part.wrong.false_outside > part.wrong.false_inside;
 }
 
-/// Returns the percentage of points near the exposed surface that minor and coarse parts miss. Surfaces that are too
-/// thick affect the measurement of the whole, whose points are rarely inside a thin part.
+/// Returns the percentage of points near the exposed surface that minor and coarse parts miss. Excludes surfaces that
+/// are too thick: the measurement of the whole includes them, but rarely has points inside a thin part.
 double minorMissed(const PartsAccuracy& all, const SurfaceParts& parts) {
     double missed = 0.0;
     double area = 0.0;

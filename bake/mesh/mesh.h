@@ -39,7 +39,7 @@ struct SurfaceName {
     friend auto operator<=>(const SurfaceName&, const SurfaceName&) = default;
 };
 
-/// A distinct mesh of a level: the next positions and triangles of an importer's TriangleMesh.
+/// A distinct mesh of a level: how many of the next positions and triangles of an importer's TriangleMesh belong to it.
 struct LevelMesh {
     std::string name;
     std::uint64_t positions = 0;

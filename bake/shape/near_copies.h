@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds closed parts that almost coincide with another part, as in an export of two copies, one scaled by a millionth.
-// The gap between them is thinner than any wall of a collider and would make the solid hollow.
+// Finds closed parts that almost coincide with another part, as in an export of two copies, one enlarged by a
+// millionth. The gap between them is thinner than any wall of a collider and would make the solid hollow.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace relief {
 
-/// In units of the longer part's longest side: the thickness of the thinnest shell.
+/// Maximum distance of near copies, in units of the longer part's longest side: the thickness of the thinnest shell.
 inline constexpr double kCopyReach = 1e-4;
 
 struct NearCopies {

@@ -29,8 +29,8 @@ constexpr std::size_t kFirstVolume = 26;
 /// Rays from a void, and the maximum fraction that may lead out.
 constexpr std::size_t kRays = 2'000;
 constexpr double kRaysOut = 0.01;
-/// Test points of a triangle are its centre, its corners and the middles of its sides; the latter are moved towards the
-/// centre by this factor.
+/// Test points of a triangle are its centre, its corners and the middles of its sides; all except the centre are moved
+/// towards it by this factor.
 constexpr double kInset = 0.95;
 
 using Place = Voids::Place;
