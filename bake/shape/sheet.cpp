@@ -262,8 +262,8 @@ class CornerFans {
     std::vector<std::vector<std::uint32_t>> lids_;
 };
 
-/// An offset that would meet the one from the other side ends at this fraction of the distance to that side, so that
-/// both overlap slightly.
+/// An offset that would meet the opposite offset ends at this fraction of the distance to the other side, so that both
+/// overlap slightly.
 constexpr double kThinReach = 0.55;
 /// A corner's ray starts this far towards the middle of its triangle, as a fraction of that distance and of the offset.
 /// Rays from vertices would hit the edges of symmetric meshes.

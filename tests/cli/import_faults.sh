@@ -123,7 +123,7 @@ done <calls
 # An interrupted call goes on; an error is named, the loader's troubles too.
 ! grep -q '^fallocate EINTR own' reported || die "an interruption is an error: $(grep '^fallocate EINTR' reported)"
 for what in 'mmap ENOMEM loader.*libraries cannot be loaded.*ulimit -n' 'fallocate ENOSPC own.*No space left' \
-    'ftruncate EIO own.*could not continue .*Input/output error' 'prlimit64 EPERM own.*cannot limit.*Operation not permitted' \
+    'ftruncate EIO own.*could not continue .*Input/output error' 'prlimit64 EPERM own.*cannot (limit|lower).*Operation not permitted' \
     'seccomp ENOMEM own.*system calls.*Cannot allocate' 'landlock_restrict_self E2BIG own.*enter Landlock'; do
     grep -qE "^$what" reported || die "not reported: $what: $(cut -c1-200 reported)"
 done

@@ -227,7 +227,7 @@ TEST_F(HeightMaps, RawSamplesAreSquareUnlessTheyHaveAWidth) {
             "b.raw': it has 96 bytes, which do not form a square of samples of 16 bits; give --heights "
             "width=N or "
             "type=");
-    refuses(cut, "low=0,high=1,width=7", "no rows of 7 samples");
+    refuses(cut, "low=0,high=1,width=7", "do not form rows of 7 samples");
     refuses(write("odd.raw", std::vector<std::byte>(99)), "low=0,high=1", "99 bytes");
     refuses(write("none.raw", {}), "low=0,high=1", "0 bytes");
     refuses(square, "low=0", "needs high=, the height of sample 65535", ErrorCode::kUsage);
@@ -255,8 +255,9 @@ TEST_F(HeightMaps, RawSamplesHaveATypeAndAByteOrder) {
         write("f.bin", {0x3f, 0xc0, 0, 0, 0xc2, 0x28, 0, 0, 0, 0, 0, 0, 0x7f, 0xc0, 0, 0});
     EXPECT_EQ(heightsOf(floats, "type=float32,order=big", 9.0F),
               (std::vector<float>{1.5F, -42.0F, 0.0F, 9.0F}));
-    refuses(floats, "type=float32,width=3", "no rows of 3 samples of 32 bits; give another width or type");
-    refuses(big, "type=float32", "no square of samples of 32 bits");
+    refuses(floats, "type=float32,width=3",
+            "do not form rows of 3 samples of 32 bits; give another width or type");
+    refuses(big, "type=float32", "do not form a square of samples of 32 bits");
     refuses(big, "type=int16,low=0", "low applies only to unsigned samples, but these are heights",
             ErrorCode::kUsage);
     refuses(big, "type=int16,hole=40000", "whole number from -32768 to 32767", ErrorCode::kUsage);

@@ -415,9 +415,9 @@ TEST(ImportGltf, SparseAndQuantised) {
     EXPECT_EQ(mesh.bounds.max, glm::vec3(1, 1, 0));
     expectWrong(
         {{replaced(whole, R"("count":1)", R"("count":4)"), "accessors[0].sparse"},
-         {replaced(whole, R"("byteLength":1})", R"("byteLength":0})"), "sparse.indices ends behind"},
+         {replaced(whole, R"("byteLength":1})", R"("byteLength":0})"), "sparse.indices extends beyond"},
          {replaced(whole, R"("values":{"bufferView":2})", R"("values":{"bufferView":1})"),
-          "accessors[0].sparse.values ends behind"},
+          "accessors[0].sparse.values extends beyond"},
          {replaced(whole, R"("byteStride":4)", R"("byteStride":2)"),
           "a buffer view with a stride of 2 bytes"},
          {replaced(whole, R"("normalized":true)", R"("normalized":1)"), "accessors[0].normalized"},

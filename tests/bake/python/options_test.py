@@ -109,7 +109,7 @@ def test_height_maps_are_ground(mesh, tmp_path):
     assert ground.to_bytes() == (tmp_path / "a.relief").read_bytes()
     with pytest.raises(relief.UsageError, match="^budget is for meshes"):
         relief.bake(path, heights=words, budget="1MB")
-    with pytest.raises(relief.InputError, match="scene.obj.*no rows of 7 samples"):
+    with pytest.raises(relief.InputError, match="scene.obj.*do not form rows of 7 samples"):
         relief.bake(mesh, heights=words + ",width=7")
     with pytest.raises(relief.UsageError, match="read from a file"):
         relief.bake(np.eye(3), np.array([[0, 1, 2]]), heights=words)
