@@ -97,7 +97,7 @@ TEST(Ac3d, OddFilesAreReadWithAWarningOrRefusedWithTheirLine) {
                          {with("2 0 1\n", "4 0 1\n"),
                           "the vertex '4', but its object has 4 vertices, numbered from 0"},
                          {with("SURF 0x0", "SURF green"), "'green' is not a number such as 0x20"},
-                         {with("numvert 4", "numvert 5"), "no number"},
+                         {with("numvert 4", "numvert 5"), "not a number"},
                          {with("numvert 4", "numvert 99999999999"), "", ErrorCode::kLimit},
                          {with("kids 1", "kids many"), "'many' is not a number of kids"},
                          {with("refs 3", "refs 4000000000"), "line "},

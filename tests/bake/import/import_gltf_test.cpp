@@ -430,7 +430,7 @@ TEST(ImportGltf, FlatAndMorphedPartsWarn) {
     EXPECT_TRUE(warns(flat, "2 of its parts are scaled to 0"));
     const TriangleMesh morphed =
         loaded({.primitive = R"("attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":0}])"});
-    EXPECT_TRUE(warns(morphed, "morphed"));
+    EXPECT_TRUE(warns(morphed, "morph targets"));
     EXPECT_EQ(morphed.bounds.max, glm::vec3(1, 2, 3));
 }
 
