@@ -43,8 +43,8 @@ void fields(FieldVisitor& visit, const WrongShare& share);
 struct InsideAccuracy {
     std::uint64_t points = 0;
     /// Points at which the nearest face does not decide, in percent: the point is classified as outside, the normal
-    /// points away from the face, or the depth exceeds the truth by more than 25 % and by more than 0.1 % of the
-    /// longest side.
+    /// points away from the face, or the depth exceeds 1.25 times the true depth by more than 0.1 % of the longest
+    /// side.
     double far_face_percent = 0.0;
     double depth_mean = 0.0;  ///< |depth − true depth| of points classified as inside, object units
     double depth_p99 = 0.0;
