@@ -25,7 +25,7 @@ tools() {
     printf '[collider]\nfile = "bunny.relief"\n[time]\nsteps = 20\n[render]\nsize = [160, 120]\n' >bunny_in_the_snow.toml
     mkdir -p meshes/rocks && cp "$mesh" meshes/rocks/a.obj
     printf 'version = 1\n[[asset]]\nmesh = "meshes/**/*.obj"\noutput = "baked/{stem}.relief"\nbudget = "64kB"\n' >colliders.toml
-    sed -n '/^## Use$/,/^The seventh/s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
+    sed -n '/^## Use$/,/ --world level /s/^    \(relief.*[^ ]\)  *#.*/\1/p' "$doc/README.md" >commands
     [ "$(wc -l <commands)" -ge 5 ] || die "README.md shows $(wc -l <commands) commands"
     while read -r line; do
         bash -euc "$line" >said 2>&1 </dev/null || die "$line: $(tail -5 said)"
