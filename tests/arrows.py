@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every #include goes along an arrow of the build files: arrows.py SOURCE FOLDERS_TXT
+"""Checks that every #include follows the dependencies of the build files: arrows.py SOURCE FOLDERS_TXT
 
-FOLDERS_TXT is what CMake writes of relief_folder(): "FOLDER: USED USED…", a line each. Also fails on circles among
-files (a .cpp and its .h count as one), on third parties outside of the folders that may know them, on what the
-standard library of the WebAssembly build lacks (LLVM 14), in the files that it compiles, and on source files without a licence.
+CMake writes FOLDERS_TXT from relief_folder(): lines "FOLDER: USED USED…". The check also fails on include cycles (a .cpp and
+its .h count as one file), on third-party headers outside the folders that may include them, on standard library features
+that the WebAssembly build lacks (LLVM 14), and on source files without a licence.
 """
 import pathlib
 import re
 import sys
 
-# Third parties that only some folders may include; those of the standard library and the system are free.
+# Third parties, and the folders that may include them. Headers of the standard library and the system are not restricted.
 THIRD_PARTIES = {
     'assimp': ['bake/import'],
     'meshoptimizer.h': ['bake/import'],
@@ -35,7 +35,7 @@ THIRD_PARTIES = {
     'epoxy': ['runtime/gl', 'runtime/collider', 'runtime/picture'],
 }
 TREES = ('formats', 'shaders', 'runtime', 'bake', 'samples', 'scripts', 'tests')
-TOP = {'bake', 'runtime'}  # main.cpp alone, which may use everything below
+TOP = {'bake', 'runtime'}  # only main.cpp, which may use every folder
 
 
 def reachable(folder, uses):
@@ -48,8 +48,8 @@ def reachable(folder, uses):
     return found
 
 
-def circles(graph):
-    """Groups of files that include each other, by Tarjan's algorithm."""
+def cycles(graph):
+    """Groups of files that include each other (Tarjan's algorithm)."""
     index, low, stack, groups = {}, {}, [], []
 
     def visit(node):
@@ -75,12 +75,12 @@ def circles(graph):
     return groups
 
 
-# Algorithms of std::ranges (std::ranges::size() and others that are none are there), and casts of bits.
+# Algorithms of std::ranges (std::ranges::size() and the like are available), and std::bit_cast.
 NOT_FOR_WEB = re.compile(r'\bstd::ranges::(?!(?:size|data|begin|end|empty)\b)\w+\(|\bstd::bit_cast\b')
 
 
 def web_faults(source):
-    """What runtime/web/CMakeLists.txt names in web_sources(FOLDER FILE…), all of FOLDER but the files, must do without."""
+    """Uses of NOT_FOR_WEB in the files of web_sources(FOLDER EXCLUDED_FILE…) in runtime/web/CMakeLists.txt."""
     web = (source / 'runtime/web/CMakeLists.txt').read_text()
     faults, files = [], 0
     for folder, left_out in re.findall(r'^web_sources\(([^\s)]+)([^)]*)\)', web, re.MULTILINE):
@@ -91,20 +91,20 @@ def web_faults(source):
             for number, line in enumerate(path.read_text().split('\n'), 1):
                 found = NOT_FOR_WEB.search(line.split('//')[0])
                 if found:
-                    faults.append(f'{path.relative_to(source)}:{number}: the WebAssembly build has no {found[0].rstrip("(")}')
-    return faults if files >= 50 else [f'runtime/web/CMakeLists.txt: only {files} files of web_sources() were found']
+                    faults.append(f'{path.relative_to(source)}:{number}: the WebAssembly build lacks {found[0].rstrip("(")}')
+    return faults if files >= 50 else [f'runtime/web/CMakeLists.txt: found only {files} files of web_sources()']
 
 
 def table_faults(source, uses):
-    """The table of CONTRIBUTING.md has every folder that holds files, two levels deep, and every arrow."""
+    """Folders without a row in the table of CONTRIBUTING.md (two levels deep), and rows whose dependencies are wrong."""
     rows = dict(re.findall(r'^\| `([^`]+)` \|[^|]+\|([^|]*)\|$', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE))
-    faults = [f'CONTRIBUTING.md: the row of {folder} shall list {" ".join(used) or "nothing"}'
+    faults = [f'CONTRIBUTING.md: the row of {folder} must list {" ".join(used) or "nothing"}'
               for folder, used in uses.items() if re.findall('`([^`]+)`', rows.get(folder, '`no row`')) != used]
     tracked = [path for top in ('formats', 'shaders', 'runtime', 'bake', 'samples', 'scripts') for path in (source / top).rglob('*')
                if path.is_file() and '__pycache__' not in path.parts and 'node_modules' not in path.parts]
     folders = {'/'.join(path.relative_to(source).parts[:-1][:2]) for path in tracked}
     faults += [f'CONTRIBUTING.md: {folder} has no row' for folder in sorted(folders - set(rows))]
-    return faults + [f'CONTRIBUTING.md: there is no {folder}' for folder in rows if not (source / folder).is_dir()]
+    return faults + [f'CONTRIBUTING.md: {folder} does not exist' for folder in rows if not (source / folder).is_dir()]
 
 
 SOURCES = set('.c .cmake .comp .cpp .css .fbs .frag .glsl .h .hpp .html .js .mjs .py .sh .ts .vert'.split())
@@ -112,15 +112,15 @@ LICENCE = re.compile(r'(?://|#|/\*|<!--) SPDX-License-Identifier: Apache-2\.0(?:
 
 
 def licence_faults(source):
-    """Every source file has an SPDX line of its own among its first two lines."""
+    """Source files without an SPDX line among their first two lines."""
     faults, files = [], 0
     for path in sorted(p for top in TREES for p in (source / top).rglob('*')):
         if (path.suffix in SOURCES or path.name == 'CMakeLists.txt') and path.is_file() and 'node_modules' not in path.parts:
             files += 1
             if not any(LICENCE.fullmatch(line) for line in path.read_text().split('\n', 2)[:2]):
-                faults.append(f'{path.relative_to(source)}:1: the first or second line shall be the comment '
+                faults.append(f'{path.relative_to(source)}:1: the first or second line must be the comment '
                               'SPDX-License-Identifier: Apache-2.0')
-    return faults if files >= 500 else faults + [f'only {files} source files were found']
+    return faults if files >= 500 else faults + [f'found only {files} source files']
 
 
 def main(source, folders_file):
@@ -137,7 +137,7 @@ def main(source, folders_file):
         name = path.relative_to(source)
         folder = str(name.parent)
         if folder not in uses and folder not in TOP:
-            faults.append(f'{name}: {folder} is no relief_folder() of the build files')
+            faults.append(f'{name}: no relief_folder() declares {folder}')
             continue
         allowed = set(uses) if folder in TOP else reachable(folder, uses)
         for number, line in enumerate(path.read_text().split('\n'), 1):
@@ -146,20 +146,20 @@ def main(source, folders_file):
             if theirs and theirs[1].split('/')[0] in THIRD_PARTIES:
                 party = theirs[1].split('/')[0]
                 if folder not in THIRD_PARTIES[party]:
-                    faults.append(f'{name}:{number}: {party} is for {", ".join(THIRD_PARTIES[party])} alone')
+                    faults.append(f'{name}:{number}: only {", ".join(THIRD_PARTIES[party])} may include {party}')
             if not ours or ours[1].endswith('_generated.h'):
                 continue
             target = pathlib.Path(ours[1])
             if not (source / target).is_file():
-                faults.append(f'{name}:{number}: there is no {target}; includes are named from the root')
+                faults.append(f'{name}:{number}: {target} does not exist; includes start at the root')
             elif str(target.parent) not in allowed:
-                faults.append(f'{name}:{number}: an arrow runs back: {folder} may not use {target.parent}')
+                faults.append(f'{name}:{number}: forbidden include: {folder} may not use {target.parent}')
             stem, other = str(name.with_suffix('')), str(target.with_suffix(''))
             if stem != other:
                 graph.setdefault(stem, set()).add(other)
-    faults += ['a circle: ' + ', '.join(group) for group in circles(graph)]
+    faults += ['include cycle: ' + ', '.join(group) for group in cycles(graph)]
     faults += web_faults(source) + table_faults(source, uses) + licence_faults(source)
-    print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no arrow runs back')
+    print('\n'.join(faults) if faults else f'{files} files in {len(uses)} folders, no forbidden include')
     return 1 if faults or files < 100 else 0
 
 
