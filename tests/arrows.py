@@ -97,7 +97,8 @@ def web_faults(source):
 
 def table_faults(source, uses):
     """Folders without a row in the table of CONTRIBUTING.md (two levels deep), and rows whose dependencies are wrong."""
-    rows = dict(re.findall(r'^\| `([^`]+)` \|[^|]+\|([^|]*)\|$', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE))
+    table = re.findall(r'^\| (`[^|]+`) \|[^|]+\|([^|]*)\|$', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE)
+    rows = {folder: used for folders, used in table for folder in re.findall('`([^`]+)`', folders)}
     faults = [f'CONTRIBUTING.md: the row of {folder} must list {" ".join(used) or "nothing"}'
               for folder, used in uses.items() if re.findall('`([^`]+)`', rows.get(folder, '`no row`')) != used]
     tracked = [path for top in ('formats', 'shaders', 'runtime', 'bake', 'samples', 'scripts') for path in (source / top).rglob('*')
