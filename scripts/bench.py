@@ -1,19 +1,19 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the benchmarks and prints the ratios that Relief promises, from one run on this machine.
+"""Builds the benchmarks and prints the ratios that Relief promises, measured on this machine.
 
-  scripts/bench.py [MESH]                    all of them; run it twice before you believe a change
-  scripts/bench.py --save OLD.json           nine rounds of the ratios of bakes and steps
-  scripts/bench.py --against OLD.json        the same of this build, and the verdict on it; with --save also kept
-  scripts/bench.py --compare OLD.json NEW.json   the verdict on two files
+  scripts/bench.py [MESH]                    prints all ratios; run it twice before you trust a change
+  scripts/bench.py --save OLD.json           saves nine rounds of the bake and step ratios
+  scripts/bench.py --against OLD.json        measures this build and compares it with OLD.json; --save also saves it
+  scripts/bench.py --compare OLD.json NEW.json   compares two files
 
-Nothing here is a test, because machines are shared and noisy. RELIEF_BENCH_LARGE=1 takes the sizes for a GPU (a million
-particles and more) even where there is none.
+These are not tests, because machines are shared and noisy. RELIEF_BENCH_LARGE=1 uses GPU sizes (a million particles and
+more) on any machine.
 
-The verdict: a figure is a ratio within one round, so that a busy machine meets both sides of it; less is better. It is
-slower or faster where its median has changed by at least 3 % and the rounds of the two files are too far apart for chance:
-the exact one-sided test of Mann and Whitney, once in a thousand for all figures together (Bonferroni). Exit code: 0 nothing
-is slower; 1 something is slower, or a figure is gone; 2 the files cannot be compared.
+Each figure is a ratio within one round, so that load on the machine affects both of its sides; smaller is better. A figure is
+slower or faster if its median changed by at least 3 % and the change is significant: exact one-sided Mann-Whitney test,
+p <= 0.001 for all figures together (Bonferroni). Exit code: 0 nothing is slower; 1 a figure is slower or missing; 2 the files
+are not comparable.
 """
 import argparse
 import functools
@@ -32,7 +32,7 @@ BUNNY = "/usr/share/glmark2/models/bunny.obj"
 LARGE = os.environ.get("RELIEF_BENCH_LARGE") == "1"
 LEAST_CHANGE = 0.03
 CHANCE = 0.001
-# Six orthographic ends, as texels that cost one ray each.
+# Three front-back maps, whose texels take one ray per surface.
 SIX_MAPS = [word for way in ("-x", "-y", "-z")
             for word in ("--map", f"front-back:dir={way},depth=half,decode=projected")]
 LEAST_MAP = ["--map", "front-back:dir=-x,size=8,decode=projected"]
@@ -56,7 +56,7 @@ def seconds(command):
 
 
 class Tools:
-    """The programs of one build, a mesh, and a folder for what they write."""
+    """The programs of one build, a mesh, and a folder for outputs."""
 
     def __init__(self, binaries, mesh, folder):
         self.binaries, self.mesh, self.folder = binaries, mesh, folder
@@ -68,23 +68,23 @@ class Tools:
         return printed([f"{self.binaries}/relief-bench", case, *options, *(["--large"] if LARGE else [])])
 
     def step(self, collider, *options):
-        """The report on the one table of a step, and its rows by name."""
+        """The report of a step, and the rows of its only table by name."""
         report = self.bench("step", f"{self.folder}/{collider}.relief", *options)
         return report, {row["name"]: row for row in report["tables"][0]["rows"]}
 
     def least(self):
-        """Seconds of the least bake: import, tree, next to no rays, writing."""
+        """Seconds of the smallest bake: import, tree, almost no rays, writing."""
         return seconds(self.bake("least", LEAST_MAP))
 
 
-# Rounds of figures, and the verdict on them.
+# Rounds of figures, and their comparison.
 
 def one_round(tools):
     least = tools.least()
     figures = {"bake of six maps / least bake": seconds(tools.bake("six", SIX_MAPS)) / least,
                "bake of patches / least bake": seconds(tools.bake("patches", PATCHES)) / least}
     for path in ("fragment", "compute"):
-        # A few blocks, for rounds are many, and few particles where processors do the GPU's work.
+        # Few blocks, because there are many rounds, and few particles for software renderers.
         report, rows = tools.step("patches", "--path", path, "--particles", "1048576" if LARGE else "16384", "--blocks", "3")
         for name, row in rows.items():
             if "over" in row:
@@ -98,7 +98,7 @@ def save_rounds(tools, rounds, target):
         renderer, figures = one_round(tools)
         for name, value in figures.items():
             taken.setdefault(name, []).append(value)
-        with open(target, "w", encoding="utf-8") as file:  # finished rounds remain where a later one is cut off
+        with open(target, "w", encoding="utf-8") as file:  # keeps finished rounds if the run is interrupted
             json.dump({"machine": f"{platform.machine()}, {os.cpu_count()} processors, {renderer}", "figures": taken}, file,
                       indent=1)
         print(f"round {done + 1} of {rounds}", file=sys.stderr, flush=True)
@@ -117,7 +117,7 @@ def load(path):
 
 @functools.lru_cache(maxsize=None)
 def ways(m, n, u):
-    """Orders of m and n rounds in which exactly u pairs have the one of m above."""
+    """The number of orders of m and n rounds in which the one of m is larger in exactly u pairs."""
     if u < 0:
         return 0
     if m == 0 or n == 0:
@@ -126,7 +126,7 @@ def ways(m, n, u):
 
 
 def chance(low, high):
-    """That rounds of one and the same program lie as `high` does above `low`, or more so. Equal ones count half."""
+    """The p-value: how likely rounds of the same program lie as far apart as `high` above `low`. Ties count half."""
     m, n = len(high), len(low)
     u = sum(1.0 if h > l else 0.5 if h == l else 0.0 for h in high for l in low)
     return sum(ways(m, n, k) for k in range(math.floor(u), m * n + 1)) / math.comb(m + n, m)
@@ -198,11 +198,11 @@ def print_report(tools):
                    zip(*[(tools.least(), seconds(tools.bake("six", SIX_MAPS))) for _ in range(15)]))
     print(f"bake of six maps / of eight texels squared         {bake / least:.2f}   ({1000 * bake:.1f} / {1000 * least:.1f} ms)")
 
-    # The particle step among each against the paper's collider, one front-back map and one cube.
+    # The particle step with patches and with the paper's collider: one front-back map and one cube.
     runs = {"patches": [], "paper": []}
     for name, maps in (("patches", PATCHES), ("paper", PAPER_MAPS)):
         seconds(tools.bake(name, maps))
-    for _ in range(5):  # in turns, so that all meet the same other work on the machine
+    for _ in range(5):  # alternating, so that load on the machine affects both
         for name, taken in runs.items():
             taken.append(tools.step(name, "--only", "collider")[1]["collider"]["ms"])
     paper = statistics.median(runs["paper"])
@@ -228,7 +228,7 @@ def parse(arguments):
 
 
 def built(script, *arguments):
-    """The last line that one of our scripts prints."""
+    """The last line of output of one of our scripts."""
     return subprocess.run([f"{ROOT}/scripts/{script}", *arguments], check=True, stdout=subprocess.PIPE,
                           text=True).stdout.strip().rsplit("\n", 1)[-1]
 
@@ -239,7 +239,7 @@ def main(arguments):
         if options.compare:
             return compare(*options.compare)
         if options.against:
-            load(options.against)  # before the hours that the rest may take
+            load(options.against)  # fails before the measurement, which may take hours
         built("setup.sh")
         binaries = built("build.sh", "release", "relief", "relief-bench")
         with tempfile.TemporaryDirectory() as folder:

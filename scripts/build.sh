@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Builds one preset of CMakePresets.json: scripts/build.sh release|tools|debug|sanitize|fuzz|web [TARGET]…
-# Prints the folder of the executables. web is the runtime as WebAssembly (runtime/web/README.md), which needs packages
-# of its own and installs them.
+# Prints the folder of the executables. web builds the runtime as WebAssembly (runtime/web/README.md), and installs the
+# packages it needs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -12,7 +12,7 @@ if [ "$preset" = web ]; then
     scripts/setup.sh web
     scripts/web_modules.sh >&2
 fi
-# tools is a part of release; what it left out is added when release is built.
+# tools builds a part of release in the same folder, which release then configures again.
 folder=build/${preset/tools/release}
 if [ ! -f "$folder/build.ninja" ] ||
     { [ "$preset" = release ] && grep -q '^RELIEF_BUILD_TESTS:.*=OFF' "$folder/CMakeCache.txt"; }; then

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How wrong `relief bake` is on meshes as artists make them: what scripts/accuracy.sh --corpus runs.
+"""Measures the accuracy of `relief bake` on artist-made meshes. scripts/accuracy.sh --corpus runs it.
 
 corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...
 
-BIN has relief, relief-accuracy and relief-bench; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
-One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against distance
-volumes of as many bytes, dense and sparse, with the same truth: for sheets the same shell.
+BIN contains relief, relief-accuracy and relief-bench. FOLDER is for temporary files, and contains CGAL's meshes in
+data/meshes. Bakes each model with `relief bake --budget 1MB`, and measures the result and distance volumes of the same
+bytes, dense and sparse, against the same truth: for sheets, the same shell.
 """
 import argparse
 import csv
@@ -25,7 +25,7 @@ from accuracy_table import RIVALS
 HERE = os.path.dirname(os.path.abspath(__file__))
 FURNITURE = '/usr/share/sweethome3d/furniture'
 ASSIMP = '/usr/share/assimp/models'
-LEAST = 0.01  # percent: what a share of no wrong points counts as in a ratio
+LEAST = 0.01  # percent: replaces smaller fractions of wrong points in ratios
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
 PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
 
@@ -38,7 +38,7 @@ def listed():
 
 
 def unpack(folder, thirteen):
-    """The models: a path for each name."""
+    """The path of each model, by name."""
     paths = {os.path.basename(path).rsplit('.', 1)[0]: path for path in thirteen}
     paths['samples/terrain'] = f'{folder}/terrain.obj'
     subprocess.run([sys.executable, os.path.join(HERE, '../samples/meshes.py'), 'terrain', f'{folder}/terrain.obj'], check=True)
@@ -69,7 +69,7 @@ def processor_seconds():
 
 
 def step_ratio(bin, folder):
-    """A step among patches over one among the paper's two maps: the least of some runs each, in turns."""
+    """Time of a step with patches / with the paper's two maps: minima of several alternating runs."""
     least = {'ours': math.inf, 'paper': math.inf}
     for _ in range(REPEATS):
         for name in least:
@@ -80,7 +80,7 @@ def step_ratio(bin, folder):
 
 
 def kind_of(shape):
-    """The kind of the part that is furthest from a solid."""
+    """The kind of the part that is least like a solid."""
     for kind, name in ('terrains', 'terrain'), ('sheets', 'sheets'), ('solids_with_holes', 'holes'):
         if shape[kind]:
             return name
@@ -125,7 +125,7 @@ def columns_of(rivals):
 
 
 def against(rows, rival):
-    """Ours over one rival, with what is aimed at."""
+    """The ratios of ours to one rival, with the targets."""
     ratios = [float(row[f'ours/{rival}']) for row in rows]
     mean, above = math.exp(statistics.fmean(map(math.log, ratios))), sum(ratio > 1 for ratio in ratios)
     aims = (' (at most 0.333)', ' (at most 5 %)') if rival == 'volume' else ('', '')
@@ -133,7 +133,7 @@ def against(rows, rival):
 
 
 def summary(rows, rivals):
-    """The models together, line by line, with what is aimed at."""
+    """The lines that summarise all models, with the targets."""
     lines = []
     for kind in ['all', *sorted({row['kind'] for row in rows})]:
         of = [row for row in rows if kind in ('all', row['kind'])]

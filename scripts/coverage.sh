@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs the default tier in a build of its own, and writes how much of the sources they run:
-# out/coverage/index.html, and a summary. scripts/coverage.sh [CTEST OPTION]…, such as -R Voxels
+# Runs the default tier in a separate build. Writes the coverage to out/coverage/index.html, and prints a summary.
+# scripts/coverage.sh [CTEST OPTION]…, such as -R Voxels
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/setup.sh gcovr
 build=build/coverage
-# Atomic counters: those of several threads can end below 0, which gcovr refuses.
+# Atomic counters: without them, threads can make counters negative, which gcovr rejects.
 cmake -G Ninja -S . -B $build -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG='-Og -g1 --coverage -fprofile-update=atomic' \
     -DRELIEF_BUILD_BENCHMARKS=OFF -DRELIEF_BUILD_PYTHON=OFF >&2
 cmake --build $build >&2

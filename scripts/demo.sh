@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# "Bunny in the snow": bakes the Stanford bunny, lets snow fall on it without a window, and leaves a contact sheet of frames
-# and slices, out/samples/bunny_in_the_snow/contact_sheet.png. Needs no GPU.
+# Bunny in the snow: bakes the Stanford bunny, simulates snow on it, and writes a contact sheet of frames and slices to
+# out/samples/bunny_in_the_snow/contact_sheet.png. Needs no GPU and no window.
 cat <<'T'
 Installs packages if any are missing, compiles relief and relief-sim, bakes the Stanford bunny, and lets it snow. That takes
 about 4 minutes on two cores, without the download of packages; half a minute once it is compiled.

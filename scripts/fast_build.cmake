@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What makes builds fast and changes nothing else: the fastest linker there is, a compiler cache where there is one,
-# precompiled headers, and sources joined.
+# Speeds up builds without changing their results: the fastest available linker, ccache if it is installed, precompiled
+# headers, and unity builds.
 find_program(RELIEF_LINKER NAMES mold ld.lld)
 if(RELIEF_LINKER AND NOT EMSCRIPTEN)
     cmake_path(GET RELIEF_LINKER FILENAME linker)
@@ -8,7 +8,7 @@ if(RELIEF_LINKER AND NOT EMSCRIPTEN)
     add_link_options(-fuse-ld=${linker})
 endif()
 
-# With precompiled headers ccache works only if it is told so.
+# ccache supports precompiled headers only with these settings.
 find_program(RELIEF_CCACHE ccache)
 if(RELIEF_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}/..
@@ -20,8 +20,8 @@ set(RELIEF_PRECOMPILED_HEADERS
     <limits> <memory> <optional> <span> <string> <string_view> <utility> <vector>
     <glm/glm.hpp> <tl/expected.hpp>)
 
-# relief_precompiled(NAME [LIBRARY…]): a target whose precompiled headers others reuse; with the headers of GoogleTest
-# if that is among the libraries.
+# relief_precompiled(NAME [LIBRARY…]): adds a target whose precompiled headers others reuse. They include GoogleTest if it is
+# among the libraries.
 function(relief_precompiled name)
     if(NOT RELIEF_PRECOMPILE)
         return()
@@ -36,23 +36,23 @@ function(relief_precompiled name)
     endif()
 endfunction()
 
-# relief_precompile(TARGET FROM): TARGET is compiled with the precompiled headers of FROM.
+# relief_precompile(TARGET FROM): compiles TARGET with the precompiled headers of FROM.
 function(relief_precompile target from)
     if(NOT RELIEF_PRECOMPILE)
         return()
     endif()
     target_precompile_headers(${target} REUSE_FROM ${from})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-        # GCC 12 forgets that a precompiled header is the system's, and warns of copies inside std::string that never
-        # happen. scripts/nightly.sh headers builds without precompiled headers, and with these warnings.
+        # GCC 12 loses the system-header mark of precompiled headers, and warns about copies inside std::string that never
+        # happen. scripts/nightly.sh headers builds without precompiled headers and with these warnings.
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
                                                  -Wno-stringop-overread)
     endif()
 endfunction()
 
-# relief_unity(TARGET): compiles up to eight sources as one, in about half of the time. For folders whose sources include the
-# same headers or instantiate the same large templates (CLI11's, those of nlohmann's JSON). Names in anonymous namespaces must
-# differ between the sources of such a folder, and must not overload functions of GLM.
+# relief_unity(TARGET): compiles up to eight sources as one, in about half the time. Use it for folders whose sources include
+# the same headers or instantiate the same large templates (CLI11, nlohmann's JSON). Names in anonymous namespaces must be
+# unique among the sources of the folder, and must not overload GLM functions.
 function(relief_unity target)
     if(RELIEF_UNITY)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 # relief_folder(FOLDER [UNITY] [NUMBERS] [READER] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
-# Makes a library of every .cpp of FOLDER, except those named after EXCEPT. The target's name is FOLDER with _ for /.
+# Adds a library of every .cpp of FOLDER, except the files after EXCEPT. The target's name is FOLDER with _ for /.
 #
-# Its sources find the headers of FOLDER, of the folders that it USES, and of those that these use in turn; other includes
-# do not compile. To this end each folder has an include root of its own in the build tree, with a link to that folder and
-# nothing else. USES takes only folders declared earlier, so no arrow can run back.
+# Its sources can include the headers of FOLDER and of the folders it USES, directly or through each other. Other includes
+# do not compile: each folder has its own include root in the build tree, which contains only a link to that folder. USES
+# accepts only folders declared earlier, so dependencies have no cycles.
 #
-# UNITY joins sources (scripts/fast_build.cmake). NUMBERS marks a folder whose tests take minutes without optimisation: a
-# sanitizer build optimises only these folders. READER marks a folder that reads untrusted bytes: RELIEF_SANITIZE=READERS
-# instruments only these folders.
-# LINKS are libraries that only the sources use; PUBLIC are those whose headers the folder's own headers include.
+# UNITY  joins sources (scripts/fast_build.cmake).
+# NUMBERS  marks a folder whose tests take minutes without optimisation: sanitizer builds optimise only these folders.
+# READER  marks a folder that reads untrusted bytes: RELIEF_SANITIZE=READERS instruments only these folders.
+# LINKS  lists libraries that only the sources use.
+# PUBLIC  lists libraries whose headers the folder's own headers include.
 function(relief_folder folder)
     cmake_parse_arguments(ARG "UNITY;NUMBERS;READER" "" "USES;LINKS;PUBLIC;EXCEPT" ${ARGN})
     string(REPLACE / _ target ${folder})
@@ -42,12 +43,12 @@ function(relief_folder folder)
         endif()
         target_link_libraries(${target} PUBLIC ${used_target})
     endforeach()
-    # For tests/arrows.py, which explains in words what a compiler reports as a missing file.
+    # For tests/arrows.py, which explains forbidden includes; the compiler reports only a missing file.
     string(REPLACE ";" " " uses "${ARG_USES}")
     set_property(GLOBAL APPEND PROPERTY RELIEF_FOLDERS "${folder}: ${uses}")
 endfunction()
 
-# relief_folder_options(OUT [NUMBERS] [READER]): the options of a sanitizer build for such a folder.
+# relief_folder_options(OUT [NUMBERS] [READER]): the compile options of such a folder in a sanitizer build.
 function(relief_folder_options out)
     set(options)
     if(RELIEF_SANITIZE AND "NUMBERS" IN_LIST ARGN)
@@ -59,7 +60,7 @@ function(relief_folder_options out)
     set(${out} "${options}" PARENT_SCOPE)
 endfunction()
 
-# relief_precompiled_folders(): one set of precompiled headers for each kind of folder whose options differ.
+# relief_precompiled_folders(): adds a set of precompiled headers for each combination of options.
 function(relief_precompiled_folders)
     relief_precompiled(relief_headers)
     if(NOT RELIEF_SANITIZE OR NOT RELIEF_PRECOMPILE)
@@ -73,7 +74,7 @@ function(relief_precompiled_folders)
     endforeach()
 endfunction()
 
-# relief_compile_as(TARGET [NUMBERS] [READER]): TARGET is compiled as a folder of that kind is.
+# relief_compile_as(TARGET [NUMBERS] [READER]): compiles TARGET with the options of such a folder.
 function(relief_compile_as target)
     relief_folder_options(options ${ARGN})
     target_compile_options(${target} PRIVATE ${options})
@@ -85,8 +86,7 @@ function(relief_compile_as target)
 endfunction()
 
 # relief_unit(FOLDER FILE [LINKS LIBRARY…] [OPTIONS …])
-# Adds FILE, which FOLDER left out by EXCEPT, to FOLDER again, compiled with libraries or options that the folder's other
-# files must not have.
+# Adds FILE, which FOLDER excludes with EXCEPT, to FOLDER with its own libraries or options, which the other files must not use.
 function(relief_unit folder file)
     cmake_parse_arguments(ARG "" "" "LINKS;OPTIONS" ${ARGN})
     string(REPLACE / _ target ${folder})
@@ -100,8 +100,8 @@ function(relief_unit folder file)
 endfunction()
 
 # relief_archive(NAME FOLDER… [WITHIN FOLDER…])
-# Makes one library of several folders, for other people's programs. All their headers are public, but those of the folders
-# WITHIN, which only sources include.
+# Adds one library of several folders, for other people's programs. All their headers are public, except those of the folders
+# after WITHIN, which only sources include.
 function(relief_archive name)
     cmake_parse_arguments(ARG "" "" "WITHIN" ${ARGN})
     set(objects)

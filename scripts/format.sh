@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Formats every C++ file by .clang-format; with --check, only says which are not, and fails.
+# Formats every C++ file with clang-format. --check only reports unformatted files, and fails if there are any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Writes anew all files that are derived from the fields() of bakes, scenes and reports (formats/fields), and names them.
+# Regenerates all files derived from the fields() of bakes, scenes and reports (formats/fields), and prints their names.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 "$(scripts/build.sh release relief-generate)/relief-generate" .

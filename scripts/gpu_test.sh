@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs every GL test on a real driver: OpenGL 3.3 and OpenGL ES 3.0, by fragment and by compute shaders. Builds the runtime
+# Runs every GL test on a real driver: OpenGL 3.3 and OpenGL ES 3.0, fragment and compute shaders. Builds the runtime
 # without the baker. scripts/gpu_test.sh [--allow-software] [build|run [FOLDER]]
 #
 #   (nothing)      build, then run
-#   build          builds the tests, and gathers them with their shared libraries in FOLDER (build/gpu_tests): copy it to a
-#                  machine with a GPU
-#   run            runs the tests of FOLDER, and needs only python3 and the driver
-#   --allow-software  also runs on a software renderer such as Mesa's llvmpipe; otherwise that ends with exit status 5
+#   build          builds the tests, and copies them with their shared libraries to FOLDER (default: build/gpu_tests), which
+#                  can be copied to a machine with a GPU
+#   run            runs the tests of FOLDER; needs only python3 and the driver
+#   --allow-software  accepts software renderers such as Mesa's llvmpipe, which otherwise fail with exit status 5
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -42,10 +42,10 @@ build() {
     for program in "${programs[@]}"; do
         strip -o "$folder/$program" "build/gpu/bin/$program"
     done
-    # The C library is that of the machine with the GPU, as its driver needs it.
+    # The target's own C library is used, because its driver needs it.
     ldd "$folder"/relief_* | awk '$2 == "=>" { print $3 }' | sort -u |
         grep -Ev '/(libc|libm|libdl|libpthread|librt)\.so' | xargs -I{} cp -L {} "$folder/lib"
-    # The dispatch libraries that a driver is loaded by; run takes them where the machine has none.
+    # The dispatch libraries that load a driver; run uses them if the machine has none.
     for library in libEGL.so.1 libGLdispatch.so.0 libOpenGL.so.0 libGLESv2.so.2; do
         cp -L "$(ldconfig -p | awk -v name=$library '$1 == name { print $NF; exit }')" "$folder/loaders"
     done
@@ -54,11 +54,11 @@ build() {
     du -sh "$folder" >&2
 }
 
-# Names the driver of both APIs, and refuses a processor that draws.
+# Prints the driver of both APIs, and fails on software renderers.
 describe() {
     local program=$1 report cases
     report=$(mktemp)
-    # One case of each API; its report has the context's description.
+    # One case of each API: its report contains the description of the context.
     cases=$("$program" --gtest_list_tests --gtest_filter='Apis/*GlTest.*' | awk '
         /^[^ ]/ { suite = $1 }
         /^  / { split($1, parts, "/"); if (!seen[parts[2]]++) print suite $1 }' | paste -sd:)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Ten meshes by lot, which nobody has tuned anything for: scripts/accuracy.sh --lot and --draw run this.
+"""Ten randomly drawn meshes, for which nothing was tuned. scripts/accuracy.sh --lot and --draw run this.
 
 lot.py FOLDER             unpacks the meshes of lot.txt into FOLDER, and prints their paths
-lot.py FOLDER --draw BIN  draws them, and writes lot.txt; BIN has relief-accuracy
+lot.py FOLDER --draw BIN  draws them, and writes lot.txt; BIN contains relief-accuracy
 
-Packages come by `apt-get download`: nothing is installed, and nothing in them is run.
+Packages are downloaded with `apt-get download`; nothing is installed or executed.
 """
 import collections
 import glob
@@ -20,7 +20,7 @@ import zipfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 LIST = os.path.join(HERE, 'lot.txt')
-# Debian's, with files of formats that the import reads; none of them was used for anything in Relief before the lot.
+# Debian packages with files in formats that the import reads. Relief used none of them before the draw.
 PACKAGES = ('cura', 'geomview', 'libirrlicht-doc', 'libsimbody-dev', 'morse-simulator-data', 'pink-pony-data', 'prusa-slicer',
             'trigger-rally-data')
 FORMATS = ('.obj', '.stl', '.ply', '.off', '.gltf', '.glb', '.fbx', '.dae', '.3ds', '.blend', '.x', '.lwo', '.b3d', '.lxo', '.ms3d',
@@ -37,7 +37,7 @@ NOTE = f"""# The meshes of scripts/accuracy.sh --lot: a package of Debian 12, an
 
 
 def unpack(packages, folder):
-    """Each package in a folder of its name, with what its archives hold; compressed files become plain ones."""
+    """Unpacks each package into a folder of its name, with the archives and compressed files inside."""
     os.makedirs(folder, exist_ok=True)
     for package in packages:
         root = os.path.join(folder, package)
@@ -57,7 +57,7 @@ def unpack(packages, folder):
 
 
 def files_of(root):
-    """Plain files alone: a link could lead anywhere."""
+    """Regular files only: a link could lead anywhere."""
     return [path for path in sorted(glob.glob(f'{glob.escape(root)}/**', recursive=True))
             if os.path.isfile(path) and not os.path.islink(path)]
 
@@ -67,14 +67,14 @@ def is_mesh(path):
 
 
 def candidates(folder):
-    """Pairs of a package and a path in it, by the lot."""
+    """Pairs of a package and a path in it, in the order of the draw."""
     found = [(package, os.path.relpath(path, f'{folder}/{package}')) for package in PACKAGES
              for path in files_of(f'{folder}/{package}') if is_mesh(path)]
     return sorted(found, key=lambda one: hashlib.sha256(':'.join([SEED, *one]).encode()).hexdigest())
 
 
 def triangles_of(path, bin):
-    """As the accuracy is measured, but of a few points and one cheap method, whose figures nobody sees; 0 of what is refused."""
+    """The triangle count that relief-accuracy reports, from a cheap run; 0 if it rejects the file."""
     done = subprocess.run([f'{bin}/relief-accuracy', path, '--budget', '0.25MB', '--methods', 'paper', '--samples', '100'],
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=1800, check=False)
     if done.returncode:

@@ -45,7 +45,7 @@ for word in "${wanted[@]}"; do
     [ ${#found[@]} -gt 0 ] || fail "unknown job '$word'; choose from: nightly weekly $(awk '{ print $1 }' <<<"$all" | paste -sd' ')"
     chosen+=("${found[@]}")
 done
-# Longest job first, each to the part with the least minutes; every part then keeps the order of the list.
+# Assigns the longest job first, each to the part with the fewest minutes. Each part runs its jobs in the order of the list.
 mapfile -t mine < <(
     awk -v list="${chosen[*]}" 'BEGIN { split(list, names, " "); for (i in names) chosen[names[i]] }
         $1 in chosen { print $3, NR, $1 }' <<<"$all" | sort -k1,1nr -k2,2n |

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# quietly.sh COMMAND…: runs it. With RELIEF_QUIET its output is shown only if it fails; of the steps of ninja, each fifth of
-# them is reported.
+# quietly.sh COMMAND…: runs COMMAND. With RELIEF_QUIET, prints its output only if it fails, and reports the progress of ninja
+# in five lines.
 set -euo pipefail
 [ -n "${RELIEF_QUIET-}" ] || exec "$@"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
-# Writes its input to the log, and a line to stderr for each fifth of ninja's steps, if there are at least 20.
+# Copies its input to the log. Prints a line for each fifth of ninja's steps if there are at least 20.
 progress() {
     local line fifths=0 now
     while IFS= read -r line; do

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Bakes and plays samples without a window: scripts/samples.sh [NAME…], all of them by default. Leaves frames and a
-# picture of six of them, contact_sheet.png and .jpg, in out/samples/NAME, and of the village a film. Needs no GPU, but is faster with one.
-# With RELIEF_QUIET, as scripts/demo.sh sets it, packages and the build print a line each.
+# Bakes and plays samples without a window: scripts/samples.sh [NAME…] (default: all). Writes frames and a contact sheet of
+# six of them (contact_sheet.png and .jpg) to out/samples/NAME, and a film of the village. Needs no GPU, but is faster with one.
+# With RELIEF_QUIET, which scripts/demo.sh sets, packages and the build print one line each.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,11 +20,11 @@ scripts/setup.sh tools
 bin=$(scripts/build.sh tools relief relief-sim)
 models=/usr/share/glmark2/models
 
-# mesh NAME: out/samples/…/NAME, by samples/meshes.py.
+# mesh NAME: writes $out/NAME with samples/meshes.py.
 mesh() { python3 samples/meshes.py "${1%.*}" "$out/$1"; }
 bake() { "$bin/relief" bake "$@"; }
 
-# prepare: the scene NAME and all that it names, in out/samples/NAME.
+# prepare: writes the scene $name and its files to $out.
 prepare() {
     mkdir -p "$out"
     case $name in
@@ -66,14 +66,14 @@ prepare() {
         ;;
     rain)
         mesh terrain.obj
-        # Solid down to the end of the map's box: y = -1.5, well below the valleys.
+        # Solid down to the bottom of the map's box: y = -1.5, well below the valleys.
         bake "$out/terrain.obj" -o "$out/terrain.relief" --map fixed8:dir=-y,size=512x512,box=-4/-1.5/-4/4/1.5/4
         ;;
     esac
     cp "samples/$name.toml" "$out/"
 }
 
-# caption: a line on how many particles there were, and how fast.
+# caption: prints the number of particles and the time of a step.
 caption() {
     python3 - "$out/report.json" <<'P'
 import json, sys
@@ -83,11 +83,11 @@ print(f"{report['particles']['alive']:,} particles, {report['ms_per_step_median'
 P
 }
 
-# sheet: six frames spread over the run, and below them the slices if there are any, and the caption.
+# sheet: six frames spread over the run, then the slices, if any, and the caption.
 sheet() {
     local frames=("$out"/frames/frame_*.png) chosen=() paper='#f4f5f7' i tile=3x2 size=640x480
     local font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
-    if [ "$name" = village ]; then  # wide ones, and larger
+    if [ "$name" = village ]; then  # wide, larger frames
         tile=2x3 size=960x540
     fi
     for i in 1 2 3 4 5 6; do
@@ -102,7 +102,7 @@ sheet() {
         -bordercolor "$paper" -border 12 -depth 8 -strip "$out/contact_sheet.png"
 }
 
-# play: frames and the sheet of them.
+# play: writes the frames and the contact sheet.
 play() {
     rm -rf "$out/frames"
     if [ "$name" = bunny_in_the_snow ]; then
@@ -111,7 +111,7 @@ play() {
         done
     fi
     local every=()
-    [ -z "${RELIEF_QUIET-}" ] || every=(--frame-every 50)  # the six of the sheet
+    [ -z "${RELIEF_QUIET-}" ] || every=(--frame-every 50)  # only the six of the sheet
     "$bin/relief-sim" "$out/$name.toml" --frames "$out/frames" "${every[@]}" --json >"$out/report.json"
     sheet
     convert "$out/contact_sheet.png" -resize 1200x -define jpeg:extent=150kB "$out/contact_sheet.jpg"

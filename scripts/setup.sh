@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian 12 packages that Relief needs to build, test and run. Does nothing, and needs no network, when all are
-# there already. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the packages that they need besides.
+# Installs the Debian 12 packages that Relief needs to build, test and run. Does nothing, and needs no network, if all are
+# installed. The other scripts call it: scripts/setup.sh [PACKAGE]…, with the additional packages they need.
 #
-# scripts/setup.sh tools [PACKAGE]…: only what the preset tools needs, without tests, Python and OpenVDB.
-# scripts/setup.sh test [PACKAGE]…: only what scripts/test.sh needs.
-# scripts/setup.sh web: also what runtime/web and one browser need. node and npm may come from elsewhere.
+# scripts/setup.sh tools [PACKAGE]…: only for the preset tools: no tests, Python or OpenVDB.
+# scripts/setup.sh test [PACKAGE]…: only for scripts/test.sh.
+# scripts/setup.sh web: also for runtime/web and one browser. node and npm may be installed by other means.
 set -euo pipefail
 
 tools=(

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds the product once, and tests it. Needs no GPU. scripts/test.sh [--quick|--gpu]
+# Installs missing packages, builds the product once, and tests it. Needs no GPU. scripts/test.sh [--quick|--gpu]
 #
-#   (nothing)  the default tier: every area of the product, the sanitizers over everything that reads untrusted bytes, and the
-#              page of a collider in a real browser
-#   --quick    after an edit: builds what changed; no slow cases, no scripts longer than some seconds, no browser
+#   (nothing)  the default tier: every area of the product, sanitizers on all readers of untrusted bytes, and the page of a
+#              collider in a real browser
+#   --quick    after an edit: builds what changed; skips slow cases, scripts that take more than seconds, and the browser
 #   --gpu      every GL test on this machine's GPU: scripts/gpu_test.sh
 #
-# scripts/nightly.sh has everything else. tests/README.md lists each job, its tier and its minutes.
+# scripts/nightly.sh runs all other jobs; tests/README.md describes them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,7 +22,7 @@ case ${1-} in
         ;;
 esac
 
-# stage NAME COMMAND…: runs it, and prints its time.
+# stage NAME COMMAND…: runs COMMAND, and prints its time.
 stage() {
     local name=$1 begun=$SECONDS
     shift

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks C++ files by clang-tidy and .clang-tidy: scripts/tidy.sh [COMMIT | --all]
-# By default those that differ from main, committed or not; --all takes an hour or so.
+# Runs clang-tidy on C++ files: scripts/tidy.sh [COMMIT | --all]
+# Checks the files that differ from COMMIT (default: main), committed or not. --all takes about an hour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

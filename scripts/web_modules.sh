@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what tests/web/package.json names from the npm registry into build/web, exactly as its lock file says. Does
-# nothing, and needs no network, when that is there already. Prints the folder that holds node_modules.
+# Installs the packages of tests/web/package-lock.json from the npm registry into build/web. Does nothing, and needs no
+# network, if they are installed. Prints the folder that contains node_modules.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""filter.py FILE: prints a guide, a header or the npm package's types in the form that Doxygen reads.
+"""filter.py FILE: converts a page or a header for Doxygen.
 
-Titles of guides get the path as their id, links between guides become references, and other links (to sources, to folders
-without a guide) become plain text. The comment at the head of a header becomes the file's."""
+The title of a page gets its path as id, links between pages become references, and other links (to sources, to folders
+without a page) become plain text. The comment at the head of a header becomes the file's documentation."""
 import os
 import pathlib
 import re
@@ -15,7 +15,7 @@ def page_id(path):
 
 
 def header(text):
-    if text.startswith('/*'):  # C: each comment documents what follows it, or what stands before it on its line
+    if text.startswith('/*'):  # C: a comment documents the next line, or the code before it on its line
         text = re.sub(r'^(.*[;,{].*?)/\* ', r'\1/**< ', text, flags=re.M)
         text = re.sub(r'^( *)/\* (?!---)', r'\1/** ', text, flags=re.M)
         return text.replace('#version', '\\#version').replace('/** ', '/** @file\n * ', 1)
@@ -28,7 +28,7 @@ def header(text):
 def guide(page, text):
     text = re.sub(r'^# (.*)$', lambda found: f'# {found[1].replace("`", "")} {{#{page_id(page)}}}', text, count=1, flags=re.M)
 
-    # Doxygen takes <word> for HTML in code too.
+    # Doxygen parses <word> as HTML even in code.
     text = re.sub(r'`[^`\n]*`', lambda code: code[0].replace('<', '\\<') if re.search(r'<[a-z]+>', code[0]) else code[0], text)
 
     def link(found):
@@ -38,30 +38,17 @@ def guide(page, text):
         there = os.path.normpath(os.path.join(os.path.dirname(page), target.partition('#')[0])) if target[0] != '#' else page
         if os.path.isdir(there):
             there = os.path.join(there, 'README.md')
-        if not os.path.isfile(there) or not there.endswith(('.md', '.d.ts')):
+        if not os.path.isfile(there) or not there.endswith('.md'):
             return words
         return f'[{words.replace("`", "")}](@ref {page_id(there)})'
 
-    # Doxygen finds pictures by their names alone (IMAGE_PATH); one that is a link stays a picture.
+    # Doxygen finds images by file name only (IMAGE_PATH). A linked image becomes a plain image.
     text = re.sub(r'\[(!\[[^\]]*\]\([^)]*\))\]\([^)]*\)', r'\1', text)
     text = re.sub(r'(!\[[^\]]*\]\()[^)\s]*/', r'\1', text)
     text = re.sub(r'(?<!!)\[([^\]]+)\]\(([^)\s]+)\)', link, text)
     return text
 
 
-def declarations(page, text):
-    """The types of the npm package as a page: a section for each exported declaration, with its comment above its code."""
-    blocks = re.split(r'\n\n(?=/\*\*|export)', text)
-    parts = ['# JavaScript API', re.sub(r'^// ?', '', blocks[0].split('\n', 1)[1], flags=re.M)]
-    for block in blocks[1:]:
-        comment, code = re.fullmatch(r'(?:/\*\*(.*?)\*/\n)?(.*)', block, re.S).groups()
-        name = re.search(r'^export (?:declare )?(?:abstract )?\w+ (\w+)', code, re.M)
-        parts.append(f'## {name[1]}\n\n' + re.sub(r'^ *\* ?|(?=\b\w+\(\))', lambda found: '' if found[0] else '%', comment or '', flags=re.M).strip())
-        parts.append(f'```js\n{code.strip()}\n```')
-    return guide(page, '\n\n'.join(parts) + '\n')
-
-
 path = os.path.relpath(sys.argv[1])
 text = pathlib.Path(path).read_text()
-read = {'.md': guide, '.ts': declarations}.get(os.path.splitext(path)[1], lambda page, source: header(source))
-sys.stdout.write(read(path, text))
+sys.stdout.write(guide(path, text) if path.endswith('.md') else header(text))

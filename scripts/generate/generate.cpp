@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-generate ROOT [--check]: writes the files and parts of files that are derived from fields(), or names the stale ones.
+// relief-generate ROOT [--check]: writes the files and sections derived from fields(); --check names the stale ones.
 // relief-generate --schemas FOLDER: writes the JSON Schemas.
-// relief-generate --dictionaries FOLDER: writes the dictionaries of fuzz targets.
+// relief-generate --dictionaries FOLDER: writes the dictionaries for the fuzz targets.
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -22,7 +22,7 @@ Result<std::string> readText(const fs::path& path) {
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
-/// All that is derived. Each library that declares fields has a function of its own.
+/// All derived texts. Each library that declares fields has its own function.
 GeneratedTexts all() {
     GeneratedTexts texts;
     for (GeneratedTexts (*const of)() : {bakeTexts, playerSchemas, sceneReference}) {
@@ -33,7 +33,7 @@ GeneratedTexts all() {
     return texts;
 }
 
-/// The file with its part exchanged: the lines between the two that hold the markers.
+/// Replaces the lines between the two markers of a section.
 Result<std::string> withPart(const GeneratedText& generated, const std::string& file) {
     const std::size_t head = file.find("generated: " + generated.part + " ");
     const std::size_t foot = file.find("end of " + generated.part + " ");
@@ -46,7 +46,7 @@ Result<std::string> withPart(const GeneratedText& generated, const std::string& 
     return file.substr(0, begin) + generated.text + file.substr(end);
 }
 
-/// Writes the built texts with this extension.
+/// Writes the texts that the build generates with this extension.
 Result<int> writeBuilt(const fs::path& folder, std::string_view extension) {
     fs::create_directories(folder);
     for (const GeneratedText& generated : all()) {
