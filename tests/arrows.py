@@ -96,7 +96,7 @@ def web_faults(source):
 
 
 def table_faults(source, uses):
-    """Folders without a row in the table of CONTRIBUTING.md (two levels deep), and rows whose dependencies are wrong."""
+    """Folders without a row in the table of CONTRIBUTING.md (two levels deep), and rows with wrong dependencies."""
     table = re.findall(r'^\| (`[^|]+`) \|[^|]+\|([^|]*)\|$', (source / 'CONTRIBUTING.md').read_text(), re.MULTILINE)
     rows = {folder: used for folders, used in table for folder in re.findall('`([^`]+)`', folders)}
     faults = [f'CONTRIBUTING.md: the row of {folder} must list {" ".join(used) or "nothing"}'

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# Colliders as part of a build: CMake, Make and Ninja bake again exactly what changed.
+# Bakes colliders in a build: Make and Ninja rebake only what changed.
 #
 #   relief_add_colliders(<target> RECIPE <recipe.toml> [OUTPUT_DIR <dir>])
 #
-# Adds a target that is built by default. One command bakes all that the recipe lists into <dir>, by default the current binary
-# directory. The build also watches materials, buffers and other files that a mesh refers to, and `relief` itself. Warnings are
-# printed, once each.
+# Adds a target that is built by default. One command bakes the whole recipe into <dir> (default: the current binary directory).
+# The build also depends on the materials, buffers and other files that a mesh refers to, and on `relief`. Each warning is
+# printed once.
 #
-# Ninja runs RELIEF_BAKE_JOBS of these commands at a time, 2 by default: each of them uses all cores.
+# Ninja runs RELIEF_BAKE_JOBS of these commands at a time (default: 2), because each of them uses all cores.
 
 function(relief_add_colliders target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "RECIPE;OUTPUT_DIR" "")

@@ -1,8 +1,8 @@
-# bash completion of relief and relief-sim: verbs, options and values as --help of the installed programs has them. For zsh:
-# autoload -U bashcompinit && bashcompinit && source this file.
+# bash completion for relief and relief-sim: verbs, options and values are read from --help of the installed programs. For
+# zsh: autoload -U bashcompinit && bashcompinit && source this file.
 _relief() {
     local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD - 1]} verb='' verbs word help value
-    # bash takes --option=value for three words.
+    # bash splits --option=value into three words.
     if [ "$cur" = = ]; then
         cur=
     elif [ "$prev" = = ] && [ "$COMP_CWORD" -ge 2 ]; then
@@ -18,7 +18,7 @@ _relief() {
             break
         fi
     done
-    # An option's line is "  -o,--output OUT.relief  Description"; a flag's has no value.
+    # The line of an option is "  -o,--output OUT.relief  Description"; flags have no value.
     value=$(sed -nE 's/^  (-[^ ]*) ([^ ].*)/\1 \2/p' <<<"$help" | awk -v option="$prev" '
         index("," $1 ",", "," option ",") && $2 != "Excludes:" && $2 != "REQUIRED" { print $2 }')
     local choice='^(\[.*\])?([a-z0-9-]+(\|[a-z0-9-]+)+)$'

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run by cpack before it packs: gives each component's tree what Debian's policy asks for beyond an installed tree.
-# gzip -n: the same sources give the same bytes.
+# cpack runs this before it packs: adds the files that Debian's policy requires to the tree of each component.
+# gzip -n makes the output reproducible.
 find_program(gzip gzip REQUIRED)
 set(file_mode OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
 
@@ -12,7 +12,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     string(TOUPPER ${component} key)
     set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/${component}/usr)
     set(doc ${root}/share/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME})
-    # Readable for all, whatever the mask of whoever builds.
+    # Readable by everyone, independent of the builder's umask.
     file(MAKE_DIRECTORY ${doc})
     file(CHMOD ${root}/share ${root}/share/doc ${doc} PERMISSIONS ${file_mode} OWNER_EXECUTE GROUP_EXECUTE WORLD_EXECUTE)
     configure_file(${CPACK_RELIEF_SOURCE}/scripts/install/debian/copyright ${doc}/copyright COPYONLY

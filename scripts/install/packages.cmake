@@ -1,30 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cpack` makes the .deb files of Debian 12, one of each component: relief, librelief1, librelief-dev and python3-relief.
-# README.md beside this file shows how.
+# `cpack` builds the .deb files for Debian 12, one per component: relief, librelief1, librelief-dev and python3-relief.
+# See README.md in this folder.
 set(RELIEF_MAINTAINER "Relief maintainers <maintainers@relief.example>" CACHE STRING
     "Who is named in the packages that cpack makes: Name <address>")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has one of its own
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/deb)
 set(CPACK_STRIP_FILES ON)
-# Like every Debian package, whatever the mask of whoever builds.
+# As in every Debian package, independent of the builder's umask.
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
                                                 WORLD_READ WORLD_EXECUTE)
-# What a package has and an installed tree has not: compressed pages, copyright, changelog; no debug information.
+# Adds compressed pages, copyright and changelog, and removes debug information.
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/debianise.cmake)
 set(CPACK_RELIEF_SOURCE ${PROJECT_SOURCE_DIR})
 set(CPACK_RELIEF_STRIP ${CMAKE_STRIP})
 
 set(CPACK_COMPONENTS_ALL library development tools)
 if(NOT RELIEF_BUILD_BAKE)
-    list(REMOVE_ITEM CPACK_COMPONENTS_ALL tools)  # the package relief is the baker's
+    list(REMOVE_ITEM CPACK_COMPONENTS_ALL tools)  # the package relief needs the baker
 elseif(RELIEF_BUILD_PYTHON)
     list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
-set(CPACK_COMPONENTS_GROUPING IGNORE)  # a package each
+set(CPACK_COMPONENTS_GROUPING IGNORE)  # one package per component
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${RELIEF_MAINTAINER})
@@ -33,7 +33,7 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 
-# Baking needs no GL, playing does. libepoxy loads it while it runs, so that nothing finds these by what is linked.
+# Baking needs no GL, simulating does. libepoxy loads it at run time, so shlibdeps does not find these packages.
 set(gl "libegl1, libegl-mesa0, libgl1-mesa-dri, libgles2, libopengl0")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME relief)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
@@ -47,7 +47,7 @@ plays scenes of particles without a window.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME librelief1)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "${gl}")
-# What programs that link librelief.so depend on, and that the cache of the linker is to be made anew.
+# The dependency of programs that link librelief.so, and the trigger that updates the linker cache.
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/library/shlibs "librelief 1 librelief1 (>= ${PROJECT_VERSION})\n")
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/library/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/library/shlibs
@@ -72,7 +72,7 @@ pkg-config, the documentation and the samples.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-relief)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 if(RELIEF_BUILD_BAKE AND RELIEF_BUILD_PYTHON)
-    set(Python3_EXECUTABLE /usr/bin/python3)  # whose modules ours is built for
+    set(Python3_EXECUTABLE /usr/bin/python3)  # the version our module is built for
     find_package(Python3 REQUIRED COMPONENTS Interpreter)
     math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
     set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS

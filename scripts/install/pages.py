@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the manual pages of executables, which show their --help, in man(7) macros and without a date: pages.py FOLDER TOOL…"""
+"""Writes manual pages from the --help of executables, as man(7) macros without a date: pages.py FOLDER TOOL…"""
 import pathlib
 import re
 import subprocess
@@ -12,7 +12,7 @@ def help_of(*command):
 
 
 def escaped(text):
-    """Text as roff prints it: backslashes, and hyphens that can be copied as such; no line is taken for a request."""
+    """Escapes text for roff: backslashes, hyphens (so that they can be copied), and lines that look like requests."""
     return re.sub(r"^([.'])", r"\\&\1", text.replace("\\", "\\e").replace("-", "\\-"), flags=re.M)
 
 
