@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes glTF for the scripts beside it: meshes, nodes that place them, materials and clips. The same calls give the same bytes."""
+"""A glTF writer for the scripts in this folder: meshes, nodes, materials and clips. Its output is reproducible."""
 import base64
 import json
 import struct
 
 
 class Gltf:
-    """The document's arrays. Nodes and animations are appended as glTF has them."""
+    """The arrays of a document. Nodes and animations are appended as glTF objects."""
 
     def __init__(self):
         self.nodes, self.meshes, self.materials, self.animations = [], [], [], []
         self.accessors, self.views, self.data = [], [], bytearray()
 
     def accessor(self, kind, letter, numbers, **bounds):
-        """kind: as glTF names it; letter: f or I, as struct does."""
+        """kind: glTF's accessor type; letter: f or I, as in struct."""
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": 4 * len(numbers)})
         self.data += struct.pack(f"<{len(numbers)}{letter}", *numbers)
         width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[kind]
@@ -22,13 +22,13 @@ class Gltf:
         return len(self.accessors) - 1
 
     def material(self, name, color=None):
-        """color: sRGB, from 0 to 1."""
+        """color: sRGB, 0 to 1."""
         shade = {"pbrMetallicRoughness": {"baseColorFactor": [round(c ** 2.2, 4) for c in color] + [1.0]}} if color else {}
         self.materials.append({"name": name, **shade})
         return len(self.materials) - 1
 
     def mesh(self, points, parts, **name):
-        """parts: triangles, and the number of their material or None."""
+        """parts: pairs of triangles and the index of their material, or None."""
         bounds = {end: [least(p[k] for p in points) for k in range(3)] for end, least in (("min", min), ("max", max))}
         at = self.accessor("VEC3", "f", [x for p in points for x in p], **bounds)
         primitives = []
@@ -48,7 +48,7 @@ class Gltf:
             "bufferViews": self.views, "accessors": self.accessors}).encode()
 
     def write(self, path):
-        """One file: packed if its name ends in .glb, else text with the buffer inside."""
+        """Writes one file: binary if its name ends in .glb, else JSON with an embedded buffer."""
         if path.endswith(".glb"):
             text = self.document({})
             text += b" " * (-len(text) % 4)

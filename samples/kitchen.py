@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the corner of a kitchen, as glTF whose parts have materials: kitchen.py OUT.gltf
+"""Makes the corner of a kitchen as glTF with a material for each part: kitchen.py OUT.gltf
 
-Beside it OUT.ply has their colours, for pictures.
-
-The same argument gives the same bytes. Needs nothing but Python itself.
+Also writes OUT.ply with their colours, which is drawn in pictures. The output is reproducible. Needs only Python.
 """
 import os
 import sys
@@ -20,7 +18,7 @@ TABLE_TOP = 0.74
 
 
 def parts():
-    """Solids by material, in metres, y up."""
+    """Solids by material; metres, y up."""
     table = Shape().box((-1.15, TABLE_TOP - 0.04, -0.45), (0.05, TABLE_TOP, 0.45), "wood")
     for x in (-1.10, -0.05):
         for z in (-0.40, 0.35):

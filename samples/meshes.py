@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the meshes of the samples from formulas: meshes.py torus|basin|terrain OUT.obj
 
-The same arguments give the same bytes. Needs nothing but Python itself.
+The output is reproducible. Needs only Python.
 """
 import math
 import sys
 
 
 def revolve(profile, sides):
-    """A closed solid of revolution about y. profile: (radius, height), anticlockwise seen with y upwards."""
+    """A closed solid of revolution about y. profile: (radius, height), counterclockwise with y up."""
     vertices, faces = [], []
     for radius, height in profile:
         for side in range(sides):
@@ -27,27 +27,27 @@ def revolve(profile, sides):
 
 
 def torus(ring=1.0, tube=0.26, sides=96, cuts=48):
-    """Round the y axis."""
+    """A torus about the y axis."""
     angles = [2 * math.pi * i / cuts for i in range(cuts)]
     return revolve([(ring + tube * math.cos(a), tube * math.sin(a)) for a in angles], sides)
 
 
 def basin(sides=96):
-    """A round wall that holds a fountain's water, 1.44 to 1.72 from the middle at its top; its foot at y = 0. No part
-    hangs over another, so that one map from above holds it."""
+    """The round wall of a fountain's basin: 1.44 to 1.72 from the centre at its top, its base at y = 0. It has no
+    overhangs, so that one map from above represents it."""
     return revolve([(1.90, 0.0), (1.88, 0.05), (1.80, 0.07), (1.74, 0.26), (1.72, 0.30), (1.68, 0.32), (1.48, 0.32),
                     (1.44, 0.30), (1.42, 0.26), (1.36, 0.0)], sides)
 
 
 def lattice(x, z):
-    """A number of -1 to 1 that belongs to the point (x, z) of the integer lattice."""
+    """A hash of the lattice point (x, z), from -1 to 1."""
     h = (x * 374761393 + z * 668265263) & 0xFFFFFFFF
     h = (h ^ (h >> 13)) * 1274126177 & 0xFFFFFFFF
     return ((h ^ (h >> 16)) & 0xFFFF) / 32767.5 - 1.0
 
 
 def smooth_noise(x, z):
-    """Value noise: the lattice's numbers, with a quintic fade between them."""
+    """Value noise: lattice values with quintic interpolation."""
     i, k = math.floor(x), math.floor(z)
     u, v = x - i, z - k
     u = u * u * u * (u * (6 * u - 15) + 10)
@@ -58,20 +58,20 @@ def smooth_noise(x, z):
 
 
 def height(x, z):
-    """Ridges: octaves of 1 - |noise|, each weighted by the one before, so that heights are rough and valleys smooth."""
+    """Ridged noise: octaves of 1 - |noise|, each weighted by the previous one: rough peaks and smooth valleys."""
     total, weight, size = 0.0, 1.0, 0.55
     for octave in range(6):
         ridge = 1.0 - abs(smooth_noise(size * x + 17.3 * octave + 3.1, size * z - 9.7 * octave + 5.2))
         total += weight * ridge * ridge * 0.5 ** octave
         weight = min(1.0, weight * ridge * 1.3)
         size *= 2.0
-    # High behind the middle, low at the rim.
+    # High behind the centre, low at the border.
     massif = math.exp(-((x + 0.3) ** 2 + (z + 0.9) ** 2) / 5.0)
     return 0.2 * total + 0.8 * (total - 0.55) * massif
 
 
 def terrain(half=4.0, cells=256):
-    """A height field over [-half, half]², open below, in the colours of meadows and of rock where it is steep or high."""
+    """A height field over [-half, half]², open below: green meadows, and grey rock on steep or high ground."""
     vertices, faces = [], []
     for k in range(cells + 1):
         for i in range(cells + 1):

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes a village from formulas: village.py OUT
 
-Writes OUT/village.glb, some five hundred things on a terrain with a material for each of their parts, and OUT/meshes, one
-PLY with colours for each thing's shape, as pictures take them. The same argument gives the same bytes. Needs nothing but
-Python itself.
+Writes OUT/village.glb, about five hundred objects on a terrain, with a material for each part, and OUT/meshes, one
+coloured PLY per shape for pictures. The output is reproducible. Needs only Python.
 """
 import math
 import os
@@ -16,7 +15,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from gltf import Gltf  # noqa: E402
 from meshes import smooth_noise  # noqa: E402
 
-HALF = 64.0  # metres from the middle to the rim
+HALF = 64.0  # metres from the centre to the border
 CELLS = 240
 
 MATERIALS = {  # sRGB
@@ -26,18 +25,18 @@ MATERIALS = {  # sRGB
     "wood": (0.47, 0.34, 0.21), "iron": (0.17, 0.17, 0.19), "canvas": (0.84, 0.80, 0.70), "straw": (0.76, 0.62, 0.30),
     "leaves": (0.25, 0.36, 0.14), "autumn": (0.66, 0.38, 0.12), "needles": (0.14, 0.25, 0.17), "bark": (0.27, 0.21, 0.16),
     "water": (0.20, 0.30, 0.34), "embers": (0.95, 0.36, 0.08),
-    # of kitchen.py
+    # for kitchen.py
     "enamel": (0.86, 0.87, 0.84), "hot plate": (0.20, 0.12, 0.11), "china": (0.33, 0.47, 0.62), "tiles": (0.52, 0.60, 0.60),
 }
-WARM = ("water", "embers")  # no snow stays there
+WARM = ("water", "embers")  # melt snow
 
 
 class Shape:
-    """Triangles with a material each."""
+    """Triangles, each with a material."""
 
     def __init__(self):
         self.points, self.triangles, self.materials = [], [], []
-        self.colors = None  # of the points, in pictures; None: those of the materials
+        self.colors = None  # colours of the points in pictures; None: colours of the materials
 
     def add(self, points, triangles, material):
         first = len(self.points)
@@ -47,7 +46,7 @@ class Shape:
         return self
 
     def box(self, low, high, material, turn=0.0, about=(0.0, 0.0)):
-        """turn: radians about the upright through `about`, (x, z)."""
+        """turn: radians about the vertical axis through `about`, (x, z)."""
         corners = []
         for i in range(8):
             x, y, z = (high[k] if i >> k & 1 else low[k] for k in range(3))
@@ -72,7 +71,7 @@ class Shape:
         return self.add(points, [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))], material)
 
     def turned(self, profile, sides, material, at=(0.0, 0.0, 0.0)):
-        """A solid of revolution about the upright through `at`; profile: (radius, height) upwards, closed by its ends' discs."""
+        """A solid of revolution about the vertical axis through `at`. profile: (radius, height) upwards."""
         points = [(at[0] + r * math.cos(2 * math.pi * k / sides), at[1] + h, at[2] - r * math.sin(2 * math.pi * k / sides))
                   for r, h in profile for k in range(sides)]
         rings = len(profile)
@@ -99,14 +98,14 @@ class Shape:
         return self.add(moved, triangles, material)
 
     def roof(self, x, z, eaves, ridge, over, thick, material):
-        """A saddle roof over [-x, x] × [-z, z], its ridge along x."""
+        """A gable roof over [-x, x] × [-z, z] with its ridge along x."""
         slope = (ridge - eaves) / z
         low = eaves - over * slope
         profile = [(-(z + over), low), (0.0, ridge), (z + over, low), (z + over, low + thick), (0.0, ridge + thick), (-(z + over), low + thick)]
         return self.prism(profile, -x - over, x + over, material)
 
     def prism(self, profile, x0, x1, material):
-        """Along x: six corners (z, y), of which the first three are the lower side from -z to z, the others the upper back."""
+        """A prism along x. profile: six corners (z, y), three on the lower side from -z to z, three on the upper side back."""
         points = [(x, y, w) for x in (x0, x1) for w, y in profile]
         n = len(profile)
         triangles = []
@@ -119,7 +118,7 @@ class Shape:
         return self.add(points, triangles, material)
 
     def gable(self, x, z, base, eaves, ridge, material):
-        """Walls over [-x, x] × [-z, z] up to the ridge along x."""
+        """Gable walls over [-x, x] × [-z, z] up to a ridge along x."""
         points = [(sx * x, y, w) for sx in (-1, 1) for w, y in ((-z, base), (z, base), (z, eaves), (0.0, ridge), (-z, eaves))]
         triangles = [(0, 1, 2), (0, 2, 4), (2, 3, 4), (5, 7, 6), (5, 9, 7), (7, 9, 8)]
         for a, b in ((0, 1), (1, 2), (2, 3), (3, 4), (4, 0)):
@@ -132,7 +131,7 @@ def cross(a, b):
 
 
 def signed(points, triangles):
-    """Six times the volume inside."""
+    """Six times the signed volume."""
     return sum(sum(p * q for p, q in zip(points[a], cross(points[b], points[c]))) for a, b, c in triangles)
 
 
@@ -140,7 +139,7 @@ SPHERES = {}
 
 
 def sphere(steps):
-    """A unit sphere: an octahedron whose triangles are cut in four, `steps` times."""
+    """A unit sphere: an octahedron whose triangles are split into four, `steps` times."""
     if steps not in SPHERES:
         points = [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
         triangles = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
@@ -165,7 +164,7 @@ def sphere(steps):
 
 
 def house(x, z, eaves, ridge, wall, roof, chimney, upper):
-    """x, z: half sides; upper: height of a jettied upper floor, or 0."""
+    """x, z: half extents; upper: height of an overhanging upper floor, or 0."""
     s = Shape()
     s.box((-x - 0.06, -1.0, -z - 0.06), (x + 0.06, 0.45, z + 0.06), "stone")
     s.gable(x, z, 0.4, eaves, ridge, wall)
@@ -174,7 +173,7 @@ def house(x, z, eaves, ridge, wall, roof, chimney, upper):
         s.box((-x - 0.22, upper, -z - 0.22), (x + 0.22, eaves - 0.02, z + 0.22), wall)
         out = 0.27
     s.roof(x + (0.2 if upper else 0.0), z + (0.2 if upper else 0.0), eaves, ridge, 0.55, 0.16, roof)
-    # Posts, rails and braces stand out of the walls.
+    # Posts, rails and braces protrude from the walls.
     for side in (-1, 1):
         for k in range(5):
             at = -x + 2 * x * k / 4
@@ -231,7 +230,7 @@ def mill():
 
 
 def sails():
-    """About the axle, which is z."""
+    """The sails about their axle, the z axis."""
     s = Shape()
     s.beam((0.0, 0.0, -0.4), (0.0, 0.0, 0.5), 0.55, "timber")
     for k in range(4):
@@ -307,7 +306,7 @@ def crate():
 
 
 def fence():
-    """Two metres along x."""
+    """A fence section, two metres along x."""
     s = Shape()
     for x in (-1.0, 0.0):
         s.box((x - 0.06, -0.4, -0.06), (x + 0.06, 1.15, 0.06), "wood")
@@ -333,7 +332,7 @@ def table():
 
 def well():
     s = Shape()
-    # A wall round the water.
+    # The wall around the water.
     ring = [(1.1, -0.6), (1.1, 0.85), (0.8, 0.85), (0.8, 0.5)]
     sides = 20
     points = [(r * math.cos(2 * math.pi * k / sides), y, -r * math.sin(2 * math.pi * k / sides)) for r, y in ring for k in range(sides)]
@@ -406,7 +405,7 @@ def woodpile():
 
 
 def path_distance(x, z):
-    """From the middle of the nearest path: one winds along z, one branches off to the mill."""
+    """The distance to the centre line of the nearest path: one winds along z, one branches off to the mill."""
     street = abs(x - 3.0 * math.sin(z / 15.0)) * 0.95
     branch = abs(z + 14.0 - 0.10 * (x - 3.0) - 3.0 * math.sin(x / 9.0)) if x > 0 else 1e9
     square = max(0.0, math.hypot(x - 1.0, z - 4.0) - 6.0)
@@ -414,7 +413,7 @@ def path_distance(x, z):
 
 
 def ground(x, z):
-    """Its height, in metres: hills round a valley, with the mill's in the north-east."""
+    """The height of the ground in metres: hills around a valley, with the hill of the mill in the north-east."""
     away = max(0.0, math.hypot(x * 0.85, z * 0.8) - 26.0)
     hills = 0.0062 * away * away * (0.7 + 0.5 * smooth_noise(x / 22.0 + 3.0, z / 22.0))
     mound = 5.0 * math.exp(-((x - 29.0) ** 2 + (z + 21.0) ** 2) / 190.0)
@@ -478,7 +477,7 @@ def shapes():
 
 
 def places():
-    """(shape, node, x, y, z, turn about y in degrees, scale); y: above the ground, or None on it."""
+    """Tuples (shape, node, x, y, z, rotation about y in degrees, scale)."""
     rng = random.Random(7)
     out, taken = [], []
 
@@ -505,7 +504,7 @@ def places():
     for shape, x, z, turn in row:
         put(shape, x, z, turn, clear=5.6)
         a = math.radians(turn)
-        # Before the door, (x, z) = (sin, cos) of its turn.
+        # In front of the door, in the direction (x, z) = (sin, cos) of the rotation.
         for k in range(rng.randint(2, 4)):
             side, out_by = rng.choice((-1, 1)) * rng.uniform(1.6, 3.2), rng.uniform(3.6, 4.4)
             put(rng.choice(("barrel", "barrel", "crate", "woodpile")), x + out_by * math.sin(a) + side * math.cos(a),
@@ -520,7 +519,7 @@ def places():
                 put("lantern", x, z, clear=0.4)
     for shape, x, z in (("hay", 19.5, 21.5), ("hay", 22.0, 19.0), ("hay", -26.5, -1.0), ("hay", 20.0, 24.5)):
         put(shape, x, z, scale=rng.uniform(0.9, 1.2), clear=1.4)
-    # Fences round three gardens.
+    # Fences around the gardens.
     for u, w, half_x, half_z in ((-12.5, 20.5, 4, 3), (17.0, 10.8, 3, 2), (-17.0, -8.5, 4, 3), (13.5, -14.5, 4, 3)):
         for k in range(-half_x, half_x):
             put("fence", u + 2 * k + 1.0, w - 2 * half_z), put("fence", u + 2 * k + 1.0, w + 2 * half_z)
@@ -539,7 +538,7 @@ def places():
 
 
 def ply(shape):
-    """Vertices with colours, one for each material that meets there."""
+    """A PLY with vertex colours; vertices between materials are duplicated."""
     order, points, faces = {}, [], []
     for t, material in zip(shape.triangles, shape.materials):
         corners = []

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes a figure of capsules that walks on the spot, as glTF with materials and one clip: walker.py OUT.gltf
 
-The same argument gives the same bytes. Needs nothing but Python itself.
+The output is reproducible. Needs only Python.
 """
 import math
 import os
@@ -11,12 +11,12 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from gltf import Gltf  # noqa: E402
 
-SECONDS = 0.95  # of two steps
+SECONDS = 0.95  # duration of two steps
 KEYS = 57
-STRIDE = 1.1227  # metres that the ground goes back in that time
-STANCE = 0.56  # of a cycle a foot is on the ground
+STRIDE = 1.1227  # distance in that time, metres
+STANCE = 0.56  # fraction of a cycle that a foot is on the ground
 
-# Name, parent, place in the parent, the capsule's other end, and its radius; metres, y up, facing +z.
+# Name, parent, position in the parent, other end of the capsule, radius; metres, y up, facing +z.
 PARTS = [
     ("hips", None, (0.0, 0.93, 0.0), (0.0, 0.12, 0.0), 0.125),
     ("chest", "hips", (0.0, 0.20, 0.0), (0.0, 0.24, 0.0), 0.15),
@@ -44,7 +44,7 @@ WEARS = {"hips": "trousers", "thigh": "trousers", "shin": "trousers", "foot": "s
 
 
 def ease(x):
-    """From 0 to 1, level at both ends."""
+    """Smoothstep."""
     x = min(max(x, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 
@@ -54,30 +54,30 @@ def part(name):
 
 
 def hips(phase):
-    """Their height: highest where one leg passes the other."""
+    """The height of the hips: highest when one leg passes the other."""
     return 0.859 - 0.029 * math.cos(4 * math.pi * (phase - 0.01))
 
 
 def foot(phase):
-    """The left ankle, (height, place along z), and the turn of its foot, toes down above 0: heel first, then flat, then off by the toes."""
+    """The left ankle: height, z, and pitch of the foot (positive: toes down). Heel strike, flat, then toe-off."""
     _, _, _, (_, toe_y, toe_z), radius = part("left foot")
     swing = max(0.0, (phase - STANCE) / (1.0 - STANCE))
     turn = -0.3 * (1.0 - ease(phase / 0.12)) + 0.75 * ease((phase - 0.3) / (STANCE - 0.3))
     if swing > 0.0:
         turn = 0.75 - 1.05 * ease(swing / 0.8)
     reach = 0.5 * STANCE * STRIDE
-    # A cubic that leaves the ground and meets it at the ground's own speed.
+    # A cubic whose speed at both ends is that of the ground.
     back = STRIDE * (1.0 - STANCE)
     z = reach - STRIDE * phase if swing == 0.0 else -reach - back * swing + (2.0 * reach + back) * ease(swing)
     c, s = math.cos(turn), math.sin(turn)
     toes = c * toe_y - s * toe_z
-    if turn > 0.0:  # about the toes
+    if turn > 0.0:  # pivots about the toes
         z += toe_z - (s * toe_y + c * toe_z)
     return radius + max(0.0, -toes) + 0.05 * math.sin(math.pi * swing) ** 2, z, turn
 
 
 def leg(phase):
-    """The turns of a left leg's thigh, shin and foot that take it where foot() is."""
+    """The joint angles of the left thigh, shin and foot that reach the position of foot()."""
     thigh, shin = (math.hypot(*part(name)[2]) for name in ("left shin", "left foot"))
     y, z, turn = foot(phase)
     down = hips(phase) - y
@@ -89,7 +89,7 @@ def leg(phase):
 
 
 def bend(name, phase):
-    """The turn of a joint about x, in radians: below 0 forwards. phase: 0 to 1, of two steps, from where the left heel lands."""
+    """The angle of a joint about x: radians, negative forwards. phase: 0 to 1 over two steps, from left heel strike."""
     phase = (phase + (0.5 if name.startswith("right") else 0.0)) % 1.0
     swing = math.cos(2 * math.pi * phase)
     return {
@@ -99,7 +99,7 @@ def bend(name, phase):
 
 
 def capsules(phase):
-    """The figure's solids at a phase: (one end, the other, radius)."""
+    """The capsules of the figure at a phase: (one end, other end, radius)."""
     frames, solids = {}, []
     for name, parent, place, end, radius in PARTS:
         x, y, z = place
@@ -136,7 +136,7 @@ def capsule(end, radius, sides=24, rings=8):
     for ring in range(len(profile) - 1):
         for k in range(sides):
             a, b = ring * sides + k, ring * sides + (k + 1) % sides
-            # The ends are points, round which one of the two has no area.
+            # The ends are points: one of the two triangles there has no area.
             triangles += [(a, b, b + sides)] if ring > 0 else []
             triangles += [(a, b + sides, a + sides)] if ring + 2 < len(profile) else []
     return positions, triangles

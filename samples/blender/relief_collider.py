@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender add-on: bakes the selected object into a collider of Relief, shows where it is wrong, and plays particles.
+"""Blender add-on: bakes the selected object into a Relief collider, shows its errors, and plays particles.
 
-Needs the package relief of Python: python3-relief, or the build's python/ folder in PYTHONPATH. README.md beside this file
+Needs the Python package relief: python3-relief, or the build's python/ folder in PYTHONPATH. README.md in this folder
 describes the installation.
 """
 import os
@@ -37,7 +37,7 @@ CAUSES = {
 
 
 class ReliefError(Exception):
-    """A sentence for the user."""
+    """An error with a message for the user."""
 
 
 def relief_module():
@@ -49,7 +49,7 @@ def relief_module():
     return relief
 
 
-# --- axes. Blender's z is up. Relief has no up of its own, but its scenes fall along -y by default, and so do most engines.
+# --- axes: z is up in Blender. Relief has no up axis, but gravity points along -y by default, as in most engines.
 
 def to_relief(points, up):
     points = np.asarray(points, dtype=np.float32).reshape(-1, 3)
@@ -64,7 +64,7 @@ def to_blender(points, up):
 # --- meshes
 
 def world_mesh(context, obj):
-    """Vertices in the world's space, (n, 3), and triangles, (m, 3), of an object with its modifiers."""
+    """World-space vertices (n, 3) and triangles (m, 3) of an object with its modifiers."""
     evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
     mesh = evaluated.to_mesh()
     try:
@@ -81,7 +81,7 @@ def world_mesh(context, obj):
     world = vertices.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = triangles.reshape(-1, 3)
     if np.linalg.det(matrix[:3, :3]) < 0:
-        triangles = triangles[:, ::-1]  # a mirrored object's faces would look inwards
+        triangles = triangles[:, ::-1]  # keeps the faces of mirrored objects outwards
     return world.astype(np.float32), triangles
 
 
@@ -103,7 +103,7 @@ def collider_of(obj):
 
 
 def finer(vertices, triangles, longest):
-    """Triangles halved until no edge is longer than that, or there are many: errors are seen between vertices too."""
+    """Subdivides until no edge is longer than `longest` or there are 200,000 triangles: shows errors between vertices."""
     while len(triangles) < 200_000:
         corners = vertices[triangles]
         edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
@@ -120,7 +120,7 @@ def finer(vertices, triangles, longest):
 
 
 def error_colors(distance, known, worst):
-    """Blue where the surface lies inside of what the maps say, orange outside, white where they agree, pink: no map votes."""
+    """Blue: the mesh is inside the collider. Orange: outside. White: they agree. Pink: no map votes."""
     share = np.clip(np.abs(distance) / worst, 0, 1)[:, None] ** 0.45
     end = np.where(distance[:, None] < 0, np.array([[0.02, 0.14, 0.55]]), np.array([[0.65, 0.12, 0.01]]))
     colors = 0.9 * (1 - share) + end * share
@@ -129,7 +129,7 @@ def error_colors(distance, known, worst):
 
 
 def sheet_depth(collider):
-    """Half of the thickness that open parts were given; their surface lies so deep."""
+    """Half the thickness of the shells of open parts: the depth of their surface."""
     found = re.search(r"(?:^| )--thickness ([0-9.e+-]+)", collider.options)
     return 0.5 * float(found.group(1)) if found else 0.0
 
@@ -137,7 +137,7 @@ def sheet_depth(collider):
 # --- operators
 
 class ReliefOperator:
-    """Tells a ReliefError, and the errors of the package, instead of a traceback."""
+    """Reports a ReliefError, or an error of the package, instead of a traceback."""
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
@@ -271,7 +271,7 @@ class RELIEF_OT_hide(ReliefOperator, bpy.types.Operator):
 
     def work(self, context):
         active = context.active_object
-        # Of the active object, of what was made for one, or of all.
+        # The active object or the object of the active overlay; without an active object, all.
         names = {active.get("relief_of", active.name)} if active else {one.get("relief_of") for one in bpy.data.objects}
         for obj in [bpy.data.objects[name] for name in sorted(names - {None}) if name in bpy.data.objects]:
             RELIEF_OT_show.remove(obj)
@@ -279,7 +279,7 @@ class RELIEF_OT_hide(ReliefOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-# --- particle caches: a folder of particles_0000.ply and so on, as relief-sim --dump-frames writes them
+# --- particle caches: a folder of particles_0000.ply and so on, written by relief-sim --dump-frames
 
 PLY = np.dtype([("position", "<f4", 3), ("velocity", "<f4", 3), ("age", "<f4"), ("lifetime", "<f4"), ("id", "<u4"),
                 ("type", "<u4")])

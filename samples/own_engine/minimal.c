@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The least that an engine needs for a collider: no JSON, no Relief library. Sizes follow from the block and the files.
+/* The minimum an engine needs for a collider: no JSON, no Relief library. Sizes follow from the block and the files.
  *     relief export bunny.relief --gpu bunny/
  *     minimal bunny 0 0.1 0        distance to the deciding plane, normal */
 #include <EGL/egl.h>
@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static char* load(const char* folder, const char* name, long* size) { /* NULL: no map needs that file */
+static char* load(const char* folder, const char* name, long* size) { /* NULL: no map needs the file */
     char path[4096];
     snprintf(path, sizeof(path), "%s/%s", folder, name);
     FILE* file = fopen(path, "rb");

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A collider in an engine of one's own: OpenGL ES 3.0, jansson for the JSON, and no Relief library.
+/* A collider in your own engine: OpenGL ES 3.0, jansson for the JSON, no Relief library.
  *
  *     relief export bunny.relief --gpu bunny/
  *     own_engine bunny/ points.csv            x,y,z,f,nx,ny,nz,map of every point, as `relief query --distance plane`
- *     own_engine bunny/ points.csv --fall     where each point comes to lie if it falls for five seconds
+ *     own_engine bunny/ points.csv --fall     the position of each point after it falls for five seconds
  *
- * runtime/layout/LAYOUT.md says what the files hold. */
+ * runtime/layout/LAYOUT.md describes the files. */
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
@@ -43,7 +43,7 @@ static void makeContext(void) {
     need(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context), "no OpenGL ES 3.0");
 }
 
-/* Nearest, clamped, one level: as collider.glsl needs its textures. */
+/* Nearest filtering, one level, as collider.glsl requires. */
 static GLuint makeTexture(GLenum internal, GLenum format, GLenum type, int width, int height, const void* texels) {
     GLuint name;
     glGenTextures(1, &name);
@@ -73,7 +73,7 @@ static GLuint compile(GLenum stage, const char* collider, const char* body) {
 static const char* kVertex =
     "void main() { gl_Position = vec4(vec2[](vec2(-1, -1), vec2(3, -1), vec2(-1, 3))[gl_VertexID], 0, 1); }\n";
 
-/* Semi-implicit Euler; a particle inside goes back to the surface, and keeps a third of its speed along it. */
+/* Semi-implicit Euler. A particle inside moves back to the surface, and keeps 0.3 of its tangential velocity. */
 static const char* kFragment =
     "uniform sampler2D u_points;\n"
     "uniform int u_steps;\n"
@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
     size_t unit;
     json_t* one;
     json_array_foreach(json_object_get(all, "textures"), unit, one) {
-        const char* file = json_string_value(json_object_get(one, "file")); /* none: nothing reads it */
+        const char* file = json_string_value(json_object_get(one, "file")); /* NULL if no map uses this texture */
 #define NUMBER(key) (int)json_integer_value(json_object_get(one, key))
         glActiveTexture(GL_TEXTURE0 + (GLenum)unit);
         makeTexture((GLenum)NUMBER("internal_format"), (GLenum)NUMBER("format"), (GLenum)NUMBER("type"),

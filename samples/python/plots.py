@@ -2,15 +2,15 @@
 # %% [markdown]
 # # Relief from Python: three plots
 #
-# Cells as Jupyter, VS Code and Spyder know them; or run it whole: `python3 plots.py bunny.obj`.
-# It needs numpy and matplotlib, and leaves slice.png, maps.png and budgets.png.
+# Run it as cells in Jupyter, VS Code or Spyder, or as a script: `python3 plots.py bunny.obj`.
+# It needs numpy and matplotlib, and writes slice.png, maps.png and budgets.png.
 
 # %% Bake a mesh
 import sys
 
 import matplotlib
 
-matplotlib.use("Agg")  # without a window; leave this out in a notebook
+matplotlib.use("Agg")  # no window; remove this line in a notebook
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -21,7 +21,7 @@ collider = relief.bake(mesh, budget=500_000)
 low, high = collider.bounds
 print(collider, relief.check(collider, mesh, samples=50_000))
 
-# %% A slice through its field
+# %% A slice of its field
 side = 400
 x, y = np.meshgrid(np.linspace(low[0], high[0], side), np.linspace(low[1], high[1], side))
 points = np.stack([x, y, np.full_like(x, (low[2] + high[2]) / 2)], axis=-1)
@@ -35,7 +35,7 @@ axes.set(title="Signed distance, half way through", xlabel="x", ylabel="y")
 figure.colorbar(picture, label="distance, mesh units", extend="both")
 figure.savefig("slice.png", dpi=120)
 
-# %% Depth maps of the whole mesh. Those of patches lie in no image
+# %% Depth maps of the whole mesh. Patches have no image
 views = relief.bake(mesh, maps=["front-back:dir=-x", "front-back:dir=-y", "front-back:dir=-z"]).maps
 figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.6), layout="constrained")
 for one, axis in zip(views, axes):
@@ -44,7 +44,7 @@ for one, axis in zip(views, axes):
 figure.suptitle("Depth of the near surface")
 figure.savefig("maps.png", dpi=120)
 
-# %% What more bytes buy
+# %% Accuracy by bytes
 budgets = [32_000, 64_000, 128_000, 256_000, 512_000]
 wrong = [relief.check(relief.bake(mesh, budget=b), mesh, samples=50_000).wrong_percent for b in budgets]
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")

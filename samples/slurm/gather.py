@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""One report of all tasks: gather.py REPORTS TASKS
+"""Merges the reports of all tasks: gather.py REPORTS TASKS
 
-Reads REPORTS/1.jsonl … REPORTS/TASKS.jsonl (bake/recipe/README.md, "Events"); writes report.json and failures.txt, and
-prints a summary. Exit code 0 if every asset of every shard is there, 1 otherwise.
+Reads REPORTS/1.jsonl … REPORTS/TASKS.jsonl (bake/recipe/README.md, "Events"), writes report.json and failures.txt, and
+prints a summary. Exit code: 0 if every asset of every shard is present, else 1.
 """
 import collections
 import json
@@ -20,7 +20,7 @@ for task in range(1, tasks + 1):
         try:
             event = json.loads(line)
         except ValueError:
-            break  # cut off with its task
+            break  # the task was killed while it wrote this line
         counts[event["event"]] += 1
         counts["bytes"] += event.get("bytes", 0) if event["event"] in ("done", "skipped") else 0
         if event["event"] == "failed":

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Bakes a recipe on a cluster of Slurm: submit.sh RECIPE OUTPUT_FOLDER [TASKS] [-- OPTION…]
+# Bakes a recipe on a Slurm cluster: submit.sh RECIPE OUTPUT_FOLDER [TASKS] [-- OPTION…]
 #
-# Submits a job array of TASKS tasks (16), each of which bakes one shard of the recipe, and a job after them that gathers
-# what they say. OPTIONs go to sbatch, such as --partition=farm --cpus-per-task=8 --time=4:00:00. Prints the number of the
-# last job; its exit code is that of the whole. Run it again to go on: what is up to date is not baked again.
+# Submits a job array of TASKS tasks (default: 16), one for each shard of the recipe, and a final job that merges their
+# reports. Passes each OPTION to sbatch, such as --partition=farm --cpus-per-task=8 --time=4:00:00. Prints the id of the
+# final job, whose exit code is that of the whole bake. Run it again to resume: it bakes only what is out of date.
 #
-# OUTPUT_FOLDER/reports/ has report.json, failures.txt, and the events and the log of each task. The recipe and the
-# folder must have the same names on every node; `relief` must be on PATH there, or RELIEF name it.
+# OUTPUT_FOLDER/reports/ contains report.json, failures.txt, and the events and log of each task. The recipe and the
+# folder need the same paths on every node. `relief` must be on PATH there, or RELIEF must contain its path.
 set -euo pipefail
 
 usage() {
@@ -33,7 +33,7 @@ relief=${RELIEF:-$(command -v relief)} || {
 
 mkdir -p "$out/reports"
 rm -f "$out"/reports/*.jsonl "$out/reports/report.json" "$out/reports/failures.txt"
-# A task whose node dies is begun again (--requeue): its shard goes on where it was.
+# --requeue restarts the tasks of dead nodes; a restarted shard resumes where it stopped.
 array=$(sbatch --parsable --job-name=relief --array="1-$tasks" --requeue --open-mode=append \
     --output="$out/reports/%a.log" "$@" \
     "$here/task.sh" "$relief" "$recipe" "$out" "$tasks")

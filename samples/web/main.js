@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snow of Relief in a scene of three.js: it settles on three's own mesh, and each hides the other where it is nearer.
+// Relief's snow in a three.js scene: it settles on a three.js mesh, and both are depth-tested against each other.
 import * as THREE from "three";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -37,7 +37,7 @@ function makeScene(body, bounds) {
         x - 0.85 * side, bounds.min[1] + 0.3 * side, z + 0.2 * side);
     body.traverse((part) => {
         if (part.isMesh) {
-            part.geometry.deleteAttribute("normal"); // rounder than the file's
+            part.geometry.deleteAttribute("normal"); // smoother than the normals of the file
             part.geometry.computeVertexNormals();
             part.material = new THREE.MeshStandardMaterial({ color: 0xc9b79c, roughness: 0.7 });
             part.castShadow = part.receiveShadow = true;
@@ -87,7 +87,7 @@ async function run() {
         renderer.render(scene, camera);
         system.draw({ view: camera.matrixWorldInverse, projection: camera.projectionMatrix });
     };
-    // A lost context: three.js restores it, and nothing is alive then.
+    // After a lost context, three.js restores its own state; the particles start again.
     renderer.domElement.addEventListener("webglcontextrestored", () => system.restart());
     let before = performance.now();
     const frame = (now) => {
@@ -97,7 +97,7 @@ async function run() {
         }
         before = now;
     };
-    if (location.hash !== "#test") { // a test drives it itself
+    if (location.hash !== "#test") { // tests call step and draw themselves
         renderer.setAnimationLoop(frame);
     }
     note.textContent = "Drag to turn, scroll to zoom.";

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Puts the sample together as one static folder: samples/web/prepare.sh [FOLDER]   (default: out/samples/web)
-# Then serve that folder, as by `python3 -m http.server -d out/samples/web`. RELIEF_BIN: where `relief` is.
+# Writes the sample as a static folder: samples/web/prepare.sh [FOLDER] (default: out/samples/web)
+# Serve it with `python3 -m http.server -d out/samples/web`. RELIEF_BIN is the folder of `relief`.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
