@@ -582,7 +582,7 @@ def main():
         with open(os.path.join(folder, "meshes", name + ".ply"), "wb") as out:
             out.write(ply(shape))
     glb(made, placed).write(os.path.join(folder, "village.glb"))
-    print(f"{len(placed)} things of {len(made)} shapes, {sum(len(s.triangles) for s in made.values())} triangles")
+    print(f"{len(placed)} objects of {len(made)} shapes, {sum(len(s.triangles) for s in made.values())} triangles")
 
 
 if __name__ == "__main__":

@@ -109,9 +109,9 @@ def load(path):
         with open(path, encoding="utf-8") as file:
             data = json.load(file)
         if not data["machine"] or not all(rounds and min(rounds) > 0 for rounds in data["figures"].values()):
-            raise ValueError("its figures are not numbers above 0")
+            raise ValueError("its figures are not positive numbers")
     except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
-        raise Unusable(f"{path}: not the figures of a benchmark ({error}); write it with scripts/bench.py --save") from error
+        raise Unusable(f"{path}: no benchmark figures ({error}); write it with scripts/bench.py --save") from error
     return data
 
 
@@ -139,22 +139,22 @@ def verdict(old, new, figures):
         return "slower"
     if change <= -LEAST_CHANGE and chance(new, old) <= enough:
         return "faster"
-    return "same" if abs(change) < LEAST_CHANGE else "not told from noise"
+    return "same" if abs(change) < LEAST_CHANGE else "within noise"
 
 
 def compare(old_path, new_path):
     """Prints the table; returns the exit code."""
     old, new = load(old_path), load(new_path)
     if old["machine"] != new["machine"]:
-        raise Unusable(f"{old_path} is of another machine ('{old['machine']}') than {new_path} ('{new['machine']}'); "
-                       "take both on one")
+        raise Unusable(f"{old_path} ('{old['machine']}') and {new_path} ('{new['machine']}') are from different machines; "
+                       "measure both on one machine")
     old, new = old["figures"], new["figures"]
     both = [name for name in old if name in new]
     if not both:
-        raise Unusable("the two files have no figure in common; take both with the same scripts/bench.py")
+        raise Unusable("the two files have no figure in common; measure both with the same scripts/bench.py")
     rounds = min(len(figures[name]) for figures in (old, new) for name in both)
     if 1 / math.comb(2 * rounds, rounds) > CHANCE / len(both):
-        raise Unusable(f"{rounds} rounds cannot tell {len(both)} figures from noise; take more with --rounds")
+        raise Unusable(f"{rounds} rounds cannot distinguish {len(both)} figures from noise; use more with --rounds")
 
     def spread(taken):
         return f"{statistics.median(taken):9.3f} ({min(taken):.3f} to {max(taken):.3f})"
@@ -168,10 +168,10 @@ def compare(old_path, new_path):
         print(f"{name:34s} {spread(old[name]):32s} {spread(new[name]):32s} {ratio:7.3f}  {found}")
     for name in (name for name in old if name not in new):
         bad += 1
-        print(f"{name:34s} is gone")
+        print(f"{name:34s} is missing")
     for name in (name for name in new if name not in old):
         print(f"{name:34s} is new")
-    print("nothing is slower" if bad == 0 else f"{bad} of {len(old)} figures are slower or gone")
+    print("nothing is slower" if bad == 0 else f"{bad} of {len(old)} figures are slower or missing")
     return 0 if bad == 0 else 1
 
 
@@ -182,7 +182,7 @@ def print_tables(report):
     for table in report["tables"]:
         of = ", ".join(f"{name} {'x'.join(map(str, value)) if isinstance(value, list) else value}"
                        for name, value in table.items() if name != "rows")
-        print(f"\n{report['case']}{', ' if of else ''}{of}; ms of a call, on {report['renderer']}")
+        print(f"\n{report['case']}{', ' if of else ''}{of}; ms per call, on {report['renderer']}")
         for row in table["rows"]:
             gpu = f" ({row['gpu_ms']:.3f} on the GPU)" if row["gpu_ms"] is not None else ""
             line = f"  {row['name']:22s} {row['ms']:9.3f}{gpu}"
@@ -196,7 +196,7 @@ def print_tables(report):
 def print_report(tools):
     least, bake = (statistics.median(taken) for taken in
                    zip(*[(tools.least(), seconds(tools.bake("six", SIX_MAPS))) for _ in range(15)]))
-    print(f"bake of six maps / of eight texels squared         {bake / least:.2f}   ({1000 * bake:.1f} / {1000 * least:.1f} ms)")
+    print(f"bake of six maps / of 8 x 8 texels                 {bake / least:.2f}   ({1000 * bake:.1f} / {1000 * least:.1f} ms)")
 
     # The particle step with patches and with the paper's collider: one front-back map and one cube.
     runs = {"patches": [], "paper": []}
@@ -207,7 +207,7 @@ def print_report(tools):
             taken.append(tools.step(name, "--only", "collider")[1]["collider"]["ms"])
     paper = statistics.median(runs["paper"])
     taken = statistics.median(runs["patches"])
-    print(f"step among patches / the paper's maps              {taken / paper:.2f}   ({taken:.2f} / {paper:.2f} ms)")
+    print(f"step with patches / with the paper's maps          {taken / paper:.2f}   ({taken:.2f} / {paper:.2f} ms)")
 
     collider = f"{tools.folder}/patches.relief"
     print_tables(tools.bench("step", collider))

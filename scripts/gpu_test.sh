@@ -66,19 +66,19 @@ describe() {
     contexts=$(grep -o '"context": "[^"]*"' "$report" | cut -d'"' -f4 | sort -u || true)
     rm -f "$report"
     if [ -z "$contexts" ]; then
-        echo "gpu_test.sh: no OpenGL context: install the GPU's driver with its EGL library" >&2
+        echo "gpu_test.sh: no OpenGL context; install the GPU's driver with its EGL library" >&2
         exit 5
     fi
     echo "$contexts"
     if [ $software = 0 ] && grep -qE 'llvmpipe|softpipe|swrast|SwiftShader|Software Rasterizer' <<<"$contexts"; then
-        echo "gpu_test.sh: the processor draws, not a GPU: install the GPU's driver, or pass --allow-software" >&2
+        echo "gpu_test.sh: found only a software renderer; install the GPU's driver, or pass --allow-software" >&2
         exit 5
     fi
 }
 
 run() {
     [ -f "$folder/programs.txt" ] || {
-        echo "gpu_test.sh: $folder has no tests: run scripts/gpu_test.sh build" >&2
+        echo "gpu_test.sh: $folder contains no tests; run scripts/gpu_test.sh build" >&2
         exit 1
     }
     mapfile -t programs <"$folder/programs.txt"

@@ -80,7 +80,7 @@ for name in "${mine[@]}"; do
     [ $state = passed ] || {
         failed=1
         tail -n 40 "$out/$name.log" >&2
-        echo "nightly.sh: the whole log of $name: $out/$name.log" >&2
+        echo "nightly.sh: full log of $name: $out/$name.log" >&2
     }
 done
 exit $failed

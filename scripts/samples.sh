@@ -11,7 +11,7 @@ names=("$@")
 [ ${#names[@]} -gt 0 ] || names=("${all[@]}")
 for name in "${names[@]}"; do
     [[ " ${all[*]} " == *" $name "* ]] || {
-        echo "samples.sh: there is no sample '$name'; choose of: ${all[*]}" >&2
+        echo "samples.sh: unknown sample '$name'; choose from: ${all[*]}" >&2
         exit 1
     }
 done

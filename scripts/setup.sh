@@ -59,7 +59,7 @@ done
 sudo=()
 if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || {
-        echo "setup.sh: these packages are missing, and installing them needs root: ${missing[*]}" >&2
+        echo "setup.sh: packages are missing, and only root can install them: ${missing[*]}" >&2
         exit 1
     }
     sudo=(sudo)

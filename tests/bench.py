@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/bench.py and scripts/accuracy_table.py, on figures made up here: bench.py SOURCE_DIR"""
+"""Tests scripts/bench.py and scripts/accuracy_table.py on made-up figures: bench.py SOURCE_DIR"""
 import json
 import os
 import random
@@ -45,7 +45,7 @@ class Compare(unittest.TestCase):
             done = self.compare(old, new)
             self.assertEqual(done.returncode, 0, f"seed {seed}: {done.stdout}")
 
-    def test_a_tenth_slower_is_told_from_noise_of_two_percent(self):
+    def test_ten_percent_slower_is_distinguished_from_two_percent_noise(self):
         old = {f"f{i}": rounds(i, 2.0, 0.02) for i in range(32)}
         new = {f"f{i}": rounds(i + 50, 2.2 if i == 7 else 2.0, 0.02) for i in range(32)}
         done = self.compare(old, new)
@@ -58,15 +58,15 @@ class Compare(unittest.TestCase):
         figure = rounds(1, 1.0, 0.1)
         for old, new, code, words in (
                 ({"f": rounds(1, 2.0, 0.02)}, {"f": rounds(2, 1.5, 0.02)}, 0, "  faster"),
-                # Below three percent, however sure.
+                # Below three percent, even if significant.
                 ({"f": rounds(1, 2.0, 0.001)}, {"f": rounds(2, 2.04, 0.001)}, 0, "  same"),
-                ({"f": [1.0, 2.0] * 4}, {"f": [2.0, 1.0, 2.0, 1.5] * 2}, 0, "not told from noise"),
-                ({"f": figure, "g": figure}, {"f": figure}, 1, "is gone")):
+                ({"f": [1.0, 2.0] * 4}, {"f": [2.0, 1.0, 2.0, 1.5] * 2}, 0, "within noise"),
+                ({"f": figure, "g": figure}, {"f": figure}, 1, "is missing")):
             done = self.compare(old, new)
             self.assertEqual(done.returncode, code, words)
             self.assertIn(words, done.stdout)
 
-    def test_what_cannot_be_compared_says_so_in_one_line(self):
+    def test_incomparable_files_fail_with_one_line(self):
         good = self.write("good.json", {"f": rounds(1, 1.0, 0.1)})
         text = os.path.join(self.folder.name, "text.json")
         with open(text, "w", encoding="utf-8") as file:
@@ -80,7 +80,7 @@ class Compare(unittest.TestCase):
             self.assertEqual(done.stdout, "", bad)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
-    def test_chance_is_that_of_the_tables(self):
+    def test_chance_equals_the_tabulated_p_values(self):
         self.assertAlmostEqual(bench.chance([1, 2, 3], [4, 5, 6]), 1 / 20)
         self.assertAlmostEqual(bench.chance([4, 5, 6], [1, 2, 3]), 1.0)
 
@@ -91,7 +91,7 @@ def contest(mesh, closed, budget, ours, took=1.0):
 
 
 class Lot(unittest.TestCase):
-    def test_the_order_is_that_of_the_names_hashes(self):
+    def test_candidates_are_sorted_by_the_hashes_of_their_names(self):
         names = {"cura": ["a/x.stl", "a/y.OBJ", "readme.txt"], "geomview": ["a/x.stl"]}
         with tempfile.TemporaryDirectory() as folder:
             for package, files in names.items():
@@ -101,7 +101,7 @@ class Lot(unittest.TestCase):
                         pass
             os.symlink("x.stl", f"{folder}/cura/a/z.stl")
             found = lot.candidates(folder)
-        # Of "relief:cura:a/x.stl" and so on, by sha256sum.
+        # The hashes of "relief:cura:a/x.stl" and so on are from sha256sum.
         self.assertEqual(found, [("cura", "a/y.OBJ"), ("cura", "a/x.stl"), ("geomview", "a/x.stl")])
 
 
@@ -112,14 +112,14 @@ class Accuracy(unittest.TestCase):
         self.assertAlmostEqual(accuracy_table.geometric_mean([0.1, 0.1, 0.8]), 0.2)
         self.assertIsNone(accuracy_table.geometric_mean([]))
 
-    def test_half_a_point_stands_for_none(self):
+    def test_zero_counts_as_half_a_point(self):
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.5, 2.0, 200000), 0.25)
         # One point of 200,000 is 0.0005 %.
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0005, 200000), 0.5)
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0005, 0.0, 200000), 2.0)
         self.assertAlmostEqual(accuracy_table.wrong_ratio(0.0, 0.0, 200000), 1.0)
 
-    def test_another_method_may_take_the_part_of_ours(self):
+    def test_another_method_can_replace_ours(self):
         def result(method, wrong):
             return {"mesh": "a", "budget": 1000000, "closed": True, "method": method,
                     "accuracy": {"near": {"wrong_percent": wrong}}}
@@ -128,7 +128,7 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(found["ours/bricks"], 0.25)
         self.assertNotIn("ours/bricks", accuracy_table.contests(report)[0])
 
-    def test_targets_that_are_met(self):
+    def test_met_targets(self):
         found = [contest("a", True, 250000, 0.1, 9.0), contest("b", True, 250000, 0.225),
                  contest("a", True, 1000000, 0.2, 2.9), contest("b", False, 1000000, 0.05)]
         text = accuracy_table.summary_text(found)
@@ -138,7 +138,7 @@ class Accuracy(unittest.TestCase):
         self.assertIn("slowest bake a (9.00 s)\n", text)  # bakes are timed at 1 MB
         self.assertIn("verdict: every target is met", text)
 
-    def test_an_open_mesh_may_be_above_the_volume_a_closed_one_may_not(self):
+    def test_only_open_meshes_may_exceed_the_volume(self):
         found = [contest("good", True, 4000000, 0.01), contest("bad", False, 4000000, 1.5)]
         line, missed = accuracy_table.summary(found, 4000000)
         self.assertIn("worst bad", line)
@@ -152,7 +152,7 @@ class Accuracy(unittest.TestCase):
         found = [{**contest(mesh, True, 4000000, 0.1), "ours/bricks": 0.5, "ours/fitted": fitted, "ours/unreal": 3.0}
                  for mesh, fitted in (("a", 0.4), ("b", 1.2), ("c", 0.7))]
         line, missed = accuracy_table.summary(found, 4000000)
-        self.assertEqual(missed, [])  # one may be above; Unreal's has no target
+        self.assertEqual(missed, [])  # one mesh may exceed fitted bricks; Unreal's bricks have no target
         self.assertIn("ours / exact bricks 0.5 (target at most 0.5)", line)
         self.assertIn("above it: b (1.2)", line)
         found[2]["ours/fitted"] = 1.1
@@ -161,7 +161,7 @@ class Accuracy(unittest.TestCase):
         found = [{**of, "budget": 1000000} for of in found]
         self.assertIn("ours / exact bricks 0.5 at 1 MB", accuracy_table.summary(found, 1000000)[1])
 
-    def test_tables_have_the_methods_that_were_measured(self):
+    def test_tables_contain_the_measured_methods(self):
         field = {"near": {"wrong_percent": 0.5, "false_inside_percent": 0.3, "false_outside_percent": 0.2},
                  "distance_error": {"mean_percent": 0.01, "p99_percent": 0.2}, "normal_error_degrees": {"mean": 1.5, "p99": 20.0}}
         result = {"mesh": "a", "budget": 1000000, "closed": False, "accuracy": field, "bytes": 999, "maps": 4,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""html_links.py FOLDER: every link of the HTML below FOLDER leads to a file, and its #anchor to an element."""
+"""html_links.py FOLDER: checks that links of the HTML files in FOLDER lead to existing files and #anchors."""
 import html.parser
 import pathlib
 import sys
@@ -33,9 +33,9 @@ for name, page in pages.items():
         links += 1
         there = urllib.parse.unquote(url.path) or name
         if not (folder / there).exists():
-            dead.append(f'{name}: {target} is not there')
-        # Doxygen links from a class's head to a list of its private classes, which it then leaves out.
+            dead.append(f'{name}: {target} does not exist')
+        # Doxygen links from the head of a class to its list of private classes, which it omits.
         elif url.fragment not in ('', 'nested-classes') and there in pages and url.fragment not in pages[there].anchors:
-            dead.append(f'{name}: {there} has no #{url.fragment}')
+            dead.append(f'{name}: {there} has no anchor #{url.fragment}')
 print('\n'.join(sorted(set(dead))) if dead else f'{links} links of {len(pages)} pages')
 sys.exit(1 if dead or links < 1000 else 0)

@@ -4,9 +4,8 @@
 
     run_program.py PROGRAM [--shard I/N] [--skip PATTERNS] [--only PATTERNS] [--timeout SECONDS]
 
-A crash or a case that exceeds the timeout does not hide the rest: the case that ran is reported as failed, and every case
-that had not run yet runs in a process of its own. PATTERNS are those of --gtest_filter, joined by ':'. Exit status: 0 if at
-least one case ran and all passed, else 1.
+After a crash or a timeout, the running case is reported as failed, and each remaining case runs in its own process. PATTERNS
+are those of --gtest_filter, joined by ':'. Exit status: 0 if at least one case ran and all passed, else 1.
 """
 
 import argparse
@@ -129,7 +128,7 @@ def main():
             if not passed:
                 report(case, 'failed', log)
 
-    # Names fit a command line of 128 KiB in groups.
+    # Groups of names that fit a command line of 128 KiB.
     groups = [[]]
     for case in cases:
         if sum(len(name) + 1 for name in groups[-1]) + len(case) > 100_000:
@@ -152,7 +151,7 @@ def main():
             if alone.reason:
                 report(case, alone.reason, alone.log)
         if len(run.results) + (run.unfinished is not None) == 0:
-            print(f'{arguments.program}: no case began')
+            print(f'{arguments.program}: no case started')
 
     missing = [case for case in cases if case not in times and case not in failures]
     for case in missing:

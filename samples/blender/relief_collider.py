@@ -16,7 +16,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty,
 
 bl_info = {
     "name": "Relief colliders",
-    "description": "Bake particle colliders, see where they are wrong, play particles",
+    "description": "Bake particle colliders, show their errors, play particles",
     "author": "The Relief authors",
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
@@ -28,11 +28,11 @@ COLOR = "relief_error"
 OVERLAY = "relief errors of "
 PLACE = "relief place "
 CAUSES = {
-    "sheet": "a sheet that is thin against its texels: more bytes, or a larger thickness",
-    "open": "the mesh is open there, and a map looks in: close it, or bake it as a shell",
-    "unseen": "no map sees it: more maps, or more bytes",
-    "silhouette": "it lies behind another part for the map that decides: more maps, or more bytes",
-    "texel": "it is finer than a texel: more bytes",
+    "sheet": "Sheet thinner than its texels: use more bytes or a larger thickness",
+    "open": "A map sees inside the open mesh: close it, or bake it as a shell",
+    "unseen": "No map sees this place: use more maps or more bytes",
+    "silhouette": "Hidden by another part in the deciding map: use more maps or more bytes",
+    "texel": "Finer than a texel: use more bytes",
 }
 
 
@@ -44,7 +44,7 @@ def relief_module():
     try:
         import relief
     except ImportError as error:
-        raise ReliefError("the package relief of Python is missing: install python3-relief, or start Blender with its folder "
+        raise ReliefError("the Python package relief is missing; install python3-relief, or start Blender with its folder "
                           f"in PYTHONPATH ({error})") from error
     return relief
 
@@ -76,7 +76,7 @@ def world_mesh(context, obj):
     finally:
         evaluated.to_mesh_clear()
     if len(triangles) == 0:
-        raise ReliefError(f"{obj.name} has no faces; choose an object that has some")
+        raise ReliefError(f"{obj.name} has no faces; select an object with faces")
     matrix = np.array(obj.matrix_world, dtype=np.float64)
     world = vertices.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     triangles = triangles.reshape(-1, 3)
@@ -90,7 +90,7 @@ def chosen_object(context):
     if obj is None:
         raise ReliefError("nothing is selected; select the object to bake")
     if obj.type not in {"MESH", "CURVE", "SURFACE", "FONT", "META"}:
-        raise ReliefError(f"{obj.name} is no mesh but a {obj.type.lower()}; select an object with faces")
+        raise ReliefError(f"{obj.name} is a {obj.type.lower()}, not a mesh; select an object with faces")
     return obj
 
 
@@ -98,7 +98,7 @@ def collider_of(obj):
     path = bpy.path.abspath(obj.relief.path) if obj.relief.path else ""
     if not path or not os.path.isfile(path):
         raise ReliefError(f"{obj.name} has no collider yet; bake it first" if not path else
-                          f"the collider {path} of {obj.name} is gone; bake it again")
+                          f"{path}, the collider of {obj.name}, does not exist; bake it again")
     return relief_module().load(path)
 
 
@@ -154,7 +154,7 @@ class ReliefOperator:
 
 
 class RELIEF_OT_bake(ReliefOperator, bpy.types.Operator):
-    """Bake the active object, as it stands in the world and with its modifiers, into a .relief file"""
+    """Bake the active object, in world space and with its modifiers, into a .relief file"""
     bl_idname = "relief.bake"
     bl_label = "Bake collider"
 
@@ -166,7 +166,7 @@ class RELIEF_OT_bake(ReliefOperator, bpy.types.Operator):
         settings = obj.relief
         path = self.filepath or settings.path or f"//{bpy.path.clean_name(obj.name)}.relief"
         if path.startswith("//") and not bpy.data.filepath:
-            raise ReliefError("save the .blend file first, or name a file: a collider lies beside it")
+            raise ReliefError("the collider is written beside the .blend file; save the .blend file first, or choose a file")
         vertices, triangles = world_mesh(context, obj)
         window = context.window_manager
         window.progress_begin(0, 1)
@@ -185,7 +185,7 @@ class RELIEF_OT_bake(ReliefOperator, bpy.types.Operator):
 
 
 class RELIEF_OT_show(ReliefOperator, bpy.types.Operator):
-    """Colour a copy of the object by how far the collider is from it, and mark the worst places"""
+    """Colour a copy of the object by its distance to the collider, and mark the worst places"""
     bl_idname = "relief.show_errors"
     bl_label = "Show errors"
 
@@ -198,7 +198,7 @@ class RELIEF_OT_show(ReliefOperator, bpy.types.Operator):
         box = to_relief(vertices, obj.relief.up)
         off = max(np.abs(box.min(axis=0) - bounds[0]).max(), np.abs(box.max(axis=0) - bounds[1]).max())
         if off > 0.01 * size + sheet_depth(collider):
-            raise ReliefError(f"{obj.name} was moved, scaled or edited since it was baked; bake it again")
+            raise ReliefError(f"{obj.name} was moved, scaled or edited after it was baked; bake it again")
         self.remove(obj)
         self.add_overlay(context, obj, collider, *finer(vertices, triangles, size / 150))
         self.add_places(context, obj, collider, vertices, triangles, size)
@@ -293,9 +293,9 @@ def read_particles(path):
     lines = head.split(b"\n")
     count = next((int(line.split()[2]) for line in lines if line.startswith(b"element vertex ")), None)
     if not mark or lines[0] != b"ply" or count is None or [line for line in lines if line.startswith(b"property")] != HEADER:
-        raise ReliefError(f"{path} holds no particles of relief-sim; write them with relief-sim --dump-frames")
+        raise ReliefError(f"{path} is not a particle file of relief-sim; write it with relief-sim --dump-frames")
     if len(body) != count * PLY.itemsize:
-        raise ReliefError(f"{path} is cut off; write it again with relief-sim --dump-frames")
+        raise ReliefError(f"{path} is truncated; write it again with relief-sim --dump-frames")
     return np.frombuffer(body, dtype=PLY)
 
 
@@ -306,7 +306,7 @@ def cache_files(folder):
 def show_frame(obj, frame):
     files = cache_files(obj.relief_cache.folder)
     if not files:
-        raise ReliefError(f"{obj.relief_cache.folder} holds no particles_0000.ply; write it with relief-sim --dump-frames")
+        raise ReliefError(f"{obj.relief_cache.folder} contains no particles_0000.ply; write it with relief-sim --dump-frames")
     cache = obj.relief_cache
     at = min(max((frame - cache.start) // max(cache.every, 1), 0), len(files) - 1)
     particles = read_particles(files[at])
@@ -337,13 +337,13 @@ def follow_frames(scene, _graph=None):
 
 
 class RELIEF_OT_cache(ReliefOperator, bpy.types.Operator):
-    """Play the particles of a folder that relief-sim --dump-frames wrote"""
+    """Play the particles of a folder written by relief-sim --dump-frames"""
     bl_idname = "relief.load_cache"
     bl_label = "Load particles"
 
     directory: StringProperty(subtype="DIR_PATH", options={"SKIP_SAVE"})
-    up: EnumProperty(name="Up", items=[("Y", "Y", "As engines have it"), ("Z", "Z", "As Blender has it")], default="Z")
-    every: IntProperty(name="Frames each", description="Frames of Blender that a file stands for", default=1, min=1)
+    up: EnumProperty(name="Up", items=[("Y", "Y", "As in most engines"), ("Z", "Z", "As in Blender")], default="Z")
+    every: IntProperty(name="Frames per file", description="Number of Blender frames per file", default=1, min=1)
 
     def invoke(self, context, _event):
         context.window_manager.fileselect_add(self)
@@ -352,7 +352,7 @@ class RELIEF_OT_cache(ReliefOperator, bpy.types.Operator):
     def work(self, context):
         files = cache_files(self.directory)
         if not files:
-            raise ReliefError(f"{self.directory} holds no particles_0000.ply; write it with relief-sim --dump-frames")
+            raise ReliefError(f"{self.directory} contains no particles_0000.ply; write it with relief-sim --dump-frames")
         read_particles(files[0])
         name = pathlib.Path(bpy.path.abspath(self.directory)).name or "particles"
         mesh = bpy.data.meshes.new(name)
@@ -370,19 +370,19 @@ class RELIEF_OT_cache(ReliefOperator, bpy.types.Operator):
 # --- settings and the panel
 
 class ReliefSettings(bpy.types.PropertyGroup):
-    path: StringProperty(name="File", subtype="FILE_PATH", description="The collider; empty: beside the .blend file")
-    budget: FloatProperty(name="kB", description="Bytes on the GPU, in kB", default=1000, min=32, max=64000)
-    thickness: FloatProperty(name="Thickness", description="Of shells that open parts become; 0: by the budget", default=0,
+    path: StringProperty(name="File", subtype="FILE_PATH", description="Collider file (default: beside the .blend file)")
+    budget: FloatProperty(name="kB", description="Size on the GPU in kB", default=1000, min=32, max=64000)
+    thickness: FloatProperty(name="Thickness", description="Thickness of the shells of open parts; 0: chosen by the budget", default=0,
                              min=0, unit="LENGTH")
-    up: EnumProperty(name="Up", items=[("Z", "Z", "As Blender has it"), ("Y", "Y", "As most engines have it")], default="Z")
+    up: EnumProperty(name="Up", items=[("Z", "Z", "As in Blender"), ("Y", "Y", "As in most engines")], default="Z")
     wrong: FloatProperty(default=-1, options={"HIDDEN"})
 
 
 class ReliefCache(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder", subtype="DIR_PATH")
     up: EnumProperty(name="Up", items=[("Z", "Z", ""), ("Y", "Y", "")], default="Z")
-    start: IntProperty(name="Start", description="The frame of the first file", default=1)
-    every: IntProperty(name="Frames each", default=1, min=1)
+    start: IntProperty(name="Start", description="Blender frame of the first file", default=1)
+    every: IntProperty(name="Frames per file", default=1, min=1)
     message: StringProperty(options={"HIDDEN"})
 
 

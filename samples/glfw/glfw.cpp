@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A million snowflakes on a collider, in a window of GLFW: glfw COLLIDER.relief
+// A million snowflakes on a collider, in a GLFW window: glfw COLLIDER.relief
 #include <GLFW/glfw3.h>
 
 #include <runtime/picture/collider_renderer.h>
@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
     relief::Emitter emitter(sky, 1);
     relief::Camera camera{.eye = center + size * glm::vec3(0.8F, 0.5F, 2.2F), .target = center};
     relief::setClipPlanes(camera, body.bounds);
-    const long frames = argc > 2 ? std::atol(argv[2]) : -1;  // without end
+    const long frames = argc > 2 ? std::atol(argv[2]) : -1;  // -1: no limit
     for (long frame = 0; frame != frames && !glfwWindowShouldClose(window); ++frame) {
         std::vector<relief::Birth> births;
         emitter.emit(1.0 / 60.0, snow.room(), births);

@@ -37,7 +37,7 @@ static char* readFile(const char* folder, const char* name, long* size) {
 
 static void makeContext(void) {
     EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
-    need(eglInitialize(display, NULL, NULL) && eglBindAPI(EGL_OPENGL_ES_API), "EGL does not start");
+    need(eglInitialize(display, NULL, NULL) && eglBindAPI(EGL_OPENGL_ES_API), "cannot initialise EGL");
     const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_NONE};
     EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, version);
     need(eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context), "no OpenGL ES 3.0");
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
     makeContext();
     long size;
     json_t* all = json_loads(readFile(argv[1], "gpu.json", &size), 0, NULL);
-    need(all && json_integer_value(json_object_get(all, "format")) == 1, "gpu.json is none of format 1");
+    need(all && json_integer_value(json_object_get(all, "format")) == 1, "gpu.json is not of format 1");
 
     char* glsl = readFile(argv[1], json_string_value(json_object_get(all, "glsl")), &size);
     GLuint program = glCreateProgram();
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
     glReadPixels(0, 0, kSide, kSide, GL_RGBA, GL_FLOAT, fields);
     glReadBuffer(both[1]);
     glReadPixels(0, 0, kSide, kSide, GL_RGBA, GL_FLOAT, maps);
-    need(glGetError() == GL_NO_ERROR, "a GL error");
+    need(glGetError() == GL_NO_ERROR, "GL error");
     for (int i = 0; i < count; ++i) {
         if (argc > 3) {
             printf("%.9g,%.9g,%.9g\n", fields[i][0], fields[i][1], fields[i][2]);

@@ -35,9 +35,9 @@ report = {"tasks": tasks, "unfinished_tasks": unfinished, "baked": counts["done"
 (reports / "report.json").write_text(json.dumps(report, indent=2) + "\n")
 (reports / "failures.txt").write_text("".join(f"{asset}: {error}\n" for asset, error in sorted(failures)))
 print(f"{report['baked']} baked, {report['up_to_date']} up to date, {report['failed']} failed, "
-      f"{len(unfinished)} of {tasks} tasks did not end")
+      f"{len(unfinished)} of {tasks} tasks did not finish")
 for asset, error in sorted(failures)[:20]:
     print(f"{asset}: {error}")
 if unfinished:
-    print(f"tasks that did not end: {unfinished}; submit again to go on")
+    print(f"unfinished tasks: {unfinished}; submit again to resume")
 sys.exit(0 if not failures and not unfinished and not counts["cancelled"] else 1)

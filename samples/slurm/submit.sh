@@ -27,7 +27,7 @@ fi
 [ $# -eq 0 ] || shift
 here=$(dirname "$(realpath "$0")")
 relief=${RELIEF:-$(command -v relief)} || {
-    echo "submit.sh: relief is not on PATH; install it, or name it by RELIEF" >&2
+    echo "submit.sh: relief is not on PATH; install it, or set RELIEF to its path" >&2
     exit 5
 }
 

@@ -107,6 +107,6 @@ async function run() {
 run().then(
     (sample) => (window.sample = sample),
     (error) => {
-        note.textContent = error instanceof ReliefError ? error.message : `This page does not start: ${error.message}`;
+        note.textContent = error instanceof ReliefError ? error.message : `The page cannot start: ${error.message}`;
     },
 );

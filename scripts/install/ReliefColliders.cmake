@@ -12,19 +12,19 @@
 function(relief_add_colliders target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "RECIPE;OUTPUT_DIR" "")
     if(arg_UNPARSED_ARGUMENTS OR arg_KEYWORDS_MISSING_VALUES OR NOT arg_RECIPE)
-        message(FATAL_ERROR "relief_add_colliders(${target}): give RECIPE and perhaps OUTPUT_DIR, not "
+        message(FATAL_ERROR "relief_add_colliders(${target}): expected RECIPE and optionally OUTPUT_DIR, not "
                             "'${arg_UNPARSED_ARGUMENTS}${arg_KEYWORDS_MISSING_VALUES}'")
     endif()
     if(NOT TARGET Relief::relief)
         message(FATAL_ERROR "relief_add_colliders(${target}): the tool `relief` is not installed; "
-                            "find_package(Relief REQUIRED COMPONENTS bake) says so at once")
+                            "require it with find_package(Relief REQUIRED COMPONENTS bake)")
     endif()
     set(folder ${CMAKE_CURRENT_BINARY_DIR})
     if(arg_OUTPUT_DIR)
         get_filename_component(folder ${arg_OUTPUT_DIR} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
     endif()
     file(MAKE_DIRECTORY ${folder})
-    set(RELIEF_BAKE_JOBS 2 CACHE STRING "Commands of relief_add_colliders() that Ninja runs at a time")
+    set(RELIEF_BAKE_JOBS 2 CACHE STRING "Number of relief_add_colliders() commands that Ninja runs at a time")
     get_property(pools GLOBAL PROPERTY JOB_POOLS)
     if(NOT pools MATCHES "(^|;)relief_bakes=")
         set_property(GLOBAL APPEND PROPERTY JOB_POOLS relief_bakes=${RELIEF_BAKE_JOBS})

@@ -2,7 +2,7 @@
 # `cpack` builds the .deb files for Debian 12, one per component: relief, librelief1, librelief-dev and python3-relief.
 # See README.md in this folder.
 set(RELIEF_MAINTAINER "Relief maintainers <maintainers@relief.example>" CACHE STRING
-    "Who is named in the packages that cpack makes: Name <address>")
+    "Maintainer of the packages that cpack builds: Name <address>")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "")
@@ -40,9 +40,9 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "${gl}")
 set(CPACK_DEBIAN_TOOLS_DESCRIPTION "depth map colliders baked from meshes, and a particle player
 Relief bakes the outer shape of a mesh into a few depth maps, and collides a
-million particles with it in one fragment shader. This package has `relief`,
+million particles with it in one fragment shader. This package contains `relief`,
 which bakes, checks, slices and exports colliders, and `relief-sim`, which
-plays scenes of particles without a window.")
+simulates particle scenes without a window.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME librelief1)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
@@ -54,8 +54,8 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_BINARY_DIR}/libra
                                                ${CMAKE_CURRENT_BINARY_DIR}/library/triggers)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "depth map colliders for particles, runtime library
 Relief bakes the outer shape of a mesh into a few depth maps, and collides a
-million particles with it in one fragment shader. This package has the shared
-library for C programs, and for those that call C.")
+million particles with it in one fragment shader. This package contains the
+shared library with a C API.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librelief-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -65,7 +65,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS relief)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "depth map colliders for particles, development files
 Relief bakes the outer shape of a mesh into a few depth maps, and collides a
-million particles with it in one fragment shader. This package has the
+million particles with it in one fragment shader. This package contains the
 headers, the static libraries, the shaders, the files for CMake and
 pkg-config, the documentation and the samples.")
 
@@ -83,6 +83,6 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/debian/p
                                               ${CMAKE_CURRENT_LIST_DIR}/debian/prerm)
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "depth map colliders baked from meshes, for Python
 Relief bakes the outer shape of a mesh into a few depth maps, and collides a
-million particles with it in one fragment shader. This package bakes and asks
-colliders from numpy arrays, and steps scenes of particles.")
+million particles with it in one fragment shader. This package bakes and
+queries colliders with numpy arrays, and simulates particle scenes.")
 include(CPack)

@@ -142,7 +142,7 @@ refused() { # PATTERN LINES
     rm -r wrong
 }
 refused 'no component nonsense' 'find_package(Relief REQUIRED COMPONENTS nonsense)'
-refused 'give RECIPE' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj)'
+refused 'expected RECIPE' $'find_package(Relief REQUIRED)\nrelief_add_colliders(c MESHES a.obj)'
 refused '0\.9' 'find_package(Relief 0.9 REQUIRED)'
 
 # Recipes.

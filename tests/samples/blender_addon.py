@@ -37,7 +37,7 @@ refused(bpy.ops.relief.bake, "nothing is selected")
 light = bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT"))
 bpy.context.scene.collection.objects.link(light)
 bpy.context.view_layer.objects.active = light
-refused(bpy.ops.relief.bake, "is no mesh")
+refused(bpy.ops.relief.bake, "not a mesh")
 
 # A sphere, moved, turned, and scaled by a negative number: a closed form in the world's space.
 bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=1.0, location=(2, -1, 3), rotation=(0.3, 0.2, 0.1),
@@ -158,14 +158,14 @@ for frame, file in ((5, 0), (6, 1), (7, 2), (100, 2), (1, 0)):
     velocity = np.empty(3 * len(particles), dtype=np.float32)
     cloud.data.attributes["velocity"].data.foreach_get("vector", velocity)
     assert np.array_equal(velocity.reshape(-1, 3)[:, 2], particles["velocity"][:, 1])
-refused(bpy.ops.relief.load_cache, "holds no particles", directory=str(folder))
+refused(bpy.ops.relief.load_cache, "contains no particles", directory=str(folder))
 cut = (folder / "frames" / "particles_0001.ply").read_bytes()
 (folder / "frames" / "particles_0001.ply").write_bytes(cut[:-7])
 bpy.context.scene.frame_set(6)
-assert "cut off" in cloud.relief_cache.message
+assert "truncated" in cloud.relief_cache.message
 os.makedirs(folder / "wrong", exist_ok=True)
 (folder / "wrong" / "particles_0000.ply").write_bytes(b"ply\nformat ascii 1.0\nend_header\n")
-refused(bpy.ops.relief.load_cache, "no particles of relief-sim", directory=str(folder / "wrong"))
+refused(bpy.ops.relief.load_cache, "is not a particle file of relief-sim", directory=str(folder / "wrong"))
 
 addon.unregister()
 print("blender: bakes as the tool does, shows errors where they are, plays particles")
