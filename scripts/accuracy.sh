@@ -52,8 +52,8 @@ if [ "${1:-}" = --page ]; then
     {
         echo '# Wrong points per byte'
         echo
-        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the distance volumes of [README.md](README.md),'
-        echo 'dense and sparse; the maps of the paper; and the patches that `relief bake` makes by default.'
+        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the dense and sparse distance volumes of'
+        echo '[README.md](README.md), the maps of the paper, and the patches that `relief bake` makes by default.'
         echo
         "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
     } >"$folder/accuracy.md"

@@ -113,7 +113,7 @@ def against(rival, found, budget):
     if len(above) > ABOVE_MAX.get(rival, len(above)):
         missed.append(f"{len(above)} closed above {RIVALS[rival]}{at}")
     return (f"ours / {RIVALS[rival]} {mean:.3g}{f' (target at most {aim:.3g})' if aim else ''}, worst {worst} ({ours[worst]:.3g}), "
-            "closed above it: " + (", ".join(f"{mesh} ({ours[mesh]:.3g})" for mesh in above) or "none")), missed
+            "closed meshes above 1: " + (", ".join(f"{mesh} ({ours[mesh]:.3g})" for mesh in above) or "none")), missed
 
 
 def summary(found, budget):
@@ -141,23 +141,23 @@ def summary_text(found):
     lines, missed = zip(*(summary(found, budget) for budget in budgets))
     missed = "; ".join(target for of in missed for target in of)
     judged = any(f"ours/{rival}" in contest for contest in found for rival in RIVALS)
-    verdict = ("missed: " + missed if missed else "every target is met" if judged
+    verdict = ("missed: " + missed if missed else "all targets are met" if judged
                else "ours was not measured against a rival")
     return "".join(line + "\n" for line in lines) + f"verdict: {verdict}\n"
 
 
 def legend(meshes):
     mesh, came = meshes[0], any("as_it_came" in one for one in meshes)
-    return [f"%: points near the surface on the wrong side of it; in, out: ours, false inside and false outside. "
-            f"{mesh['samples']} points, seed {mesh['seed']}, {mesh['sigma_percent']:.1f} % of the longest side off the "
-            "surface (standard deviation).",
-            "ms: one bake of ours with acceleration structure, plan, rays and fit. open: computed, some edge has an odd "
-            "number of triangles.",
-            *(["as it came: ours at points within a thickness of sheets; inside is what lies within half the thickness of the "
-               "surface of the file. The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
-            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side; and of "
-            "the normal's angle at the surface. Bricks have no distances but near the surface: larger ones count as their band. "
-            "Where maps say outside and no more, they have no distance and no error."]
+    return [f"%: misclassified points near the surface; in, out: false inside and false outside of ours. "
+            f"{mesh['samples']} points, seed {mesh['seed']}, at a distance of {mesh['sigma_percent']:.1f} % of the longest side "
+            "(standard deviation).",
+            "ms: one bake of ours, including the acceleration structure, plan, rays and fit. open: an edge has an odd number of "
+            "triangles.",
+            *(["as it came: ours near sheets, against the surface of the file: points within half the thickness of it are inside. "
+               "The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
+            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side, and of "
+            "the angle of the normal at the surface. Bricks store distances only near the surface: larger distances count as "
+            "their band. Points that the maps classify as outside without a distance are not counted."]
 
 
 def markdown(rows):

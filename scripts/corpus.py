@@ -129,7 +129,7 @@ def against(rows, rival):
     ratios = [float(row[f'ours/{rival}']) for row in rows]
     mean, above = math.exp(statistics.fmean(map(math.log, ratios))), sum(ratio > 1 for ratio in ratios)
     aims = (' (at most 0.333)', ' (at most 5 %)') if rival == 'volume' else ('', '')
-    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, above it {percent(above, len(rows))}{aims[1]}'
+    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, above 1 for {percent(above, len(rows))}{aims[1]}'
 
 
 def summary(rows, rivals):
@@ -139,11 +139,12 @@ def summary(rows, rivals):
         of = [row for row in rows if kind in ('all', row['kind'])]
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
-        lines.append(f'{kind}, {len(of)}: errors of ours in geometric means: {"; ".join(against(of, rival) for rival in rivals)}; '
-                     f'above 10 % wrong {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
+        lines.append(f'{kind}, {len(of)}: wrong points of ours (geometric mean): '
+                     f'{"; ".join(against(of, rival) for rival in rivals)}; '
+                     f'more than 10 % wrong: {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
-    for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
-                                   ('step', "step over one with the paper's maps", rows, (1.5, 3))):
+    for column, what, of, aims in (('bake_s', 'seconds of a bake (at most 100,000 triangles)', small, (1, 3)),
+                                   ('step', "step / step with the paper's maps", rows, (1.5, 3))):
         known = [row for row in of if row[column]]
         if known:
             worst = max(known, key=lambda row: float(row[column]))
@@ -162,13 +163,13 @@ def page(rows, lines, rivals, command):
     table = [[headings.get(column, column) for column in columns],
              ['---' if column in ('model', 'kind') else '---:' for column in columns],
              *[[str(row[column]) or '-' for column in columns] for row in rows]]
-    return f"""# Meshes as artists make them
+    return f"""# Artist-made meshes
 
-Written by `{command}`. At 1 MB, for each model: the share of the points near the
-surface on whose side distance volumes, dense and sparse ([README.md](README.md)), and what `relief bake` writes are wrong; the
-maps; the seconds of the whole `relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's
-two maps; the processor's seconds of the bake, both threads together; and the seconds of all the measuring. Other work on the
-machine makes single times rough. In ratios less than {LEAST} % counts as {LEAST} %.
+Written by `{command}`. At 1 MB, for each model: the fraction of misclassified points near the
+surface of dense and sparse distance volumes ([README.md](README.md)) and of `relief bake`; the number of maps; the time of
+`relief bake` on two threads; the time of a particle step on llvmpipe, relative to the paper's two maps; the processor time of
+the bake; and the time of the measurement. Single times are rough, because the machine ran other work. In ratios, values
+below {LEAST} % count as {LEAST} %.
 
 """ + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
 
@@ -182,25 +183,25 @@ def chosen(paths, options):
         found = [name for name in paths
                  if wanted in (name, os.path.basename(name), os.path.splitext(os.path.basename(name))[0])]
         if not found:
-            sys.exit(f"accuracy.sh: --only has '{wanted}', but no model is called so; see scripts/corpus.txt")
+            sys.exit(f"accuracy.sh: unknown model '{wanted}' in --only; scripts/corpus.txt lists the models")
         names += found
     return names
 
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
-    parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
+    parser.add_argument('--only', metavar='A,B', help='measure only these models, by name or by the last part of their path')
     parser.add_argument('--rivals', type=lambda text: text.split(','), default=list(RIVALS), metavar='A,B',
-                        help=f'distance volumes to measure against; default {",".join(RIVALS)}. Fitted bricks take most of the time')
-    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
-    parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
+                        help=f'distance volumes to compare with (default: {",".join(RIVALS)}); fitted bricks take most of the time')
+    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind (default: 20000)')
+    parser.add_argument('--steps', action='store_true', help="also time steps, relative to the paper's maps (slow)")
     parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
     options = parser.parse_args(words)
     unknown = [rival for rival in options.rivals if rival not in RIVALS]
     if unknown:
-        parser.error(f"--rivals has '{unknown[0]}'; known: {', '.join(RIVALS)}")
+        parser.error(f"unknown rival '{unknown[0]}' in --rivals; choose from: {', '.join(RIVALS)}")
     if options.markdown and options.only:
-        parser.error('--markdown is for all sixty; leave out --only')
+        parser.error('--markdown needs all sixty models; remove --only')
     return options
 
 

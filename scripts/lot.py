@@ -30,9 +30,9 @@ MESHES, OF_A_PACKAGE = 10, 2
 TRIANGLES = range(500, 500_001)
 NOTE = f"""# The meshes of scripts/accuracy.sh --lot: a package of Debian 12, and a path in it.
 #
-# Drawn by `scripts/accuracy.sh --draw`, before anything was measured on them. All files of {len(PACKAGES)} packages in formats that
-# the import reads are put into the order of the SHA-256 of "{SEED}:package:path". From the first on a file is taken that has
-# {TRIANGLES[0]} to {TRIANGLES[-1]} triangles, whose name no other one has, and of whose package there are not {OF_A_PACKAGE} yet.
+# Drawn by `scripts/accuracy.sh --draw`, before anything was measured on them. The files of {len(PACKAGES)} packages in formats that
+# the import reads are sorted by the SHA-256 of "{SEED}:package:path". In this order, a file is taken if it has
+# {TRIANGLES[0]} to {TRIANGLES[-1]} triangles, a name that no taken file has, and fewer than {OF_A_PACKAGE} files of its package are taken.
 """
 
 
@@ -78,7 +78,7 @@ def triangles_of(path, bin):
     done = subprocess.run([f'{bin}/relief-accuracy', path, '--budget', '0.25MB', '--methods', 'paper', '--samples', '100'],
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=1800, check=False)
     if done.returncode:
-        print(f'  refused: {done.stderr.strip()}', file=sys.stderr)
+        print(f'  rejected: {done.stderr.strip()}', file=sys.stderr)
         return 0
     return json.loads(done.stdout)['meshes'][0]['triangles']
 
@@ -100,9 +100,9 @@ def draw(folder, bin):
             taken.append((package, name, triangles))
             of_package[package] += 1
         else:
-            passed['refused' if triangles == 0 else 'too few or too many triangles'] += 1
+            passed['rejected' if triangles == 0 else 'too few or too many triangles'] += 1
     with open(LIST, 'w', encoding='utf-8') as file:
-        file.write(NOTE + f'# Of {len(drawn)} files. Passed over: ' +
+        file.write(NOTE + f'# Candidates: {len(drawn)} files. Skipped: ' +
                    (', '.join(f'{count} {why}' for why, count in sorted(passed.items())) or 'none') + '.\n')
         file.writelines(f'{package}: {name}\n' for package, name, _ in taken)
 
@@ -118,7 +118,7 @@ def main():
     for package, name in listed:
         path = f'{folder}/{package}/{name}'
         if not os.path.isfile(path):
-            sys.exit(f'accuracy.sh: {package} no longer has {name}; is this Debian 12? Else draw anew with --draw')
+            sys.exit(f'accuracy.sh: {package} does not contain {name}; use Debian 12, or draw again with --draw')
         print(path)
 
 

@@ -132,11 +132,11 @@ class Accuracy(unittest.TestCase):
         found = [contest("a", True, 250000, 0.1, 9.0), contest("b", True, 250000, 0.225),
                  contest("a", True, 1000000, 0.2, 2.9), contest("b", False, 1000000, 0.05)]
         text = accuracy_table.summary_text(found)
-        self.assertIn("0.25 MB, 2 meshes:\n  ours / dense 0.15 (target at most 0.2), worst b (0.225), closed above it: none", text)
+        self.assertIn("0.25 MB, 2 meshes:\n  ours / dense 0.15 (target at most 0.2), worst b (0.225), closed meshes above 1: none", text)
         self.assertIn("  ours / fitted bricks not measured\n  paper / dense 0.3\n", text)
         self.assertIn("slowest bake a (2.90 s, target", text)
         self.assertIn("slowest bake a (9.00 s)\n", text)  # bakes are timed at 1 MB
-        self.assertIn("verdict: every target is met", text)
+        self.assertIn("verdict: all targets are met", text)
 
     def test_only_open_meshes_may_exceed_the_volume(self):
         found = [contest("good", True, 4000000, 0.01), contest("bad", False, 4000000, 1.5)]
@@ -145,7 +145,7 @@ class Accuracy(unittest.TestCase):
         self.assertEqual(missed, [])
         found[1]["closed"] = True
         line, missed = accuracy_table.summary(found, 4000000)
-        self.assertIn("above it: bad (1.5)", line)
+        self.assertIn("above 1: bad (1.5)", line)
         self.assertEqual(missed, ["1 closed above dense at 4 MB"])
 
     def test_each_rival_has_its_targets(self):
@@ -154,7 +154,7 @@ class Accuracy(unittest.TestCase):
         line, missed = accuracy_table.summary(found, 4000000)
         self.assertEqual(missed, [])  # one mesh may exceed fitted bricks; Unreal's bricks have no target
         self.assertIn("ours / exact bricks 0.5 (target at most 0.5)", line)
-        self.assertIn("above it: b (1.2)", line)
+        self.assertIn("above 1: b (1.2)", line)
         found[2]["ours/fitted"] = 1.1
         self.assertEqual(accuracy_table.summary(found, 4000000)[1],
                          ["ours / fitted bricks 0.808 at 4 MB", "2 closed above fitted bricks at 4 MB"])
