@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the corner of a kitchen as glTF with a material for each part: kitchen.py OUT.gltf
 
-Also writes OUT.ply with their colours, which is drawn in pictures. The output is reproducible. Needs only Python.
+Also writes OUT.ply with their colours, for pictures. The output is reproducible. Needs only Python.
 """
 import os
 import sys

@@ -117,7 +117,7 @@ def load(path):
 
 @functools.lru_cache(maxsize=None)
 def ways(m, n, u):
-    """The number of orders of m and n rounds in which the one of m is larger in exactly u pairs."""
+    """The number of orders of m and n rounds in which the round of m is larger in exactly u pairs."""
     if u < 0:
         return 0
     if m == 0 or n == 0:
@@ -126,7 +126,7 @@ def ways(m, n, u):
 
 
 def chance(low, high):
-    """The p-value: how likely rounds of the same program lie as far apart as `high` above `low`. Ties count half."""
+    """The p-value of the test that `high` exceeds `low`. Ties count half."""
     m, n = len(high), len(low)
     u = sum(1.0 if h > l else 0.5 if h == l else 0.0 for h in high for l in low)
     return sum(ways(m, n, k) for k in range(math.floor(u), m * n + 1)) / math.comb(m + n, m)

@@ -69,7 +69,7 @@ def processor_seconds():
 
 
 def step_ratio(bin, folder):
-    """Time of a step with patches / with the paper's two maps: minima of several alternating runs."""
+    """The time of a step with patches, relative to the paper's two maps. Both are minima of several alternating runs."""
     least = {'ours': math.inf, 'paper': math.inf}
     for _ in range(REPEATS):
         for name in least:

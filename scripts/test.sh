@@ -4,7 +4,7 @@
 #
 #   (nothing)  the default tier: every area of the product, sanitizers on all readers of untrusted bytes, and the page of a
 #              collider in a real browser
-#   --quick    after an edit: builds what changed; skips slow cases, scripts that take more than seconds, and the browser
+#   --quick    after an edit: builds what changed; skips slow cases, scripts longer than a few seconds, and the browser
 #   --gpu      every GL test on this machine's GPU: scripts/gpu_test.sh
 #
 # scripts/nightly.sh runs all other jobs; tests/README.md describes them.

@@ -44,7 +44,7 @@ for one, axis in zip(views, axes):
 figure.suptitle("Depth of the near surface")
 figure.savefig("maps.png", dpi=120)
 
-# %% Accuracy by bytes
+# %% Accuracy against budget
 budgets = [32_000, 64_000, 128_000, 256_000, 512_000]
 wrong = [relief.check(relief.bake(mesh, budget=b), mesh, samples=50_000).wrong_percent for b in budgets]
 figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
