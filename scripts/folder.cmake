@@ -2,9 +2,9 @@
 # relief_folder(FOLDER [UNITY] [NUMBERS] [READER] [USES FOLDER…] [LINKS LIBRARY…] [PUBLIC LIBRARY…] [EXCEPT FILE…])
 # Adds a library of every .cpp of FOLDER, except the files after EXCEPT. The target's name is FOLDER with _ for /.
 #
-# Its sources can include the headers of FOLDER and of the folders it USES, directly or through each other. Other includes
-# do not compile: each folder has its own include root in the build tree, which contains only a link to that folder. USES
-# accepts only folders declared earlier, so dependencies have no cycles.
+# Its sources can include the headers of FOLDER, of the folders it USES, and of the folders that those use. Other includes do
+# not compile: each folder has its own include root in the build tree, which contains only a link to that folder. USES accepts
+# only folders declared earlier, so dependencies have no cycles.
 #
 # UNITY  joins sources (scripts/fast_build.cmake).
 # NUMBERS  marks a folder whose tests take minutes without optimisation: sanitizer builds optimise only these folders.
