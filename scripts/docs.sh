@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds the reference of the public headers and the Python package, with all pages: scripts/docs.sh [FOLDER] (default:
-# out/docs). Fails on Doxygen warnings and dead links.
+# Builds one searchable site: guides, options, method, file format, and the API of C++, C, Python and JavaScript.
+# scripts/docs.sh [FOLDER] (default: out/docs). Fails on any warning from Doxygen and on any broken link.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=$(realpath -m "${1:-out/docs}")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""filter.py FILE: converts a page or a header for Doxygen.
+"""filter.py FILE: converts a page, a header or the types of the npm package for Doxygen.
 
 The title of a page gets its path as id, links between pages become references, and other links (to sources, to folders
 without a page) become plain text. The comment at the head of a header becomes the file's documentation."""
@@ -38,7 +38,7 @@ def guide(page, text):
         there = os.path.normpath(os.path.join(os.path.dirname(page), target.partition('#')[0])) if target[0] != '#' else page
         if os.path.isdir(there):
             there = os.path.join(there, 'README.md')
-        if not os.path.isfile(there) or not there.endswith('.md'):
+        if not os.path.isfile(there) or not there.endswith(('.md', '.d.ts')):
             return words
         return f'[{words.replace("`", "")}](@ref {page_id(there)})'
 
@@ -49,6 +49,19 @@ def guide(page, text):
     return text
 
 
+def declarations(page, text):
+    """The types of the npm package as a page: a section for each exported declaration, with its comment above its code."""
+    blocks = re.split(r'\n\n(?=/\*\*|export)', text)
+    parts = ['# JavaScript API', re.sub(r'^// ?', '', blocks[0].split('\n', 1)[1], flags=re.M)]
+    for block in blocks[1:]:
+        comment, code = re.fullmatch(r'(?:/\*\*(.*?)\*/\n)?(.*)', block, re.S).groups()
+        name = re.search(r'^export (?:declare )?(?:abstract )?\w+ (\w+)', code, re.M)
+        parts.append(f'## {name[1]}\n\n' + re.sub(r'^ *\* ?|(?=\b\w+\(\))', lambda found: '' if found[0] else '%', comment or '', flags=re.M).strip())
+        parts.append(f'```js\n{code.strip()}\n```')
+    return guide(page, '\n\n'.join(parts) + '\n')
+
+
 path = os.path.relpath(sys.argv[1])
 text = pathlib.Path(path).read_text()
-sys.stdout.write(guide(path, text) if path.endswith('.md') else header(text))
+read = {'.md': guide, '.ts': declarations}.get(os.path.splitext(path)[1], lambda page, source: header(source))
+sys.stdout.write(read(path, text))
