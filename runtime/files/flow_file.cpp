@@ -97,15 +97,19 @@ void fields(FieldVisitor& visit, FlowFile& flow) {
     const FieldFile path{flow.path, flow.origin};
     visit("raw", path, {"Little-endian 32-bit floats, x fastest, then y, then z", {}, {}, {}, kRequired});
     visit("size", flow.size,
-          {"Nodes along x, y and z, 2²⁴ at most", "[nx, ny, nz]", {1.0, FlowField::kSideMax}, {}, kRequired});
-    visit("components", flow.components, {"Floats a node", {}, {2.0, 3.0}});
+          {"Nodes along x, y and z, at most 2²⁴ in total",
+           "[nx, ny, nz]",
+           {1.0, FlowField::kSideMax},
+           {},
+           kRequired});
+    visit("components", flow.components, {"Floats per node", {}, {2.0, 3.0}});
     visit("box_min", flow.box_min,
           {"Lower corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
     visit("box_max", flow.box_max,
           {"Upper corner of the flow's box", "[x, y, z]", kPointRange, {}, kRequired});
     visit("outside", flow.outside,
-          {"Velocity outside of the box: 0, or that of the nearest point of the box"});
-    visit("gain", flow.gain, {"Factor of every velocity", {}, within(1e6), {}, {.not_zero = true}});
+          {"Velocity outside the box: zero, or that of the nearest point of the box"});
+    visit("gain", flow.gain, {"Factor on all velocities", {}, within(1e6), {}, {.not_zero = true}});
 }
 
 }  // namespace relief
