@@ -40,20 +40,16 @@ const FieldReference& tableOf(const std::vector<FieldReference>& fields, std::st
 GeneratedTexts sceneReference() {
     const std::vector<FieldReference> fields = referenceOf(Scene{}, customSchemas());
     const std::string readme = "runtime/scene/README.md";
-    static constexpr std::array<std::string_view, 12> kTables = {
-        "stream", "time",       "particles", "forces", "attractor", "vortex",
-        "flow",   "curl_noise", "collision", "ground", "camera",    "render"};
+    static constexpr std::array<std::string_view, 13> kTables = {
+        "material", "stream",     "time",      "particles", "forces", "attractor", "vortex",
+        "flow",     "curl_noise", "collision", "ground",    "camera", "render"};
     GeneratedTexts texts{{readme, "tables", markdownTables(fields, kTables)}};
-    for (const std::string_view name : {"collider", "type", "emitter", "spawn"}) {
+    for (const std::string_view name : {"collider", "emitter"}) {
+        texts.push_back({readme, std::string(name), markdownTables(fields, {&name, 1})});
+    }
+    for (const std::string_view name : {"type", "spawn"}) {
         texts.push_back({readme, std::string(name), markdownTable(tableOf(fields, name).fields)});
     }
-    texts.push_back(
-        {readme, "touching", markdownTable(tableOf(tableOf(fields, "emitter").fields, "touching").fields)});
-    const FieldReference& collider = tableOf(fields, "collider");
-    texts.push_back({readme, "key", markdownTable(tableOf(collider.fields, "key").fields)});
-    texts.push_back({readme, "material-colors", markdownTable(tableOf(collider.fields, "material").fields)});
-    texts.push_back({readme, "play", markdownTable(tableOf(collider.fields, "play").fields)});
-    texts.push_back({readme, "deform", markdownTable(tableOf(collider.fields, "deform").fields)});
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                    {"title", "A scene of relief-sim"}};
     schema.update(fileSchema(fields));
