@@ -6,7 +6,7 @@
 #   (nothing)   204 bakes: ten meshes, the paper's maps and patches; threads, locale, time zone, folder, umask,
 #               GCC -O2, GCC -O0 and Clang, glibc without FMA and AVX2, and two other processors by QEMU
 #   --quick     two meshes in six cells, with the executables in RELIEF_BIN alone
-#   --page      the full run, and its table into bake/measure/trust.md
+#   --page      the full run, and its summary into bake/measure/trust.md
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -160,7 +160,7 @@ summary = f'{len(rows)} bakes of {len(table)} mesh and map choices in {len(cells
 print('\n'.join(lines + ['', summary]))
 if sys.argv[2] == '--page':
     body = '\n'.join(['Written by `tests/long/determinism.sh --page`; “patches” is `--budget 100kB`, “paper” is `--paper --resolution 128`.',
-                      '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.', ''] + lines)
+                      '', summary, '', 'Surroundings: ' + '; '.join(cells) + '.'])
     open(sys.argv[3], 'w').write(body + '\n')
 P
 [ "$mode" != --page ] || tests/long/page_part.sh bake/measure/trust.md determinism <"$work/page"
