@@ -66,12 +66,12 @@ void fields(FieldVisitor& visit, MaterialResponse& response) {
           leftOut({.help = "Factor on the particles' restitution, in addition to the collider's",
                    .range = kShareRange,
                    .fallback = "the container's (from the mesh), or 1"}));
-    visit(
-        "friction", response.friction,
-        leftOut(
-            {.help = "1 − friction is a factor on the particles' 1 − friction, in addition to the collider's",
-             .range = kShareRange,
-             .fallback = "the container's (from the mesh), or 0"}));
+    visit("friction", response.friction,
+          leftOut(
+              {.help =
+                   "Multiplies the particles' 1 − friction by 1 − this value, in addition to the collider's",
+               .range = kShareRange,
+               .fallback = "the container's (from the mesh), or 0"}));
     visit("lifetime_loss", response.lifetime_loss,
           leftOut({.help = "Lifetime lost in each step in contact, in addition to the type's",
                    .unit = "s",

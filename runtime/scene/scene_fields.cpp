@@ -122,7 +122,7 @@ void fields(FieldVisitor& visit, SceneCollider& c) {
     visit("restitution", FieldMaybe{c.restitution, c.posed},
           leftOut({"Factor on the particles' restitution", {}, {0.0, 1.0}}));
     visit("friction", FieldMaybe{c.friction, c.posed},
-          leftOut({"1 − friction is a factor on the particles' 1 − friction", {}, {0.0, 1.0}}));
+          leftOut({"Multiplies the particles' 1 − friction by 1 − this value", {}, {0.0, 1.0}}));
     visit("color", c.color,
           leftOut({"Colour in pictures of a mesh without colours; pictures of maps use the first collider's "
                    "for all",
