@@ -61,19 +61,19 @@ std::optional<std::string> MaterialResponses::faultOf(const std::string& name) c
 
 void fields(FieldVisitor& visit, MaterialResponse& response) {
     visit("name", response.name,
-          {.help = "Material of the colliders, as listed by relief info", .rules = kRequired});
+          {.help = "Name of a material of the colliders, as in relief info", .rules = kRequired});
     visit("restitution", response.restitution,
-          leftOut({.help = "Factor on the particles' restitution, in addition to the collider's",
+          leftOut({.help = "Factor of the particles' own restitution, on top of the collider's",
                    .range = kShareRange,
-                   .fallback = "the container's (from the mesh), or 1"}));
-    visit("friction", response.friction,
-          leftOut(
-              {.help =
-                   "Multiplies the particles' 1 − friction by 1 − this value, in addition to the collider's",
-               .range = kShareRange,
-               .fallback = "the container's (from the mesh), or 0"}));
+                   .fallback = "that of the container: the mesh's, or 1"}));
+    visit(
+        "friction", response.friction,
+        leftOut(
+            {.help = "1 − friction is a factor of the particles' own 1 − friction, on top of the collider's",
+             .range = kShareRange,
+             .fallback = "that of the container: the mesh's, or 0"}));
     visit("lifetime_loss", response.lifetime_loss,
-          leftOut({.help = "Lifetime lost in each step in contact, in addition to the type's",
+          leftOut({.help = "Lifetime that each step in contact with it costs, on top of the type's",
                    .unit = "s",
                    .range = {0.0, double{kMaterialLossMax}},
                    .fallback = "0"}));

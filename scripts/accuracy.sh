@@ -53,8 +53,8 @@ if [ "${1:-}" = --page ]; then
     {
         echo '# Wrong points per byte'
         echo
-        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the distance volumes of [README.md](README.md), the'
-        echo "paper's maps, and the default patches of \`relief bake\`."
+        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the distance volumes of [README.md](README.md),'
+        echo 'dense and sparse; the maps of the paper; and the patches that `relief bake` makes by default.'
         echo
         "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
     } >"$folder/accuracy.md"

@@ -1,26 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints the tables of scripts/accuracy.sh from the JSON of relief-accuracy: accuracy_table.py [METHOD] <REPORT.json
+"""What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
 
-Prints a row per mesh and budget, and per budget ratios, geometric means over meshes and a verdict on the claims of
-bake/measure/README.md. METHOD replaces "ours".
+A row for each mesh and budget; then, for each budget, ratios, geometric means over meshes, and the verdict on the claims of
+bake/measure/README.md.
 """
 import json
 import math
 import sys
 
-# Rivals of the same size: bake/measure/README.md.
+# What ours is held against, at as many bytes: bake/measure/README.md.
 RIVALS = {"volume": "dense", "unreal": "Unreal's", "bricks": "exact bricks", "fitted": "fitted bricks"}
 METHODS = {**RIVALS, "paper": "paper", "ours": "ours"}
 BUDGETS = (250_000, 1_000_000, 4_000_000)
-# Largest allowed ratio of our wrong points to a rival's, by budget.
+# The wrong points that we allow ourselves for those of a rival, by budget.
 AIMS = {"volume": (0.2, 0.2, 0.2), "bricks": (0.45, 0.45, 0.5), "fitted": (0.7, 0.7, 0.75)}
-ABOVE_MAX = {"volume": 0, "fitted": 1}  # closed meshes on which ours may have more wrong points than the rival
+ABOVE_MAX = {"volume": 0, "fitted": 1}  # closed meshes on which ours may make more errors than a rival
 TIMED_BUDGET, BAKE_SECONDS_MAX = 1_000_000, 3.0
 
 
 def wrong_ratio(percent, volume_percent, samples):
-    """Zero counts as half a point, so that ratios and logarithms exist; 0 / 0 is 1."""
+    """Half a point stands for none, so that ratios and their logarithms exist; nothing over nothing is 1."""
     least = 50.0 / samples
     return max(percent, least) / max(volume_percent, least)
 
@@ -31,7 +31,7 @@ def geometric_mean(values):
 
 
 def contests(report, ours="ours"):
-    """The results by method for each mesh and budget, with the ratios of ours and the paper's to the volumes."""
+    """For each mesh and budget the results by method, of which one is ours, with the ratios over the volumes."""
     samples = report["meshes"][0]["samples"]
     found = {}
     for result in report["results"]:
@@ -53,7 +53,7 @@ def budget_text(budget):
 
 
 def measured_of(found):
-    """The methods with any result, in the order of METHODS."""
+    """The methods that are anywhere, in their order."""
     return [method for method in METHODS if any(method in contest for contest in found)]
 
 
@@ -67,7 +67,7 @@ def number(contest, method, group, name, digits):
 
 
 def sides(found):
-    """Rows of wrong points. A heading that ends in '>' is right-aligned."""
+    """The rows of the wrong points; '>' at the end of a heading: to the right."""
     methods = measured_of(found)
     rivals = [method for method in methods if method in RIVALS and "ours" in methods]
     came = any("as_it_came" in contest.get("ours", {"accuracy": {}})["accuracy"] for contest in found)
@@ -88,7 +88,7 @@ def sides(found):
 
 
 def errors(found):
-    """Rows of the errors of distances and normals."""
+    """The rows of distances and normals."""
     methods = measured_of(found)
     rows = [["mesh", "budget>", *(f"{METHODS[method]}>" for method in methods)]]
     for contest in found:
@@ -101,7 +101,7 @@ def errors(found):
 
 
 def against(rival, found, budget):
-    """The summary for one rival, and the missed targets."""
+    """The words on one rival, and the targets that ours misses."""
     ours = {contest["mesh"]: contest[f"ours/{rival}"] for contest in found if f"ours/{rival}" in contest}
     if not ours:
         return f"ours / {RIVALS[rival]} not measured", []
@@ -117,7 +117,7 @@ def against(rival, found, budget):
 
 
 def summary(found, budget):
-    """The summary of a budget, and its missed targets."""
+    """The lines of a budget, and the targets that it misses."""
     found = [contest for contest in found if contest["budget"] == budget]
     texts, missed = zip(*(against(rival, found, budget) for rival in RIVALS))
     missed = [target for of in missed for target in of]
@@ -148,16 +148,16 @@ def summary_text(found):
 
 def legend(meshes):
     mesh, came = meshes[0], any("as_it_came" in one for one in meshes)
-    return ["%: wrong points near the surface; in, out: our false inside and false outside. "
+    return [f"%: points near the surface on the wrong side of it; in, out: ours, false inside and false outside. "
             f"{mesh['samples']} points, seed {mesh['seed']}, {mesh['sigma_percent']:.1f} % of the longest side off the "
             "surface (standard deviation).",
-            "ms: one bake of ours: acceleration structure, plan, rays and fit. open: some edge has an odd number of "
-            "triangles.",
-            *(["as it came: our wrong points within a thickness of sheets; inside is within half the thickness of the file's "
-               "surface. The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
-            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side, and of "
-            "the normal's angle at the surface. Distances of bricks are limited to their band. Points where maps store no "
-            "distance do not count."]
+            "ms: one bake of ours with acceleration structure, plan, rays and fit. open: computed, some edge has an odd "
+            "number of triangles.",
+            *(["as it came: ours at points within a thickness of sheets; inside is what lies within half the thickness of the "
+               "surface of the file. The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
+            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side; and of "
+            "the normal's angle at the surface. Bricks have no distances but near the surface: larger ones count as their band. "
+            "Where maps say outside and no more, they have no distance and no error."]
 
 
 def markdown(rows):

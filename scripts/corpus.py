@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures `relief bake` on meshes as artists make them, for scripts/accuracy.sh --corpus.
+"""How wrong `relief bake` is on meshes as artists make them: what scripts/accuracy.sh --corpus runs.
 
 corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...
 
-BIN contains relief, relief-accuracy and relief-bench; FOLDER is for temporary files and contains CGAL's meshes in
-data/meshes. Each model is baked by `relief bake --budget 1MB`, and compared with dense and sparse distance volumes of the same
-size, by the same truth: for sheets the same shell.
+BIN has relief, relief-accuracy and relief-bench; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
+One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against distance
+volumes of as many bytes, dense and sparse, with the same truth: for sheets the same shell.
 """
 import argparse
 import csv
@@ -25,7 +25,7 @@ from accuracy_table import RIVALS
 HERE = os.path.dirname(os.path.abspath(__file__))
 FURNITURE = '/usr/share/sweethome3d/furniture'
 ASSIMP = '/usr/share/assimp/models'
-LEAST = 0.01  # smallest percentage of wrong points in a ratio
+LEAST = 0.01  # percent: what a share of no wrong points counts as in a ratio
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
 PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
 
@@ -69,7 +69,7 @@ def processor_seconds():
 
 
 def step_ratio(bin, folder):
-    """The time of a step with patches over one with the paper's two maps: the least of alternating runs."""
+    """A step among patches over one among the paper's two maps: the least of some runs each, in turns."""
     least = {'ours': math.inf, 'paper': math.inf}
     for _ in range(REPEATS):
         for name in least:
@@ -80,7 +80,7 @@ def step_ratio(bin, folder):
 
 
 def kind_of(shape):
-    """The kind of the part that differs most from a solid."""
+    """The kind of the part that is furthest from a solid."""
     for kind, name in ('terrains', 'terrain'), ('sheets', 'sheets'), ('solids_with_holes', 'holes'):
         if shape[kind]:
             return name
@@ -125,22 +125,22 @@ def columns_of(rivals):
 
 
 def against(rows, rival):
-    """Our wrong points over a rival's, with the targets."""
+    """Ours over one rival, with what is aimed at."""
     ratios = [float(row[f'ours/{rival}']) for row in rows]
     mean, above = math.exp(statistics.fmean(map(math.log, ratios))), sum(ratio > 1 for ratio in ratios)
-    aims = (' (target: at most 0.333)', ' (target: at most 5 %)') if rival == 'volume' else ('', '')
-    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, more on {percent(above, len(rows))}{aims[1]}'
+    aims = (' (at most 0.333)', ' (at most 5 %)') if rival == 'volume' else ('', '')
+    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, above it {percent(above, len(rows))}{aims[1]}'
 
 
 def summary(rows, rivals):
-    """The lines of the summary, with the targets."""
+    """The models together, line by line, with what is aimed at."""
     lines = []
     for kind in ['all', *sorted({row['kind'] for row in rows})]:
         of = [row for row in rows if kind in ('all', row['kind'])]
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
-        lines.append(f'{kind}, {len(of)}: wrong points relative to rivals (geometric means): {"; ".join(against(of, rival) for rival in rivals)}; '
-                     f'more than 10 % wrong on {percent(len(bad), len(of))}, without a warning on {percent(silent, len(of))} (target: none)')
+        lines.append(f'{kind}, {len(of)}: errors of ours in geometric means: {"; ".join(against(of, rival) for rival in rivals)}; '
+                     f'above 10 % wrong {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
     for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
                                    ('step', "step over one with the paper's maps", rows, (1.5, 3))):
@@ -148,8 +148,8 @@ def summary(rows, rivals):
         if known:
             worst = max(known, key=lambda row: float(row[column]))
             median = statistics.median(float(row[column]) for row in known)
-            lines.append(f'{what}: median {median:.2f} (target: at most {aims[0]}), '
-                         f'worst {worst[column]} (target: at most {aims[1]}; {worst["model"]})')
+            lines.append(f'{what}: median {median:.2f} (at most {aims[0]}), '
+                         f'worst {worst[column]} (at most {aims[1]}; {worst["model"]})')
     return lines
 
 
@@ -164,10 +164,11 @@ def page(rows, lines, rivals, command):
              *[[str(row[column]) or '-' for column in columns] for row in rows]]
     return f"""# Meshes as artists make them
 
-Written by `{command}`. For each model at 1 MB: percentages of wrong points near the surface, of the distance volumes of
-[README.md](README.md) and of `relief bake`; the number of maps; seconds of `relief bake` on two threads; the time of a particle
-step on llvmpipe over one with the paper's two maps; processor seconds of the bake; and seconds of measuring. Single times are
-rough. Ratios count less than {LEAST} % as {LEAST} %.
+Written by `{command}`. At 1 MB, for each model: the share of the points near the
+surface on whose side distance volumes, dense and sparse ([README.md](README.md)), and what `relief bake` writes are wrong; the
+maps; the seconds of the whole `relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's
+two maps; the processor's seconds of the bake, both threads together; and the seconds of all the measuring. Other work on the
+machine makes single times rough. In ratios less than {LEAST} % counts as {LEAST} %.
 
 """ + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
 
@@ -181,25 +182,25 @@ def chosen(paths, options):
         found = [name for name in paths
                  if wanted in (name, os.path.basename(name), os.path.splitext(os.path.basename(name))[0])]
         if not found:
-            sys.exit(f"accuracy.sh: --only: no model is named '{wanted}'; see scripts/corpus.txt")
+            sys.exit(f"accuracy.sh: --only has '{wanted}', but no model is called so; see scripts/corpus.txt")
         names += found
     return names
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='Measures the sixty models of corpus.txt at 1 MB')
-    parser.add_argument('--only', metavar='A,B', help='only these models, by full name or its last part')
+    parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
+    parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
     parser.add_argument('--rivals', type=lambda text: text.split(','), default=list(RIVALS), metavar='A,B',
-                        help=f'distance volumes to compare with (default: {",".join(RIVALS)}); fitted bricks take most of the time')
-    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind (default: 20000)')
-    parser.add_argument('--steps', action='store_true', help="also time particle steps (slow)")
+                        help=f'distance volumes to measure against; default {",".join(RIVALS)}. Fitted bricks take most of the time')
+    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
+    parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
     parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
     options = parser.parse_args(words)
     unknown = [rival for rival in options.rivals if rival not in RIVALS]
     if unknown:
-        parser.error(f"--rivals: unknown volume '{unknown[0]}'; use {', '.join(RIVALS)}")
+        parser.error(f"--rivals has '{unknown[0]}'; known: {', '.join(RIVALS)}")
     if options.markdown and options.only:
-        parser.error('--markdown writes all sixty models; remove --only')
+        parser.error('--markdown is for all sixty; leave out --only')
     return options
 
 
