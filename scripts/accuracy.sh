@@ -1,16 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Wrong points per byte, on the meshes that bake/measure/README.md writes about: distance volumes, dense and sparse, the
-# paper's maps and ours, at 0.25, 1 and 4 MB; then geometric means, and whether the targets are met. Takes forty minutes on
-# two cores. Further arguments go to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds
-# of work on the baker.
+# Measures wrong points per byte on the thirteen meshes of bake/measure/README.md: dense and sparse distance volumes, the
+# paper's maps and ours, at 0.25, 1 and 4 MB. Prints geometric means, and whether the targets are met. Takes forty minutes
+# on two cores. Other arguments are passed to relief-accuracy, such as --budgets 1MB --methods ours for quick rounds.
 #
-#   scripts/accuracy.sh                  the table
-#   scripts/accuracy.sh --json           all that was measured
-#   scripts/accuracy.sh --page           writes it to bake/measure/accuracy.md, whose figures README.md and bake/measure/README.md cite
-#   scripts/accuracy.sh --corpus         sixty meshes as artists make them (corpus.txt), at 1 MB, one row each;
-#                                        --help has --only, --steps, --markdown and others
-#   scripts/accuracy.sh --lot            ten meshes by lot (lot.txt); --draw draws them
+#   scripts/accuracy.sh                  prints the table
+#   scripts/accuracy.sh --json           prints all measurements
+#   scripts/accuracy.sh --page           writes bake/measure/accuracy.md; README.md and bake/measure/README.md cite its figures
+#   scripts/accuracy.sh --corpus         sixty artist-made meshes (corpus.txt) at 1 MB, one row each; --help lists --only,
+#                                        --steps, --markdown and other options
+#   scripts/accuracy.sh --lot            ten randomly drawn meshes (lot.txt); --draw draws them
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,7 +25,7 @@ trap 'rm -rf "$folder"' EXIT
 
 tar -xzf /usr/share/doc/libcgal-dev/data.tar.gz -C "$folder" data/meshes
 meshes=(/usr/share/glmark2/models/bunny.obj)
-# Which of them are closed is computed: lion-head is meant to be open, and some others have a few open edges.
+# The program computes which meshes are closed: lion-head is open by design, and some others have a few open edges.
 for name in camel ChineseDragon-10kv fandisk anchor_dense cheese knot2 man refined_elephant lion-head couplingdown; do
     meshes+=("$folder/data/meshes/$name.off")
 done
@@ -53,8 +52,8 @@ if [ "${1:-}" = --page ]; then
     {
         echo '# Wrong points per byte'
         echo
-        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the distance volumes of [README.md](README.md),'
-        echo 'dense and sparse; the maps of the paper; and the patches that `relief bake` makes by default.'
+        echo 'Written by `scripts/accuracy.sh --page`. For each mesh and budget: the dense and sparse distance volumes of'
+        echo '[README.md](README.md), the maps of the paper, and the patches that `relief bake` makes by default.'
         echo
         "$bin/relief-accuracy" "${meshes[@]}" "$@" | python3 scripts/accuracy_table.py
     } >"$folder/accuracy.md"

@@ -1,37 +1,37 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/accuracy.sh prints of relief-accuracy's JSON: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
+"""Formats relief-accuracy's JSON for scripts/accuracy.sh: accuracy_table.py [METHOD] <REPORT.json, with METHOD as ours
 
-A row for each mesh and budget; then, for each budget, ratios, geometric means over meshes, and the verdict on the claims of
-bake/measure/README.md.
+Prints a row for each mesh and budget. Then prints, for each budget, ratios, geometric means over meshes, and whether the
+claims of bake/measure/README.md hold.
 """
 import json
 import math
 import sys
 
-# What ours is held against, at as many bytes: bake/measure/README.md.
+# The methods that ours is compared with, at the same bytes: bake/measure/README.md.
 RIVALS = {"volume": "dense", "unreal": "Unreal's", "bricks": "exact bricks", "fitted": "fitted bricks"}
 METHODS = {**RIVALS, "paper": "paper", "ours": "ours"}
 BUDGETS = (250_000, 1_000_000, 4_000_000)
-# The wrong points that we allow ourselves for those of a rival, by budget.
+# Target ratios of our wrong points to those of a rival, one for each budget.
 AIMS = {"volume": (0.2, 0.2, 0.2), "bricks": (0.45, 0.45, 0.5), "fitted": (0.7, 0.7, 0.75)}
-ABOVE_MAX = {"volume": 0, "fitted": 1}  # closed meshes on which ours may make more errors than a rival
+ABOVE_MAX = {"volume": 0, "fitted": 1}  # maximum number of closed meshes on which ours has more wrong points
 TIMED_BUDGET, BAKE_SECONDS_MAX = 1_000_000, 3.0
 
 
 def wrong_ratio(percent, volume_percent, samples):
-    """Half a point stands for none, so that ratios and their logarithms exist; nothing over nothing is 1."""
+    """Zero counts as half a point, so that ratios and their logarithms are finite. 0 / 0 is 1."""
     least = 50.0 / samples
     return max(percent, least) / max(volume_percent, least)
 
 
 def geometric_mean(values):
-    """None without values."""
+    """None if there are no values."""
     return math.exp(math.fsum(map(math.log, values)) / len(values)) if values else None
 
 
 def contests(report, ours="ours"):
-    """For each mesh and budget the results by method, of which one is ours, with the ratios over the volumes."""
+    """The results of each mesh and budget by method, one of which is ours, with their ratios."""
     samples = report["meshes"][0]["samples"]
     found = {}
     for result in report["results"]:
@@ -53,7 +53,7 @@ def budget_text(budget):
 
 
 def measured_of(found):
-    """The methods that are anywhere, in their order."""
+    """The methods in any contest, in the order of METHODS."""
     return [method for method in METHODS if any(method in contest for contest in found)]
 
 
@@ -67,7 +67,7 @@ def number(contest, method, group, name, digits):
 
 
 def sides(found):
-    """The rows of the wrong points; '>' at the end of a heading: to the right."""
+    """The rows of wrong points. A heading that ends with '>' is right-aligned."""
     methods = measured_of(found)
     rivals = [method for method in methods if method in RIVALS and "ours" in methods]
     came = any("as_it_came" in contest.get("ours", {"accuracy": {}})["accuracy"] for contest in found)
@@ -88,7 +88,7 @@ def sides(found):
 
 
 def errors(found):
-    """The rows of distances and normals."""
+    """The rows of distance and normal errors."""
     methods = measured_of(found)
     rows = [["mesh", "budget>", *(f"{METHODS[method]}>" for method in methods)]]
     for contest in found:
@@ -101,7 +101,7 @@ def errors(found):
 
 
 def against(rival, found, budget):
-    """The words on one rival, and the targets that ours misses."""
+    """The text on one rival, and the targets that ours misses."""
     ours = {contest["mesh"]: contest[f"ours/{rival}"] for contest in found if f"ours/{rival}" in contest}
     if not ours:
         return f"ours / {RIVALS[rival]} not measured", []
@@ -113,11 +113,11 @@ def against(rival, found, budget):
     if len(above) > ABOVE_MAX.get(rival, len(above)):
         missed.append(f"{len(above)} closed above {RIVALS[rival]}{at}")
     return (f"ours / {RIVALS[rival]} {mean:.3g}{f' (target at most {aim:.3g})' if aim else ''}, worst {worst} ({ours[worst]:.3g}), "
-            "closed above it: " + (", ".join(f"{mesh} ({ours[mesh]:.3g})" for mesh in above) or "none")), missed
+            "closed meshes above 1: " + (", ".join(f"{mesh} ({ours[mesh]:.3g})" for mesh in above) or "none")), missed
 
 
 def summary(found, budget):
-    """The lines of a budget, and the targets that it misses."""
+    """The lines of a budget, and its missed targets."""
     found = [contest for contest in found if contest["budget"] == budget]
     texts, missed = zip(*(against(rival, found, budget) for rival in RIVALS))
     missed = [target for of in missed for target in of]
@@ -141,23 +141,23 @@ def summary_text(found):
     lines, missed = zip(*(summary(found, budget) for budget in budgets))
     missed = "; ".join(target for of in missed for target in of)
     judged = any(f"ours/{rival}" in contest for contest in found for rival in RIVALS)
-    verdict = ("missed: " + missed if missed else "every target is met" if judged
+    verdict = ("missed: " + missed if missed else "all targets are met" if judged
                else "ours was not measured against a rival")
     return "".join(line + "\n" for line in lines) + f"verdict: {verdict}\n"
 
 
 def legend(meshes):
     mesh, came = meshes[0], any("as_it_came" in one for one in meshes)
-    return [f"%: points near the surface on the wrong side of it; in, out: ours, false inside and false outside. "
-            f"{mesh['samples']} points, seed {mesh['seed']}, {mesh['sigma_percent']:.1f} % of the longest side off the "
-            "surface (standard deviation).",
-            "ms: one bake of ours with acceleration structure, plan, rays and fit. open: computed, some edge has an odd "
-            "number of triangles.",
-            *(["as it came: ours at points within a thickness of sheets; inside is what lies within half the thickness of the "
-               "surface of the file. The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
-            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side; and of "
-            "the normal's angle at the surface. Bricks have no distances but near the surface: larger ones count as their band. "
-            "Where maps say outside and no more, they have no distance and no error."]
+    return [f"%: misclassified points near the surface; in, out: false inside and false outside of ours. "
+            f"{mesh['samples']} points, seed {mesh['seed']}, at a distance of {mesh['sigma_percent']:.1f} % of the longest side "
+            "(standard deviation).",
+            "ms: one bake of ours, including the acceleration structure, plan, rays and fit. open: an edge has an odd number of "
+            "triangles.",
+            *(["as it came: ours near sheets, against the surface of the file: points within half the thickness of it are inside. "
+               "The truth of the other columns is the shells that the bake makes of sheets."] if came else []),
+            "Below: mean / 99th percentile of the error of the signed distance at those points, in % of the longest side, and of "
+            "the angle of the normal at the surface. Bricks store distances only near the surface: larger distances count as "
+            "their band. Points that the maps classify as outside without a distance are not counted."]
 
 
 def markdown(rows):

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How wrong `relief bake` is on meshes as artists make them: what scripts/accuracy.sh --corpus runs.
+"""Measures the accuracy of `relief bake` on artist-made meshes. scripts/accuracy.sh --corpus runs it.
 
 corpus.py BIN FOLDER THIRTEEN... -- [OPTION]...
 
-BIN has relief, relief-accuracy and relief-bench; FOLDER is for temporary files, and has CGAL's meshes in data/meshes.
-One model after another is baked as `relief bake --budget 1MB` bakes it, and what was written is measured against distance
-volumes of as many bytes, dense and sparse, with the same truth: for sheets the same shell.
+BIN contains relief, relief-accuracy and relief-bench. FOLDER is for temporary files, and contains CGAL's meshes in
+data/meshes. Bakes each model with `relief bake --budget 1MB`, and measures the result and distance volumes of the same
+bytes, dense and sparse, against the same truth: for sheets, the same shell.
 """
 import argparse
 import csv
@@ -25,7 +25,7 @@ from accuracy_table import RIVALS
 HERE = os.path.dirname(os.path.abspath(__file__))
 FURNITURE = '/usr/share/sweethome3d/furniture'
 ASSIMP = '/usr/share/assimp/models'
-LEAST = 0.01  # percent: what a share of no wrong points counts as in a ratio
+LEAST = 0.01  # percent: replaces smaller fractions of wrong points in ratios
 PAPER = ['--map', 'front-back:dir=-z,size=512,depth=half,decode=projected', '--map', 'cube:size=512,decode=projected']
 PARTICLES, BLOCKS, REPEATS = 65536, 3, 3
 
@@ -38,7 +38,7 @@ def listed():
 
 
 def unpack(folder, thirteen):
-    """The models: a path for each name."""
+    """The path of each model, by name."""
     paths = {os.path.basename(path).rsplit('.', 1)[0]: path for path in thirteen}
     paths['samples/terrain'] = f'{folder}/terrain.obj'
     subprocess.run([sys.executable, os.path.join(HERE, '../samples/meshes.py'), 'terrain', f'{folder}/terrain.obj'], check=True)
@@ -69,7 +69,7 @@ def processor_seconds():
 
 
 def step_ratio(bin, folder):
-    """A step among patches over one among the paper's two maps: the least of some runs each, in turns."""
+    """The time of a step with patches, relative to the paper's two maps. Both are minima of several alternating runs."""
     least = {'ours': math.inf, 'paper': math.inf}
     for _ in range(REPEATS):
         for name in least:
@@ -80,7 +80,7 @@ def step_ratio(bin, folder):
 
 
 def kind_of(shape):
-    """The kind of the part that is furthest from a solid."""
+    """The kind of the part that is least like a solid."""
     for kind, name in ('terrains', 'terrain'), ('sheets', 'sheets'), ('solids_with_holes', 'holes'):
         if shape[kind]:
             return name
@@ -125,25 +125,26 @@ def columns_of(rivals):
 
 
 def against(rows, rival):
-    """Ours over one rival, with what is aimed at."""
+    """The ratios of ours to one rival, with the targets."""
     ratios = [float(row[f'ours/{rival}']) for row in rows]
     mean, above = math.exp(statistics.fmean(map(math.log, ratios))), sum(ratio > 1 for ratio in ratios)
     aims = (' (at most 0.333)', ' (at most 5 %)') if rival == 'volume' else ('', '')
-    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, above it {percent(above, len(rows))}{aims[1]}'
+    return f'{mean:.3f} of {RIVALS[rival]}{aims[0]}, above 1 for {percent(above, len(rows))}{aims[1]}'
 
 
 def summary(rows, rivals):
-    """The models together, line by line, with what is aimed at."""
+    """The lines that summarise all models, with the targets."""
     lines = []
     for kind in ['all', *sorted({row['kind'] for row in rows})]:
         of = [row for row in rows if kind in ('all', row['kind'])]
         bad = [row for row in of if float(row['ours']) > 10]
         silent = sum(not row['warned'] for row in bad)
-        lines.append(f'{kind}, {len(of)}: errors of ours in geometric means: {"; ".join(against(of, rival) for rival in rivals)}; '
-                     f'above 10 % wrong {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
+        lines.append(f'{kind}, {len(of)}: wrong points of ours (geometric mean): '
+                     f'{"; ".join(against(of, rival) for rival in rivals)}; '
+                     f'more than 10 % wrong: {percent(len(bad), len(of))}, without a warning {percent(silent, len(of))} (none)')
     small = [row for row in rows if row['triangles'] <= 100_000]
-    for column, what, of, aims in (('bake_s', 'seconds of a bake, up to 100,000 triangles', small, (1, 3)),
-                                   ('step', "step over one with the paper's maps", rows, (1.5, 3))):
+    for column, what, of, aims in (('bake_s', 'seconds of a bake (at most 100,000 triangles)', small, (1, 3)),
+                                   ('step', "step / step with the paper's maps", rows, (1.5, 3))):
         known = [row for row in of if row[column]]
         if known:
             worst = max(known, key=lambda row: float(row[column]))
@@ -162,13 +163,13 @@ def page(rows, lines, rivals, command):
     table = [[headings.get(column, column) for column in columns],
              ['---' if column in ('model', 'kind') else '---:' for column in columns],
              *[[str(row[column]) or '-' for column in columns] for row in rows]]
-    return f"""# Meshes as artists make them
+    return f"""# Artist-made meshes
 
-Written by `{command}`. At 1 MB, for each model: the share of the points near the
-surface on whose side distance volumes, dense and sparse ([README.md](README.md)), and what `relief bake` writes are wrong; the
-maps; the seconds of the whole `relief bake` on two threads; the time of a particle step on llvmpipe over one with the paper's
-two maps; the processor's seconds of the bake, both threads together; and the seconds of all the measuring. Other work on the
-machine makes single times rough. In ratios less than {LEAST} % counts as {LEAST} %.
+Written by `{command}`. At 1 MB, for each model: the fraction of misclassified points near the
+surface of dense and sparse distance volumes ([README.md](README.md)) and of `relief bake`; the number of maps; the time of
+`relief bake` on two threads; the time of a particle step on llvmpipe, relative to the paper's two maps; the processor time of
+the bake; and the time of the measurement. Single times are rough, because the machine ran other work. In ratios, values
+below {LEAST} % count as {LEAST} %.
 
 """ + ''.join(f'- {line}\n' for line in lines) + '\n' + ''.join(f'| {" | ".join(row)} |\n' for row in table)
 
@@ -182,25 +183,25 @@ def chosen(paths, options):
         found = [name for name in paths
                  if wanted in (name, os.path.basename(name), os.path.splitext(os.path.basename(name))[0])]
         if not found:
-            sys.exit(f"accuracy.sh: --only has '{wanted}', but no model is called so; see scripts/corpus.txt")
+            sys.exit(f"accuracy.sh: unknown model '{wanted}' in --only; scripts/corpus.txt lists the models")
         names += found
     return names
 
 
 def arguments(words):
     parser = argparse.ArgumentParser(prog='accuracy.sh --corpus', description='The sixty of corpus.txt at 1 MB')
-    parser.add_argument('--only', metavar='A,B', help='these models, by name or by what follows its last slash')
+    parser.add_argument('--only', metavar='A,B', help='measure only these models, by name or by the last part of their path')
     parser.add_argument('--rivals', type=lambda text: text.split(','), default=list(RIVALS), metavar='A,B',
-                        help=f'distance volumes to measure against; default {",".join(RIVALS)}. Fitted bricks take most of the time')
-    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind; default 20000')
-    parser.add_argument('--steps', action='store_true', help="also time steps against the paper's maps: slow")
+                        help=f'distance volumes to compare with (default: {",".join(RIVALS)}); fitted bricks take most of the time')
+    parser.add_argument('--samples', type=int, default=20000, metavar='N', help='points of each kind (default: 20000)')
+    parser.add_argument('--steps', action='store_true', help="also time steps, relative to the paper's maps (slow)")
     parser.add_argument('--markdown', action='store_true', help='write bake/measure/accuracy_corpus.md')
     options = parser.parse_args(words)
     unknown = [rival for rival in options.rivals if rival not in RIVALS]
     if unknown:
-        parser.error(f"--rivals has '{unknown[0]}'; known: {', '.join(RIVALS)}")
+        parser.error(f"unknown rival '{unknown[0]}' in --rivals; choose from: {', '.join(RIVALS)}")
     if options.markdown and options.only:
-        parser.error('--markdown is for all sixty; leave out --only')
+        parser.error('--markdown needs all sixty models; remove --only')
     return options
 
 
