@@ -16,9 +16,9 @@
 namespace relief {
 namespace {
 
-/// Of a place between two lines.
+/// Tolerance for a position between two lines, in line spacings.
 constexpr double kRounding = 1e-9;
-/// Of more triangles the tree tells sooner that none is crossed.
+/// With more triangles than this, the ray query is faster at finding that none is crossed.
 constexpr std::size_t kTreeTriangles = 32;
 
 using Polygon = std::array<glm::dvec3, 9>;
@@ -56,7 +56,7 @@ class Path {
     Path(const MeshQuery& query, const MeshCell& cell, std::span<const UnitTriangle> triangles)
         : query_(query), cell_(cell), triangles_(triangles) {}
 
-    /// One of the cell's triangles, with its box and a normal of any length.
+    /// A triangle of the cell with its bounds and an unnormalized normal.
     struct Crossed {
         std::uint32_t index;
         glm::dvec3 low;
@@ -80,7 +80,7 @@ class Path {
         }
     }
 
-    /// Of BodyCounter::cross; 0: the segment passes the triangle by.
+    /// Returns the side for BodyCounter::cross, or 0 if the segment does not cross the triangle.
     [[nodiscard]] int sideCrossed(const Crossed& one, const glm::dvec3& from, const glm::dvec3& to) const {
         const UnitTriangle& p = triangles_[one.index];
         const double before = dot(one.normal, from - p[0]);
@@ -94,7 +94,7 @@ class Path {
                 return 0;
             }
         }
-        // Within the triangle: the line passes all edges on one side.
+        // Within the triangle: the line passes all edges on the same side.
         const glm::dvec3 way = to - from;
         const auto past = [&](const glm::dvec3& a, const glm::dvec3& b) {
             return dot(way, cross(a - from, b - from));
@@ -115,7 +115,7 @@ class Path {
     std::span<const UnitTriangle> triangles_;
 };
 
-/// The point of the cube at (u, v, w), and how it moves with each.
+/// The inverse of PatchFrame::across: the point of the cube at (u, v, w), and its derivatives.
 struct CubeAxes {
     glm::dvec3 origin;
     glm::dvec3 u;
@@ -123,7 +123,7 @@ struct CubeAxes {
     glm::dvec3 w;
 
     explicit CubeAxes(const PatchFrame& frame) {
-        // The inverse of across(), from where it takes four points.
+        // across() is affine; four points define it.
         const glm::dvec3 zero = frame.across(glm::dvec3(0.0));
         const glm::dmat3 across(frame.across(glm::dvec3(1, 0, 0)) - zero,
                                 frame.across(glm::dvec3(0, 1, 0)) - zero,
@@ -137,32 +137,33 @@ struct CubeAxes {
     [[nodiscard]] glm::dvec3 at(double a, double b, double c) const { return origin + a * u + b * v + c * w; }
 };
 
-/// A line meets a triangle.
+/// An intersection of a line with a triangle.
 struct Hit {
     double w;
     std::uint32_t triangle;
-    int side;            // of BodyCounter::cross
-    std::uint32_t next;  // hit of the line
+    int side;            // for BodyCounter::cross
+    std::uint32_t next;  // next hit of the same line
 
     [[nodiscard]] bool operator<(const Hit& other) const {
         return std::tie(w, triangle, side) < std::tie(other.w, other.triangle, other.side);
     }
 };
 
-/// The way to a start meets a triangle.
+/// An intersection of the path to a start with a triangle.
 struct Crossing {
     std::size_t start;
     std::uint32_t body;
-    int side;  // of BodyCounter::cross
+    int side;  // for BodyCounter::cross
 };
 
-/// An edge of a triangle over the lines' grid, upwards, so that the two triangles at it agree which lines it passes.
-struct GridEdge {
-    double begin;  // rows from here on
+/// An edge of a triangle over the grid of lines. It always runs upwards, so that both adjacent triangles get the same
+/// result.
+struct GridEdge {  ///< first row
+    double begin;  // end of the rows
     double end;    // to before here
     double x;
     double x_by_row;
-    double low;  // of x
+    double low;  // range of x
     double high;
 
     GridEdge(glm::dvec3 a, glm::dvec3 b) {
@@ -180,7 +181,7 @@ struct GridEdge {
     [[nodiscard]] double at(double row) const { return std::clamp(x + (row - begin) * x_by_row, low, high); }
 };
 
-/// The first whole number from `at` on, of those up to `size`.
+/// Returns the first integer ≥ `at`, within [0, size].
 int firstFrom(double at, int size) {
     if (!(at > 0.0)) {
         return 0;
@@ -191,17 +192,17 @@ int firstFrom(double at, int size) {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// All hits of a cell.
+/// All hits of a cell, as a linked list per line.
 struct Hits {
     std::vector<Hit> hits;
-    std::vector<std::uint32_t> last;  // of each line, or kNone
+    std::vector<std::uint32_t> last;  // last hit of each line, or kNone
 
     void clear(std::size_t lines) {
         hits.clear();
         last.assign(lines, kNone);
     }
     void add(std::uint32_t line, std::uint32_t triangle, double w, int side) {
-        // One by one: copied as a whole, it would wait for its parts to be stored.
+        // Assign members individually: a copy of the whole struct would stall on store forwarding.
         Hit& hit = hits.emplace_back();
         hit.w = w;
         hit.triangle = triangle;
@@ -209,7 +210,7 @@ struct Hits {
         hit.next = last[line];
         last[line] = static_cast<std::uint32_t>(hits.size() - 1);
     }
-    /// In order. \param room  for those of a line with several.
+    /// The hits of a line in ascending order. \param room  buffer, used if there are several.
     [[nodiscard]] std::span<const Hit> along(std::uint32_t line, std::vector<Hit>& room) const {
         std::uint32_t at = last[line];
         if (at == kNone) {
@@ -227,7 +228,7 @@ struct Hits {
     }
 };
 
-/// \param triangle  over the grid: lines at whole numbers of x and y, z their w.
+/// \param triangle  in grid coordinates: lines are at integer x and y; z is their w.
 void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& grid, Hits& hits) {
     const auto& [a, b, c] = triangle;
     const auto size = static_cast<int>(grid.across());
@@ -236,7 +237,7 @@ void addHits(const UnitTriangle& triangle, std::uint32_t index, const LineGrid& 
     const int end_row = firstFrom(last, size);
     const auto [leftmost, rightmost] = std::minmax({a.x, b.x, c.x});
     if (first_row == end_row || firstFrom(leftmost, size) == firstFrom(rightmost, size)) {
-        return;  // between the lines, as small ones are
+        return;  // small triangles often lie between the lines
     }
     const glm::dvec3 normal = cross(b - a, c - a);
     if (normal.z == 0.0) {
@@ -433,14 +434,15 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
         leaves_.push_back(static_cast<float>(line.leaves));
         lengths_.push_back(line.leaves - line.enters);
     }
-    // In the order in which PatchFitter adds up the inside, so that what is inside all over has no volume outside.
+    // The same order as PatchFitter's sum of the inside, so that a cell that is inside everywhere has exactly zero
+    // volume outside.
     std::array<double, 4> sums{};
     for (std::size_t i = 0; i < lengths_.size(); ++i) {
         sums[i % 4] += lengths_[i];
     }
     volume_ = ((sums[0] + sums[1]) + (sums[2] + sums[3])) * volume_per_length_;
     start_reach_ = 1e-6;
-    if (frame.diagonal != 0) {  // where the way from side to side leaves both
+    if (frame.diagonal != 0) {  // the path from one side to the next leaves both
         for (std::size_t i = 1; i < starts_.size(); ++i) {
             start_reach_ = std::max(start_reach_, length(starts_[i].point - starts_[i - 1].point));
         }
@@ -504,13 +506,13 @@ double CellColumn::wrongAt(double height, bool outside_below, const ErrorCosts& 
 CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
                          std::span<const UnitTriangle> triangles, const LineGrid& grid)
     : grid_(grid), columns_(grid.lines().size()), inside_(grid.lines().size(), 0.0F) {
-    // Kept from cell to cell, which take a few microseconds each.
+    // Reused for all cells, because each takes only a few microseconds.
     thread_local Hits hits;
     thread_local std::vector<Crossing> crossings;
     thread_local std::vector<Hit> room;
     hits.clear(columns_.size());
     crossings.clear();
-    bool wound = cell.bodies.odd.empty();  // nothing but body 0 there
+    bool wound = cell.bodies.odd.empty();  // only body 0 there
     const Path path(query, cell, triangles);
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         UnitTriangle over = triangles[i];

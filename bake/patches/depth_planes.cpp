@@ -15,40 +15,40 @@
 namespace relief {
 namespace {
 
-/// A cell is sampled at its middle, and at eight points this far from its sides.
+/// A cell is sampled at its center, and at eight points this far from its sides.
 constexpr double kBesideCorner = 0.02;
 constexpr std::size_t kSamples = 9;
-/// Distance error, in cells, that weighs as much as a unit difference of the normals.
+/// Distance error, in cells, with the weight of a unit difference of the normals.
 constexpr double kTurn = 0.25;
-/// Planes are only added if they lower the mean error by this much, in cells, ...
+/// Planes are added only if they lower the mean error by this much, in cells, ...
 constexpr double kGain = 0.004;
-/// ... and leave less than this fraction of it in a leaf without a surface.
+/// ... and, in a leaf without a surface, leave less than this fraction of it.
 constexpr double kLeftAtMost = 0.6;
-/// Cells are left out if such a mean error, in cells, would not pay: hardly one is larger.
+/// Cells are skipped if this mean error, in cells, would not pay off: larger errors are rare.
 constexpr double kErrorMost = 1.0;
 /// The corners of a cell lie at least this far behind its depth planes, in cells.
 constexpr double kBehind = 1.0 / 256.0;
-/// Largest height that a patch can hold, in cells.
+/// Maximum height of a patch, in cells.
 constexpr double kHighest = 3.9;
-/// The direction to a nearer surface is unknown, in cells.
+/// Below this distance, in cells, the direction to the surface is unknown.
 constexpr double kNoDirection = 1e-6;
-/// Beyond a boundary of the solid this is outside, in cells.
+/// Points this far beyond a boundary of the solid are outside, in cells.
 constexpr double kBeyond = 1e-3;
-/// Weight of the depth error, in cells times the volume of the cell, relative to misclassified volume.
+/// Weight of the depth error (cells times the volume of the cell), relative to misclassified volume.
 constexpr double kWorth = 1e-3;
 /// A flat face is at least this long, in cells of the leaves that get its plane, ...
 constexpr double kFaceLength = 4.0;
-/// ... nearer to their middles than this, in cells, ...
+/// ... within this distance of their centers, in cells, ...
 constexpr double kFaceNear = 2.0;
-/// ... and the plane that they would have without it is turned from it by more than this, radians. More than kFaceTurnMost, the
-/// most by which a coarse plane of 7 + 7 bits is off, counts as that.
+/// ... and tilted by more than this angle, in radians, against the plane that the leaves would otherwise have. The
+/// angle is clamped to kFaceTurnMost, the maximum error of a coarse plane of 7 + 7 bits.
 constexpr double kFaceTurn = 0.016;
 constexpr double kFaceTurnMost = 0.03;
-/// Nearest distances of the corners of such a leaf equal those from the face's plane within this, in cells.
+/// Tolerance of the flatness test, in cells: distances of the leaf's corners to the mesh and to the plane of the face.
 constexpr double kFaceFlat = 1e-3;
-/// Weight of that turn, in radians times the volume of the cell, relative to misclassified volume.
+/// Weight of that angle (radians times the volume of the cell), relative to misclassified volume.
 constexpr double kFaceWorth = 0.01;
-/// Bytes of one plane in a record of its own, and of the records of a second one or of two.
+/// Bytes of one plane in its own record; bytes of the records of a second plane, or of two.
 constexpr double kOneBytes = kPatchTexelBytes;
 constexpr double kPairBytes = 2.0 * kPatchTexelBytes;
 
@@ -57,12 +57,12 @@ glm::dvec3 cornerOfCube(unsigned corner) {
     return {corner & 1U, corner >> 1U & 1U, corner >> 2U & 1U};
 }
 
-/// The middle of an octant, x fastest, in the unit cube of its parent.
+/// The center of an octant, x fastest, in the unit cube of its parent.
 glm::dvec3 octantMiddle(unsigned octant) {
     return 0.5 * cornerOfCube(octant) + 0.25;
 }
 
-/// A point inside and the surface nearest to it.
+/// A point inside and the nearest surface.
 struct Sample {
     glm::dvec3 at{0.0};      // unit cube
     double distance = 0.0;   // cells
@@ -83,18 +83,18 @@ class SmallTree {
     [[nodiscard]] PatchTexels texels() const { return std::as_bytes(std::span(texels_).first(count_)); }
 
   private:
-    std::array<PatchRecord, 8> texels_{{{1U | 1U << 16U, 1U | 1U << 16U}}};  // a root, and a level below it
+    std::array<PatchRecord, 8> texels_{{{1U | 1U << 16U, 1U | 1U << 16U}}};  // a root and one level below it
     std::size_t count_ = 1;
 };
 
-/// What points of a cell get from the texels of its own tree, or from one in which it is an octant.
+/// Votes of points in a cell, by the texels of its own tree or of a tree in which it is an octant.
 class Cell {
   public:
     Cell() = default;
     explicit Cell(unsigned octant) : low_(0.5 * cornerOfCube(octant)), size_(0.5) {}
 
     [[nodiscard]] PatchVote vote(const SmallTree& tree, const glm::dvec3& at) const {
-        // A point on an upper side is beyond the root.
+        // A point on an upper side would be outside of the root.
         const glm::dvec3 p = glm::min(low_ + size_ * at, glm::dvec3(1.0 - kNoDirection));
         PatchVote vote = *votePatches(tree.texels(), glm::vec3(p));
         vote.distance /= static_cast<float>(size_);
@@ -115,8 +115,8 @@ class Cell {
     double size_ = 1.0;
 };
 
-/// Returns a patch of 2² heights on the plane, which is shifted outwards if a corner of the cell is not behind it: a leaf may
-/// neglect a corner of the surface. Returns nullopt if the heights are out of range.
+/// Returns a patch of 2² heights on the plane. The plane is shifted outwards if a corner of the cell is not behind it,
+/// because the leaf may omit a corner of the surface. Returns nullopt if the heights are out of range.
 std::optional<PatchRecord> patchOf(CellPlane plane) {
     const glm::dvec3 size = glm::abs(plane.normal);
     const std::uint8_t first = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -157,7 +157,7 @@ struct Best {
     }
 };
 
-/// What a leaf has without depth planes.
+/// The planes of a leaf without depth planes.
 struct Baseline {
     Cell cell;
     SmallTree tree;
@@ -166,8 +166,8 @@ struct Baseline {
 /// Chooses the depth planes of one leaf.
 class LeafChooser {
   public:
-    /// \param baseline  none of a root without a surface, whose plane is that of its middle.
-    /// \param roots_per_cell  the size of the cell, in root cells.
+    /// \param baseline  nullopt for a root without a surface, which uses the plane of its center.
+    /// \param roots_per_cell  the size of the cell, in roots.
     LeafChooser(const MeshQuery& query, PatchNode& node, const std::optional<Baseline>& baseline,
                 double roots_per_cell)
         : query_(query), node_(node), baseline_(baseline), roots_per_cell_(roots_per_cell) {
@@ -211,7 +211,8 @@ class LeafChooser {
             }
         }
     }
-    /// Drops samples whose surface is no boundary: that of a body within another one, or of a filled void.
+    /// Drops samples whose nearest surface is not a boundary of the solid: it lies within another body or in a filled
+    /// void.
     void dropSamplesWithin() {
         std::erase_if(samples_, [&](const Sample& sample) {
             const glm::dvec3 beyond = sample.at + (sample.distance + kBeyond) * sample.normal;
@@ -219,7 +220,7 @@ class LeafChooser {
         });
     }
 
-    /// Of a leaf without a surface.
+    /// For a leaf without a surface.
     void addEmpty(std::vector<DepthGain>& gains) const {
         const auto flatOf = [](const CellPlane& plane, double per_cell) {
             return PatchRecord::flat(true, glm::vec3(plane.normal),
@@ -268,7 +269,7 @@ class LeafChooser {
                              [](const DepthGain& gain) { return gain.to != DepthPlanes::kNone; });
     }
 
-    /// Of a leaf with a single surface: a face outside the cell decides where it is nearer.
+    /// For a leaf with a single surface: adds a face outside the cell that is nearer for some points.
     void addSurface(std::vector<DepthGain>& gains) const {
         const Best best = bestWith(baseline_->tree, patchesOf());
         const double gain = errorWithout() - best.error;
@@ -285,7 +286,7 @@ class LeafChooser {
         return kWorth * error * node_.cell.size * node_.cell.size * node_.cell.size;
     }
     [[nodiscard]] double errorOf(const SmallTree& tree) const { return Cell().meanError(tree, samples_); }
-    /// The planes of the samples that lie outside the cell.
+    /// The planes of the samples whose nearest surface lies outside the cell.
     [[nodiscard]] std::vector<PatchRecord> patchesOf() const {
         std::vector<PatchRecord> patches;
         for (const Sample& sample : samples_) {
@@ -299,7 +300,7 @@ class LeafChooser {
         }
         return patches;
     }
-    /// The best of some patches, as a pair with the patch of a tree.
+    /// The best of several patches, combined in a pair with the patch of `other`.
     [[nodiscard]] Best bestWith(const SmallTree& other, std::span<const PatchRecord> patches) const {
         constexpr std::uint32_t kMoved = 2;
         PatchRecord moved = other[1];
@@ -324,8 +325,8 @@ class LeafChooser {
     std::vector<Sample> samples_;
 };
 
-/// Returns the plane of a leaf without a surface whose nearest surface is one flat face, if the plane of the split cell above it is
-/// turned from that.
+/// Returns the plane of the nearest face for a leaf without a surface, if that face is flat and the plane of the split
+/// cell above is tilted against it.
 std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatFace> faces, PatchNode& leaf,
                                    const Baseline& above, double roots_per_cell) {
     const MeshCell& cell = leaf.cell;
@@ -337,7 +338,7 @@ std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatF
         faces[closest.triangle].length < kFaceLength * cell.size) {
         return std::nullopt;
     }
-    // A leaf without a surface may still be met by a little of one.
+    // The mesh may graze a leaf without a surface.
     if (!cell.triangles.empty() && query.inside(glm::vec3(middle)) != leaf.inside()) {
         return std::nullopt;
     }
@@ -364,7 +365,7 @@ std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatF
     return gain;
 }
 
-/// The tree of a leaf with a single surface. Its 3² heights stand for 5² ones, which are not fitted yet.
+/// Returns the tree of a leaf with a single surface. 3² heights stand in for 5² heights, which are not fitted yet.
 SmallTree treeOf(const PatchNode& leaf) {
     const PatchHeights& heights =
         leaf.heights[std::min<std::size_t>(leaf.chosen - kFlats, leaf.heights.size() - 1)];
@@ -381,7 +382,7 @@ SmallTree treeOfSplit(const MeshQuery& query, const PatchNode& node) {
         PatchRecord::split(0, 0xffU, 0, glm::vec3(plane.normal), static_cast<float>(plane.offset)));
 }
 
-/// Appends split cells, and the root if it is a leaf: each is a family, whose leaves are treated together.
+/// Appends split cells, and the root if it is a leaf. The leaves of each such family are processed together.
 void addFamilies(PatchNode& node, std::vector<PatchNode*>& families) {
     families.push_back(&node);
     for (std::size_t i = 0; node.split && i < 8; ++i) {
@@ -395,7 +396,7 @@ std::span<PatchNode> membersOf(PatchNode& family) {
     return family.split ? std::span<PatchNode>(*family.children) : std::span(&family, 1);
 }
 
-/// Equal for two plans of a family with the same leaves.
+/// A hash of the leaves of a family.
 std::uint64_t stateOf(PatchNode& family) {
     std::uint64_t state = 1;
     for (const PatchNode& node : membersOf(family)) {

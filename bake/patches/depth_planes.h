@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth planes: leaves inside a mesh whose plane, or that of the split cell above, does not belong to the nearest face get planes
-// of their own, as do leaves beside a flat face if the plane of the split cell above is turned from it.
+// Depth planes: planes that a leaf stores for points deep inside the mesh. A leaf gets them if its own plane, or that
+// of the split cell above, does not belong to the nearest face. Leaves beside a flat face get them if the plane of the
+// split cell above is tilted against that face.
 #pragma once
 
 #include <array>
@@ -17,49 +18,50 @@
 
 namespace relief {
 
-/// The plane of a split cell, for octants without a record.
+/// Returns the plane of a split cell, used by octants without a record.
 [[nodiscard]] CellPlane planeOfSplit(const MeshQuery& query, const PatchNode& node);
 
-/// Depth planes that replace those that a leaf has so far, their cost and their gain.
+/// Depth planes that replace the present ones of a leaf, with their cost and gain.
 struct DepthGain {
     PatchNode* node = nullptr;
     DepthPlanes from = DepthPlanes::kNone;
     DepthPlanes to = DepthPlanes::kNone;
     std::array<PatchRecord, 2> records{};  ///< PatchNode::depth
-    double bytes = 0.0;                    ///< more than `from` takes
-    double volume = 0.0;                   ///< misclassified volume that weighs as much, object units cubed
+    double bytes = 0.0;                    ///< in addition to the bytes of `from`
+    double volume = 0.0;                   ///< the equivalent misclassified volume, object units cubed
 
     [[nodiscard]] double worth() const { return volume / bytes; }
 };
 
-/// Chooses depth planes for the leaves of a planned tree. The same for any number of threads.
+/// Chooses depth planes for the leaves of a planned tree. The result does not depend on the number of threads.
 class DepthPlaneChoice {
   public:
-    /// \param query, faces  borrowed; faces are those of its mesh, one per triangle.
+    /// \param query, faces  borrowed; `faces` has one element per triangle of the mesh of `query`.
     DepthPlaneChoice(const MeshQuery& query, std::span<const FlatFace> faces)
         : query_(query), faces_(faces) {}
 
-    /// Finds the planes of a tree. Later calls reuse those of leaves that are as before.
-    /// \param roots  borrowed as long as this object is used; their leaves have no depth planes yet.
+    /// Finds the planes of a tree. Later calls reuse the planes of unchanged leaves.
+    /// \param roots  borrowed for the lifetime of this object; their leaves have no depth planes yet.
     /// \param byte  misclassified volume, object units cubed: planes that gain less per byte are not chosen.
-    /// \param progress  called often, from any thread; what it throws ends the search.
+    /// \param progress  called often, from any thread; its exceptions end the search and propagate.
     void find(std::span<PatchNode> roots, double byte, const std::function<void()>& progress);
 
-    /// Bytes of all planes found that gain more than `byte` per byte.
+    /// Returns the total bytes of the planes that gain more than `byte` per byte.
     /// \param byte  misclassified volume, object units cubed.
     [[nodiscard]] double bytesWorth(double byte) const;
-    /// Sets PatchNode::planes and PatchNode::depth of those with the largest gain per byte, in at most `bytes` bytes.
+    /// Sets PatchNode::planes and PatchNode::depth for the planes with the largest gain per byte, up to `bytes` bytes
+    /// in total.
     void take(double bytes) const;
 
   private:
     struct Known {
-        std::uint64_t state = 0;  // of the leaves that the gains are of
+        std::uint64_t state = 0;  // hash of the leaves that the gains belong to
         std::vector<DepthGain> gains;
     };
 
     const MeshQuery& query_;
     std::span<const FlatFace> faces_;
-    std::map<const PatchNode*, Known> known_;  // by the cell that is split, or the root
+    std::map<const PatchNode*, Known> known_;  // by the split cell, or the root
     std::vector<DepthGain> gains_;             // sorted by gain per byte
 };
 

@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-/// Of the surface in a cell: so much of it looks the other way where pairs are tried.
+/// Minimum fraction of the surface in a cell that faces the other way for a pair to be tried.
 constexpr double kOtherSide = 0.03;
 
 /// The unit gradients of w of all frames.
@@ -26,7 +26,7 @@ const std::array<glm::dvec3, 13>& waysOfFrames() {
     return kWays;
 }
 
-/// A steep piece costs much, one that faces away everything.
+/// A weight by the cosine to the frame's axis: steep pieces count little, pieces that face away count negatively.
 double worthSeen(double cosine) {
     return cosine > 0.2 ? cosine : 5.0 * cosine - 0.8;
 }

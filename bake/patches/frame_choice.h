@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The axis of a cell's patches, by the normals of the surface in it.
+// Chooses the axis of a cell's patches by the normals of the surface in it.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 namespace relief {
 
 struct FrameChoice {
-    std::uint8_t index = 0;  ///< of patchFrames()
-    bool two_sides = false;  ///< there is surface to see from above, and from below
+    std::uint8_t index = 0;  ///< index into patchFrames()
+    bool two_sides = false;  ///< surface is visible both from above and from below
 };
 
-/// The frame that sees most of the surface in a cell from both sides, where there is some on each: lines along a thin wall
-/// pass it by, and find nothing to mend. Else that which sees most from above, or from below.
+/// Returns the frame that sees most of the surface from above and below together, if the cell has surface facing both
+/// ways. Lines parallel to a thin wall would pass it by and detect no errors. Otherwise, returns the frame that sees
+/// most from one side.
 [[nodiscard]] FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces);
 
 }  // namespace relief

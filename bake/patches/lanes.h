@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four floats at a time. They are added up in one order everywhere, so that all compilers and processors find the same sums.
+// Four floats at a time. Sums use one fixed order, so that results are identical on all compilers and processors.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ inline constexpr std::size_t kLanes = 4;
 using Lanes = float __attribute__((vector_size(4 * sizeof(float))));
 using TwoDoubles = double __attribute__((vector_size(2 * sizeof(double))));
 
-/// \param from  aligned as a single number is.
+/// \param from  aligned for a single number.
 template <class Vector, class Number>
 [[nodiscard]] inline Vector loadLanes(const Number* from) {
     Vector vector;

@@ -14,16 +14,17 @@ namespace {
 constexpr int kRounds = 2;
 constexpr int kFinalRounds = 3;
 constexpr int kFinalPairRounds = 4;
-/// Shapes that pay at this share of a byte's worth are tried at once: later steps would look at the cell's columns again.
+/// Shapes that would pay off at this fraction of a byte's worth are tried at once, because a later step would have to
+/// recompute the columns of the cell.
 constexpr double kForesight = 0.5;
-/// Parts lie between lines that meet less than this share of what the area lets expect, of about so much volume for the area's
-/// power of 3/2.
+/// Parts are assumed to lie between lines if the lines hit less than this fraction of the expected number. Their volume
+/// is estimated as kVolumePassedBy times the missing area to the power of 3/2.
 constexpr double kPassedBy = 0.5;
 constexpr double kVolumePassedBy = 0.1;
-/// Of LeafFitter::hold().
+/// The mean error allowed by LeafFitter::hold(), as a fraction of `within`.
 constexpr double kMeanShare = 0.5;
 
-/// In cells.
+/// Estimates the volume missed between the lines, in cells.
 double volumePassedBy(const CellColumns& columns, std::span<const ClippedTriangle> pieces) {
     double expected = 0.0;
     for (const ClippedTriangle& piece : pieces) {
@@ -34,7 +35,7 @@ double volumePassedBy(const CellColumns& columns, std::span<const ClippedTriangl
     return hits < kPassedBy * expected ? kVolumePassedBy * area * std::sqrt(area) : 0.0;
 }
 
-/// Tries the shapes of one leaf after the other, as they stand in kPatchShapes.
+/// Tries the shapes of one leaf, in the order of kPatchShapes.
 class LeafTrial {
   public:
     LeafTrial(const MeshQuery& query, const ErrorCosts& costs, const std::vector<LineGrid>& grids,
@@ -80,7 +81,7 @@ class LeafTrial {
     }
 
     [[nodiscard]] std::span<const UnitTriangle> triangles() const { return triangles_; }
-    /// Of the shape tried last; of a single surface the first.
+    /// Heights of the last shape tried; a single surface uses the first element.
     [[nodiscard]] const std::array<PatchHeights, 2>& fitted() const { return fitted_; }
 
   private:
@@ -218,7 +219,7 @@ bool LeafFitter::hold(PatchNode& node, double within, double byte) const {
     return held;
 }
 
-/// The lines to choose by are few for each square of 5² heights, and enough for larger ones.
+/// The lines for choosing are too few for the small squares of 5² heights, but sufficient for larger ones.
 CellColumns LeafFitter::keptColumns(const PatchNode& node) const {
     return {query_, node.cell, unitTriangles(query_.mesh(), node.cell),
             (node.shape().side < kPatchSideMax ? grids_ : kept_grids_)[node.frame.index]};

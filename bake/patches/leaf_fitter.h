@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits what a leaf may hold to its cell.
+// Fits the possible contents of a leaf to its cell.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace relief {
 
-/// Lines along each side of a cell, multiples of 4.
+/// Lines along each side of a cell; multiples of 4.
 struct LeafLines {
-    unsigned choose = 12;  ///< to choose by
-    unsigned keep = 20;    ///< for the 5² heights that are kept
+    unsigned choose = 12;  ///< to choose a shape
+    unsigned keep = 20;    ///< to fit the 5² heights that are kept
 };
 
 [[nodiscard]] std::vector<ClippedTriangle> clippedTriangles(std::span<const UnitTriangle> triangles);
@@ -25,16 +25,17 @@ class LeafFitter {
     /// \param query  borrowed.
     LeafFitter(const MeshQuery& query, const ErrorCosts& costs, const LeafLines& lines);
 
-    /// Tries what may pay where a byte is worth so much wrong volume.
+    /// Tries the shapes that may pay off if a byte is worth `byte` of misclassified volume, object units cubed.
     void tryWorth(PatchNode& node, double byte) const;
-    /// Takes the first that holds the surface, in the order of their bytes but for pairs, which come last: points that lie by
-    /// `within` beside it are on their side, and no more is on the wrong one than half of that on average over a side of
-    /// the cell. If none does, takes the cheapest where a byte is worth so much.
+    /// Chooses the first shape that represents the surface, in ascending order of bytes, pairs last. A shape represents
+    /// the surface if the points at distance `within` from the surface are on their correct side, and the misclassified
+    /// volume is at most half of `within` times the area of a side of the cell. If no shape does, chooses the cheapest
+    /// for the given worth of a byte.
     /// \param within  object units.
-    /// \return whether the node's leaf holds the surface; one without triangles does.
+    /// \return whether the leaf represents the surface; true for a node without triangles.
     bool hold(PatchNode& node, double within, double byte) const;
 
-    /// The texels of a leaf with a single surface, or with two.
+    /// The heights of a leaf with a single surface, or with two.
     [[nodiscard]] PatchHeights heights(const PatchNode& node) const;
     [[nodiscard]] std::array<PatchHeights, 2> pair(const PatchNode& node) const;
 

@@ -19,7 +19,7 @@ class Encoder {
 
     [[nodiscard]] DepthMap encode(std::span<const PatchNode* const> nodes,
                                   const std::function<void(double)>& progress) const {
-        // Records level by level, and where the children of each begin.
+        // Records level by level, and the index of the first child of each.
         std::vector<const PatchNode*> records(nodes.begin(), nodes.end());
         std::vector<std::uint32_t> first(records.size(), 0);
         std::uint32_t levels = 0;
@@ -83,7 +83,7 @@ class Encoder {
     }
 
   private:
-    /// A cell without a patch: the nearest surface.
+    /// Returns the record of a cell without a patch: the plane of the nearest surface.
     [[nodiscard]] PatchRecord flat(const PatchNode& node) const {
         const glm::dvec3 middle = node.cell.middle();
         const ClosestPoint closest = query_.closest(glm::vec3(middle));
@@ -109,7 +109,7 @@ class Encoder {
     }
 
     /// Writes a leaf with patches.
-    /// \param first  the texels that it has beside its record.
+    /// \param first  index of the leaf's texels other than its record.
     void writeLeaf(const PatchNode& node, std::uint32_t first, PatchRecord& record,
                    std::vector<PatchRecord>& texels) const {
         const auto write = [&](const PatchHeights& heights, std::uint32_t at) {
@@ -138,7 +138,7 @@ class Encoder {
         const std::array<PatchHeights, 2> pair = fitter_.pair(node);
         record = PatchRecord::pair(node.walls, first);
         for (std::uint32_t k = 0; k < 2; ++k) {
-            // Outside is below the lower surface of a wall, and above that of a gap.
+            // Outside is below the lower surface of a wall, and above the lower surface of a gap.
             const std::uint32_t at = first + 2 + k * heightTexels(pair[k].side);
             texels[first + k] =
                 PatchRecord::patch(patchFrames()[node.frame.index], (k == 0) == node.walls, pair[k], at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of patches, planned, as a map.
+// Encodes a planned tree of patches as a map.
 #pragma once
 
 #include <functional>
@@ -14,14 +14,14 @@
 namespace relief {
 
 /// The roots of a tree.
-struct PatchRoots {
-    double size = 0.0;       ///< of one, object units
-    glm::dvec3 origin{0.0};  ///< the low corner of the first, object space
-    glm::uvec3 count{1};     ///< x fastest
+struct PatchRoots {          ///< The grid of a tree's roots.
+    double size = 0.0;       ///< side of a root, object units
+    glm::dvec3 origin{0.0};  ///< low corner of the first root, object space
+    glm::uvec3 count{1};     ///< along each axis; x fastest
 };
 
-/// \param nodes  of the roots.
-/// \param progress  as that of PatchOptions; the share is that of the encoding.
+/// \param nodes  the roots.
+/// \param progress  as PatchOptions::progress, with the fraction of the encoding done.
 [[nodiscard]] DepthMap encodePatches(const MeshQuery& query, const LeafFitter& fitter,
                                      const PatchRoots& roots, std::span<const PatchNode* const> nodes,
                                      const std::function<void(double)>& progress);

@@ -13,16 +13,16 @@
 namespace relief {
 namespace {
 
-/// Weight of second differences against a column's: where no column tells, the patch goes on straight.
+/// Weight of second differences relative to a column: continues the patch straight where no column constrains it.
 constexpr double kSmooth = 3e-4;
 constexpr double kAnchor = 1e-5;
-/// Cosine of a plane to the axis of its frame, below which it has no heights.
+/// A plane provides no heights if its cosine to the axis of the frame is below this.
 constexpr double kSteep = 0.1;
-/// An error below which all errors weigh the same, in units of w.
+/// All errors below this have the same weight, in units of w.
 constexpr float kSmallError = 4e-3F;
 
-/// A symmetric system for kSide² heights. The bilinear basis couples a node with those up to one row and one column on, second
-/// differences with those two rows on.
+/// A symmetric system for kSide² heights. The bilinear basis couples a node with those up to one row and one column
+/// ahead; second differences couple it with those two rows ahead.
 template <std::size_t kSide>
 class HeightSystem {
   public:
@@ -54,7 +54,7 @@ class HeightSystem {
     }
     void addRight(std::size_t i, double value) { right_[i] += value; }
 
-    /// By LDLᵀ, which keeps the band.
+    /// Solves by LDLᵀ, which preserves the band.
     void solve(std::array<double, kNodes>& x) {
         for (std::size_t j = 0; j < kNodes; ++j) {
             const std::array<double, kWidth>& column = columns_[j];
@@ -82,11 +82,11 @@ class HeightSystem {
 
   private:
     static constexpr std::size_t kWidth = (kBand + 3) / 2 * 2;
-    std::array<std::array<double, kWidth>, kNodes> columns_{};  // from the diagonal down, and zeros
+    std::array<std::array<double, kWidth>, kNodes> columns_{};  // from the diagonal down, padded with zeros
     std::array<double, kNodes> right_{};
 };
 
-/// kSide² heights on the lines of a grid, four at a time.
+/// kSide² heights evaluated on the lines of a grid, four at a time.
 template <std::size_t kSide>
 class HeightLanes {
   public:
@@ -107,40 +107,40 @@ class HeightLanes {
     }
 
     [[nodiscard]] static constexpr std::size_t squareOf(std::size_t lane) { return lane * kSquares / kLanes; }
-    /// Of lines, in a square along its side.
+    /// Lines along a side of a square.
     [[nodiscard]] std::size_t lines() const { return lines_; }
-    /// Of a row.
+    /// Lines in a quarter of a row.
     [[nodiscard]] std::size_t quarter() const { return quarter_; }
-    /// Of the second height of a square, for its index-th row of lines.
+    /// The weight of the second height of a square for its index-th row of lines.
     [[nodiscard]] float rowShare(std::size_t index) const {
         return (static_cast<float>(index) + kOffset) * per_line_;
     }
-    /// As rowShare(), for the index-th lanes of a row.
+    /// The same for the index-th lanes of a row.
     [[nodiscard]] Lanes shares(std::size_t index) const {
         return (first_ + static_cast<float>(index)) * per_line_;
     }
 
-    /// A row of lines.
+    /// The heights along a row of lines.
     struct Row {
         Lanes left;
         Lanes rise;
         [[nodiscard]] Lanes at(Lanes shares) const { return left + shares * rise; }
     };
-    /// \param square  of the rows of squares.
+    /// \param square  index of the row of squares.
     [[nodiscard]] Row row(std::size_t square, float share) const {
         const Lanes left = left_[square] + share * (left_[square + 1] - left_[square]);
         const Lanes right = right_[square] + share * (right_[square + 1] - right_[square]);
         return {left, right - left};
     }
 
-    /// On one line.
+    /// The height on one line.
     [[nodiscard]] float operator[](std::size_t line) const {
         const std::size_t in_row = line % (kLanes * quarter_);
         const std::size_t j = line / (kLanes * quarter_);
         return row(j / lines_, rowShare(j % lines_)).at(shares(in_row / kLanes))[in_row % kLanes];
     }
 
-    /// Calls visit(line, heights) with the index of the first of each four lines, in order.
+    /// Calls visit(line, heights) for each group of four lines, in order, with the index of the first.
     template <class Visit>
     void forEach(const Visit& visit) const {
         std::size_t line = 0;
@@ -160,18 +160,18 @@ class HeightLanes {
     std::size_t lines_;
     std::size_t quarter_;
     float per_line_;
-    Lanes first_;        // the place of the first lanes in their squares, in lines
-    Lanes left_[kSide];  // by row of heights, those beside the square of each lane
+    Lanes first_;        // position of the first lanes in their squares, in lines
+    Lanes left_[kSide];  // per row of heights, those beside the square of each lane
     Lanes right_[kSide];
 };
 
-/// Sums over lines between two heights, weighted by their shares.
-struct RowSums {
+/// Sums over lines between two heights, by products of their weights.
+struct RowSums {           ///< first · first, first · second, second · second
     Lanes square[3] = {};  // both the first's share, one each, both the second's
     Lanes right[2] = {};
 };
 
-/// The heights of a plane; of one that is steep in the frame none.
+/// The heights of a plane, or nothing if it is too steep in the frame.
 template <std::size_t kSide>
 std::array<double, kSide * kSide> heightsOf(const PatchFrame& frame, const CellPlane& plane) {
     std::array<double, kSide * kSide> heights{};
@@ -198,8 +198,8 @@ std::array<double, kSide * kSide> heightsOf(const PatchFrame& frame, const CellP
 }
 
 /// One round of least squares.
-/// \param anchors  the heights where neither lines nor smoothness tell.
-/// \param weighted  by the errors of `heights`, of the round before.
+/// \param anchors  the heights where neither lines nor smoothness constrain them.
+/// \param weighted  by the errors of `heights` from the previous round.
 template <std::size_t kSide>
 void fitRound(const LineGrid& grid, const HeightTargets& targets,
               const std::array<double, kSide * kSide>& anchors, bool weighted,
@@ -207,7 +207,7 @@ void fitRound(const LineGrid& grid, const HeightTargets& targets,
     static const HeightSystem<kSide> kEmpty;
     HeightSystem<kSide> system = kEmpty;
     const HeightLanes<kSide> before(grid, heights);
-    // The system is that of the heights above the anchors: exact for a plane, however few lines meet it.
+    // Solves for the heights relative to the anchors. This is exact for a plane, no matter how few lines meet it.
     const HeightLanes<kSide> anchored(grid, anchors);
     std::size_t line = 0;
     for (std::size_t square = 0; square + 1 < kSide; ++square) {
@@ -282,17 +282,17 @@ PatchHeights coded(std::array<double, kSide * kSide>& heights) {
     return codes;
 }
 
-/// The length up to `w` that should lie between a pair's surfaces.
+/// The length up to `w` that should lie between the surfaces of a pair.
 double betweenTo(const CellColumn& column, double w, bool walls) {
     const double inside = column.insideTo(w);
     return walls ? inside : w - column.enters - inside;
 }
 
-/// The best part of a line to lie between a pair's surfaces.
+/// The best part of a line to lie between the surfaces of a pair.
 struct Part {
     double begin = 0.0;
     double end = 0.0;
-    double gain = 0.0;  // over none; 0: none is best
+    double gain = 0.0;  // relative to no part; 0: no part is best
 };
 
 Part bestPart(const CellColumn& column, const ErrorCosts& costs, bool walls) {
@@ -332,7 +332,7 @@ PatchFitter::PatchFitter(const CellColumns& columns, const ErrorCosts& costs, co
             inside[k] += double{columns.inside()[i + k]} * lengths[i + k];
         }
     }
-    double lower = 0.0;  // inside in the lower half of a column more than in the upper one
+    double lower = 0.0;  // excess of the inside in the lower half of each column over the upper half
     for (const std::uint32_t line : columns.turning()) {
         const CellColumn column = columns[line];
         const double middle = 0.5 * (column.enters + column.leaves);
@@ -482,7 +482,7 @@ PairFitter::PairFitter(const CellColumns& columns, const ErrorCosts& costs, cons
     }
 }
 
-/// The plane with the mean height of a surface.
+/// The plane with the given normal, shifted to the mean height of a surface.
 template <std::size_t kSide>
 std::array<double, kSide * kSide> PairFitter::anchorsOf(std::size_t surface) const {
     std::array<double, kSide* kSide> anchors = heightsOf<kSide>(columns_.grid().frame(), {normal_, 0.0});
@@ -520,7 +520,7 @@ FittedPair PairFitter::fitOf(int rounds) const {
     };
     for (int round = 0; round < rounds; ++round) {
         if (round > 0) {
-            // Both surfaces close what lies between them where nothing should.
+            // Where nothing should lie between the surfaces, let both meet halfway.
             lay();
             for (const std::uint32_t i : without_) {
                 const LineGrid::Line& line = grid.lines()[i];

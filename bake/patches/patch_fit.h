@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The heights of one patch, fitted to the inside of its cell.
+// Fits the heights of one patch to the inside of its cell.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@ namespace relief {
 /// The best height on a line.
 struct HeightTarget {
     double height = 0.0;
-    /// Costs of errors above and below it: none where a line has no surface, and any height at least, or at most, as high
-    /// will do. None for lines that miss the cube.
+    /// Costs of errors above and below the height. Zero on one side if a line has no surface, and any height at least,
+    /// or at most, this high is right. Zero on both if the line misses the cube.
     double above = 0.0;
     double below = 0.0;
 };
 
-/// A HeightTarget for each line, each number of all lines after the other.
+/// A HeightTarget for each line, stored as one array per member.
 class HeightTargets {
   public:
-    /// As of lines that miss the cube.
+    /// Initializes all targets as those of lines that miss the cube.
     explicit HeightTargets(std::size_t lines) : lines_(lines), numbers_(3 * lines) {}
     void set(std::size_t line, const HeightTarget& target) {
         *height(line) = static_cast<float>(target.height);
@@ -46,26 +46,26 @@ class HeightTargets {
 
 struct FittedPatch {
     PatchHeights heights;
-    double wrong = 0.0;  ///< volume on the wrong side, in cells, times its costs
+    double wrong = 0.0;  ///< misclassified volume, in cells, weighted by ErrorCosts
 };
 
-/// A surface below, and one above.
+/// Two surfaces, the lower one first.
 struct FittedPair {
     std::array<PatchHeights, 2> heights;
-    double wrong = 0.0;  ///< as of a patch
+    double wrong = 0.0;  ///< as FittedPatch::wrong
 };
 
-/// Fits walls, or gaps, to columns: inside is what lies between two surfaces, or what does not.
+/// Fits two surfaces to columns: a wall, with the inside between them, or a gap, with the outside between them.
 class PairFitter {
   public:
     /// \param columns  borrowed.
-    /// \param normal  of the planes that heights lie in where no line meets the surface.
-    /// \param walls  by the columns where it is not given.
+    /// \param normal  of the planes that provide heights where no line meets the surface.
+    /// \param walls  chosen by the columns if not given.
     PairFitter(const CellColumns& columns, const ErrorCosts& costs, const glm::dvec3& normal,
                std::optional<bool> walls = {});
 
     [[nodiscard]] bool walls() const { return walls_; }
-    /// No pair has less volume on the wrong side, in cells, times its costs.
+    /// A lower bound of FittedPair::wrong for any pair.
     [[nodiscard]] double least() const { return least_; }
     /// As PatchFitter::fit.
     [[nodiscard]] FittedPair fit(std::uint32_t side, int rounds) const;
@@ -77,39 +77,39 @@ class PairFitter {
     [[nodiscard]] FittedPair fitOf(int rounds) const;
 
     const CellColumns& columns_;
-    ErrorCosts costs_;  // of what lies between
+    ErrorCosts costs_;  // of the space between the surfaces
     glm::dvec3 normal_;
     bool walls_ = true;
     double least_ = 0.0;
     std::array<HeightTargets, 2> targets_;
-    std::vector<std::uint32_t> without_;  // lines on which nothing lies between
+    std::vector<std::uint32_t> without_;  // lines with nothing between the surfaces
 };
 
 /// Fits patches of several sizes to the same columns.
 class PatchFitter {
   public:
     /// \param columns  borrowed.
-    /// \param mean  the plane that heights lie in where no line meets the surface.
-    /// \param outside_below  by the columns where it is not given.
+    /// \param mean  the plane that provides heights where no line meets the surface.
+    /// \param outside_below  chosen by the columns if not given.
     PatchFitter(const CellColumns& columns, const ErrorCosts& costs, const CellPlane& mean,
                 std::optional<bool> outside_below = {});
 
     [[nodiscard]] bool outsideBelow() const { return outside_below_; }
     /// \param side  2, 3 or 5 heights.
-    /// \param rounds  of least squares, each with weights from the one before that turn it into least absolute error.
+    /// \param rounds  of iteratively reweighted least squares, which approximates the least absolute error.
     [[nodiscard]] FittedPatch fit(std::uint32_t side, int rounds) const;
     /// The volume that is inside, in cells.
     [[nodiscard]] double insideVolume() const { return inside_volume_; }
 
   private:
-    /// \param by_error  the length on the wrong side is the error, as far as that is in the cube.
+    /// \param by_error  set if the misclassified length equals the height error within the cube.
     [[nodiscard]] HeightTarget targetOf(const CellColumn& column, bool& by_error) const;
     template <std::size_t kSide>
     [[nodiscard]] FittedPatch fitOf(int rounds) const;
-    /// The volume on the wrong side among some heights.
+    /// The misclassified volume for given heights.
     template <std::size_t kSide>
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;
-    /// Of the lines without turns.
+    /// Sets the targets of lines without turns.
     void aimAtEnds();
 
     const CellColumns& columns_;
@@ -117,8 +117,8 @@ class PatchFitter {
     CellPlane mean_;
     bool outside_below_ = false;
     HeightTargets targets_;
-    std::vector<float> by_error_;              // 0 of the lines below, else 1; none where there are none
-    std::vector<std::uint32_t> not_by_error_;  // targetOf()
+    std::vector<float> by_error_;  // per line: 0 if in not_by_error_, else 1; empty if that is empty
+    std::vector<std::uint32_t> not_by_error_;  // lines for which targetOf() clears by_error
     double inside_volume_ = 0.0;
 };
 

@@ -22,53 +22,55 @@
 namespace relief {
 namespace {
 
-/// A tree gives up at most this fraction of its bytes for depth planes (depth_planes.h).
+/// A tree spends at most this fraction of its bytes on depth planes (depth_planes.h).
 constexpr double kDepthShareMost = 0.45;
-/// The same as kSpare of a tree that depth planes follow, which fill what it leaves.
+/// kSpare for a tree that is followed by depth planes, which fill the unused bytes.
 constexpr double kSpareForDepth = 3e-3;
-/// The worth of a byte that is left when the tree is chosen.
+/// The worth of a byte that is unused once the tree is chosen, relative to other bytes.
 constexpr double kSpareByte = 0.25;
-/// A root for each so many bytes.
+/// Minimum bytes per root.
 constexpr double kBytesPerRoot = 168.4;
-/// PatchOptions::trial_bytes counts times how much 5² heights mend 3², within these: where the surface is smooth, a patch
-/// alone gets far, and eight of them cost more.
+/// PatchOptions::trial_bytes is multiplied by the ratio of the errors with 3² heights to those with 5², clamped to this
+/// range. On a smooth surface, more heights in one patch help a lot, and eight patches cost more.
 constexpr double kMendedLeast = 1.2;
 constexpr double kMendedMost = 2.5;
 constexpr std::uint32_t kLevels = 10;
 constexpr int kSteps = 60;
-/// Of the time.
+/// Fraction of the time spent on the search.
 constexpr double kSearchShare = 0.7;
 constexpr int kNarrowings = 12;
-/// Of the bytes: a tree that leaves less is large enough.
+/// A tree is large enough if it leaves less than this fraction of the bytes unused.
 constexpr double kSpare = 3e-4;
-/// The same of a curve, so that it does not end long before.
+/// The same for a curve, so that it does not end long before the limit.
 constexpr double kSpareOfCurve = 0.3;
-/// Minimum factor of a byte's worth from one tree to the next smaller one.
+/// Minimum factor by which the worth of a byte grows to reach the next smaller tree.
 constexpr double kDearer = 1.05;
-/// Cells that a tree may look at for each of its bytes, a few times what it takes. Where a byte is worth next to nothing, as
-/// among flat faces, trees are larger without end.
+/// Maximum number of cells visited per byte, a few times the number used. If a byte is worth almost nothing, as among
+/// flat faces, trees would grow without limit.
 constexpr double kCellsPerByte = 0.6;
-/// The least worth of a byte below a root with a flat face, in its area times its length. A cube, seen by it, is off by some 1e-6 of its
-/// side on average; a curved mesh of many triangles is not held back by it at any usual size.
+/// Minimum worth of a byte below a root with a flat face, in units of the face's area times its length. At this limit,
+/// the mean error of a cube is about 1e-6 of its side. Curved meshes of many triangles are not affected at any usual
+/// size.
 constexpr double kLeastByte = 2.5e-12;
-/// Cells do not end in the planes of even numbers, in which models have walls.
+/// Keeps cell boundaries off the planes of even numbers, where models have walls.
 constexpr double kBesideMesh = 1.01;
 constexpr double kBesideRoots = 1.00137;
 constexpr glm::dvec3 kOriginShift{0.4171, 0.5337,
-                                  0.4623};  // of the room that whole roots leave, on the low side
+                                  0.4623};  // fraction of the slack of whole roots on the low side
 
-/// By texel: roots, at most, but where the levels below them are too few.
+/// By texel: maximum number of roots, unless that would take too many levels.
 constexpr double kRootsMost = 64.0;
-/// The side of the finest cells, in texels: what is two of them thick then has two surfaces in most, and three cells at most.
+/// Side of the finest cells, in texels. A feature two texels thick then has two surfaces in most cells, and spans at
+/// most three.
 constexpr double kTexelsPerCell = 2.0;
-/// A leaf holds the surface within this share of the texel.
+/// A leaf represents the surface within this fraction of the texel.
 constexpr double kHeldWithin = 0.25;
-/// The worth of a byte in a cell that is split no further, in texels.
+/// The worth of a byte in a cell that is split no further, in texels cubed.
 constexpr double kByteOfTexel = 0.005;
-/// From the origin to the farthest place: there a sixteenth of a texel is a step of a float.
+/// Maximum distance from the origin, in texels: a float resolves a sixteenth of a texel there.
 constexpr double kTexelsMost = 1 << 20;
 constexpr int kTexelNarrowings = 3;
-/// Of a tree that is to be cut, the share of its roots' records, at most.
+/// If a tree is to be cut, the maximum fraction of its bytes in the records of its roots.
 constexpr double kRootsShare = 1.0 / 16.0;
 constexpr std::size_t kManyTriangles = 256;
 
@@ -133,7 +135,7 @@ class Planner {
         }
     }
 
-    /// Of roots of this size, along each axis.
+    /// Returns the number of roots of a given size along each axis.
     [[nodiscard]] glm::dvec3 rootsOf(double size) const {
         const glm::dvec3 room = glm::dvec3(held_.size()) / size * kBesideRoots;
         return glm::max(glm::ceil(room), glm::dvec3(1.0));
@@ -193,9 +195,9 @@ class Planner {
         });
     }
 
-    /// Misclassified volume, object units cubed, that a byte has to save below a root; infinity without triangles. A root and all
-    /// below it have one such worth: with one for each cell, a split that finds what the lines of its cell missed does not pay if
-    /// it also splits a flat face.
+    /// Minimum misclassified volume, object units cubed, that a byte must save below a root; infinity without
+    /// triangles. The value is shared by a root and all its descendants. With a value per cell, a split that finds
+    /// errors missed by the lines of its cell would not pay off if it also splits a flat face.
     [[nodiscard]] double leastByte(const MeshCell& cell) const {
         double least = std::numeric_limits<double>::infinity();
         for (const std::uint32_t triangle : cell.triangles) {
@@ -226,10 +228,10 @@ class Planner {
         }
     }
 
-    /// The cheapest tree below a node where a byte is worth so much wrong volume.
+    /// Chooses the cheapest tree below a node if a byte is worth `byte` of misclassified volume.
     void choose(PatchNode& node, double byte, std::uint32_t level) {
         if (static_cast<double>(++looked_at_) > kCellsPerByte * bytes_) {
-            return;  // chooseAll() discards it all
+            return;  // chooseAll() discards the result
         }
         fitter_.tryWorth(node, byte);
         node.chooseLeaf(byte);
@@ -252,7 +254,7 @@ class Planner {
         }
     }
 
-    /// \return the bytes of the whole tree; infinity of one that is far too large.
+    /// \return the bytes of the whole tree, or infinity if it is far too large.
     double chooseAll(double byte) {
         looked_at_ = 0;
         all_least_ = true;
@@ -276,19 +278,20 @@ class Planner {
         return taken_;
     }
 
-    /// Of the map of all that is chosen.
+    /// Bytes of the map of the chosen tree.
     /// \param planes  bytes of depth planes.
     [[nodiscard]] double takenBytes(double planes = 0.0) const {
         double texels = 1.0 + static_cast<double>(nodes_.size()) + planes / kPatchTexelBytes;
         for (const PatchNode& node : nodes_) {
-            // A root has a record in any case.
+            // A root always has a record.
             texels += std::max(0.0, node.bytes / kPatchTexelBytes - 1.0);
         }
         const PatchMapSize size = patchMapSize(static_cast<std::size_t>(texels));
         return kPatchTexelBytes * size.width * size.height;
     }
 
-    /// Worths of a byte, and what their trees take: one that fits, and one that does not; `cheap` 0: none.
+    /// A bracket of the worth of a byte, with the bytes of the trees: `dear` fits, `cheap` does not; `cheap` is 0 if
+    /// all fit.
     struct ByteRange {
         double dear = 0.0;
         double taken_dear = 0.0;
@@ -296,7 +299,7 @@ class Planner {
         double taken_cheap = 0.0;
     };
 
-    /// Plans larger and larger trees, up to one that does not fit, is without errors, or gains too little by more bytes.
+    /// Plans ever larger trees until one does not fit, has no errors, or gains too little from more bytes.
     ByteRange descend() {
         double byte = 1e-3 * static_cast<double>(roots_.size * roots_.size * roots_.size);
         ByteRange range{.dear = byte};
@@ -307,7 +310,7 @@ class Planner {
             if (!(wrong_ > 0.0) || all_least_) {
                 return range;
             }
-            // Bytes go by about the square root of their worth.
+            // The size is roughly proportional to 1/√(worth of a byte).
             const double share = taken / bytes_;
             byte *= std::clamp(share * share, 1.0 / 16.0, 0.8);
             taken = chooseAll(byte);
@@ -325,7 +328,7 @@ class Planner {
         depth_planes_.take(spareBytes());
     }
 
-    /// Bytes that the tree leaves, less a row of texels, which a map fills up.
+    /// Unused bytes of the tree, less one row of texels for the padding of the map.
     [[nodiscard]] double spareBytes() const {
         const double all = static_cast<double>(options_.bytes);
         const PatchMapSize size = patchMapSize(static_cast<std::size_t>(all / kPatchTexelBytes));
@@ -333,10 +336,10 @@ class Planner {
     }
 
     /// Shrinks the tree if depth planes are worth more than its last bytes.
-    /// \param byte  the worth of a byte that the tree was chosen by.
-    /// \return that of the tree that is left.
+    /// \param byte  the worth of a byte for which the tree was chosen.
+    /// \return the worth of a byte for the remaining tree.
     double leaveForDepth(double byte) {
-        findDepthPlanes(kSpareByte * byte);  // takeDepthPlanes() needs those, too
+        findDepthPlanes(kSpareByte * byte);  // takeDepthPlanes() also needs these
         const double wanted = depth_planes_.bytesWorth(byte);
         if (takenBytes(wanted) <= bytes_) {
             return byte;
@@ -356,7 +359,7 @@ class Planner {
         return byte;
     }
 
-    /// Searches for the lowest worth of a byte whose tree fits, and chooses that tree.
+    /// Finds the lowest worth of a byte whose tree fits, and chooses that tree.
     /// \param spare  fraction of the bytes that the tree may leave unused.
     /// \return the worth of a byte.
     double narrow(ByteRange range, double spare) {
@@ -379,16 +382,16 @@ class Planner {
         return range.dear;
     }
 
-    /// Splits what does not hold the surface down to the cells of the texel.
+    /// Splits cells that do not represent the surface, down to the cell size of the texel.
     void refine(PatchNode& node, std::uint32_t levels) {
         if (texels_ > texels_most_) {
-            return;  // planTexel() discards it all
+            return;  // planTexel() discards the result
         }
         const bool held = fitter_.hold(node, kHeldWithin * texel_, byteOfTexel());
         if (!held && levels > 0) {
             if (node.cell.triangles.size() >= kManyTriangles) {
                 report(kSearchShare *
-                       rootsDone());  // often enough for what ends it, where all is in one root
+                       rootsDone());  // frequent enough to cancel if all triangles are in one root
             }
             makeChildren(node);
             node.split = true;
@@ -406,14 +409,14 @@ class Planner {
         }
     }
 
-    /// Misclassified volume that a byte is worth in a tree by texel; 0 in one by bytes.
+    /// Misclassified volume that a byte is worth in a tree by texel; 0 in a tree by bytes.
     [[nodiscard]] double byteOfTexel() const { return kByteOfTexel * texel_ * texel_ * texel_; }
 
     [[nodiscard]] double rootsDone() const {
         return static_cast<double>(roots_done_) / static_cast<double>(nodes_.size());
     }
 
-    /// Sums up the children of a split node, which is none where they are all alike.
+    /// Sums up the children of a split node. Merges them if all are equal and have no record.
     static void gather(PatchNode& node) {
         node.bytes = kPatchTexelBytes;
         node.wrong = 0.0;
@@ -455,8 +458,8 @@ class Planner {
         return texels_ <= texels_most_ && takenBytes() <= bytes_;
     }
 
-    /// Takes the cells below the roots for roots, as long as these are a small share of the tree.
-    /// \return whether it still fits; or it is of no use any more.
+    /// Replaces the roots with their children while the records of the roots are a small fraction of the tree.
+    /// \return whether the tree still fits; if not, it must be discarded.
     bool splitRoots() {
         while (levels_ > 0 &&
                8.0 * kPatchTexelBytes * static_cast<double>(nodes_.size()) <= kRootsShare * takenBytes()) {
@@ -490,7 +493,8 @@ class Planner {
         return true;
     }
 
-    /// The texel, or where that takes too many bytes the finest that does not, within an eighth of an octave.
+    /// Plans with the given texel. If it takes too many bytes, finds the finest texel that fits, within an eighth of an
+    /// octave.
     Result<void> searchTexel() {
         const double finest = farthest() / kTexelsMost;
         if (options_.texel < finest) {
@@ -524,7 +528,7 @@ class Planner {
         return {};
     }
 
-    /// Of the mesh from the origin, along an axis.
+    /// The largest distance of the mesh from the origin along an axis.
     [[nodiscard]] double farthest() const {
         const Bounds& bounds = query_.mesh().bounds;
         const glm::vec3 far = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
@@ -534,7 +538,7 @@ class Planner {
     const MeshQuery& query_;
     std::vector<FlatFace> faces_;  // per triangle
     const PatchOptions& options_;
-    Bounds held_;  // of the mesh, and of what the roots are to hold beside it
+    Bounds held_;  // of the mesh and PatchOptions::roots_hold
     double bytes_;
     LeafFitter fitter_;
     PatchRoots roots_;
@@ -542,14 +546,14 @@ class Planner {
     std::vector<double> root_bytes_;  // leastByte() of each
     DepthPlaneChoice depth_planes_;
     double wrong_ = 0.0;
-    double taken_ = 0.0;  // bytes of the tree tried last
+    double taken_ = 0.0;  // bytes of the last tree tried
     std::vector<ErrorPoint> tried_;
     std::atomic<std::size_t> looked_at_ = 0;
     std::atomic<bool> all_least_ =
-        false;                  // in the tree tried last, a byte was worth its least below each root
-    double texel_ = 0.0;        // that the nodes were chosen by
-    std::uint32_t levels_ = 0;  // below the roots, by texel
-    std::atomic<std::uint64_t> texels_ = 0;  // of leaves so far, by texel
+        false;                  // the last tree tried used the minimum worth of a byte below each root
+    double texel_ = 0.0;        // of the chosen nodes
+    std::uint32_t levels_ = 0;  // below the roots, for a tree by texel
+    std::atomic<std::uint64_t> texels_ = 0;  // of the leaves so far, for a tree by texel
     std::uint64_t texels_most_ = 0;
     std::atomic<std::size_t> roots_done_ = 0;
     mutable std::mutex report_;

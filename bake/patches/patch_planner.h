@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of patches: which cells are split, and how many heights each leaf has, within a number of bytes by what a byte more
-// would mend there, or by the texel that is wanted everywhere.
+// Plans a tree of patches: which cells are split, and how many heights each leaf has. Minimizes the errors within a
+// number of bytes, or reaches a uniform texel size.
 #pragma once
 
 #include <cstdint>
@@ -17,46 +17,49 @@
 namespace relief {
 
 struct PatchOptions {
-    /// kPatchBytesMin to kPatchBytesMax; of a tree by texel the most that it may take.
+    /// From kPatchBytesMin to kPatchBytesMax. The limit of a tree by texel.
     std::uint64_t bytes = 1'000'000;
-    /// Object units; above 0 it decides in place of the bytes: a cell is split as long as its patch is off by more than a quarter
-    /// of the texel, and its side is longer than two of them.
+    /// Object units. If above 0, it determines the tree instead of the bytes: a cell is split while the error of its
+    /// patch exceeds a quarter of the texel and its side is longer than two texels.
     double texel = 0.0;
-    bool coarsen = false;                ///< where that takes more bytes, a texel is taken that does not
-    std::optional<Bounds> roots_hold{};  ///< object units: a box that the roots hold beside the mesh
-    /// A tree by texel that takes more has small roots, so that it can be cut into tiles of this size (patch_tiles.h); one by
-    /// bytes always has.
+    bool coarsen = false;  ///< if the tree exceeds the bytes, uses a larger texel
+    std::optional<Bounds>
+        roots_hold{};  ///< object units: a box that the roots contain in addition to the mesh
+    /// A tree by texel that exceeds this size has small roots, so that it can be cut into tiles of this size
+    /// (patch_tiles.h). A tree by bytes always has small roots.
     std::uint64_t tile_bytes = PatchTileOptions().bytes;
     ErrorCosts costs{};
     LeafLines lines{};
-    /// A leaf is split on trial where it has more errors than so many bytes are worth: fewer find more, in more time.
+    /// A leaf is split on trial if its errors exceed the worth of this many bytes. Lower values find better trees and
+    /// take longer.
     double trial_bytes = 45.0;
-    /// Called now and then, from any thread but from one at a time, with the share of the work done; what it throws ends it.
+    /// Called periodically, from any thread but one at a time, with the fraction of the work done. Its exceptions end
+    /// the bake and propagate.
     std::function<void(double)> progress{};
 };
 
 struct PatchTree {
     DepthMap map;        ///< of MapFormat::kPatches
-    double texel = 0.0;  ///< object units: that of the options or, coarsened, a larger one; 0: by bytes
+    double texel = 0.0;  ///< object units: the option's, or a larger one if coarsened; 0: by bytes
 };
 
-/// A tree by bytes.
+/// The size of a tree and its errors.
 struct ErrorPoint {
     double bytes = 0.0;
-    double wrong = 0.0;  ///< its errors: volume, object units cubed, times its costs
+    double wrong = 0.0;  ///< its errors: weighted volume, object units cubed
 
     bool operator==(const ErrorPoint&) const = default;
 };
-/// By bytes; each tree is larger and has fewer errors than the one before.
+/// Sorted by bytes; each tree is larger and has fewer errors than the previous one.
 using ErrorCurve = std::vector<ErrorPoint>;
 
-/// Trees that bakePatches() tries on the way to the one that it takes, some of them too large: a curve for the time of a plan
-/// without its encoding. The same for any number of threads.
-/// \param options  whose texel is 0.
+/// Returns the sizes and errors of the trees that bakePatches() tries, including some that are too large. Takes as long
+/// as a bake without its encoding. The result does not depend on the number of threads.
+/// \param options  `texel` must be 0.
 [[nodiscard]] ErrorCurve planErrors(const MeshQuery& query, const PatchOptions& options);
 
-/// The same for any number of threads.
-/// Errors: kUsage (a texel that floats do not resolve), kLimit (one that takes more bytes, without `coarsen`).
+/// Bakes a mesh into a tree of patches. The result does not depend on the number of threads.
+/// Errors: kUsage (a texel too fine for floats), kLimit (the texel exceeds the bytes, and `coarsen` is false).
 [[nodiscard]] Result<PatchTree> bakePatches(const MeshQuery& query, const PatchOptions& options);
 
 }  // namespace relief

@@ -10,14 +10,14 @@
 namespace relief {
 namespace {
 
-/// Along the side of a tile, without those beyond.
+/// Minimum number of roots along the side of a tile, without the extra ones.
 constexpr std::uint32_t kRootsLeast = 4;
 
 std::uint32_t childCount(const PatchRecord& split) {
     return static_cast<std::uint32_t>(std::popcount(split.children()));
 }
 
-/// Texels of a leaf beside its record.
+/// Texels of a leaf in addition to its record.
 std::uint32_t leafTexels(PatchTexels texels, const PatchRecord& leaf) {
     if (leaf.kind() != PatchRecord::Kind::kPatch) {
         return 0;
@@ -34,7 +34,7 @@ PatchRecord leadingTo(PatchRecord record, std::uint32_t first) {
     return record;
 }
 
-/// In the order of encodePatches().
+/// Copies roots and their descendants in the order of encodePatches().
 class Copier {
   public:
     explicit Copier(PatchTexels from) : from_(from) {}
@@ -62,7 +62,7 @@ class Copier {
   private:
     static bool isSplit(const PatchRecord& record) { return record.kind() == PatchRecord::Kind::kSplit; }
 
-    /// Records level by level.
+    /// Collects the records level by level.
     void gather(const glm::uvec3& first, const glm::uvec3& count) {
         const glm::uvec3 roots = patchTreeSize(from_).roots;
         for (std::uint32_t z = first.z; z < first.z + count.z; ++z) {
@@ -87,7 +87,7 @@ class Copier {
     }
 
     PatchRecord copyPatch(const PatchRecord& record, std::uint32_t to) {
-        // That of 2² heights, or of a cell without a surface, holds all in itself.
+        // A record of 2² heights, or of a cell without a surface, needs no other texels.
         const std::uint32_t heights = leafTexels(from_, record);
         for (std::uint32_t k = 0; k < heights; ++k) {
             texels_[to + k] = patchTexel(from_, record.first() + k);
@@ -106,8 +106,8 @@ class Copier {
     }
 
     PatchTexels from_;
-    std::vector<PatchRecord> records_;     // as they are in the whole
-    std::vector<std::uint32_t> leads_to_;  // the first texel of each, in the copy
+    std::vector<PatchRecord> records_;     // copied from the whole tree
+    std::vector<std::uint32_t> leads_to_;  // index of the first texel of each record, in the copy
     std::uint32_t levels_ = 0;
     std::vector<PatchRecord> texels_;
 };
@@ -151,7 +151,7 @@ class Cutter {
     }
 
   private:
-    /// All texels that a record leads to, and theirs.
+    /// All texels that a record refers to, recursively.
     [[nodiscard]] std::uint32_t texelsBelow(const PatchRecord& record) const {
         if (record.kind() != PatchRecord::Kind::kSplit) {
             return leafTexels(whole_.texels, record);
@@ -215,8 +215,8 @@ class Cutter {
     const DepthMap& whole_;
     const PatchTileOptions& options_;
     glm::uvec3 roots_;
-    std::vector<std::uint32_t> below_;  // texels, of each root
-    std::vector<char> outside_;         // 1: so is all of the root
+    std::vector<std::uint32_t> below_;  // texels below each root
+    std::vector<char> outside_;         // 1: the root is entirely outside
 };
 
 }  // namespace

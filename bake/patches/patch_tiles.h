@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of patches cut into tiles: boxes of its roots, as trees of their own.
+// Cuts a tree of patches into tiles: boxes of its roots, each a tree of its own.
 //
 //      roots     0 … 31 32 33 … 63 64 65 … 95
 //      tile 0    |--------|
 //      tile 1           |--------|
 //      tile 2                     |---------|
 //
-// Each tile goes a root beyond its own on the upper sides, so that no point of a seam falls between two by rounding. All its
-// cells are those of the whole tree, bit by bit, and a vote depends on its cell alone: the union of the tiles has the inside of
-// the whole.
+// Each tile extends one root beyond its own roots on the upper sides, so that rounding leaves no gap at a seam. All
+// cells are bit-identical to those of the whole tree, and a vote depends only on its cell. The union of the tiles
+// therefore has the same inside as the whole tree.
 #pragma once
 
 #include <cstdint>
@@ -22,26 +22,28 @@
 namespace relief {
 
 struct PatchTileOptions {
-    std::uint64_t bytes = 4'000'000;                                  ///< that a tile should not pass
-    std::uint64_t total = std::numeric_limits<std::uint64_t>::max();  ///< bytes that all must not pass
-    std::uint32_t most = 64;                                          ///< tiles
+    std::uint64_t bytes = 4'000'000;                                  ///< target size of a tile
+    std::uint64_t total = std::numeric_limits<std::uint64_t>::max();  ///< limit on the bytes of all tiles
+    std::uint32_t most = 64;                                          ///< limit on the number of tiles
 };
 
 struct PatchTile {
-    glm::uvec3 place{0};  ///< in the grid of tiles
-    glm::uvec3 first{0};  ///< root
-    glm::uvec3 own{1};    ///< roots along each axis, without those beyond
+    glm::uvec3 place{0};  ///< position in the grid of tiles
+    glm::uvec3 first{0};  ///< first root
+    glm::uvec3 own{1};    ///< roots along each axis, without the extra ones
     DepthMap map{};
 };
 
-/// Cuts across the longest side of the tiles, again and again, until each is small enough, or what the options or the number
-/// of roots allow ends it. Tiles whose own roots are all outside are left out: points there are far outside of all the others.
+/// Adds cuts across the longest side of the tiles until each is small enough, or a limit of the options or the number of
+/// roots is reached. Omits tiles whose own roots are all outside: their points are far outside of all other tiles.
 /// \param whole  a valid map of patches.
-/// \return x fastest; a single one without a copy of the texels where the tree is not to be cut: it is the whole.
+/// \return the tiles, x fastest. If the tree needs no cut, a single tile without texels: use `whole`.
 [[nodiscard]] std::vector<PatchTile> cutIntoTiles(const DepthMap& whole, const PatchTileOptions& options);
 
-/// Some roots, with all below them. Of all roots of a tree that encodePatches() made: its texels.
-/// \param whole  a valid map of patches. \param count  within its roots.
+/// Returns a tree of some roots with all their descendants. For all roots of a tree from encodePatches(), returns
+/// identical texels.
+/// \param whole  a valid map of patches.
+/// \param count  number of roots along each axis; the range must lie within the roots of `whole`.
 [[nodiscard]] DepthMap cutPatches(const DepthMap& whole, const glm::uvec3& first, const glm::uvec3& count);
 
 }  // namespace relief

@@ -6,13 +6,14 @@
 namespace relief {
 namespace {
 
-/// Triangles of a smaller area, of a side of the cell, have one point each side: 5² heights are a quarter of the cell apart.
+/// Triangles below this area, in cell sides squared, have one point on each side: 5² heights are a quarter of the cell
+/// apart.
 constexpr double kSmallArea = 1.0 / 256.0;
-/// From the middle of a piece to its corners.
+/// Fractions of the way from the center of a piece to its corners.
 constexpr double kNearCorner = 0.97;
 constexpr double kHalfway = 0.5;
 
-/// Heights over (u, v), bilinear.
+/// Bilinear interpolation of heights over (u, v).
 class PatchSurface {
   public:
     explicit PatchSurface(const PatchHeights& heights) : side_(heights.side) { heights.decode(heights_); }
@@ -65,8 +66,8 @@ void SurfaceProbe::add(const glm::dvec3& at, const glm::dvec3& normal, double wi
     }
 }
 
-/// A point is on the side that its triangle has it on, but behind a thin wall, in a narrow gap, or in another solid. A ray
-/// tells, but only where a patch differs.
+/// A point is usually on the side that its triangle implies, except behind a thin wall, in a narrow gap or in another
+/// solid. A ray query decides, but only if the patch disagrees.
 template <class IsInside>
 bool SurfaceProbe::agrees(const IsInside& is_inside) {
     return std::all_of(points_.begin(), points_.end(), [&](Point& point) {

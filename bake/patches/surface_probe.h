@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points beside the surface in a cell, which tell whether a patch holds it.
+// Points near the surface in a cell, which test whether a patch represents it.
 #pragma once
 
 #include <array>
@@ -11,27 +11,28 @@
 
 namespace relief {
 
-/// Lines miss what is thinner than their distance; no triangle is without points.
+/// Tests patches against points beside each triangle. Lines can miss features thinner than their spacing; these points
+/// cannot.
 class SurfaceProbe {
   public:
-    /// \param query  borrowed, as the cell.
-    /// \param triangles  of unitTriangles(), wound outwards.
-    /// \param within  how far from the surface the points lie, in cells.
+    /// \param query, cell  borrowed.
+    /// \param triangles  from unitTriangles(), wound outwards.
+    /// \param within  distance of the points from the surface, in cells.
     SurfaceProbe(const MeshQuery& query, const MeshCell& cell, std::span<const UnitTriangle> triangles,
                  double within);
 
-    /// All points are inside, or outside.
+    /// Whether all points are inside, or all outside.
     [[nodiscard]] bool agreesWithAll(bool inside);
-    /// They are inside where a single surface has them.
+    /// Whether a single surface classifies all points correctly.
     [[nodiscard]] bool agreesWith(const PatchFrame& frame, const PatchHeights& heights, bool outside_below);
-    /// The same of two surfaces, the lower one first. \param walls  inside is between.
+    /// The same for two surfaces, the lower one first. \param walls  the inside is between them.
     [[nodiscard]] bool agreesWith(const PatchFrame& frame, const std::array<PatchHeights, 2>& heights,
                                   bool walls);
 
   private:
     struct Point {
         glm::dvec3 at;  // unit cube
-        bool inside;    // by its triangle alone, until it is known
+        bool inside;    // by its triangle, until `known`
         bool known;
     };
     void add(const glm::dvec3& at, const glm::dvec3& normal, double within);
