@@ -32,7 +32,7 @@ ExrImage AxisGrid::image(double near, const Collider& collider,
     for (const std::string& name : channels) {
         image.channels.push_back({name, std::vector<float>(std::size_t{width} * height)});
     }
-    // A coordinate of object space from 0 to 1 across an extent, in either direction.
+    // Maps a coordinate of object space to [0, 1] across an extent, in either direction.
     const auto row = [](int along, double low, double extent, bool backwards) {
         const double per_length = (backwards ? -1.0 : 1.0) / extent;
         glm::dvec4 of(0.0, 0.0, 0.0, -(backwards ? low + extent : low) * per_length);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture's samples across an axis of object space: the plane of a slice, or the window of an orthographic view.
+// Samples of an image across an axis of object space: the plane of a slice, or the window of an orthographic view.
 //
-// The frame is that of orthographic maps (bake/views/view.h): +y is up; views along ±y have ±z up.
+// The frame is that of orthographic maps (bake/views/view.h): +y is up; for views along ±y, ±z is up.
 //
 //     view            +x    -x    +y    -y    +z    -z
 //     to the right    +z    -z    +x    +x    -x    +x
@@ -22,30 +22,31 @@
 
 namespace relief {
 
-/// Views by direction: 2 · axis, + 1 for the negative direction. Also the order of a cube's faces.
+/// Views by direction: 2 · axis, plus 1 for the negative direction. Also the order of the faces of a cube.
 inline constexpr std::array<const char*, 6> kDirectionNames{"+x", "-x", "+y", "-y", "+z", "-z"};
 
 struct AxisGrid {
     int view = 0;   ///< index of kDirectionNames
-    int right = 2;  ///< axis along the picture's rows, in either direction
+    int right = 2;  ///< axis along the rows of the image, in either direction
     int up = 1;
     std::uint32_t width = 0;  ///< samples
     std::uint32_t height = 0;
     glm::dvec2 corner{
-        0.0};  ///< least coordinates of the area along `right` and `up`, half a sample before the first sample
+        0.0};  ///< minimum coordinates of the area along `right` and `up`, half a sample before the first sample
     double spacing = 1.0;  ///< object units between samples
 
     [[nodiscard]] int axis() const { return view / 2; }
     /// The direction of the view along its axis.
     [[nodiscard]] double sign() const { return view % 2 == 0 ? 1.0 : -1.0; }
-    /// \param x   sample from the left. \param y  from the bottom. \param at  on the axis, object units.
+    /// \param x   sample from the left. \param y  sample from the bottom. \param at  coordinate along the axis, object
+    /// units.
     [[nodiscard]] glm::vec3 point(std::uint32_t x, std::uint32_t y, float at) const;
-    /// The index of that sample in an image, whose first row is the top one.
+    /// The index of a sample in an image whose first row is at the top.
     [[nodiscard]] std::size_t pixel(std::uint32_t x, std::uint32_t y) const {
         return std::size_t{height - 1 - y} * width + x;
     }
-    /// An image of these samples with channels of zeros, its camera and its place as attributes.
-    /// \param near  where the camera is on the axis, object units.
+    /// Returns an image of these samples with all channels zero, and with its camera and position as attributes.
+    /// \param near  position of the camera along the axis, object units.
     [[nodiscard]] ExrImage image(double near, const Collider& collider,
                                  const std::vector<std::string>& channels) const;
 
@@ -54,8 +55,8 @@ struct AxisGrid {
     [[nodiscard]] bool downwards() const { return view == 3; }
 };
 
-/// A grid of square samples, centred on the bounds.
-/// \param size    samples along its longer side; 2 or more.
+/// Makes a grid of square samples, centred on the bounds.
+/// \param size    samples along the longer side; 2 or more.
 /// \param margin  around the bounds, in units of their longer side across the axis.
 /// Errors: kInvalidInput (bounds too large for floats).
 [[nodiscard]] Result<AxisGrid> gridAcross(const Bounds& bounds, int view, std::uint32_t size, double margin);

@@ -11,7 +11,7 @@ Canvas::Canvas(double width, double height, double em)
           &cairo_surface_destroy),
       context_(cairo_create(surface_.get()), &cairo_destroy) {
     cairo_t* const cr = context_.get();
-    // Grey antialiasing without hints: the same glyphs on every screen and machine.
+    // Grey antialiasing without hinting: identical glyphs on every machine.
     cairo_font_options_t* font = cairo_font_options_create();
     cairo_font_options_set_antialias(font, CAIRO_ANTIALIAS_GRAY);
     cairo_font_options_set_hint_style(font, CAIRO_HINT_STYLE_NONE);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture in memory that is drawn on, in pixels from its upper left corner; the only user of Cairo.
+// Draws an image in memory, in pixels from its upper left corner. The only user of Cairo.
 #pragma once
 
 #include <cairo.h>
@@ -19,23 +19,24 @@ namespace relief {
 /// sRGB, each in [0, 1].
 using Color = glm::dvec3;
 
-/// Of text and contours.
+/// Color of text and contours.
 inline constexpr Color kInk{0.13, 0.14, 0.16};
 
 class Canvas {
   public:
-    /// White. \param em  size of its text
+    /// Makes a white image. \param em  size of its text, pixels
     Canvas(double width, double height, double em);
 
     void fill(double x, double y, double width, double height, const Color& color);
-    /// \param x, y  where its base line begins
+    /// \param x, y  start of the baseline
     void text(double x, double y, const std::string& words);
     [[nodiscard]] double textWidth(const std::string& words) const;
     void circle(double x, double y, double radius, double line, const Color& color);
-    /// \param color  of a pixel (column, row) of the image, from its upper left. \param zoom  of each, with sharp edges
+    /// \param color  returns the color of a pixel (column, row), from the upper left.
+    /// \param zoom  pixels per image pixel, with sharp edges
     void image(double x, double y, std::uint32_t width, std::uint32_t height, double zoom,
                const std::function<Color(std::uint32_t, std::uint32_t)>& color);
-    /// Errors: kFailure with Cairo's message.
+    /// Encodes the image. Errors: kFailure with Cairo's message.
     [[nodiscard]] Result<std::vector<std::byte>> png();
 
   private:

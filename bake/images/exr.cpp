@@ -20,7 +20,7 @@ Imath::M44f rowVectorMatrix(const glm::dmat4& m) {
     Imath::M44f out;
     for (int row = 0; row < 4; ++row) {
         for (int column = 0; column < 4; ++column) {
-            // glm's m[column] is a column; OpenEXR multiplies row vectors from the left. + 0: no −0.
+            // glm's m[column] is a column; OpenEXR multiplies row vectors from the left. + 0 avoids −0.
             out[row][column] = static_cast<float>(m[row][column] + 0.0);
         }
     }
@@ -44,7 +44,7 @@ std::vector<std::byte> encode(const ExrImage& image) {
     Imf::FrameBuffer frame_buffer;
     for (const ExrImage::Channel& channel : image.channels) {
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
-        // OpenEXR's interface takes non-const memory for reading and writing alike; it only reads here.
+        // OpenEXR takes non-const memory both for reading and for writing; here it only reads.
         auto* base = const_cast<char*>(reinterpret_cast<const char*>(channel.values.data()));
         frame_buffer.insert(channel.name,
                             Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * image.width));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of floats as OpenEXR files, written; bake/import reads those of heights. The only users of OpenEXR.
+// Writes images of floats as OpenEXR files; bake/import reads heights. The only users of OpenEXR.
 #pragma once
 
 #include <cstddef>
@@ -17,26 +17,26 @@ namespace relief {
 struct ExrImage {
     struct Channel {
         std::string name;           ///< "Z", "N.X", …
-        std::vector<float> values;  ///< width · height, row by row from the image's top
+        std::vector<float> values;  ///< width · height, row by row from the top
     };
     std::uint32_t width = 0;  ///< pixels
     std::uint32_t height = 0;
     std::vector<Channel> channels;
     std::vector<std::pair<std::string, std::string>> attributes;  ///< string attributes: name and text
-    /// For column vectors, as in glm: camera = world_to_camera · (p, 1). Written transposed, as in OpenEXR.
+    /// For column vectors, as in glm: camera = world_to_camera · (p, 1). Stored transposed in OpenEXR.
     std::optional<glm::dmat4> world_to_camera;
     std::optional<glm::dmat4> world_to_ndc;
 
-    /// Camera space of OpenEXR and RenderMan: left-handed, x right, y up, z into the picture, object units. NDC has (0, 0) and
-    /// (1, 1) at the picture's upper left and lower right corners.
-    /// \param x, y, z  rows that carry object space to [0, 1] across the picture, upwards, and from near to far.
-    /// \param scale     object units for one unit of each.
+    /// Sets the camera. Camera space is that of OpenEXR and RenderMan: left-handed, x right, y up, z into the image,
+    /// object units. NDC is (0, 0) and (1, 1) at the upper left and lower right corners of the image.
+    /// \param x, y, z  rows that map object space to [0, 1] across the image, upwards, and from near to far.
+    /// \param scale     object units per unit of each.
     void setOrthographicCamera(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& z,
                                const glm::dvec3& scale);
 };
 
-/// A ZIP-compressed scanline file of 32-bit floats, without a date. Errors: kFailure with OpenEXR's message, kLimit
-/// (out of memory).
+/// Encodes a ZIP-compressed scanline file of 32-bit floats, without a date.
+/// Errors: kFailure with OpenEXR's message, kLimit (out of memory).
 [[nodiscard]] Result<std::vector<std::byte>> encodeExr(const ExrImage& image);
 
 }  // namespace relief

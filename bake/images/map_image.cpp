@@ -10,7 +10,7 @@
 namespace relief {
 namespace {
 
-/// The near plane of a cube face's perspective, in units of the volume.
+/// Near plane of the perspective of a cube's face, in units of the volume.
 constexpr double kNearPlane = 1.0 / 1024.0;
 
 glm::dvec4 row(const Affine& affine, int i) {
@@ -21,7 +21,7 @@ glm::dmat4 fromRows(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& 
     return glm::transpose(glm::dmat4(x, y, z, w));
 }
 
-/// The axes of a face as rows that act on map coordinates.
+/// Sets the camera of a face; its rows are axes in map coordinates.
 void setFaceCamera(const DepthMap& map, std::uint32_t face, ExrImage& image) {
     const auto in_map = [&](const CubeFaceAxes::Axis& axis) {
         return axis.sign * row(map.object_to_map, axis.component);
@@ -37,7 +37,7 @@ void setFaceCamera(const DepthMap& map, std::uint32_t face, ExrImage& image) {
                                   depth - kNearPlane * one, depth);
 }
 
-/// Object units for one unit of depth along the ray of a texel.
+/// Object units per unit of depth along the ray of a texel.
 float objectPerDepth(const DepthMap& map, std::uint32_t face, std::uint32_t x, std::uint32_t y) {
     if (map.projection() == Projection::kOrthographic) {
         return map.object_per_map.z;

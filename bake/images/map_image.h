@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps as images, for `relief export`.
+// Converts maps to images, for `relief export`.
 //
-// Channels Z and N.X N.Y N.Z: the surface of the map, or the front one of a front-back map, with the back one in ZBack and
-// NBack.X NBack.Y NBack.Z. Z is in object units along the ray, from the near plane of an orthographic map or the centre of a
-// cube; +inf, with a zero normal, without a surface. The top row of an orthographic image is the highest y of the map, that
-// of a cube's face is t = 0, as in OpenGL and KTX2. String attributes repeat this, with format, projection, compare and face.
-// Patches have no view of their own; view_image.h draws them.
+// Channels Z and N.X N.Y N.Z contain the surface of the map, or the front surface of a front-back map. ZBack and
+// NBack.X NBack.Y NBack.Z contain the back surface. Z is in object units along the ray, from the near plane of an
+// orthographic map or from the centre of a cube. It is +inf, with a zero normal, if there is no surface. The top row is
+// the highest y of an orthographic map, and t = 0 of a cube's face, as in OpenGL and KTX2. String attributes document
+// this, with format, projection, compare and face. Patches have no view of their own; view_image.h draws them.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,9 @@ namespace relief {
 /// "map0_front-back.exr", "map3_cube_+x.exr"
 [[nodiscard]] std::string mapImageName(const DepthMap& map, std::size_t index, std::uint32_t face);
 
-/// \param map   not of patches. \param face  < map.faceCount()
-/// \param unit  of lengths, for an attribute; "" if not known.
+/// Converts one face of a map.
+/// \param map   any format except patches. \param face  < map.faceCount()
+/// \param unit  of lengths, for an attribute; "" if unknown.
 [[nodiscard]] ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& unit);
 
 }  // namespace relief

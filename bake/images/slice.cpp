@@ -11,7 +11,7 @@
 namespace relief {
 namespace {
 
-constexpr double kMargin = 0.1;  // round the bounds, in units of their longer side in the plane
+constexpr double kMargin = 0.1;  // around the bounds, in units of their longer side in the plane
 
 }  // namespace
 
@@ -24,7 +24,7 @@ Result<Slice> evaluateSlice(const Collider& collider, const SliceOptions& option
         return fail(ErrorCode::kLimit, "--size is " + std::to_string(options.size) + "; the limit is " +
                                            std::to_string(kSliceSizeMax));
     }
-    // These views have their axes along the picture's.
+    // The axes of these views match those of the image.
     const int view = options.axis == 2 ? 5 : 2 * options.axis;
     Slice slice{RELIEF_TRY(gridAcross(collider.bounds, view, options.size, kMargin))};
     slice.at = options.at.value_or(collider.bounds.center()[options.axis]);

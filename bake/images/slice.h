@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The combined field of a collider on a plane across an axis.
+// The combined field of a collider on a plane perpendicular to an axis.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,16 @@ namespace relief {
 inline constexpr std::uint32_t kSliceSizeMax = 8192;  ///< samples along the longer side
 
 struct SliceOptions {
-    int axis = 2;              ///< 0, 1, 2: the plane is across x, y, z
+    int axis = 2;              ///< 0, 1, 2: the plane is perpendicular to x, y, z
     std::optional<float> at;   ///< object units along the axis; nullopt: the middle of the bounds
     std::uint32_t size = 512;  ///< samples along the longer side
 };
 
-/// Samples on a regular grid that covers the bounds and a tenth of their longer side around them.
-/// The axes run to the right and upwards: (z, y) across x, (x, z) across y, (x, y) across z.
+/// Samples on a regular grid that covers the bounds plus a tenth of their longer side on each side. The horizontal and
+/// vertical axes are (z, y) across x, (x, z) across y, and (x, y) across z.
 struct Slice : AxisGrid {
     float at = 0.0F;                     ///< object units
-    std::vector<FieldSample> samples{};  ///< row by row from the lowest
+    std::vector<FieldSample> samples{};  ///< row by row from the bottom
 
     [[nodiscard]] glm::vec3 point(std::uint32_t x, std::uint32_t y) const {
         return AxisGrid::point(x, y, at);
@@ -36,7 +36,7 @@ struct Slice : AxisGrid {
     }
 };
 
-/// Errors: kUsage and kLimit (size), kInvalidInput (bounds too large for floats).
+/// Evaluates the field on a plane. Errors: kUsage and kLimit (size), kInvalidInput (bounds too large for floats).
 [[nodiscard]] Result<Slice> evaluateSlice(const Collider& collider, const SliceOptions& options);
 
 struct SliceFigureOptions {
@@ -44,12 +44,12 @@ struct SliceFigureOptions {
     std::string unit;  ///< of lengths: "m", or "" for object units
 };
 
-/// A PNG: the signed distance in false colours, the surface, a colour bar and a legend. The same slice gives the same
-/// bytes. Errors: kFailure with Cairo's message.
+/// Draws a PNG: the signed distance in false colours, the surface, a colour bar and a legend. Equal slices give
+/// identical bytes. Errors: kFailure with Cairo's message.
 [[nodiscard]] Result<std::vector<std::byte>> drawSlice(const Slice& slice, const SliceFigureOptions& options);
 
-/// The signed distances in the channel "distance": +inf where only the side is known (outside), NaN where no map votes. Axes
-/// and extent are the figure's.
+/// Returns the signed distances in the channel "distance": +inf where only the side is known (outside), NaN where no
+/// map votes. The axes and the extent match drawSlice().
 [[nodiscard]] ExrImage distanceImage(const Slice& slice, const Collider& collider);
 
 [[nodiscard]] constexpr char axisName(int axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slice as a figure.
+// Draws a slice as a figure.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,8 +16,8 @@ namespace {
 constexpr Color kFarColor{0.865, 0.87, 0.86};
 constexpr Color kAbstainedColor{0.80, 0.70, 0.82};
 
-/// Blue inside and orange outside, darker with the distance, legible in print and to the colour-blind.
-/// \param u  distance over its largest shown value.
+/// Returns blue inside and orange outside, darker with the distance; legible in print and for colour-blind readers.
+/// \param u  distance divided by the largest distance shown.
 Color distanceColor(double u) {
     const Color light = u < 0.0 ? Color(0.91, 0.95, 1.0) : Color(1.0, 0.95, 0.91);
     const Color middle = u < 0.0 ? Color(0.50, 0.66, 0.87) : Color(0.82, 0.60, 0.43);
@@ -26,7 +26,8 @@ Color distanceColor(double u) {
     return t < 1.0 ? light + t * (middle - light) : middle + (t - 1.0) * (dark - middle);
 }
 
-/// The distance of the strongest colours: the deepest inside; where nothing is, half of the farthest outside.
+/// Returns the distance of the strongest colours: the deepest point inside, or half of the farthest outside if nothing
+/// is inside.
 double colorRange(const Slice& slice) {
     double inside = 0.0;
     double outside = 0.0;
@@ -51,7 +52,7 @@ class Figure {
         height_ = slice.height * zoom_;
         left_ = em_;
         top_ = 3.0 * em_;
-        bar_ = std::max(height_, 12.0 * em_);  // a panel of few rows is lower
+        bar_ = std::max(height_, 12.0 * em_);  // taller than a panel of few rows
         canvas_.emplace(left_ + std::max(width_, 24.0 * em_) + 10.0 * em_, top_ + bar_ + 2.5 * em_, em_);
     }
 
@@ -64,7 +65,7 @@ class Figure {
     }
 
   private:
-    /// The last pixels inside are the contour.
+    /// The contour consists of the outermost pixels inside.
     [[nodiscard]] Color colorAt(std::uint32_t x, std::uint32_t y) const {
         const FieldSample& sample = slice_.sample(x, y);
         if (sample.map < 0) {
@@ -80,7 +81,7 @@ class Figure {
         return sample.distance < kFarOutside ? distanceColor(sample.distance / range_) : kFarColor;
     }
 
-    /// One pixel per sample.
+    /// One image pixel per sample.
     void drawSamples() {
         canvas_->image(
             left_, top_, slice_.width, slice_.height, zoom_,
@@ -123,7 +124,7 @@ class Figure {
     const Slice& slice_;
     std::string unit_;
     double range_;
-    // Pixels, as is zoom_ of a sample: the size of text, the panel, and its upper left corner.
+    // In pixels, except zoom_ (pixels per sample): size of text, size of the panel, its upper left corner, and the bar.
     double zoom_, em_, width_, height_, left_, top_, bar_;
     std::optional<Canvas> canvas_;
 };

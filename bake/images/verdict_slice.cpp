@@ -14,8 +14,8 @@ namespace relief {
 namespace {
 
 constexpr std::uint32_t kSize = 192;  ///< samples along a side
-constexpr double kZoom = 3.0;         ///< pixels of a sample
-constexpr double kEm = 20.0;          ///< pixels; legible at half the size, as the page shows it
+constexpr double kZoom = 3.0;         ///< pixels per sample
+constexpr double kEm = 20.0;          ///< pixels; legible at half the size, which the page uses
 constexpr double kPanel = kSize * kZoom;
 
 constexpr std::array<std::pair<Color, const char*>, 4> kLegend = {{{{0.66, 0.69, 0.73}, "inside"},
@@ -27,7 +27,7 @@ bool isInside(SideVerdict verdict) {
     return verdict == SideVerdict::kInside || verdict == SideVerdict::kFalseOutside;
 }
 
-/// The last samples that are inside in truth are the contour.
+/// The contour consists of the outermost samples that are inside in truth.
 Color colorAt(const VerdictSlice& slice, std::uint32_t x, std::uint32_t y) {
     const auto outside = [&](std::uint32_t at_x, std::uint32_t at_y) {
         return at_x < slice.size && at_y < slice.size && !isInside(slice.at(at_x, at_y));
@@ -38,7 +38,7 @@ Color colorAt(const VerdictSlice& slice, std::uint32_t x, std::uint32_t y) {
     return contour ? kInk : kLegend[static_cast<std::size_t>(verdict)].first;
 }
 
-/// The largest 1, 2 or 5 times a power of ten that is at most a third of the side.
+/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most a third of the side.
 double scaleOf(double side) {
     const double most = side / 3.0;
     double length = 1.0;
@@ -68,7 +68,7 @@ glm::dvec3 VerdictSlice::point(std::uint32_t x, std::uint32_t y) const {
 
 VerdictSlice verdictSlice(const glm::vec3& center, const glm::vec3& normal, double side) {
     VerdictSlice slice;
-    // Of equals z, then x: planes that have +y upwards.
+    // In a tie, z wins, then x: these planes have +y up.
     slice.axis = 2;
     for (const int axis : {0, 1}) {
         slice.axis = std::abs(normal[axis]) < std::abs(normal[slice.axis]) ? axis : slice.axis;

@@ -15,16 +15,16 @@ namespace relief {
 
 enum class SideVerdict : std::uint8_t { kInside, kOutside, kFalseInside, kFalseOutside };
 
-/// A square of samples across an axis.
+/// A square of samples perpendicular to an axis.
 struct VerdictSlice {
     int axis = 2;
-    /// The axes that run to the right and upwards: (z, y) across x, (x, z) across y, (x, y) across z.
+    /// The horizontal and vertical axes: (z, y) across x, (x, z) across y, (x, y) across z.
     int right = 0;
     int up = 1;
-    glm::vec3 center{0.0F};             ///< the place that it is about
-    double side = 0.0;                  ///< its length along either axis
+    glm::vec3 center{0.0F};             ///< the place of interest
+    double side = 0.0;                  ///< length of a side, object units
     std::uint32_t size = 0;             ///< samples along a side
-    std::vector<SideVerdict> verdicts;  ///< row by row from the lowest
+    std::vector<SideVerdict> verdicts;  ///< row by row from the bottom
 
     [[nodiscard]] glm::dvec3 point(std::uint32_t x, std::uint32_t y) const;
     [[nodiscard]] SideVerdict at(std::uint32_t x, std::uint32_t y) const {
@@ -32,10 +32,11 @@ struct VerdictSlice {
     }
 };
 
-/// Through a place, and across its surface: of the three axes the one that its normal is least along.
+/// Makes a slice through a place and across its surface: perpendicular to the axis that is least along the normal.
 [[nodiscard]] VerdictSlice verdictSlice(const glm::vec3& center, const glm::vec3& normal, double side);
 
-/// A PNG: the verdicts, the true surface, a ring round the place, a scale and a legend. The same slice gives the same bytes.
+/// Draws a PNG: the verdicts, the true surface, a ring around the place, a scale and a legend. Equal slices give
+/// identical bytes.
 /// \param unit  of lengths: "m", or "" for object units
 /// Errors: kFailure with Cairo's message.
 [[nodiscard]] Result<std::vector<std::byte>> drawVerdicts(const VerdictSlice& slice, const std::string& unit);

@@ -20,15 +20,15 @@ constexpr int kHalvings = 10;
 constexpr double kStepsPerCell = 64.0;
 constexpr double kStepsPerPair = 4.0;
 constexpr double kStepsPerTexel = 8.0;
-constexpr double kTexelsMin = 64.0;  // of a ray, however small the collider
+constexpr double kTexelsMin = 64.0;  // minimum number per ray, no matter how small the collider
 constexpr double kStepsMax = 16384.0;
 
 struct Hit {
-    float at = kInfinity;  ///< on the axis
+    float at = kInfinity;  ///< coordinate along the axis
     glm::vec3 normal{0.0F};
 };
 
-/// Rays along an axis, in one direction.
+/// Traces rays along an axis, in one direction.
 class Rays {
   public:
     Rays(const Collider& collider, const Bounds& box, int axis, double sign)
@@ -40,7 +40,7 @@ class Rays {
           texel_(std::min(double{finestTexel(collider)}, length_ / kTexelsMin)),
           least_(std::max(texel_ / kStepsPerTexel, length_ / kStepsMax)) {}
 
-    /// \param p  its coordinate along the axis does not count.
+    /// \param p  its coordinate along the axis is ignored.
     [[nodiscard]] std::optional<Hit> first(const glm::vec3& p) const {
         double outer = 0.0;
         for (double t = 0.0;;) {
@@ -64,11 +64,11 @@ class Rays {
     }
 
   private:
-    /// How far a ray may go from a point. Lengths are object units.
+    /// The length that a ray may advance from a point, object units.
     struct Reach {
-        double end = std::numeric_limits<double>::max();  ///< of the cells and squares that the point is in
-        double least = 0.0;                               ///< the shortest step there
-        bool outside = false;                             ///< nothing before `end` is inside
+        double end = std::numeric_limits<double>::max();  ///< of the cells and squares that contain the point
+        double least = 0.0;                               ///< minimum step
+        bool outside = false;                             ///< no point before `end` is inside
         bool in_tree = false;
     };
 
@@ -77,11 +77,11 @@ class Rays {
         return p;
     }
 
-    /// A cell without a patch is all on one side, and one map that sees a point outside decides.
+    /// A cell without a patch is entirely on one side. A single map that sees a point outside decides the vote.
     [[nodiscard]] Reach reachAt(const glm::vec3& p) const {
         Reach reach;
         if (collider_.maps.size() > 1) {
-            reach.end = texel_;  // the votes of several maps together may change sign anywhere
+            reach.end = texel_;  // the combined vote of several maps may change sign anywhere
         }
         for (const DepthMap& map : collider_.maps) {
             const std::optional<PatchLeaf> leaf = leafAt(map, p);
@@ -90,7 +90,7 @@ class Rays {
                 continue;
             }
             const double length = double{leaf->cell} * double{map.object_per_map.x};
-            glm::dvec3 way(0.0);  // in cells, for the length of one
+            glm::dvec3 way(0.0);  // one cell length along the ray, in cells
             for (int i = 0; i < 3; ++i) {
                 way[i] = sign_ * double{map.object_to_map.row[i][axis_]} * double{map.object_per_map.x};
             }
@@ -109,11 +109,12 @@ class Rays {
                             length * toBorder(squares * from, squares * (frame.across(at + way) - from), 2));
                     }
                 }
-                // Within squares, the first surface on the ray is no nearer than the distance, or the square ends behind it.
+                // Within a square, the first surface on the ray is no nearer than the distance, or it lies beyond
+                // the square.
                 reach.end = pair ? std::min(reach.end, length / kStepsPerPair) : reach.end;
                 reach.least = length / kStepsPerCell;
             }
-            // A child without a record is an eighth of the record's cell.
+            // The cell of a child without a record is an octant of the record's cell.
             const double parts = leaf->beside ? 2.0 : 1.0;
             const double end = length * toBorder(parts * at, parts * way, 3);
             if (!leaf->inside && leaf->record.kind() != PatchRecord::Kind::kPatch) {
@@ -125,7 +126,7 @@ class Rays {
         return reach;
     }
 
-    /// The time until the first of some coordinates reaches the next whole number.
+    /// Returns the parameter at which the first of several coordinates reaches the next integer.
     [[nodiscard]] static double toBorder(const glm::dvec3& at, const glm::dvec3& speed, int coordinates) {
         double time = std::numeric_limits<double>::max();
         for (int i = 0; i < coordinates; ++i) {
@@ -151,7 +152,7 @@ class Rays {
         return patchLeafAt(map.texels, in_map);
     }
 
-    /// \param inner  inside, as nothing before `outer` is.
+    /// \param inner  a parameter that is inside; nothing before `outer` is.
     [[nodiscard]] Hit between(const glm::vec3& p, double outer, double inner) const {
         for (int i = 0; i < kHalvings && outer < inner; ++i) {
             const double middle = 0.5 * (outer + inner);
@@ -172,7 +173,7 @@ class Rays {
     double from_;
     double length_;
     double texel_;
-    double least_;  ///< step
+    double least_;  ///< minimum step
 };
 
 Result<ExrImage> drawView(const Collider& collider, int view, std::uint32_t size) {

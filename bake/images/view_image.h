@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orthographic views of a collider's field, for `relief export` of patches, which have no view of their own.
+// Draws orthographic views of a collider's field, for `relief export` of patches, which have no view of their own.
 //
-// Rays sample the field that particles collide with, within the box of the bounds and of all that is inside (solidBox). Channels
-// of 32-bit floats:
+// Rays sample the field that particles collide with, within a box around the bounds and the inside of the collider
+// (solidBox). Channels of 32-bit floats:
 //
 //     depth.front    object units along the view, from the near face of the bounds to the first surface
 //     depth.back     the same to the last surface
 //     normal.X/Y/Z   of the field at the first surface: unit length, object space, outwards
 //
-// Depths are +inf and the normal is zero if the ray meets no surface. A depth is negative if the surface lies before the near
-// face. The top row is the highest of the frame (axis_grid.h). If the inside reaches the end of the box, the surface is there, and
-// its normal points to the viewer.
+// Depths are +inf and the normal is zero if the ray hits no surface. A depth is negative if the surface lies before the
+// near face. The top row is the highest of the frame (axis_grid.h). If the inside extends to the end of the box, the
+// surface is there, and its normal points to the viewer.
 #pragma once
 
 #include <cstdint>
@@ -28,12 +28,15 @@ inline constexpr std::uint32_t kViewSizeMax = 4096;
 /// "view_+x.exr"
 [[nodiscard]] std::string viewImageName(int view);
 
-/// A view of the bounds. Depths are exact to 1/1024 of a step of the ray, which is at most a patch's cell beside a surface.
-/// A wall or a gap may be missed if it is thinner, along the ray, than 1/64 of its cell plus 1/8 of the finest texel (finestTexel;
-/// or 1/16384 of the ray); plus 1/4 of its cell between the two surfaces of a pair of patches; plus the finest texel if the collider
-/// has several maps.
+/// Draws a view of the bounds. Depths are exact to 1/1024 of a step of the ray, which is at most a cell of a patch near
+/// a surface.
+///
+/// A wall or a gap may be missed if its thickness along the ray is below 1/64 of its cell plus 1/8 of the finest texel
+/// (finestTexel; or 1/16384 of the ray). Between the two surfaces of a pair of patches, 1/4 of the cell is added to
+/// this limit. If the collider has several maps, the finest texel is added.
+///
 /// The result does not depend on the number of threads.
-/// \param view  index of kDirectionNames. \param size  texels along the longer side; kViewSizeMin … kViewSizeMax.
+/// \param view  index of kDirectionNames. \param size  texels along the longer side; kViewSizeMin to kViewSizeMax.
 /// Errors: kInvalidInput (bounds or maps too large for floats), kLimit (out of memory).
 [[nodiscard]] Result<ExrImage> viewImage(const Collider& collider, int view, std::uint32_t size);
 

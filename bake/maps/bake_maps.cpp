@@ -34,11 +34,11 @@ namespace {
 
 /// Texels between two calls of the progress function.
 constexpr std::uint64_t kStripeTexels = std::uint64_t{1} << 20;
-/// Texels that one task traces and then encodes: few, so that their hits stay in the cache and cost no fresh
-/// pages (a first touch of 12 MB takes 8 ms).
+/// Texels that a task traces and then encodes: few enough that their hits stay in the cache and need no new pages (the
+/// first touch of 12 MB takes 8 ms).
 constexpr std::uint64_t kBlockTexels = std::uint64_t{1} << 13;
 
-/// Triangles, times maps, that are begun at the same time.
+/// Limit on triangles times maps in progress at the same time.
 constexpr std::size_t kTrianglesAtOnce = std::size_t{1} << 21;
 
 /// In units of the longest side.
@@ -48,15 +48,15 @@ struct Job {
     MapSpec spec;  // complete
     View view;
     bool compare_was_given;
-    bool centre_inside = false;  // of a given compare
+    bool centre_inside = false;  // for a given compare
 
     [[nodiscard]] std::uint64_t texels() const {
         return std::uint64_t{view.faceCount()} * view.width * view.height;
     }
 };
 
-/// Finds out whether the centre of a cube that keeps the nearest surface is inside, or nearer to the surface than floats can
-/// be trusted to tell its sides.
+/// Determines whether the centre of a cube that keeps the nearest surface is inside, or too near to the surface for
+/// floats to tell its sides apart.
 Result<void> examineCentre(const PreparedMesh& mesh, Job& job) {
     if (job.view.projection() == Projection::kCube && job.view.compare == Compare::kLess) {
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(mesh));
@@ -134,7 +134,7 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
     }
 }
 
-/// Cost of the error that --prefer is against, of patches.
+/// Weight of the error that --prefer avoids, for patches.
 constexpr double kPreferredCost = 8.0;
 
 FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const BakeOptions& bake) {
@@ -144,7 +144,7 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     options.samples = quality == Quality::kFast ? 1 : quality == Quality::kNormal ? 4 : 6;
     options.refinements = quality == Quality::kFast ? 0 : 3;
     options.reach = 0.02 * side;
-    // A hundredth of a texel: far below what any texel can resolve.
+    // A hundredth of a texel, which no texel can resolve.
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
     options.cautious = bake.prefer == Prefer::kInside;
     options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
@@ -169,12 +169,12 @@ PatchOptions patchOptions(const BakeOptions& bake, const MapSpec& spec) {
     return options;
 }
 
-/// Bakes maps of surfaces at the texels' centres.
+/// Bakes maps that store the surface at the centre of each texel.
 class MapBaker {
   public:
     MapBaker(const RayScene& scene, const NormalTable& normals) : scene_(scene), normals_(normals) {}
 
-    /// \param stripeDone  called with the number of texels finished.
+    /// \param stripeDone  called with the number of finished texels.
     /// \param scan  of the view.
     DepthMap bake(const View& view, const ScanConverter& scan, BakeReport& report, std::uint64_t& covered,
                   const std::function<void(std::uint64_t)>& stripeDone) const {
@@ -194,7 +194,7 @@ class MapBaker {
     }
 
   private:
-    /// What a thread keeps from one block of rows to the next.
+    /// Buffers and totals of a thread.
     struct Worker {
         std::vector<Hit> hits[2];
         std::uint64_t covered = 0;
@@ -228,7 +228,7 @@ class MapBaker {
             all.trace_ms += worker.trace_ms;
             all.encode_ms += worker.encode_ms;
         }
-        // The threads' times, scaled to the time that passed.
+        // Times of the threads, scaled to elapsed time.
         const double share = stripe_ms / std::max(all.trace_ms + all.encode_ms, 1e-9);
         report.trace_ms += share * all.trace_ms;
         report.encode_ms += share * all.encode_ms;
@@ -325,7 +325,7 @@ class Bake {
                                                       : Kind::kSurfaces;
     }
 
-    /// Maps that are begun at the same time, at most: each takes about eighty bytes a triangle meanwhile.
+    /// Maximum number of maps in progress at the same time: each temporarily needs about 80 bytes per triangle.
     [[nodiscard]] std::ptrdiff_t atOnce() const {
         return std::max<std::ptrdiff_t>(
             1, static_cast<std::ptrdiff_t>(kTrianglesAtOnce /
@@ -349,7 +349,7 @@ class Bake {
         }
     }
 
-    /// Where one map's work runs out, the next one's has begun.
+    /// Fits the maps in parallel, so that idle threads start on the next map.
     void fitMaps(const RayScene& scene, const TriangleNormals& normals, std::span<const Job> jobs) {
         struct Fitted {
             DepthMap map;
@@ -408,7 +408,7 @@ class Bake {
         return {};
     }
 
-    /// Object units.
+    /// In object units.
     [[nodiscard]] double finestTexel() const {
         double finest = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < jobs_.size(); ++i) {
@@ -446,10 +446,10 @@ Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options) {
 
 namespace {
 
-/// Measured: a house at (4e5, 0, 8e5) m, a ball there.
+/// Measured with a house at (4e5, 0, 8e5) m and a ball there.
 constexpr double kWrongPerStep = 0.1;
 
-/// The largest magnitude of a coordinate of the mesh's box.
+/// Returns the largest magnitude of a coordinate of the mesh's bounds.
 float farthestOf(const TriangleMesh& mesh) {
     const glm::vec3 corner = glm::max(glm::abs(mesh.bounds.min), glm::abs(mesh.bounds.max));
     return std::max({corner.x, corner.y, corner.z});

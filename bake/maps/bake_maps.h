@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pipeline: mesh -> views -> samples -> texels -> collider.
+// Bakes a mesh into a collider: mesh -> views -> samples -> texels -> collider.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,16 @@ namespace relief {
 
 struct BakeOptions {
     std::vector<MapSpec> maps;       ///< empty: paperMapSpecs()
-    std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec names no size
+    std::uint32_t resolution = 512;  ///< texels along a side, for maps whose spec has no size
     Quality quality = Quality::kNormal;
     Prefer prefer = Prefer::kNeither;
-    std::uint64_t budget = 0;  ///< of patches, bytes, to be recorded; 0: none
-    float texel = 0.0F;        ///< of patches for a budget, object units: MapSpec::texel; 0: by the budget
+    std::uint64_t budget = 0;  ///< of patches, bytes, recorded in the collider; 0: none
+    float texel =
+        0.0F;  ///< of patches baked for a budget, object units: MapSpec::texel; 0: limited by the budget
     std::optional<Bounds> roots_hold{};  ///< PatchOptions::roots_hold
-    unsigned threads = 0;                ///< 0: all cores. Never changes the result.
-    /// Called now and then, from any thread but from one at a time, with the share of the work done, in [0, 1]. It may throw:
-    /// what it throws comes out of bake(), and ends it.
+    unsigned threads = 0;                ///< 0: all cores; the result does not depend on it
+    /// Called periodically, from any thread but one at a time, with the fraction of the work done, in [0, 1]. Its
+    /// exceptions end bake() and propagate.
     std::function<void(double)> progress;
 };
 
@@ -41,9 +42,9 @@ struct BakeReport {
     double build_ms = 0.0;   ///< acceleration structure
     double trace_ms = 0.0;   ///< rays
     double encode_ms = 0.0;  ///< normals and texels
-    double fit_ms = 0.0;     ///< rays and planes of the maps whose decode is plane, and patches
+    double fit_ms = 0.0;     ///< rays and planes of maps whose decode is plane, and patches
     std::vector<MapReport> maps;
-    std::vector<std::string> warnings;  ///< what is probably not meant; one line each
+    std::vector<std::string> warnings;  ///< probable mistakes in the options; one line each
 };
 
 struct Baked {
@@ -51,21 +52,23 @@ struct Baked {
     BakeReport report;
 };
 
-/// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of
-/// any map meets the mesh).
+/// Bakes the maps of a mesh.
+/// Errors: kUsage and kLimit (a spec, the resolution, too many maps or texels), kFailure (Embree; no ray of any map
+/// hits the mesh).
 [[nodiscard]] Result<Baked> bake(const PreparedMesh& mesh, const BakeOptions& options);
 
-/// A line for a mesh more than 1000 times its size away from the origin; nullopt for others.
+/// Returns a warning if a mesh is more than 1000 times its size away from the origin, else nullopt.
 [[nodiscard]] std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh);
-/// About the share of points near the surface that are on the wrong side because floats are coarse there, whatever the maps are:
-/// by the step of floats at the farthest corner, in standard deviations of the points' distance. Percent, up to 50.
+/// Estimates the percentage of points near the surface that are misclassified only because floats are coarse at the
+/// mesh, regardless of the maps. Based on the spacing of floats at the farthest corner, in standard deviations of the
+/// points' distance. At most 50.
 [[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
-/// At least half of the percentage is due to floats: more bytes do not help.
+/// Whether floats cause at least half of the percentage: more bytes do not help.
 [[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {
     return 2.0 * wrongByFloats(mesh) > wrong_percent;
 }
 
-/// The errors of patches against their bytes (planErrors).
+/// Returns the errors of trees of patches by their bytes (see planErrors in patch_planner.h).
 /// \param bytes  of the largest tree, kPatchBytesMin to kPatchBytesMax.
 /// Errors: kFailure (Embree).
 [[nodiscard]] Result<ErrorCurve> planErrors(const PreparedMesh& mesh, const BakeOptions& options,

@@ -28,7 +28,7 @@ std::string percentText(double percent) {
     return text;
 }
 
-/// Too few bytes for the maps that the mesh needs, or to see any of it: no answer yet.
+/// The budget is too small for the maps of the mesh, or for any ray to hit it: try a larger one.
 bool isTooFew(const Error& error) {
     return error.code == ErrorCode::kUsage || error.code == ErrorCode::kFailure;
 }
@@ -72,7 +72,7 @@ class Search {
     }
 
   private:
-    /// Bakes with this budget; what keeps the promise is kept as the best so far.
+    /// Bakes with this budget. Stores the result as the best so far if it meets the error limit.
     Result<bool> keeps(std::uint64_t budget) {
         Baked baked = RELIEF_TRY(bakePatchesWithin(query_, budget, options_.bake));
         const double wrong = measureField(truth_, fieldOf(baked.collider)).near.total();

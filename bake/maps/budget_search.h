@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Patches for a budget of bytes, and the least budget that keeps a promise: bakes at growing numbers of bytes until few enough
-// points near the surface are on the wrong side, then narrows the last step down.
+// Bakes patches for a budget of bytes, and finds the smallest budget that meets an error limit. The search increases
+// the budget until few enough points near the surface are misclassified, then bisects the last step.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ namespace relief {
 
 inline constexpr std::uint64_t kBudgetMin = 4096;  ///< bytes
 
-/// A tree of patches.
-/// \param budget_bytes  at least kBudgetMin; 0: none, where options.texel decides
-/// \param options  its maps and budget do not count
+/// Bakes a tree of patches.
+/// \param budget_bytes  at least kBudgetMin; 0: none, limited by options.texel
+/// \param options  its maps and budget are ignored
 /// Errors: kUsage (below kBudgetMin), those of bake.
 [[nodiscard]] Result<Baked> bakePatchesWithin(const MeshQuery& query, std::uint64_t budget_bytes,
                                               BakeOptions options);
@@ -27,7 +27,7 @@ inline constexpr std::uint64_t kBudgetMin = 4096;  ///< bytes
 struct BudgetTry {
     std::uint64_t budget = 0;    ///< bytes
     std::uint64_t bytes = 0;     ///< on the GPU, at most the budget
-    double wrong_percent = 0.0;  ///< of the points near the surface (FieldAccuracy::near)
+    double wrong_percent = 0.0;  ///< misclassified points near the surface (FieldAccuracy::near)
 };
 
 void fields(FieldVisitor& visit, const BudgetTry& made);
@@ -36,25 +36,26 @@ struct BudgetSearchOptions {
     double max_error_percent = 1.0;
     std::uint64_t budget_min = 32'000;      ///< bytes; lowered to budget_max
     std::uint64_t budget_max = 64'000'000;  ///< bytes
-    BakeOptions bake;                       ///< its maps do not count
-    /// Fewer samples than `relief check` takes, whose noise (0.04 percent of deviation where 1 % is wrong) is
-    /// below what one more step would tell apart.
+    BakeOptions bake;                       ///< its maps are ignored
+    /// Fewer samples than `relief check` uses. The noise (a standard deviation of 0.04 percentage points at 1 %) is
+    /// below the resolution of another bisection.
     AccuracyOptions accuracy{.samples = 50'000};
-    /// Called after each try.
+    /// Called after each attempt.
     std::function<void(const BudgetTry&)> tried;
 };
 
 struct BudgetSearchResult {
     Baked baked;
     BudgetTry chosen;
-    std::vector<BudgetTry> tries;  ///< in the order they were made
+    std::vector<BudgetTry> tries;  ///< in the order of the attempts
 };
 
-/// Budgets grow fourfold; four bisections of the last step's logarithm then leave the budget at most 1.1
-/// times what the promise needs (as far as more bytes mean fewer wrong points). Truth is sampled once. The same for any number of
-/// threads. Errors: kDifference (not reached: the message names the best), those of bakePatchesWithin.
-/// \param query  of the mesh that is baked, its holes closed or not.
-/// \param truth  of the mesh that the points are measured against, as `relief check` does: with its holes.
+/// Finds the smallest budget that meets the error limit. Budgets grow by factors of four; four bisections of the
+/// logarithm then leave the budget at most 1.1 times the minimum, as far as more bytes mean fewer misclassified points.
+/// Truth is sampled once. The result does not depend on the number of threads.
+/// Errors: kDifference (limit not reached; the message names the best result), those of bakePatchesWithin.
+/// \param query  of the mesh to bake, with holes closed or open.
+/// \param truth  of the mesh to measure against, with its holes open, as in `relief check`.
 [[nodiscard]] Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery& truth,
                                                       const BudgetSearchOptions& options);
 

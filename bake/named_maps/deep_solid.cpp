@@ -6,12 +6,12 @@
 namespace relief {
 namespace {
 
-/// A line, in texels from the texel's centre; off the lines of any grid that texels may be aligned to.
+/// A line, in texels from the centre of the texel; off any grid with which texels may be aligned.
 struct Place {
     double x;
     double y;
-    /// In diagonals: a ball of one diagonal about any point of the texel holds at least this much of the line to either
-    /// side, as the point is at most √(1 − half_chord²) diagonals off the line.
+    /// In diagonals: a ball of one diagonal around any point of the texel contains at least this much of the line on
+    /// each side, because the point is at most √(1 − half_chord²) diagonals from the line.
     double half_chord;
 };
 constexpr std::array<Place, 5> kPlaces = {{{0.0131, -0.0173, 0.84},
@@ -52,10 +52,10 @@ void DeepSolid::narrow() {
     any_known_ = true;
     both_.clear();
     const bool cube = map_.projection() == Projection::kCube;
-    // Both lists are in order.
+    // Both lists are sorted.
     auto other = spans_.begin();
     for (LineSpan span : of_line_) {
-        // The diagonal of a cube's texel grows with the depth.
+        // In a cube, the diagonal of a texel grows with the depth.
         if (cube) {
             span = {std::max(span.begin, 0.0) / std::max(1.0 - shrunk, 1e-3), span.end / (1.0 + shrunk)};
         } else {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deep solid: points around which the texel's whole cross-section is solid, and which no plane may cut.
+// Deep solid: points around which the whole cross-section of the texel is solid. No plane may cut them.
 //
-// The rays of a footprint end at the surface. A steep plane reaches far deeper without any ray to show it. So a few lines
-// along the texel are intersected. A ball about a point deeper than the texel's diagonal holds the cross-section of the texel there:
+// The rays of a footprint end at the surface. A steep plane reaches far deeper, where no ray detects what it cuts. This
+// test therefore intersects a few lines along the texel with the solid. A ball with the radius of the texel's diagonal
+// covers the texel's cross-section:
 //
-//     |‾‾|‾‾‾‾‾‾|‾‾|      where one of the lines is outside for some way before and behind P's depth, P is not deep and may
-//     |  |  .P  |  |      be cut for the sake of the points near the surface
+//     |‾‾|‾‾‾‾‾‾|‾‾|      If one of the lines is outside for some length before and behind P's depth, P is not
+//     |  |  .P  |  |      deep, and may be cut to improve the points near the surface.
 //     |__|______|__|
 #pragma once
 
@@ -21,7 +22,7 @@
 
 namespace relief {
 
-/// For one texel of a map after the other. Lines are traced on demand. Not thread-safe.
+/// Tests planes for one texel at a time. Traces lines on demand. Not thread-safe.
 class DeepSolid {
   public:
     /// \param query, map  borrowed; must outlive it.
@@ -33,9 +34,9 @@ class DeepSolid {
         known_ = false;
     }
 
-    /// The half-space n·(P − O) ≥ offset, with O at depth 0 of the texel's centre ray, may hold a point of the texel deeper in
-    /// the solid than the texel's diagonal there. False positives are rare, false negatives impossible but for open meshes,
-    /// whose lines do not balance.
+    /// Returns whether the half-space n·(P − O) ≥ offset, with O at depth 0 of the texel's centre ray, may contain deep
+    /// solid: a point of the texel that is deeper in the solid than the texel's diagonal at that depth. False positives
+    /// are rare. False negatives occur only for open meshes, where lines enter and leave unequally often.
     [[nodiscard]] bool cutBy(const glm::dvec3& normal, double offset);
 
   private:
@@ -46,26 +47,26 @@ class DeepSolid {
 
     /// Sets up the lines of texel_.
     void place();
-    /// Along the corners, a half-space holds points up to a depth, or from a depth on.
+    /// The depths of a half-space on the corner rays: up to a depth, or from a depth on.
     struct Reach {
         double up_to;
         double from;
     };
     [[nodiscard]] Reach reachOf(const glm::dvec3& normal, double offset);
-    /// Intersects spans_ with what is deep by the next line.
+    /// Intersects spans_ with the deep spans of the next line.
     void narrow();
 
     const MeshQuery& query_;
     const DepthMap& map_;
     std::size_t texel_ = 0;
-    bool known_ = false;  // the members below are of texel_
+    bool known_ = false;  // the members below are valid for texel_
     std::array<TexelRay, kLines> lines_;
     std::array<TexelRay, kCorners> corners_;
     TexelRay centre_;
-    double diagonal_ = 0.0;  // of the cross-section, in units of depth, at depth 1
-    std::size_t asked_ = 0;  // lines
+    double diagonal_ = 0.0;  // of the cross-section at depth 1, in units of depth
+    std::size_t asked_ = 0;  // number of lines traced
     bool any_known_ = false;
-    std::vector<LineSpan> spans_;  // may be deep
+    std::vector<LineSpan> spans_;  // candidates for deep solid
     std::vector<LineSpan> of_line_;
     std::vector<LineSpan> both_;
 };

@@ -15,7 +15,7 @@ glm::vec3 outwardNormal(const TriangleMesh& mesh, std::uint32_t triangle, bool f
     return (from_behind ? -normal : normal) + 0.0F;  // + 0: no −0 in the output
 }
 
-/// Turns the hits of one end into surfaces.
+/// Converts the hits of one end to surfaces.
 class SurfaceEncoder {
   public:
     SurfaceEncoder(const RayScene& scene, const NormalTable& normals, const View& view, RayEnd end)
@@ -57,7 +57,7 @@ class SurfaceEncoder {
     std::uint32_t triangle_ = 0xffffffff;  // none yet
     bool from_behind_ = false;
     glm::vec3 normal_{0.0F};  // only for float maps
-    NormalIndex index_;       // only for the others
+    NormalIndex index_;       // only for other formats
 };
 
 }  // namespace
@@ -84,7 +84,7 @@ std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, cons
                          DepthMap& map) {
     SurfaceEncoder near_encoder(scene, normals, view, RayEnd::kNear);
     SurfaceEncoder far_encoder(scene, normals, view, RayEnd::kFar);
-    // A map of the far end alone stores it as its one surface.
+    // A map of only the far end stores it as its single surface.
     const bool only_far = view.compare == Compare::kGreater;
     std::uint64_t covered = 0;
     for (std::uint32_t y = rows.begin; y != rows.end; ++y) {
@@ -95,7 +95,7 @@ std::uint64_t encodeRows(const RayScene& scene, const NormalTable& normals, cons
             const std::optional<IndexedSurface> far_surface =
                 far_hits.empty() ? std::nullopt : far_encoder.encode(far_hits[row + x]);
             if (!near_surface && !far_surface && map.format != MapFormat::kFloat32) {
-                continue;  // the bytes are zero already
+                continue;  // the bytes are already zero
             }
             encodeTexel(map.format, only_far ? far_surface : near_surface, far_surface,
                         map.texelAt(rows.face, x, y));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One end of a view for the fits of its texels (plane_fit.h), seen from where its rays start.
+// One end of a view for fitting its texels (plane_fit.h), seen from the start of its rays.
 #pragma once
 
 #include <algorithm>
@@ -14,17 +14,17 @@ namespace relief {
 
 struct FittedMapOptions {
     std::uint32_t samples =
-        4;                ///< rays along each side of a texel's footprint, at the centres of as many parts
+        4;                ///< rays along each side of a texel's footprint, at the centres of equal parts
     int refinements = 3;  ///< rounds of search among neighbouring normals
-    /// Object units. Free space behind a plane counts up to this length along a ray; a point farther off is hardly ever
-    /// looked up in this texel alone.
+    /// Object units. Free space behind a plane counts up to this length along a ray; points farther away are rarely
+    /// looked up only in this texel.
     double reach = 1.0;
     double good_enough =
-        0.0;  ///< mean free space behind a plane that is not improved any further, object units
-    /// Surface points half a sample beyond the texel may not lie in front of its plane either: half as many points are
-    /// outside by error, and half as many again inside.
+        0.0;  ///< a plane with less mean free space behind it is not improved further, object units
+    /// If true, surface points up to half a sample beyond the texel may not lie in front of its plane either. This
+    /// halves the points that are wrongly outside, and adds half as many again that are wrongly inside.
     bool cautious = false;
-    double let_back = 0.0;  ///< as PlaneFitOptions::let_back
+    double let_back = 0.0;  ///< PlaneFitOptions::let_back
 };
 
 /// The ring of texels that stays empty (depth_map.h).
@@ -33,7 +33,7 @@ struct FittedMapOptions {
            (x == 0 || y == 0 || x + 1 == view.width || y + 1 == view.height);
 }
 
-/// The settings of fits that follow from a view and the options of its map.
+/// Derives the settings of fits from a view and the options of its map.
 [[nodiscard]] inline PlaneFitOptions fitOptions(const View& view, const FittedMapOptions& map) {
     const double unit = view.depthUnit();
     PlaneFitOptions fit;
@@ -49,23 +49,23 @@ struct FittedMapOptions {
     return fit;
 }
 
-/// u grows away from the viewer.
+/// Maps depths to u, which grows away from the viewer.
 class EndView {
   public:
     EndView(const View& view, RayEnd end)
         : far_(end == RayEnd::kFar),
           u_max_(view.projection() == Projection::kCube ? double{kCubeDepthMax} : 1.0) {}
 
-    /// A ray that meets nothing.
+    /// Returns a ray without a hit.
     [[nodiscard]] FootprintRay fromViewer(const TexelRay& ray) const {
         return far_ ? FootprintRay{ray.origin + u_max_ * ray.direction, -ray.direction, -1.0, glm::dvec3(0.0)}
                     : FootprintRay{ray.origin, ray.direction, -1.0, glm::dvec3(0.0)};
     }
     [[nodiscard]] double uOf(double depth) const { return far_ ? u_max_ - depth : depth; }
 
-    /// As a texel stores it; half-float depths are rounded to the viewer's side.
+    /// Returns the plane as a texel stores it; half-float depths are rounded towards the viewer.
     [[nodiscard]] Surface surfaceOf(const FittedPlane& plane, MapFormat format) const {
-        // Exact in double: both have the same 65534 steps.
+        // Exact in double precision: both use the same 65534 steps.
         constexpr double kCodes = kDepthSteps;
         const double code = plane.code;
         const double depth = (far_ ? kCodes - code : code) / kCodes * u_max_;

@@ -21,13 +21,14 @@
 namespace relief {
 namespace {
 
-/// Rows of rays per task, about, and rays, at most: few enough for their hits to stay in the core's cache.
+/// Approximate number of rows of rays per task, and maximum number of rays: few enough for their hits to stay in the
+/// core's cache.
 constexpr std::uint32_t kTaskRows = 32;
 constexpr std::uint32_t kTaskRays = 1 << 18;
-/// Resolution of edges of surfaces between two rays of a footprint; odd.
+/// Steps between two rays of a footprint when locating the edge of a surface; odd.
 constexpr std::uint32_t kEdgeParts = 63;
 
-/// The rays of View::ray(), from tables for orthographic views.
+/// Provides View::ray(), from tables for orthographic views.
 class RayGrid {
   public:
     explicit RayGrid(const View& view) : view_(view) {
@@ -53,7 +54,7 @@ class RayGrid {
     std::vector<glm::dvec3> rows_;
 };
 
-/// Fits the texels of one end, from the hits of a view with `samples` times as many texels each way.
+/// Fits the texels of one end, from the hits of a view with `samples` times as many texels along each side.
 class EndFitter {
   public:
     EndFitter(const RayScene& scene, const DepthMap& map, const TriangleNormals& normals, const View& view,
@@ -79,8 +80,9 @@ class EndFitter {
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
-    /// \param hits   in the fine view, from row `first_row` of the face on, including the rows next to the texel's
-    /// \param other  the fitter of the other end, if it has fitted this texel before
+    /// \param hits   of the fine view, from row `first_row` of the face on, including the rows next to those of the
+    /// texel
+    /// \param other  the fitter of the other end, if it has already fitted this texel
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
                                std::span<const Hit> hits, const EndFitter* other = nullptr) {
         const Footprint here{face, x, y, first_row, hits};
@@ -111,7 +113,8 @@ class EndFitter {
         }
         const TexelRay centre = view_.ray(face, x, y);
         deep_.setTexel((std::size_t{face} * view_.height + y) * view_.width + x);
-        // For a single ray no plane is better than the one that it meets: facing the viewer would cut more of a slope.
+        // For a single ray, the plane that it hits is the best one: a plane facing the viewer would cut more of a
+        // slope.
         const std::optional<FittedPlane> plane = fitSupportingPlane(
             rays_, [&] { return lookAround(here); }, edge_, end_.fromViewer(centre), centre.origin, fit_,
             samples_ > 1 || !starts_free_ || may_start_inside_ ? &deep_ : nullptr);
@@ -128,7 +131,7 @@ class EndFitter {
         std::span<const Hit> hits;
     };
 
-    /// The normals of a following texel, which are scattered in memory.
+    /// Prefetches the normals of a later texel, which are scattered in memory.
     void prefetch(const Footprint& here) const {
         constexpr std::uint32_t kAhead = 2;
         const std::uint32_t column = (here.x + kAhead) * samples_;
@@ -154,12 +157,12 @@ class EndFitter {
         return footprintRay(fine_rays_.at(here.face, column, row), here.hits[indexOf(here, column, row)]);
     }
 
-    /// The ray of a hit started in the solid.
+    /// Whether the ray of a hit started in the solid.
     [[nodiscard]] bool startsInside(const Hit& hit) const {
         return (!starts_free_ || may_start_inside_) && hit.fromBehind() != inside_out_;
     }
 
-    /// The texel of a cube whose rays start in the solid: a plane through its centre.
+    /// Returns a plane through the centre, for a texel of a cube whose rays start in the solid.
     [[nodiscard]] Surface allInside(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
         const glm::dvec3 direction = view_.ray(face, x, y).direction;
         return {0.0F, glm::vec3(direction / -length(direction))};
@@ -169,7 +172,7 @@ class EndFitter {
         return std::size_t{row - here.first_row} * fine_.width + column;
     }
 
-    /// Calls visit(column, row) for the rays of a footprint and the ring around it, within the face.
+    /// Calls visit(column, row) for the rays of a footprint and the surrounding ring, within the face.
     template <class Visit>
     void forEachAround(const Footprint& here, const Visit& visit) const {
         const auto bounds = [&](std::uint32_t texel, std::uint32_t size) {
@@ -189,7 +192,7 @@ class EndFitter {
         return row / samples_ == here.y && column / samples_ == here.x;
     }
 
-    /// Any, and all, of the rays of a footprint and the ring around it meet a surface.
+    /// Whether any ray, and whether every ray, of a footprint and the surrounding ring hits a surface.
     [[nodiscard]] std::pair<bool, bool> hitsOf(const Footprint& here) const {
         bool any = false;
         bool all = true;
@@ -212,8 +215,8 @@ class EndFitter {
         return around_;
     }
 
-    /// Finds edges of surfaces in the texel: between neighbouring rays of which one misses, the last ray with a hit. One of
-    /// the two may be of the ring, for walls up to an eighth of a texel inside the border.
+    /// Finds the edges of surfaces in the texel: between neighbouring rays of which only one hits, the last ray with a
+    /// hit. One of the two may belong to the ring, for walls up to an eighth of a texel inside the border.
     void findEdge(const Footprint& here) {
         forEachAround(here, [&](std::uint32_t column, std::uint32_t row) {
             for (const auto& [right, up] : {std::pair{1U, 0U}, std::pair{0U, 1U}}) {
@@ -243,7 +246,7 @@ class EndFitter {
         if (meets == !here.hits[indexOf(here, column + right, row + up)].empty()) {
             return;
         }
-        // In the finest grid: an odd number of parts has one at the centre of each sample.
+        // In the finest grid. An odd number of parts has one at the centre of each sample.
         std::uint32_t on[2] = {column * kEdgeParts + kEdgeParts / 2, row * kEdgeParts + kEdgeParts / 2};
         std::uint32_t off[2] = {on[0] + right * kEdgeParts, on[1] + up * kEdgeParts};
         if (!meets) {
@@ -277,15 +280,15 @@ class EndFitter {
     bool inside_out_;
     bool may_start_inside_;
     bool starts_free_;
-    bool shares_edges_;  // all rays of both ends start in free space, so that both ends meet the same edges
+    bool shares_edges_;  // all rays of both ends start in free space, so both ends hit the same edges
     PlaneFitOptions fit_;
     std::vector<FootprintRay> rays_;
     std::vector<FootprintRay> around_;
-    std::vector<EdgeRay> found_;  // of the current texel, by findEdge()
+    std::vector<EdgeRay> found_;  // by findEdge() for the current texel
     std::vector<FootprintRay> edge_;
 };
 
-/// Fits all texels of a map, a few rows a task.
+/// Fits all texels of a map, a few rows per task.
 class MapFitter {
   public:
     MapFitter(const RayScene& scene, const TriangleNormals& normals, const View& view,
@@ -325,20 +328,20 @@ class MapFitter {
     }
 
   private:
-    /// Per thread.
+    /// Per-thread buffers.
     struct Worker {
         explicit Worker(const MapFitter& map)
             : near_fitter(map.fitter(RayEnd::kNear)), far_fitter(map.fitter(RayEnd::kFar)) {}
         EndFitter near_fitter;
         EndFitter far_fitter;
         std::array<std::vector<Hit>, 2> hits;  // by RayEnd
-        std::vector<std::uint8_t> busy;        // by column of texels: a ray in or beside it has a hit
+        std::vector<std::uint8_t> busy;        // by column of texels: a ray in or beside the column has a hit
     };
     [[nodiscard]] EndFitter fitter(RayEnd end) const {
         return {scene_, map_, normals_, view_, fine_rays_, finest_, end, options_};
     }
 
-    /// Skips columns without hits: between parts that lie far apart most texels are empty.
+    /// Marks the columns with hits: most texels between distant parts are empty.
     void findBusy(Worker& worker) const {
         worker.busy.assign(view_.width, 0);
         for (const std::vector<Hit>& hits : worker.hits) {
@@ -361,7 +364,7 @@ class MapFitter {
 
     /// \return the number of texels with a surface.
     std::uint64_t fitRows(const RowRange& rows, Worker& worker) {
-        // One more row on either side, for the rings around the texels.
+        // One more row on each side, for the rings around the texels.
         const RowRange rays{rows.face, rows.begin * options_.samples - (rows.begin > 0 ? 1 : 0),
                             std::min(rows.end * options_.samples + 1, fine_.height)};
         for (const RayEnd end : {RayEnd::kNear, RayEnd::kFar}) {
@@ -400,9 +403,9 @@ class MapFitter {
     const RayScene& scene_;
     const TriangleNormals& normals_;
     const View& view_;
-    View fine_;  // a texel per ray of a footprint
+    View fine_;  // one texel per ray of a footprint
     RayGrid fine_rays_;
-    View finest_;  // and per place of an edge between two rays
+    View finest_;  // one texel per step of an edge between two rays
     const FittedMapOptions& options_;
     DepthMap map_;
     ScanConverter scan_;  // of fine_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map of supporting planes (plane_fit.h): traces the footprint of every texel and fits a plane to it.
+// Bakes a map of supporting planes (plane_fit.h): traces the footprint of every texel and fits a plane to it.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// The unit normals of all triangles, for the fits of all maps.
+/// The unit normals of all triangles, shared by the fits of all maps.
 class TriangleNormals {
   public:
     explicit TriangleNormals(const TriangleMesh& mesh);
@@ -24,9 +24,9 @@ class TriangleNormals {
     std::vector<glm::dvec3> normals_;
 };
 
-/// Bakes one map with Decode::kPlane, on all cores of the current arena; the same for any number of them.
-/// \param rowsDone  called with the number of texel rows finished, from several threads at once.
-/// \param covered   out: texels with a surface.
+/// Bakes a map with Decode::kPlane on all cores of the current arena. The result does not depend on their number.
+/// \param rowsDone  called with the number of finished texel rows, from several threads at once.
+/// \param covered   receives the number of texels with a surface.
 [[nodiscard]] DepthMap bakeFittedMap(const RayScene& scene, const TriangleNormals& normals, const View& view,
                                      const FittedMapOptions& options, std::uint64_t& covered,
                                      const std::function<void(std::uint32_t)>& rowsDone);

@@ -10,12 +10,12 @@
 namespace relief {
 namespace {
 
-/// Random points take a dozen exchanges; more mean that rounding makes them cycle.
+/// Random points take about a dozen exchanges; more mean that rounding makes them cycle.
 constexpr int kExchanges = 64;
-/// Rounding, in units of the points' extent.
+/// Tolerance for rounding, in units of the points' extent.
 constexpr double kTiny = 1e-9;
 
-/// Barycentric coordinates of (x, y).
+/// Returns the barycentric coordinates of (x, y).
 std::array<double, 3> weightsOf(const std::array<glm::dvec3, 3>& corners, double x, double y) {
     const glm::dvec3& a = corners[0];
     const glm::dvec3 b = corners[1] - a;
@@ -43,7 +43,7 @@ std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points) {
     if (!(std::min(extent.x, extent.y) > 0.0)) {
         return std::nullopt;
     }
-    // Three auxiliary corners, far out and high up, surely hold the origin; they leave one by one.
+    // Three auxiliary corners, far away and high up, contain the origin; they are replaced one by one.
     const double far = 8.0 * (extent.x + extent.y);
     const double high = 1e3 * (extent.z + extent.x + extent.y);
     std::array<glm::dvec3, 3> corners = {{{-far, -far, high}, {far, -far, high}, {0.0, far, high}}};
@@ -65,7 +65,7 @@ std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points) {
             const bool helped = helps[0] || helps[1] || helps[2];
             return helped ? std::nullopt : std::optional(slope);
         }
-        // The corner leaves whose weight is the first to vanish as the new one's grows.
+        // Replace the corner whose weight vanishes first as the weight of the new corner grows.
         const std::array<double, 3> weights = weightsOf(corners, lowest->x, lowest->y);
         std::size_t leaves = 3;
         double most = 0.0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The highest plane, on average, below all of some points: the supporting plane of a texel (plane_fit.h) whose rays are
-// parallel and all meet a surface.
+// Finds the plane below all of a set of points with the highest mean. This is the supporting plane of a texel
+// (plane_fit.h) whose rays are parallel and all hit a surface.
 //
-// With the points centred on the origin, that is the facet of their lower convex hull over the origin. Start from three
-// points whose triangle holds the origin; while some point is below their plane, the lowest one replaces one of the three
-// (the dual simplex method):
+// With the points centred on the origin, it is the facet of their lower convex hull over the origin. The search starts
+// from three points whose triangle contains the origin. While some point is below their plane, the lowest such point
+// replaces one of the three (the dual simplex method):
 //
 //      ·       ·
 //        \   ·          · points, heights upwards
@@ -19,8 +19,8 @@
 
 namespace relief {
 
-/// \param points  (x, y, height); the mean of x and of y is 0
-/// \return the plane's slopes along x and y; nullopt where the points span no area.
+/// \param points  (x, y, height); the means of x and y must be 0.
+/// \return the slopes of the plane along x and y; nullopt if the points are collinear.
 [[nodiscard]] std::optional<glm::dvec2> highestBelow(std::span<const glm::dvec3> points);
 
 }  // namespace relief

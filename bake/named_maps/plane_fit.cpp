@@ -17,22 +17,23 @@ namespace {
 
 constexpr double kDepthCodes = kDepthSteps;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Below this cosine a plane would cut off what lies between the outermost ray that meets a surface and the surface's
-/// edge, so that the edge has to support it. Flatter planes pass over it, and would lose more than they gain.
+/// Below this cosine, a plane would cut off the part between the outermost ray that hits the surface and the edge of
+/// the surface, so the edge has to support it. Flatter planes pass over this part, and would lose more than they gain
+/// from the support.
 constexpr double kSteepCosine = 0.35;
-/// Steeper planes cut deep: a surface that rises between the footprint's rays and the rim of the texel would leave a pit in
-/// the solid. The rays around the footprint have to lie behind them too.
+/// Steeper planes cut deep: a surface that rises between the rays of the footprint and the rim of the texel would leave
+/// a pit in the solid. They must therefore also lie in front of the rays around the footprint.
 constexpr double kDeepCosine = 0.1;
 
 std::uint16_t codeOf(const glm::dvec3& normal) {
     return packNormal(encodeNormal(glm::vec3(normal)));
 }
 
-/// SIMD: each lane is rounded as a scalar would be.
+/// SIMD: each lane rounds like a scalar.
 using Lanes [[gnu::vector_size(16)]] = double;
 constexpr std::size_t kLanes = 2;
 
-/// The rays of a footprint as a structure of arrays, since every candidate plane visits them all.
+/// The rays of a footprint as a structure of arrays, because every candidate plane visits them all.
 class RayTable {
   public:
     RayTable(std::span<const FootprintRay> rays, const glm::dvec3& origin, double u_max)
@@ -54,7 +55,7 @@ class RayTable {
         }
     }
 
-    /// For the planes of the following calls.
+    /// Sets the plane normal for subsequent calls.
     void setNormal(const glm::dvec3& n) {
         for (std::size_t b = 0; b < blocks_; ++b) {
             Block& block = table_[b];
@@ -63,8 +64,8 @@ class RayTable {
         }
     }
 
-    /// The least offset of a plane with no surface point in front of it. One that faces away from a ray of a cube must not
-    /// cut what lies behind the surface on it, whose end is unknown.
+    /// Returns the minimum offset of a plane with no surface point in front of it. A plane that faces away from a ray
+    /// of a cube must not cut the part behind the surface on that ray, whose end is unknown.
     [[nodiscard]] double support() const {
         const Lanes end = Lanes{} + u_max_;
         Lanes most = {-kInfinity, -kInfinity};
@@ -78,8 +79,8 @@ class RayTable {
         return std::max(most[0], most[1]);
     }
 
-    /// The summed length of free space behind the plane over all rays, each at most `reach`; a partial sum once that is at
-    /// least `enough`.
+    /// Returns the total length of free space behind the plane over all rays, each limited to `reach`. Returns a
+    /// partial sum once it reaches `enough`.
     [[nodiscard]] double freeSpaceBehind(double offset, double reach, double enough) const {
         const Lanes none = {};
         const Lanes endless = none + kInfinity;
@@ -88,7 +89,7 @@ class RayTable {
         for (std::size_t b = 0; b < blocks_ && sum < enough; ++b) {
             const Block& block = table_[b];
             const Lanes at_plane = (offset - block.at_start) / block.along;
-            // A plane met from its free side, and one met from behind.
+            // The plane is hit from its free side, or from behind.
             const Lanes facing = block.free_end - (at_plane > 0.0 ? at_plane : none);
             const Lanes until = block.along > 0.0 ? at_plane : endless;
             const Lanes until_end = until < block.free_end ? until : block.free_end;
@@ -107,7 +108,7 @@ class RayTable {
     struct Block {
         Lanes start[3];
         Lanes direction[3];
-        Lanes least;  // lower bound of its support; +∞ for a ray without a hit
+        Lanes least;  // lower bound of the support; +∞ for a ray without a hit
         Lanes first;
         Lanes free_end;
         Lanes along;
@@ -119,8 +120,8 @@ class RayTable {
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
 };
 
-/// The hits of a footprint whose rays are parallel and all meet a surface, which is all that matters to a plane that faces
-/// the viewer. Most footprints are such, and take a quarter of the time.
+/// The hits of a footprint whose rays are parallel and all hit a surface; a plane that faces the viewer depends only on
+/// the hits. Most footprints are of this kind, and take a quarter of the time.
 class PointTable {
   public:
     static bool holds(std::span<const FootprintRay> rays) {
@@ -146,7 +147,7 @@ class PointTable {
         }
     }
 
-    /// As RayTable::support of a plane that faces the viewer.
+    /// RayTable::support() for a plane that faces the viewer.
     [[nodiscard]] double support(const glm::dvec3& n) {
         Lanes most = {-kInfinity, -kInfinity};
         for (std::size_t b = 0; b < blocks_; ++b) {
@@ -157,8 +158,8 @@ class PointTable {
         return std::max(most[0], most[1]);
     }
 
-    /// As RayTable::freeSpaceBehind, for the normal of the last support().
-    /// \param along  the normal along the rays; negative
+    /// RayTable::freeSpaceBehind() for the normal of the last support().
+    /// \param along  the component of the normal along the rays; negative
     [[nodiscard]] double freeSpaceBehind(double offset, double along) const {
         const double per_offset = -1.0 / along;
         const Lanes none = {};
@@ -174,15 +175,15 @@ class PointTable {
 
   private:
     struct Block {
-        Lanes point[3];  // hits, from the centre ray's start
-        Lanes most;      // limit of the free space on the ray
-        Lanes at;        // along the current normal
+        Lanes point[3];  // hits, relative to the start of the centre ray
+        Lanes most;      // limit of free space on the ray
+        Lanes at;        // component along the current normal
     };
     std::size_t blocks_;
     std::array<Block, (kFootprintRaysMax + kLanes - 1) / kLanes> table_;
 };
 
-/// The search for one texel's plane.
+/// Searches for the plane of one texel.
 class PlaneSearch {
   public:
     PlaneSearch(std::span<const FootprintRay> rays, const AroundRays& around,
@@ -217,7 +218,7 @@ class PlaneSearch {
         if (hits_ == 0) {  // a surface enters the footprint between its rays
             return takeFacing(facing, edge_);
         }
-        // The mean first: on a smooth surface nothing else is needed.
+        // Try the mean first: on a smooth surface nothing else is needed.
         const double sum_length = length(sum);
         tryCode(codeOf(sum_length > 1e-6 ? sum / sum_length : facing));
         if (best_cost_ > good_enough_ && trySupported()) {
@@ -225,7 +226,7 @@ class PlaneSearch {
         }
         const glm::dvec3* last = nullptr;
         for (const FootprintRay& ray : rays_) {
-            const bool as_before = last != nullptr && *last == ray.normal;  // most are of one triangle
+            const bool as_before = last != nullptr && *last == ray.normal;  // most rays hit the same triangle
             if (ray.u >= 0.0 && !as_before && best_cost_ > good_enough_) {
                 tryCode(codeOf(ray.normal));
                 last = &ray.normal;
@@ -239,13 +240,13 @@ class PlaneSearch {
     }
 
   private:
-    /// The best plane, if all rays meet one surface and are nearly parallel. \return false: continue the search.
+    /// Finds the best plane if all rays hit one surface and are nearly parallel. \return false: continue the search.
     bool trySupported() {
         if (options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
             hits_ < static_cast<int>(rays_.size())) {
             return false;
         }
-        // Across the ray, in units of its length.
+        // Perpendicular to the ray, in units of its length.
         const glm::dvec3& ray = centre_.direction;
         const double square = direction_length_ * direction_length_;
         const glm::dvec3 x = anyAcross(ray);
@@ -275,7 +276,7 @@ class PlaneSearch {
         return best_cost_ < options_.reach * static_cast<double>(rays_.size()) / 8.0;
     }
 
-    /// Perpendicular to v, of its length.
+    /// Returns a vector perpendicular to v, of the same length.
     static glm::dvec3 anyAcross(const glm::dvec3& v) {
         const bool along_x = std::abs(v.x) > 0.6 * length(v);
         const glm::dvec3 across = cross(v, along_x ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0));
@@ -352,7 +353,7 @@ class PlaneSearch {
         return around_rays_;
     }
 
-    /// \param offset  of the plane from the centre ray's start
+    /// \param offset  of the plane from the start of the centre ray
     [[nodiscard]] bool isDeep(const glm::dvec3& normal, double offset) const {
         return deep_ != nullptr && deep_->cutBy(normal, offset + dot(normal, from_zero_));
     }
@@ -368,7 +369,7 @@ class PlaneSearch {
         return offset;
     }
 
-    /// As RayTable::support.
+    /// RayTable::support() for any rays.
     [[nodiscard]] double supportOf(std::span<const FootprintRay> rays, const glm::dvec3& normal) const {
         double offset = -kInfinity;
         for (const FootprintRay& ray : rays) {
@@ -381,7 +382,7 @@ class PlaneSearch {
         return offset;
     }
 
-    /// Length of a ray's solid part in front of the plane.
+    /// Returns the length of the solid part of a ray in front of the plane.
     [[nodiscard]] double solidInFront(const FootprintRay& ray, const glm::dvec3& normal,
                                       double offset) const {
         const double along = dot(normal, ray.direction);
@@ -392,8 +393,8 @@ class PlaneSearch {
         return std::clamp(at_plane - ray.u, 0.0, options_.reach);
     }
 
-    /// Fallback if every plane is too steep or leaves the depth range: facing the viewer, at the nearest sample. nullopt: nothing
-    /// is known.
+    /// Fallback if every plane is too steep or outside the depth range: a plane at the nearest sample that faces the
+    /// viewer. Returns nullopt if the result is unknown.
     std::optional<FittedPlane> takeFacing(const glm::dvec3& facing, std::span<const FootprintRay> rays) {
         double nearest = kInfinity;
         for (const FootprintRay& ray : rays) {

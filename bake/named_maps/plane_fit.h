@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Supporting planes: the plane that a texel stores when its map's decode is "plane".
+// Fits supporting planes: the planes that texels store if the map's decode is "plane".
 //
-// A texel's footprint is sampled by a block of rays. Candidate planes take their normals from the footprint. Each is pushed
-// towards the viewer until no sampled surface point lies in front of it, and quantised so that this stays true; the one that
-// leaves the least free space behind it wins:
+// A block of rays samples the footprint of a texel. Candidate planes have normals of the footprint. Each candidate is
+// pushed towards the viewer until no sampled surface point lies in front of it, and is rounded so that this remains
+// true. The candidate with the least free space behind it wins:
 //
-//       viewer            In front of its plane a texel is outside, behind it inside. A pushed plane never puts the inside
-//      | | | | |          of a sampled surface point outside. The space between plane and surface, inside by error, is
-//     --.-----.-- plane   what is minimised; other maps that see this space correct it, so that more views only help.
-//       |\   /|
+//       viewer            A texel is outside in front of its plane, and inside behind it. A pushed plane never
+//      | | | | |          misclassifies the inside of a sampled surface point. The fit minimises the space between
+//     --.-----.-- plane   plane and surface, which is wrongly inside. Other maps that see this space correct it, so
+//       |\   /|            additional views can only help.
 //      surface
 //
-// Both ends of a map are fitted alike, from where their rays start.
+// Both ends of a map are fitted in the same way, from the start of their rays.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +27,12 @@
 
 namespace relief {
 
-/// One ray of a footprint.
+/// A ray of a footprint.
 struct FootprintRay {
-    /// From the viewer: the point at u is origin + u · direction, u in units of map depth.
+    /// From the viewer: the point at u is origin + u · direction, with u in units of map depth.
     glm::dvec3 origin{0.0};
     glm::dvec3 direction{0.0};
-    double u = -1.0;         ///< of the surface; negative without one
+    double u = -1.0;         ///< at the surface; negative without a hit
     glm::dvec3 normal{0.0};  ///< unit length, of the surface, towards the viewer
 };
 
@@ -40,32 +40,32 @@ inline constexpr std::size_t kFootprintRaysMax = 64;
 
 struct PlaneFitOptions {
     double u_max = 1.0;       ///< depth range: map depth 1, or kCubeDepthMax
-    double reach = 1.0;       ///< free space behind the plane counts up to this length, in u
-    double span = 0.0;        ///< both sides of a texel together, object units
-    double pixel_cost = 0.0;  ///< mean free space per ray, in u, below which a fit is good enough
-    bool cautious = false;    ///< all planes respect the rays around the footprint, not only steep ones
+    double reach = 1.0;       ///< limit of the free space behind the plane that counts per ray, in u
+    double span = 0.0;        ///< sum of both sides of a texel, object units
+    double pixel_cost = 0.0;  ///< a fit with less mean free space per ray, in u, is good enough
+    bool cautious = false;    ///< the rays around the footprint constrain all planes, not only steep ones
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
-    /// Moves planes inwards by this share of the spread of the sampled points about them, which trades solid for free
-    /// space; not at steps, whose spread is more than `span`/4.
+    /// Moves planes inwards by this fraction of the spread of the sampled points around them, in exchange for more free
+    /// space. Has no effect at steps, where the spread exceeds `span`/4.
     double let_back = 0.0;
-    /// The greatest distance of a point of the texel from a ray, in texel diagonals. A plane of a smaller cosine drops by
-    /// more than the diagonal between two rays.
+    /// Maximum distance of a point of the texel from a ray, in texel diagonals. A plane whose cosine is smaller drops
+    /// by more than the diagonal between two rays.
     double rays_apart = 0.0;
-    /// Rays start in free space. Otherwise one without a hit may lie in the solid entirely.
+    /// Rays start in free space. If false, a ray without a hit may be entirely in the solid.
     bool starts_free = true;
 };
 
-/// A half-space in a texel's own units.
+/// A half-space in the units of a texel.
 struct FittedPlane {
-    glm::dvec3 normal{0.0};  ///< unit length, of the free side; as decodeNormal gives it
+    glm::dvec3 normal{0.0};  ///< unit length, towards the free side; as decoded by decodeNormal()
     NormalIndex index;
-    /// 16-bit fixed point: the centre ray meets the plane at u = code / 65534 · u_max.
+    /// 16-bit fixed point: the centre ray intersects the plane at u = code / 65534 · u_max.
     std::uint16_t code = 0;
 };
 
 using AroundRays = std::function<std::span<const FootprintRay>()>;
 
-/// Calls visit(index) for the index and its neighbours `step` away in s, t or both, as far as they exist.
+/// Calls visit(index) for the index and its existing neighbours `step` away in s, t or both.
 template <class Visit>
 void forNeighbours(NormalIndex from, int step, const Visit& visit) {
     for (int t = from.t - step; t <= from.t + step; t += step) {
@@ -77,16 +77,16 @@ void forNeighbours(NormalIndex from, int step, const Visit& visit) {
     }
 }
 
-/// Fits one texel.
+/// Fits a plane to a texel.
 /// \param rays    the footprint: 1 to kFootprintRaysMax.
-/// \param around  rays beside the footprint, whose surface points may not lie in front of steep planes either; called for
-///                the first such plane, at most once. May be null.
-/// \param edge    rays that just meet a surface, beside ones that miss: they support steep planes, and the plane of a footprint
-///                none of whose rays meets a surface, which faces the viewer.
-/// \param centre  the texel's centre ray, from the viewer: the plane's depth is measured on it.
+/// \param around  returns rays around the footprint, whose surface points may not lie in front of steep planes either.
+/// Called at most once, for the first steep plane. May be null.
+/// \param edge    rays that barely hit a surface, next to rays that miss it. They support steep planes, and the plane
+/// of a footprint without hits, which faces the viewer.
+/// \param centre  the texel's centre ray, from the viewer; the depth of the plane is measured along it.
 /// \param zero_depth  the point of that ray at map depth 0.
-/// \param deep  of the texel: planes not justified by the rays alone may not cut deep solid. May be null.
-/// \return nullopt for an empty texel: no ray meets a surface, or without starts_free nothing is known.
+/// \param deep  of the texel: planes that the rays do not justify must not cut deep solid. May be null.
+/// \return nullopt for an empty texel: no ray hits a surface, or the result is unknown and `starts_free` is false.
 [[nodiscard]] std::optional<FittedPlane> fitSupportingPlane(
     std::span<const FootprintRay> rays, const AroundRays& around, std::span<const FootprintRay> edge,
     const FootprintRay& centre, const glm::dvec3& zero_depth, const PlaneFitOptions& options,

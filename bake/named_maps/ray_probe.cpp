@@ -10,13 +10,13 @@
 namespace relief {
 namespace {
 
-/// Offset of the rays beside one that may have slipped through, and the distance from it within which a triangle counts as
-/// met. In Embree's units, where the mesh is one to two long and floats are 6e-8 apart.
+/// Offset of the rays beside a ray that may have slipped through, and the maximum distance from that ray at which a
+/// triangle counts as hit. In Embree's units, in which the mesh is one to two long and floats are 6e-8 apart.
 constexpr double kBeside = 0x1p-17;
 constexpr double kTouching = 1e-6;
 constexpr int kBesideRays = 8;
 
-/// Sines and cosines of these rays' places: the first two on opposite sides, none along an edge of a grid.
+/// Sines and cosines of the positions of these rays: the first two are opposite, and none is along an edge of a grid.
 constexpr std::array<std::array<double, 2>, kBesideRays> kBesideDirections = {{{0.1951, 0.9808},
                                                                                {-0.2588, -0.9659},
                                                                                {0.9877, -0.1564},
@@ -62,7 +62,7 @@ Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
         return {};
     }
     const Hit hit = hitOf(face, x, y, query.hit.primID);
-    // A ray is doubted only where none from free space can get: at the inner side of a closed mesh.
+    // Only a hit on the inner side of a closed mesh is doubtful: no ray from free space can reach it.
     return scene_.closed() && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
 }
 
@@ -97,14 +97,14 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
     const glm::dvec3 right = unit(cross(along, other));
     const glm::dvec3 up = cross(right, along);
 
-    // The nearest triangle that is touched, and all others that meet it there.
+    // The nearest triangle that is touched, and all others hit at the same distance.
     std::array<std::uint32_t, kBesideRays> touched{};
     std::array<float, kBesideRays> where{};
     std::size_t count = 0;
     float nearest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < kBesideDirections.size(); ++i) {
         if (i == 2 && count == 0) {
-            return hit;  // beside a silhouette, as nearly all doubted hits
+            return hit;  // beside a silhouette, like nearly all doubtful hits
         }
         const auto& [sine, cosine] = kBesideDirections[i];
         Segment shifted = segment;
@@ -120,7 +120,7 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
     if (count == 0) {
         return hit;
     }
-    // Beside the ray, triangles are met a little sooner or later than on it.
+    // Rays beside the original one hit triangles slightly earlier or later.
     const float tie = static_cast<float>(64.0 * kBeside / length);
     std::size_t as_near = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -128,7 +128,7 @@ Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, co
             touched[as_near++] = touched[i];
         }
     }
-    // A ray that starts in the solid counts where it leaves it, which is `hit`.
+    // A ray that starts in the solid ends where it leaves the solid, at `hit`.
     if (may_start_inside_ &&
         scene_.inside(segment.origin + 0.5 * static_cast<double>(nearest) * segment.direction)) {
         return hit;

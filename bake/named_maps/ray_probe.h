@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single rays of one end of a view, by Embree: between texels, where scan_convert.h has no result.
+// Traces single rays of one end of a view by Embree: between texels, where scan_convert.h has no result.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace relief {
 
-/// Not thread-safe: it caches the planes of recent triangles.
+/// Not thread-safe: caches the planes of recent triangles.
 class RayProbe {
   public:
     /// \param scene, view  borrowed; must outlive it.
@@ -25,29 +25,29 @@ class RayProbe {
   private:
     static constexpr std::size_t kKnownPlanes = 256;
 
-    /// From a little outside the volume, along or against the depth.
+    /// A ray segment that starts slightly outside the volume, along or against the depth.
     struct Segment {
         glm::dvec3 origin;
         glm::dvec3 direction;
-        double length;  // of the parameter
+        double length;  // in units of `direction`
     };
     [[nodiscard]] Segment segmentOf(const TexelRay& ray) const;
-    /// The hit of a texel's ray with a triangle.
+    /// The hit of a texel's ray on a triangle.
     [[nodiscard]] Hit hitOf(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t triangle);
-    /// The ray met the side that a closed mesh turns inwards.
+    /// The ray hit the inner side of a closed mesh.
     [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
-    /// Even in robust mode, Embree misses some vertices and edges that a ray is aimed at exactly. A triangle that a ray beside
-    /// this one meets before `hit` counts if this one touches it.
+    /// Traces again beside the ray, because Embree misses some vertices and edges that a ray hits exactly, even in
+    /// robust mode. A triangle that such a ray hits before `hit` counts if the original ray touches it.
     [[nodiscard]] Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
     [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
     /// \param along  dot(normal, direction of growing depth)
     [[nodiscard]] bool isFromBehind(double along) const {
         return end_ == RayEnd::kNear ? along > 0.0 : along < 0.0;
     }
-    /// A line through `origin`, perpendicular to `right` and `up`, passes the triangle within kTouching.
+    /// Whether a line through `origin`, perpendicular to `right` and `up`, passes the triangle within kTouching.
     [[nodiscard]] bool touches(const glm::dvec3& origin, const glm::dvec3& right, const glm::dvec3& up,
                                std::uint32_t triangle) const;
-    /// Of equals the one of the lowest index.
+    /// Returns the triangle with the best facingScore(); of equal ones, the one with the lowest index.
     [[nodiscard]] std::uint32_t bestFacing(std::span<const std::uint32_t> triangles,
                                            const glm::dvec3& direction) const;
 
@@ -57,7 +57,7 @@ class RayProbe {
     bool may_start_inside_;
     SeenPlanes planes_;
     std::array<SeenPlane, kKnownPlanes>
-        known_planes_;  // neighbouring texels mostly see the same few triangles
+        known_planes_;  // neighbouring texels usually hit the same few triangles
 };
 
 }  // namespace relief

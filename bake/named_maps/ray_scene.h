@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh that rays are traced in, and their hits.
+// The mesh in which rays are traced, and their hits.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace relief {
 
-/// The first surface on the ray of a texel, from the end where the ray starts.
+/// The first surface on the ray of a texel, from the end at which the ray starts.
 class Hit {
   public:
     Hit() = default;
     /// \param depth  map depth, in [0, 1] or [0, kCubeDepthMax]
-    /// \param from_behind  the ray met the side from which the triangle's corners run clockwise.
+    /// \param from_behind  the ray hit the side on which the triangle's corners are clockwise.
     Hit(float depth, std::uint32_t triangle, bool from_behind)
         : depth_(depth), code_(triangle << 1 | (from_behind ? 1U : 0U)) {}
 
@@ -32,17 +32,17 @@ class Hit {
     std::uint32_t code_ = kNothing;
 };
 
-/// Rows of one face of a view, in the order of a map's texels.
+/// Rows of one face of a view, in the order of the map's texels.
 struct RowRange {
     std::uint32_t face = 0;
     std::uint32_t begin = 0;
-    std::uint32_t end = 0;  ///< one behind the last
+    std::uint32_t end = 0;  ///< one past the last
 };
 
-/// A mesh to be traced, for any number of views, from any thread.
+/// A mesh for tracing, shared by any number of views and threads.
 class RayScene : public MeshQuery {
   public:
-    /// Shares the mesh's tree. Errors: those of EmbreeMesh::build.
+    /// Builds the scene; shares the acceleration structure of the mesh. Errors: those of EmbreeMesh::build.
     [[nodiscard]] static Result<RayScene> build(PreparedMesh mesh) {
         return RayScene(RELIEF_TRY(MeshQuery::build(std::move(mesh))));
     }
@@ -59,12 +59,13 @@ class RayScene : public MeshQuery {
     bool closed_;
 };
 
-/// Rays of this end that meet an inner side started in the solid, although the view's empty texels are free.
+/// Whether rays of this end that hit an inner side started in the solid, although empty texels of the view are free.
 [[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }
 
-/// Rays of this end may start in a closed solid, for that reason or because the volume cuts it.
+/// Whether rays of this end may start in a closed solid, because the centre lies on the surface or the volume cuts the
+/// solid.
 [[nodiscard]] inline bool raysMayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return mayStartInside(scene, view, end) || (scene.closed() && !view.startsFree(end));
 }

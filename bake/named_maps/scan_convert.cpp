@@ -15,12 +15,14 @@
 namespace relief {
 namespace {
 
-/// So near to an edge, in barycentric coordinates, a hit may as well be the neighbour's; surfaces so near in depth meet.
+/// Within this distance of an edge, in barycentric coordinates, a hit may belong to the neighbour. Surfaces within this
+/// depth then meet.
 constexpr double kEdgeWidth = 1e-4;
 constexpr double kTieDepth = 1e-5;
-/// Surfaces so near in depth are one, also away from edges.
+/// Surfaces within this depth are the same, even away from edges.
 constexpr double kSameDepth = 1e-9;
-/// An edge whose side function changes less along a row, relative to its value, does not give its crossing with the row.
+/// If the side function of an edge changes less than this along a row, relative to its value, the crossing with the row
+/// cannot be computed.
 constexpr double kFlat = 1e-9;
 
 /// The texels of a face in coordinates in which its rays are (x, y, 1).
@@ -39,7 +41,7 @@ struct Grid {
         return face == nullptr ? x : 0.5 * (x + 1.0) * columns - 0.5;
     }
     [[nodiscard]] double row(double y) const { return face == nullptr ? y : 0.5 * (y + 1.0) * rows - 0.5; }
-    /// A corner as x, y and height above the centre: its ray is (x, y) / height.
+    /// A corner as x, y and height above the centre; its ray is (x, y) / height.
     [[nodiscard]] glm::dvec3 of(const glm::dvec3& place) const {
         return face == nullptr ? place
                                : glm::dvec3(face->s.of(place), face->t.of(place), face->major.of(place));
@@ -60,12 +62,12 @@ struct ScanConverter::Block {
     std::span<Hit> far;
 };
 
-/// The half plane of a face on the triangle's side of an edge. The same bits for both triangles of the edge, but for the
-/// sign.
+/// The half-plane of a face on the triangle's side of an edge. Bit-identical for both triangles of the edge, except for
+/// the sign.
 class ScanConverter::Edge {
   public:
-    /// \param from, to  as Grid::of has them.
-    /// \param turn  1 or −1, so that sideOf is positive inside.
+    /// \param from, to  from Grid::of
+    /// \param turn  1 or −1, chosen so that sideOf() is positive inside.
     Edge(const glm::dvec3& from, const glm::dvec3& to, double turn, bool cube) {
         const bool as_given = comesBefore(from, to);
         const glm::dvec3& a = as_given ? from : to;
@@ -109,7 +111,7 @@ class ScanConverter::Edge {
     glm::dvec3 start_{0.0};
 };
 
-/// A triangle projected on a face of the view.
+/// A triangle projected onto a face of the view.
 class ScanConverter::Shape {
   public:
     Shape(const ScanConverter& scan, std::uint32_t triangle, std::uint32_t face)
@@ -119,10 +121,10 @@ class ScanConverter::Shape {
           volume_(scan.cube_ ? dot(corners_[0], cross(corners_[1], corners_[2]))
                              : cross(corners_[1] - corners_[0], corners_[2] - corners_[0]).z) {}
 
-    /// Rays meet its edges at most.
+    /// Whether the triangle is edge-on, so that rays hit at most its edges.
     [[nodiscard]] bool edgeOn() const { return !(std::abs(volume_) > 0.0); }
 
-    /// Of `count` columns (axis 0) or rows (1), those whose rays may meet the triangle: [first, end).
+    /// Returns the range [first, end) of columns (axis 0) or rows (1), out of `count`, whose rays may hit the triangle.
     [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> rangeOf(int axis, std::uint32_t count) const {
         double low = std::numeric_limits<double>::infinity();
         double high = -low;
@@ -144,7 +146,7 @@ class ScanConverter::Shape {
             return {0, count};
         }
         const double last = count;
-        // For the rounding of a cube's texel coordinates.
+        // Tolerance for the rounding of a cube's texel coordinates.
         const double slack = grid_.face == nullptr ? 0.0 : 1e-6;
         return {static_cast<std::uint32_t>(std::clamp(std::ceil(low - slack), 0.0, last)),
                 static_cast<std::uint32_t>(std::clamp(std::floor(high + slack) + 1.0, 0.0, last))};
@@ -159,7 +161,7 @@ class ScanConverter::Shape {
     [[nodiscard]] const Grid& grid() const { return grid_; }
 
   private:
-    /// Of a corner in front of the centre, in half sides of the cube.
+    /// Minimum height of a corner in front of the centre, in half sides of the cube.
     static constexpr double kLeastHeight = 1e-6;
 
     static std::array<glm::dvec3, 3> cornersOf(const ScanConverter& scan, std::uint32_t triangle,
@@ -170,7 +172,8 @@ class ScanConverter::Shape {
 
     Grid grid_;
     std::array<glm::dvec3, 3> corners_;
-    double volume_;  // of the tetrahedron with the centre, six times; of an orthographic view the area, twice
+    double
+        volume_;  // six times the volume of the tetrahedron with the centre; for an orthographic view, twice the area
 };
 
 ScanConverter::ScanConverter(const RayScene& scene, const View& view)
@@ -204,7 +207,7 @@ void ScanConverter::place() {
 void ScanConverter::sortIntoBlocks() {
     const std::size_t faces = view_.faceCount();
     const std::size_t count = scene_.mesh().triangles.size();
-    // The rows of a triangle on a face: blocks, and rows within the first and the last block.
+    // The rows of a triangle on a face: its blocks, and its rows within the first and the last block.
     struct Rows {
         std::uint16_t first_block = 0;
         std::uint16_t end_block = 0;
@@ -325,8 +328,8 @@ void ScanConverter::draw(std::uint32_t triangle, std::uint32_t begin, std::uint3
             return edges[0].sideOf(x, y) >= 0.0 && edges[1].sideOf(x, y) >= 0.0 &&
                    edges[2].sideOf(x, y) >= 0.0;
         };
-        // Estimates of where the row enters and leaves the triangle. Texels there, or along an edge that the row runs along,
-        // are tested exactly.
+        // Estimates of where the row enters and leaves the triangle. Texels near these points, or along an edge
+        // parallel to the row, are tested exactly.
         double low = grid.x(first_column);
         double high = grid.x(end_column - 1.0);
         bool clear = true;
@@ -375,7 +378,7 @@ bool ScanConverter::isBetter(std::uint32_t triangle, double depth, const Hit& th
     if (may_start_inside_[static_cast<std::size_t>(end)] && faces != (other_score > 0.0)) {
         return faces != startsInside(depth, end, face, x, y);
     }
-    return score > other_score;  // of equals the first, of the lower index
+    return score > other_score;  // of equal ones, the first, which has the lower index
 }
 
 bool ScanConverter::startsInside(double depth, RayEnd end, std::uint32_t face, std::uint32_t x,

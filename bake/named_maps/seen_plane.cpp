@@ -10,16 +10,17 @@
 namespace relief {
 namespace {
 
-/// Seen so nearly edge-on that the depth of the plane may leave the triangle's.
+/// Whether the triangle is seen so nearly edge-on that the depth of its plane may leave the depth range of the
+/// triangle.
 bool isGrazing(const glm::dvec3& normal, const glm::dvec3& direction, double along) {
     return !(along * along >
              kGrazingCosine * kGrazingCosine * dot(normal, normal) * dot(direction, direction));
 }
 
-/// A depth on a triangle seen almost edge-on, held between the depths of its corners.
+/// Returns the depth on a triangle seen almost edge-on, clamped to the depths of its corners.
 double insideTriangle(const TriangleMesh& mesh, std::uint32_t triangle, const TexelRay& ray, double depth) {
     const LineSpan corners = cornerSpan(mesh, triangle, ray.origin, ray.direction);
-    return depth >= corners.begin ? std::min(depth, corners.end) : corners.begin;  // of NaN the begin
+    return depth >= corners.begin ? std::min(depth, corners.end) : corners.begin;  // NaN becomes `begin`
 }
 
 }  // namespace

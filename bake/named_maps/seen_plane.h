@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depths of a triangle's plane on the rays of a view.
+// Depths of the plane of a triangle on the rays of a view.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +34,10 @@ class SeenPlanes {
 
     [[nodiscard]] SeenPlane of(std::uint32_t triangle) const;
 
-    /// The hit of a texel's ray, held within the triangle if that is seen almost edge-on.
+    /// The hit of a texel's ray, clamped to the triangle if it is seen almost edge-on.
     [[nodiscard]] PlaneHit at(const SeenPlane& plane, std::uint32_t face, std::uint32_t x,
                               std::uint32_t y) const {
-        if (orthographic_ && !plane.grazing) {  // nearly all; inline, for millions of calls per bake
+        if (orthographic_ && !plane.grazing) {  // the common case; inline for millions of calls per bake
             return {depthAt(plane, x, y), plane.along};
         }
         return atAnyRay(plane, face, x, y);
@@ -59,7 +59,8 @@ class SeenPlanes {
     glm::dvec3 row_step_;
 };
 
-/// Of surfaces that meet on a ray, the one of the highest score counts. Facing the ray always beats facing away.
+/// Returns the score of a triangle. If several surfaces meet on a ray, the one with the highest score counts. Facing
+/// the ray always beats facing away.
 /// \param winding  orientation() of the mesh.
 [[nodiscard]] double facingScore(const TriangleMesh& mesh, std::uint32_t triangle, double winding,
                                  const glm::dvec3& direction);

@@ -158,9 +158,9 @@ struct Crossing {
 
 /// An edge of a triangle over the grid of lines. It always runs upwards, so that both adjacent triangles get the same
 /// result.
-struct GridEdge {  ///< first row
-    double begin;  // end of the rows
-    double end;    // to before here
+struct GridEdge {
+    double begin;  // first row
+    double end;    // past the last row
     double x;
     double x_by_row;
     double low;  // range of x

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 5> kFormatWords = {"float", "fixed8", "fr
 constexpr std::array<std::string_view, 10> kKeys = {"dir", "up",    "size",   "compare", "center",
                                                     "box", "depth", "decode", "bytes",   "texel"};
 
-/// Least sine of the angle between up and dir: below it, rounding would turn the image.
+/// Minimum sine of the angle between up and dir: below it, rounding could turn the image.
 constexpr double kUpSineMin = 1e-4;
 
 struct AxisWord {
@@ -46,7 +46,7 @@ tl::unexpected<Error> unknown(const std::string& what, std::string_view word,
                  (guess.empty() ? "; use one of " + listed(known) : guess));
 }
 
-/// The index of one of two words.
+/// Returns the index of one of two words.
 Result<bool> parseWord(std::string_view key, std::string_view value,
                        const std::array<std::string_view, 2>& words) {
     if (value != words[0] && value != words[1]) {
@@ -55,7 +55,7 @@ Result<bool> parseWord(std::string_view key, std::string_view value,
     return value == words[1];
 }
 
-/// As many numbers as said; empty: there are others, or no numbers.
+/// Returns `count` numbers, or an empty vector if `value` is anything else.
 std::vector<float> parseNumbers(std::string_view value, std::size_t count) {
     const std::vector<std::string_view> parts = split(value, '/');
     std::vector<float> numbers;
@@ -64,7 +64,7 @@ std::vector<float> parseNumbers(std::string_view value, std::size_t count) {
         if (!number || parts.size() != count) {
             return {};
         }
-        numbers.push_back(*number + 0.0F);  // −0 becomes 0, so that one setting has one text
+        numbers.push_back(*number + 0.0F);  // −0 becomes 0, so that equal settings have equal texts
     }
     return numbers;
 }
@@ -98,10 +98,10 @@ class MapSpecBuilder {
         spec_.decode = defaults.decode;
     }
 
-    /// Call this first: the valid keys depend on the format.
+    /// Must be called first, because the valid keys depend on the format.
     [[nodiscard]] Result<void> setFormat(std::string_view word);
     [[nodiscard]] Result<void> set(std::string_view key, std::string_view value);
-    /// Checks the keys against each other.
+    /// Validates the combination of the keys.
     [[nodiscard]] Result<MapSpec> finish() const;
 
   private:
@@ -167,7 +167,7 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
     return {};
 }
 
-/// The reason why a key has no effect for the format, and the cure; empty: it has one.
+/// Returns why a key has no effect for the format and how to fix it; empty if it has an effect.
 std::string MapSpecBuilder::uselessness(std::string_view key) const {
     const bool of_patches = key == "bytes" || key == "texel";
     if (of_patches != (spec_.format == MapFormat::kPatches)) {
@@ -264,7 +264,7 @@ Result<void> checkUp(const MapSpec& spec) {
     if (!spec.up) {
         return {};
     }
-    // In double, by the largest components first: squares of floats could overflow or vanish.
+    // In double, divided by the largest component first: squares of floats could overflow or vanish.
     const auto unit = [](const glm::vec3& v) {
         const float largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
         return glm::normalize(glm::dvec3(v) / static_cast<double>(largest));

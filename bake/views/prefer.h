@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of a bake of planes beside its maps.
+// Settings of a bake that apply to all maps with fitted planes.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace relief {
 
-/// The worse of two errors, for maps whose decode is plane. kInside: doubtful space is solid, so that no particle enters a
-/// wall. kOutside: doubtful space is free, so that no free volume is lost.
+/// The kind of error to accept in doubt, for maps whose decode is plane. kInside: doubtful space is solid, so that no
+/// particle enters a wall. kOutside: doubtful space is free, so that no free volume is lost.
 enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
 
 template <>
 inline constexpr std::array<std::string_view, 3> kWordsOf<Prefer>{"neither", "inside", "outside"};
 
-/// The work on texels of maps whose decode is plane: rays along each side of a texel's footprint, and rounds of search among
-/// neighbouring normals.
+/// The effort per texel for maps whose decode is plane: rays along each side of a texel's footprint, and rounds of
+/// search among neighbouring normals.
 enum class Quality : std::uint8_t { kFast, kNormal, kBest };
 
 template <>

@@ -12,14 +12,14 @@
 namespace relief {
 namespace {
 
-/// Free space on every side of a tight box, in units of the mesh's longest side: all formats, with 6.1e-5 the smallest normal
-/// half, can then store the surface's depths.
+/// Free space on each side of a tight box, in units of the mesh's longest side. It exceeds 6.1e-5, the smallest normal
+/// half float, so that all formats can store the depths of the surface.
 constexpr double kPadding = 1e-4;
-/// The least extent of a tight box, in the same units, for flat meshes.
+/// Minimum extent of a tight box, in the same units, for flat meshes.
 constexpr double kExtentMin = 1e-2;
 
 glm::dvec3 normalized(const glm::dvec3& v) {
-    // By the largest component first: squares of small floats would vanish.
+    // Divide by the largest component first: squares of small floats would vanish.
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     return unit(v / largest);
 }
@@ -45,7 +45,7 @@ std::array<Range, 3> projectedRanges(const Bounds& box, const std::array<glm::dv
 }
 
 std::array<Range, 3> projectedRanges(const TriangleMesh& mesh, const std::array<glm::dvec3, 3>& frame) {
-    // Along the axes of object space the bounds are exact.
+    // If the axes are parallel to those of object space, the bounds are exact.
     if (frame[0].x * frame[0].y == 0.0 && frame[0].y * frame[0].z == 0.0 && frame[0].z * frame[0].x == 0.0 &&
         std::abs(frame[2].x) + std::abs(frame[2].y) + std::abs(frame[2].z) == 1.0) {
         return projectedRanges(mesh.bounds, frame);
@@ -67,16 +67,16 @@ double largestCoordinate(const Bounds& b) {
     return largest;
 }
 
-/// Free space on both sides of a tight volume along an axis. \param extent  of the mesh along it.
+/// Returns the free space on each side of a tight volume along an axis. \param extent  of the mesh along it.
 double padding(const Bounds& bounds, double extent) {
     const auto longest = static_cast<double>(bounds.longestSide());
-    // More far from the origin, where floats are coarse.
+    // More free space far from the origin, where floats are coarse.
     const double rounding =
         8.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largestCoordinate(bounds);
     return std::max(kPadding * longest + rounding, 0.5 * (kExtentMin * longest - extent));
 }
 
-/// A row of T: (dot(p, direction) − offset) · scale. −0 becomes 0.
+/// A row of an affine transform: (dot(p, direction) − offset) · scale. −0 becomes 0.
 glm::vec4 affineRow(const glm::dvec3& direction, double offset, double scale) {
     return {static_cast<float>(direction.x * scale + 0.0), static_cast<float>(direction.y * scale + 0.0),
             static_cast<float>(direction.z * scale + 0.0), static_cast<float>(-offset * scale + 0.0)};
@@ -101,7 +101,7 @@ void placeOrthographic(View& view, const MapSpec& spec, const TriangleMesh& mesh
     view.starts_free[0] = volume[2].min - slack <= of_mesh[2].min;
     view.starts_free[1] = of_mesh[2].max <= volume[2].max + slack;
 
-    // The texture's ranges: the volume's, and a texel more on each side.
+    // The range of the texture: the volume plus a texel on each side.
     const double inner[2] = {static_cast<double>(view.width - 2), static_cast<double>(view.height - 2)};
     volume[0] = volume[0].padded(volume[0].size() / inner[0]);
     volume[1] = volume[1].padded(volume[1].size() / inner[1]);
@@ -133,7 +133,7 @@ void placeCube(View& view, const MapSpec& spec, const TriangleMesh& mesh) {
         view.object_to_map.row[i] = affineRow(along, center[i], 1.0 / half);
         view.object_per_map[i] = static_cast<float>(half);
     }
-    // LESS is for a centre in free space; GREATER looks inwards from the volume's surface.
+    // kLess is for a centre in free space; kGreater looks inwards from the surface of the volume.
     view.starts_free[0] = true;
     view.starts_free[1] = view.encloses;
 }
@@ -158,7 +158,7 @@ bool View::emptyIsOutside() const {
 
 namespace {
 
-/// The place of a texel's centre, as a share of `count` texels.
+/// Position of a texel's centre, as a fraction of `count` texels.
 double centreOf(std::uint32_t texel, std::uint32_t count) {
     return (static_cast<double>(texel) + 0.5) / static_cast<double>(count);
 }
@@ -179,7 +179,7 @@ TexelRay View::ray(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
     }
     const double s = centreOf(x, width);
     const double t = centreOf(y, height);
-    // cubeDirection of depth_map.h in double.
+    // cubeDirection() of depth_map.h in double precision.
     const double sc = 2.0 * s - 1.0;
     const double tc = 2.0 * t - 1.0;
     const glm::dvec3 toward = std::array<glm::dvec3, 6>{{{1.0, -tc, -sc},
@@ -228,7 +228,7 @@ Result<MapSpec> completeSpec(MapSpec spec, const PreparedMesh& mesh, std::uint32
         return spec;
     }
     const bool cube = spec.format == MapFormat::kCube8;
-    // −0 becomes 0, so that equal settings have one text.
+    // −0 becomes 0, so that equal settings have equal texts.
     spec.direction += 0.0F;
     if (spec.up) {
         *spec.up += 0.0F;
@@ -273,7 +273,7 @@ Result<View> makeView(const MapSpec& spec, const TriangleMesh& mesh) {
     View view;
     view.format = spec.format;
     if (spec.format == MapFormat::kPatches) {
-        // At most, with a texel.
+        // An upper bound if `texel` is set.
         view.width = static_cast<std::uint32_t>((spec.bytes > 0 ? spec.bytes : kPatchBytesMax) /
                                                 texelSize(spec.format));
         view.height = 1;
