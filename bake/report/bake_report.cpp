@@ -55,7 +55,7 @@ std::string healthLine(const MeshHealth& health) {
     return text;
 }
 
-/// Lines that end with a line feed; none if nothing was counted.
+/// Returns complete lines; empty if all counts are zero.
 std::string careText(const RepairReport& care, bool verbose) {
     if (!care.health) {
         return "";
@@ -93,7 +93,7 @@ std::string msText(const char* stage, double ms) {
     return stage + (" " + std::to_string(std::llround(ms)));
 }
 
-/// "ray tree 3, fitting 812": those that the maps went through.
+/// Returns the time of each stage that ran: "ray tree 3, fitting 812".
 std::string stagesText(const BakeReport& report) {
     const std::pair<const char*, double> stages[] = {{"ray tree", report.build_ms},
                                                      {"rays", report.trace_ms},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider as `relief info` and `relief bake` report it.
+// Reports of a collider, for `relief info` and `relief bake`.
 #pragma once
 
 #include <string>
@@ -31,34 +31,34 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report);
 
 void fields(FieldVisitor& visit, const MeshClip& clip);
 
-/// An animated mesh, without what it is made of.
+/// Visits the counts and names of an animated mesh, not its geometry.
 void fields(FieldVisitor& visit, const AnimatedMesh& mesh);
 
 void fields(FieldVisitor& visit, const Material& material);
 
-/// Materials as a line with their bytes and a table.
+/// Returns a line with the size of the materials in bytes, and a table.
 [[nodiscard]] std::string materialsText(const Materials& materials);
 
-/// A line, its groups and materials, and a table of the clips, if there are any.
+/// Returns a line, the groups and materials, and a table of the clips; empty parts are omitted.
 [[nodiscard]] std::string animationText(const AnimatedMesh& mesh);
 
-/// \tparam Map  ColliderMapReport, or more than that.
+/// \tparam Map  ColliderMapReport or a type with additional fields.
 template <class Map>
 struct ColliderReport {
     const Collider& collider = kNone<Collider>;
     const ContainerInfo& info = kNone<ContainerInfo>;
     std::vector<Map> maps = {};
-    const AnimatedMesh* animated = nullptr;  ///< of the collider
-    std::string file = {};                   ///< its name, if the report is one of several
+    const AnimatedMesh* animated = nullptr;  ///< of the collider; may be null
+    std::string file = {};                   ///< file name, if the report is one of several
 };
 
-/// \param maps  reports of the maps
+/// \param maps  the reports of the maps
 void colliderFields(FieldVisitor& visit, const Collider& collider, const ContainerInfo& info, FieldRef maps,
                     const AnimatedMesh* animated);
 void fields(FieldVisitor& visit, const ColliderReport<ColliderMapReport>& report);
 
-/// The report of `relief info`.
-/// \param animated  of the collider, if it has one.
+/// Makes the report of `relief info`.
+/// \param animated  of the collider; may be null.
 [[nodiscard]] inline ColliderReport<ColliderMapReport> infoReport(const Collider& collider,
                                                                   const ContainerInfo& info,
                                                                   const AnimatedMesh* animated) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A container by itself, as `relief check FILE` reports it.
+// Reports of a container without its mesh, for `relief check FILE`.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace relief {
 
-/// "sound", "suspicious" or "damaged"
+/// Returns "sound", "suspicious" or "damaged".
 [[nodiscard]] std::string_view inspectionVerdict(const Inspection& inspection);
 
-/// A line for the verdict, a line for each issue, a table of the maps, and which parts can be trusted.
-/// \param name  of the file, for people
+/// Returns a line for the verdict, a line per issue, a table of the maps, and the intact parts.
+/// \param name  of the file, as shown to people
 [[nodiscard]] std::string inspectionText(const Inspection& inspection, const std::string& name);
 
-// --- The same as fields.
+// --- The same data as fields.
 
 void fields(FieldVisitor& visit, const Issue& issue);
 
@@ -28,7 +28,7 @@ struct MapInspectionReport {
 
 void fields(FieldVisitor& visit, const MapInspectionReport& report);
 
-/// `relief check FILE --json`
+/// The report of `relief check FILE --json`.
 struct InspectionReport {
     const Inspection& inspection = kNone<Inspection>;
     std::string name;  ///< of the file

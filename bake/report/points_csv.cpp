@@ -10,14 +10,14 @@
 namespace relief {
 namespace {
 
-constexpr std::size_t kQuotedMax = 40;  // bytes of a bad line shown in its message
+constexpr std::size_t kQuotedMax = 40;  // bytes of a bad line that its message quotes
 
 bool startsLikeANumber(std::string_view field) {
     return !field.empty() &&
            (field[0] == '+' || field[0] == '-' || field[0] == '.' || (field[0] >= '0' && field[0] <= '9'));
 }
 
-/// A first line of words: three fields, none of which is meant as a number.
+/// Whether a first line is a header: three fields, none of which looks like a number.
 bool isHeader(std::span<const std::string_view> fields) {
     return fields.size() == 3 && std::none_of(fields.begin(), fields.end(), [](std::string_view field) {
                return field.empty() || startsLikeANumber(field) || field == "nan" || field == "inf";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points in and field samples out, as comma-separated text. No locale.
+// Reads points from comma-separated text, and writes field samples. Independent of the locale.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -13,15 +13,15 @@
 
 namespace relief {
 
-/// One point a line: `x,y,z`, object space. Empty lines, lines that start with '#', spaces round numbers and
-/// a carriage return at the end are let pass, and so is one first line of words, such as `x,y,z`.
+/// Parses one point per line: `x,y,z`, object space. Ignores empty lines, lines that start with '#', spaces around
+/// numbers and carriage returns at line ends. The first line may be a header such as `x,y,z`.
 /// \param name  of the file, for messages.
-/// Errors: kInvalidInput naming `name`:line.
+/// Errors: kInvalidInput, with `name`:line.
 [[nodiscard]] Result<std::vector<glm::vec3>> parsePoints(std::string_view text, const std::string& name);
 
-/// `x,y,z,f,nx,ny,nz,map`, a header line and then one line a point, shortest decimals that read back exactly.
-/// f is "inf" for kFarOutside; f, nx, ny, nz and map are empty where no map votes.
-/// \param decides  the last column's name.
+/// Formats samples as `x,y,z,f,nx,ny,nz,map`: a header, then one line per point. Numbers are the shortest decimals that
+/// parse back exactly. f is "inf" for kFarOutside; f, nx, ny, nz and map are empty where no map votes.
+/// \param decides  name of the last column.
 [[nodiscard]] std::string formatSamples(std::span<const glm::vec3> points,
                                         std::span<const FieldSample> samples,
                                         std::string_view decides = "map");

@@ -26,7 +26,7 @@ std::string seconds(double ms) {
     return text;
 }
 
-/// Whether a file that will be emptied holds nothing but events.
+/// Checks that a file that will be truncated contains only events.
 Result<void> checkOlderLog(const std::string& path) {
     constexpr std::string_view kBegin = R"({"event":)";
     std::error_code error;
@@ -111,10 +111,10 @@ std::vector<AssetEvent> AssetEvent::kinds() {
     return events;
 }
 
-// --- events ---
+// --- Events ---
 
 Result<void> RecipeEvents::open(const std::string& path) {
-    // A reader that goes away must not take the bakes with it.
+    // A reader that exits must not end the bakes.
     std::signal(SIGPIPE, SIG_IGN);
     path_ = path;
     if (path != "-") {
@@ -147,11 +147,11 @@ Result<void> RecipeEvents::finish() const {
     return {};
 }
 
-// --- at the end ---
+// --- Summary ---
 
 namespace {
 
-/// Equal, with join_numbers but for their numbers; or no unit is named in both.
+/// Whether two warnings are equal, ignoring numbers with join_numbers; warnings about a missing unit always are.
 bool areAlike(std::string_view a, std::string_view b, bool join_numbers) {
     const auto words = [](std::string_view text) {
         std::string rest(text);
@@ -168,13 +168,13 @@ std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::str
                                       bool join_numbers) {
     constexpr std::size_t kNamed = 3;
     struct Group {
-        std::string warning;  // of the first
-        bool same = true;     // as those of the others
+        std::string warning;  // of the first owner
+        bool same = true;     // all owners have the same text
         std::vector<std::string> owners;
     };
     std::vector<Group> groups;
     for (const OwnWarnings& own : all) {
-        // Warnings begin with the mesh's name, which would tell equal ones apart.
+        // Warnings start with the name of the mesh, which would make equal ones differ.
         const std::string mesh = own.mesh + ": ";
         for (const std::string& full : own.warnings) {
             const std::string warning = full.starts_with(mesh) ? full.substr(mesh.size()) : full;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reports of a run of a recipe: events for programs while it runs, and its end for both people and programs.
+// Reports of a recipe run: events for programs during the run, and a summary for people and programs.
 #pragma once
 
 #include <array>
@@ -18,25 +18,25 @@ namespace relief {
 
 struct RecipeCounts {
     std::array<std::size_t, kWordsOf<AssetState>.size()> of_state{};
-    std::uint64_t bytes = 0;  ///< of the outputs that are up to date now
+    std::uint64_t bytes = 0;  ///< total of all outputs that are up to date
 
     [[nodiscard]] std::size_t of(AssetState state) const { return of_state[static_cast<std::size_t>(state)]; }
     [[nodiscard]] std::size_t all() const;
 };
 [[nodiscard]] RecipeCounts countAssets(const std::vector<AssetResult>& assets);
 
-/// "baked, 255 kB, 0.05 % wrong, 0.8 s"
+/// Returns "baked, 255 kB, 0.05 % wrong, 0.8 s".
 [[nodiscard]] std::string bakedText(const AssetResult& asset);
 
-/// "12 assets: 3 baked, 8 up to date, 1 failed; 1.2 MB; 4.5 s", or "12 assets up to date".
+/// Returns "12 assets: 3 baked, 8 up to date, 1 failed; 1.2 MB; 4.5 s", or "12 assets up to date".
 [[nodiscard]] std::string recipeSummary(const RecipeCounts& counts, double ms);
 
-// --- The same as fields.
+// --- The same data as fields.
 
-/// An asset by its state.
+/// The fields of an asset depend on its state.
 struct AssetReport {
     const AssetResult& asset = kNone<AssetResult>;
-    bool event = false;  ///< in an event, which leaves out the key of an asset that was not made
+    bool event = false;  ///< part of an event, which omits the key of an asset that was not made
 
     [[nodiscard]] static std::vector<AssetReport> kinds();
 };
@@ -45,11 +45,11 @@ void fields(FieldVisitor& visit, const AssetReport& report);
 
 void fields(FieldVisitor& visit, const RecipeCounts& counts);
 
-/// "2/4"; null without --shard.
+/// Returns "2/4"; null without --shard.
 [[nodiscard]] std::optional<std::string> shardText(const std::optional<Shard>& shard);
 inline constexpr FieldInfo kShardField{.help = "--shard; null without it", .pattern = "^[0-9]+/[0-9]+$"};
 
-/// `relief bake --recipe --json`
+/// The report of `relief bake --recipe --json`.
 struct RecipeJson {
     std::string recipe;
     std::string output;
@@ -61,7 +61,7 @@ struct RecipeJson {
 
 void fields(FieldVisitor& visit, const RecipeJson& report);
 
-// --- Events
+// --- Events.
 
 struct RecipeStart {
     std::string recipe;
@@ -83,42 +83,44 @@ void fields(FieldVisitor& visit, const AssetEvent& event);
 struct RecipeEnd {
     RecipeCounts counts = {};
     double ms = 0.0;
-    int signal = 0;  ///< 0: none
+    int signal = 0;  ///< 0: no signal
 };
 
 void fields(FieldVisitor& visit, const RecipeEnd& end);
 
 using RecipeEvent = std::variant<RecipeStart, AssetEvent, RecipeEnd>;
 
-/// Lines of JSON, each written as it happens.
+/// Writes events as lines of JSON, immediately.
 class RecipeEvents {
   public:
-    /// \param path  a log of an earlier run is emptied; "-": standard output
-    /// Errors: kIo; kUsage: a file of another kind, whose contents would be lost.
+    /// \param path  truncated if it is the log of an earlier run; "-": standard output
+    /// Errors: kIo; kUsage (the file is not a log, and its contents would be lost).
     [[nodiscard]] Result<void> open(const std::string& path);
-    /// Does nothing without open(). finish() reports errors.
+    /// Does nothing before open(). Errors are reported by finish().
     void write(const RecipeEvent& event);
-    /// Errors: kIo: an event could not be written.
+    /// Errors: kIo (an event could not be written).
     [[nodiscard]] Result<void> finish() const;
 
   private:
     std::string path_;
     Descriptor file_;
-    int fd_ = -1;  ///< file_, or standard output
+    int fd_ = -1;  ///< of file_, or standard output
     int error_ = 0;
 };
 
-/// Warnings of one of many bakes.
+/// The warnings of one of many bakes.
 struct OwnWarnings {
-    std::string owner;  ///< that a line names
-    std::string mesh;   ///< with which a warning may begin
+    std::string owner;  ///< name for the line
+    std::string mesh;   ///< name that may start a warning
     std::span<const std::string> warnings;
 };
-/// One line for those that are equal, in the order of the first. \param owners  "assets" \param join_numbers  numbers may differ
+/// Groups equal warnings into one line each, in the order of their first occurrence.
+/// \param owners  plural noun for the owners, such as "assets"
+/// \param join_numbers  warnings count as equal even if their numbers differ
 [[nodiscard]] std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::string_view owners,
                                                     bool join_numbers);
-/// "2 assets (a.relief, b.relief): it is skinned": the warnings, one line each, in the order of the assets; one that several
-/// have is told once, that of a missing unit too, with the size of the first.
+/// Groups the warnings of assets: "2 assets (a.relief, b.relief): it is skinned". A missing unit is grouped too, with
+/// the size of the first asset.
 [[nodiscard]] std::vector<std::string> warningLines(const std::vector<AssetResult>& assets);
 
 }  // namespace relief

@@ -15,9 +15,9 @@ std::string wrongText(const WorldColliderResult& collider) {
     return collider.wrong ? percentText(collider.wrong->total()) : "-";
 }
 
-/// Advice, each sentence once, behind the bodies that it is for.
+/// Returns each distinct advice once, after the bodies that it applies to.
 std::string adviceLines(const WorldField& field, const WorldAccuracy& accuracy) {
-    std::vector<std::pair<std::string, std::string>> lines;  // advice, bodies
+    std::vector<std::pair<std::string, std::string>> lines;  // advice, then bodies
     for (std::size_t i = 0; i < accuracy.places.size(); ++i) {
         const std::string advice = WorldPlaceReport{&field, accuracy, i}.advice();
         if (advice.empty()) {

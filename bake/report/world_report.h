@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reports of a bake of a level and of a check of a world, for people and for programs.
+// Reports of a bake of a level and of a check of a world, for people and programs.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace relief {
 
-/// The table of colliders with verbose, and a last line for all.
+/// Returns a table of the colliders if `verbose`, and a summary line.
 [[nodiscard]] std::string worldBakeText(const WorldBakeResult& result, const std::string& folder, double ms,
                                         bool verbose);
 
@@ -26,7 +26,7 @@ struct WorldColliderReport {
 
 void fields(FieldVisitor& visit, const WorldColliderReport& report);
 
-/// `relief bake --world --json`
+/// The report of `relief bake --world --json`.
 struct WorldBakeJson {
     const WorldBakeResult& result = kNone<WorldBakeResult>;
     std::string output{};
@@ -35,26 +35,26 @@ struct WorldBakeJson {
 
 void fields(FieldVisitor& visit, const WorldBakeJson& report);
 
-// --- The check.
+// --- Check.
 
-/// The worse of gradeOf(accuracy.all) and those of its meshes' parts.
+/// Returns the worse of gradeOf(accuracy.all) and the grades of the parts of its meshes.
 [[nodiscard]] Verdict verdictOf(const WorldAccuracy& accuracy, const std::string& unit);
 
-/// The contents of the world, and how wrong it is. \param accuracy  null without a level.
+/// Returns the contents of the world, and its accuracy. \param accuracy  null without a level.
 [[nodiscard]] std::string worldCheckText(const WorldField& field, const std::string& name,
                                          const WorldAccuracy* accuracy);
 
 [[nodiscard]] std::uint64_t gpuBytesOf(const WorldField& field);
 
-/// One of the worst places, and what to do about it.
+/// One of the worst places, and advice.
 struct WorldPlaceReport {
     const WorldField* field = nullptr;
     const WorldAccuracy& accuracy = kNone<WorldAccuracy>;
-    std::size_t number = 0;  ///< in accuracy.places
+    std::size_t number = 0;  ///< index in accuracy.places
 
     [[nodiscard]] const BodyAccuracy& body() const { return accuracy.bodies[accuracy.worst[number]]; }
     [[nodiscard]] const WorldPlace& place() const { return accuracy.places[number]; }
-    /// One sentence; empty of a body that is good all the same.
+    /// Returns one sentence; empty if the body is good anyway.
     [[nodiscard]] std::string advice() const;
 };
 
@@ -63,7 +63,7 @@ void fields(FieldVisitor& visit, const WorldPlaceReport& report);
 void fields(FieldVisitor& visit, const BodyAccuracy& body);
 void fields(FieldVisitor& visit, const LostParts& parts);
 
-/// `relief check world.json --json`
+/// The report of `relief check world.json --json`.
 struct WorldCheckJson {
     std::string file{};
     const WorldField* field = nullptr;

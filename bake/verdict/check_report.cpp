@@ -107,7 +107,7 @@ std::string mapWords(const Collider& collider, int map) {
     if (of.projection() == Projection::kLocal) {
         return name + ")";
     }
-    // Rows of a cube are along the axes.
+    // The rows of a cube are parallel to the axes.
     glm::vec3 center;
     for (int i = 0; i < 3; ++i) {
         center[i] = -of.object_to_map.row[i].w / of.object_to_map.row[i][i] + 0.0F;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider measured against its mesh, as `relief check` reports it: numbers, a verdict, the places where it is wrong most
-// and what to do about them.
+// Reports of a collider measured against its mesh, for `relief check`: numbers, a verdict, the worst places, and
+// advice.
 #pragma once
 
 #include <optional>
@@ -15,46 +15,48 @@
 
 namespace relief {
 
-/// "good", "fair" or "poor", by kGoodPercent and kFairPercent
+/// Returns "good", "fair" or "poor", by kGoodPercent and kFairPercent.
 [[nodiscard]] std::string gradeOf(double wrong_percent);
-/// "0.4 % wrong near the surface: good"
+/// Returns a line like "0.4 % wrong near the surface: good".
 [[nodiscard]] std::string verdictText(double wrong_percent);
 
-/// Grade of the votes inside, by InsideAccuracy::far_face_percent; "unknown" with fewer than kInsidePointsLeast points.
+/// Returns the grade of the votes inside, by InsideAccuracy::far_face_percent; "unknown" with fewer than
+/// kInsidePointsLeast points.
 [[nodiscard]] std::string insideGradeOf(const InsideAccuracy& accuracy);
-/// "at 12 % of the points inside the nearest face does not decide: poor"; "" if it is good or unknown.
+/// Returns a line like "at 12 % of the points inside the nearest face does not decide: poor"; "" if the grade is good
+/// or unknown.
 [[nodiscard]] std::string insideVerdictText(const InsideAccuracy& accuracy);
 
-/// A few lines: what was measured, and the results.
+/// Returns a few lines: the measurement and its results.
 /// \param unit  of lengths: "m", or "" for object units
 [[nodiscard]] std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& samples,
                                        const std::string& unit);
 
-/// "map 2 (front-back along 0/0/-1)", "no map" for −1.
+/// Returns "map 2 (front-back along 0/0/-1)", or "no map" for −1.
 [[nodiscard]] std::string mapWords(const Collider& collider, int map);
-/// "0.41 m across: 4.5 % of the wrong points, 86 % of them called inside"
+/// Returns "0.41 m across: 4.5 % of the wrong points, 86 % of them called inside".
 [[nodiscard]] std::string placeText(const WorstPlace& place, const std::string& unit);
-/// "below the texel size: map 2 (…) decides, whose texels are 0.02 wide"
+/// Returns "below the texel size: map 2 (…) decides, whose texels are 0.02 wide".
 [[nodiscard]] std::string causeText(const WorstPlace& place, const Collider& collider);
-/// A few lines for each place; "" without places.
+/// Returns a few lines per place; "" without places.
 [[nodiscard]] std::string placesText(std::span<const WorstPlace> places, const Collider& collider);
 
-/// Something to try.
+/// A suggested command.
 struct Advice {
     std::string command;  ///< one line for a shell
     std::string about;    ///< "twice the bytes"
-    /// Points near the surface left on the wrong side by a trial in memory; nullopt: not tried.
+    /// Percentage of misclassified points near the surface in a trial in memory; nullopt: not tried.
     std::optional<double> wrong_percent;
-    std::string untried;  ///< the reason; empty if tried
-    bool helps = false;   ///< tried, and at most nine tenths are left
+    std::string untried;  ///< reason for not trying it; empty if tried
+    bool helps = false;   ///< tried, with at most nine tenths of the wrong points left
 };
 
-/// The commands, the best first, then what did not help; "" without advice.
+/// Lists the commands, best first, then those that did not help; "" without advice.
 [[nodiscard]] std::string adviceText(std::span<const Advice> advice, double wrong_percent);
 
-// --- The same as fields.
+// --- The same data as fields.
 
-/// \param longest_side  of the mesh: lengths are also given in percent of it.
+/// \param longest_side  of the mesh: lengths are also reported in percent of it.
 struct FieldAccuracyReport {
     const FieldAccuracy& field = kNone<FieldAccuracy>;
     double longest_side = 1.0;

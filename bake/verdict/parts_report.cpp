@@ -16,24 +16,25 @@ namespace {
 
 constexpr std::size_t kShownParts = 5;
 constexpr std::size_t kShownGroups = 5;
-/// A part is kept by texels of this share of its middle extent: three across a pillar.
+/// A part is kept by texels of this fraction of its middle extent: three across a pillar.
 constexpr double kTexelsAcross = 1.0 / 3.0;
-/// Budgets beyond are not advised for the sake of a part.
+/// Maximum budget suggested for a part.
 constexpr double kBudgetAdvisedMax = 1e9;
-/// Patches' bytes that a lost part is worth a try of, in units of those that they take.
+/// Factor on the bytes of patches that is suggested for a lost part.
 constexpr double kMorePatches = 4.0;
-/// An asked-for shell is said to swallow a part from this share of the part's longest side on.
+/// A requested shell swallows a part if it is at least this fraction of the part's longest side thick.
 constexpr double kSwallows = 0.25;
 constexpr std::size_t kNameBytesMax = 80;
 
-/// At least so many, as --budget reads it: "1.2MB", "320MB".
+/// Rounds up, in the syntax of --budget: "1.2MB", "320MB".
 std::string megabytes(double bytes) {
     const auto tenths = static_cast<std::uint64_t>(std::ceil(bytes / 1e5));
     return tenths < 100 ? std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + "MB"
                         : std::to_string((tenths + 9) / 10) + "MB";
 }
 
-/// Of patches in a box, whose middle may be a large cell without any.
+/// Returns the finest texel of patches in a box. Samples 27 points, because the centre may be in a large cell without
+/// patches.
 double finestIn(const Bounds& box, const DepthMap& map) {
     double finest = texelAt(map, box.center());
     for (int i = 0; i < 27; ++i) {
@@ -55,7 +56,7 @@ std::string partSideText(const PartAccuracy& accuracy) {
     return inside > 0.9 ? "called inside" : inside < 0.1 ? "called outside" : "called either";
 }
 
-/// "27 of 82 parts are lost"
+/// Returns a text like "27 of 82 parts are lost".
 std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
     const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest);
     const std::uint64_t measured = accuracy.parts.size() - rest - accuracy.countOf(PartVerdict::kHidden);
@@ -154,7 +155,7 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
         return cure;
     }
     if (patches) {
-        // Cells are split where the errors are: no other part takes as much more.
+        // Cells are split where the errors are, so other parts do not take much more.
         const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
         cure += cure.empty() ? "its patches' heights are " + lengthText(texel, collider.unit) + " apart; try "
                              : ", and try ";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a mesh that a collider loses: which they are, how large, and what would keep them.
+// Reports of the parts of a mesh that a collider loses: their names and sizes, and how to keep them.
 #pragma once
 
 #include <optional>
@@ -21,39 +21,44 @@ struct Verdict {
 void fields(FieldVisitor& visit, const Verdict& verdict);
 void fields(FieldVisitor& visit, const IgnoredParts& ignored);
 
-/// "4 of 812 parts, at most 0.003 m long, are not represented; 2 of 812 parts are thicker than in the mesh; the smallest 200 parts
-/// are not measured"; "" if none is ignored.
+/// Returns a line like "4 of 812 parts, at most 0.003 m long, are not represented; 2 of 812 parts are thicker than in
+/// the mesh; the smallest 200 parts are not measured"; "" if none is ignored.
 [[nodiscard]] std::string ignoredText(const IgnoredParts& ignored, const std::string& unit);
 /// \param but  the reason for a grade below gradeOf(wrong_percent)
-/// \return "0.3 % wrong near the surface, but 27 of 82 parts are lost: poor"; then ignoredText().
+/// \return "0.3 % wrong near the surface, but 27 of 82 parts are lost: poor", followed by ignoredText().
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const std::string& grade, const std::string& but,
                                 const IgnoredParts& ignored, const std::string& unit);
-/// The grade is the worse of gradeOf(wrong_percent) and that of the parts: poor if one is lost, fair if coarse ones count.
+/// The grade is the worse of gradeOf(wrong_percent) and the grade of the parts: poor if one is lost, fair if any coarse
+/// part counts.
 [[nodiscard]] Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit);
 
-/// "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  of SurfaceParts::parts; counted from 1 in the text.
+/// Returns "pillar_17 (stone)", "part 17 of wood" or "part 17". \param index  into SurfaceParts::parts; the text counts
+/// from 1.
 [[nodiscard]] std::string partName(const SurfacePart& part, std::size_t index);
-/// The cure of a lost or coarse part: a budget, a resolution, a thickness, or a bake of its own that would keep it.
+/// Returns how to keep a lost or coarse part: a budget, a resolution, a thickness, or a bake of its own.
 [[nodiscard]] std::string partCure(const SurfacePart& part, const Collider& collider);
-/// Side of the finest texels at the middle of a part, or of patches in its box, object units; 0 without maps.
+/// Returns the side of the finest texels at the centre of a part, or of patches in its bounds, object units; 0 without
+/// maps.
 [[nodiscard]] double partTexel(const SurfacePart& part, const Collider& collider);
-/// "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, called outside; …", and partCure().
+/// Returns "9 m long at (1, 2, 3): 48 % of the points near it are on the wrong side, called outside; …", then
+/// partCure().
 [[nodiscard]] std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts,
                                    const Collider& collider);
 
-/// The worst parts, the worst named nodes and materials, and the parts that do not count; "" if all are held.
+/// Returns the worst parts, the worst named nodes and materials, and the ignored parts; "" if all parts are
+/// represented.
 [[nodiscard]] std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts,
                                     const Collider& collider);
-/// One line of a warning without the mesh's name; nullopt if no part is lost.
+/// Returns a warning without the name of the mesh, in one line; nullopt if no part is lost.
 [[nodiscard]] std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy,
                                                           const SurfaceParts& parts,
                                                           const Collider& collider);
-/// Parts far from all others, in one line; nullopt if there are none.
+/// Returns a line about parts far from all others; nullopt if there are none.
 [[nodiscard]] std::optional<std::string> strayText(const SurfaceParts& parts, const std::string& unit);
-/// The same, and shells whose --thickness is at least a quarter of their parts' length: a line each.
+/// Returns strayText(), and a line per shell whose --thickness is at least a quarter of the length of its part.
 [[nodiscard]] std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit);
 
-// --- The same as fields.
+// --- The same data as fields.
 
 inline constexpr std::size_t kListedPartsMax = 100;
 
@@ -72,9 +77,9 @@ struct PartsReport {
     const SurfaceParts& parts = kNone<SurfaceParts>;
     const Collider& collider = kNone<Collider>;
 
-    /// The first kListedPartsMax parts.
+    /// Returns the first kListedPartsMax parts.
     [[nodiscard]] std::vector<PartReport> worst() const;
-    /// The first kListedPartsMax nodes, and as many materials.
+    /// Returns the first kListedPartsMax nodes, and as many materials.
     [[nodiscard]] std::vector<GroupAccuracy> groups() const;
 };
 

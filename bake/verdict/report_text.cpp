@@ -17,7 +17,7 @@ std::string formatted(const char* format, double value) {
     return text;
 }
 
-/// Three digits: 1800 and not 1.8e+03.
+/// Three digits, without an exponent: 1800, not 1.8e+03.
 std::string length(float value) {
     return shortest(parseFloat(formatted("%.3g", double{value})).value_or(value));
 }
@@ -30,7 +30,7 @@ std::string cornerText(const glm::vec3& v) {
     return "(" + length(v.x) + ", " + length(v.y) + ", " + length(v.z) + ")";
 }
 
-/// Characters, each one column wide: continuation bytes of UTF-8 do not count.
+/// Counts characters, assuming one column each; skips continuation bytes of UTF-8.
 std::size_t columns(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80; }));

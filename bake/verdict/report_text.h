@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers, sizes and tables as reports show them to people.
+// Formats numbers, sizes and tables for people.
 #pragma once
 
 #include <cstdint>
@@ -20,39 +20,40 @@ namespace relief {
 [[nodiscard]] std::string percentText(double percent);
 /// "41.3 %" for 0.413.
 [[nodiscard]] std::string shareText(double share);
-/// "1 hole", "3 holes". \param plural  where it is not `what` with an s: "vertices"
+/// "1 hole", "3 holes". \param plural  if not `what` with an s: "vertices"
 [[nodiscard]] std::string countText(std::uint64_t count, std::string_view what, std::string_view plural = {});
 
-/// "m", or "object units" for "".
+/// "m"; "object units" for "".
 [[nodiscard]] std::string unitText(const std::string& unit);
-/// "0.41 m": two digits. \param unit  "m", or "" for object units, which are left out
+/// "0.41 m": two digits. \param unit  "m", or "" for object units, which are omitted
 [[nodiscard]] std::string lengthText(double value, const std::string& unit);
 /// "(0.1, 0.2, 0.3)": four digits.
 [[nodiscard]] std::string positionText(const glm::vec3& p);
 /// "12.3 MB", "640 B": powers of 1000.
 [[nodiscard]] std::string bytesText(std::uint64_t bytes);
-/// The next number of bytes with two digits, at least kBudgetMin, for --budget.
+/// Rounds bytes up to two digits, at least kBudgetMin, for --budget.
 [[nodiscard]] std::uint64_t roundBudget(std::uint64_t bytes);
-/// "orthographic" or "cube"; "per patch" of patches, each of which has an axis of its own.
+/// "orthographic" or "cube"; "per patch" for patches, which each have their own axis.
 [[nodiscard]] std::string projectionText(const DepthMap& map);
-/// The surface that a map keeps along each ray; "-" of patches, which keep all.
+/// The surface that a map keeps along each ray; "-" for patches, which keep all.
 [[nodiscard]] std::string keepsText(const DepthMap& map);
-/// "512x256"; of a cube "6x64x64"; of patches "49790 patches", or "-" without texels.
+/// "512x256"; "6x64x64" for a cube; "49790 patches" for patches, or "-" without texels.
 [[nodiscard]] std::string sizeText(const DepthMap& map);
 
-/// Longest sides from here on are rare in metres, and common in centimetres and millimetres.
+/// Longest sides above this are rare in metres, and common in centimetres and millimetres.
 inline constexpr float kForgottenUnitFrom = 100.0F;
-/// Beginning of forgottenUnit().
+/// Start of the text of forgottenUnit().
 inline constexpr std::string_view kNoUnit = "no unit is named";
 
 /// "2 x 4 x 6 m, from (-1, -2, -3) to (1, 2, 3)"; "object units" without a unit.
 [[nodiscard]] std::string boxText(const Bounds& bounds, const std::string& unit);
-/// The size of such a box in centimetres and in millimetres, and the option for each; nullopt for a smaller one.
+/// Returns the size in centimetres and in millimetres, and the option for each; nullopt if the bounds are smaller than
+/// kForgottenUnitFrom.
 /// \param bounds  of a mesh without a unit
 [[nodiscard]] std::optional<std::string> forgottenUnit(const Bounds& bounds);
 
-/// Lines of a table, columns aligned, the first row a heading. Columns whose heading ends in '>' are aligned right (the
-/// mark is not printed).
+/// Formats rows as aligned columns; the first row is the header. Columns whose header ends in '>' are right-aligned;
+/// the mark is not printed.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace relief

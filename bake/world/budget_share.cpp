@@ -28,11 +28,12 @@ constexpr std::array<double, 8> kEighths = {1.0,
                                             1.681792830507429,
                                             1.8340080864093424};
 
-/// A curve is planned again to so many times its bytes, or more: a power law goes wrong beyond.
+/// A curve is planned again if its share grows by at least this factor, because the power law becomes inaccurate
+/// beyond.
 constexpr std::uint64_t kReach = 2;
-/// Of an even share: the least one.
+/// The minimum share, as a fraction of an even share.
 constexpr double kEvenShare = 0.125;
-/// Natural logarithms of the worth of a byte, either way, and bisections between them.
+/// Range of the natural logarithm of a byte's worth, and number of bisections.
 constexpr double kLogWorthMost = 700.0;
 constexpr int kBisections = 64;
 
@@ -45,7 +46,7 @@ Result<void> checkBudget(std::uint64_t budget, std::size_t shares) {
     return {};
 }
 
-/// Bytes, a power of two, that a share of so many is planned with.
+/// Returns the bytes, a power of two, used to plan a share.
 std::uint64_t plannedOf(std::uint64_t share) {
     return std::bit_floor(std::clamp(share / kSharePerPlan, kPatchBytesMin, kPatchBytesMax));
 }
@@ -63,7 +64,7 @@ class Sharer {
         std::iota(todo.begin(), todo.end(), std::size_t{0});
         while (!todo.empty()) {
             tbb::parallel_for(std::size_t{0}, todo.size(), [&](std::size_t k) {
-                // Or a thread that waits for a loop of one plan would begin another within it.
+                // Isolate, because a thread that waits in one plan could otherwise start another inside it.
                 tbb::this_task_arena::isolate([&] { plan(todo[k]); });
             });
             share();
@@ -96,7 +97,7 @@ class Sharer {
         return curves_[i] ? std::clamp(curves_[i]->bytesAt(log_worth), least, most) : even;
     }
 
-    /// At the least worth of a byte with which all fit.
+    /// Uses the lowest worth of a byte for which all shares fit.
     void share() {
         double dear = kLogWorthMost;
         double cheap = -kLogWorthMost;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a level shares its bytes among its colliders: so that the next byte goes where it mends most.
+// Distributes the bytes of a level among its colliders, so that each byte goes where it reduces the error most.
 //
-// The errors of a mesh fall with its bytes along a curve. A small plan gives the beginning, a power law goes on from there.
-// Shares are where a byte more mends the same in all of them,
+// The errors of a mesh fall with its bytes along a curve. A small plan provides the start of the curve, and a power law
+// continues it. In all shares, one more byte reduces the weighted error by the same amount:
 //
 //     weight · −d wrong / d bytes = worth,
 //
-// but none is below an eighth of an even one. Shares are rounded down to steps of an eighth of an octave, so that a mesh that
-// changes leaves most others theirs, and they need not be baked again. NOTES.md has other ways.
+// No share is below an eighth of an even share. Shares are rounded down to steps of an eighth of an octave: if one mesh
+// changes, most others keep their share and need no new bake. NOTES.md lists alternatives.
 #pragma once
 
 #include <cstdint>
@@ -21,31 +21,32 @@ namespace relief {
 
 struct BudgetShare {
     double weight = 0.0;      ///< 0 or more
-    std::uint64_t bytes = 0;  ///< filled in
+    std::uint64_t bytes = 0;  ///< output
 };
 
-/// The least share, in bytes.
+/// Minimum share, in bytes.
 inline constexpr std::uint64_t kShareMin = 4096;
 
-/// A share is planned with one in so many of its bytes, and down to half as many.
+/// A share is planned with this fraction (1/8) of its bytes, or down to half of that.
 inline constexpr std::uint64_t kSharePerPlan = 8;
 
-/// Plans trees of a mesh up to so many bytes, a power of two. Called from several threads. One that fails, or without trees,
-/// leaves its mesh an even share.
+/// Plans trees of a mesh up to a number of bytes, which is a power of two. Called from several threads. A mesh gets an
+/// even share if its plan fails or has no trees.
 using PlanErrors = std::function<Result<ErrorCurve>(std::size_t mesh, std::uint64_t bytes)>;
 
-/// Plans each mesh for an even share, and those again whose shares become twice as large or more.
-/// \param shares  at least one, of which a single one takes all without a plan; weights are of wrong volumes.
-/// Errors: kUsage: the budget gives less than 2·kShareMin to each.
+/// Plans each mesh for an even share, and again if its share grows by a factor of two or more.
+/// \param shares  at least one; a single share takes the whole budget without a plan. Weights apply to misclassified
+/// volume.
+/// Errors: kUsage (the budget is below 2·kShareMin per share).
 [[nodiscard]] Result<void> shareByErrors(std::uint64_t budget, std::span<BudgetShare> shares,
                                          const PlanErrors& plan);
 
-/// Half evenly, half by weight: of maps without such a curve.
-/// \param shares  at least one; weights are areas in the world.
+/// Distributes half of the budget evenly and half by weight, for maps without error curves.
+/// \param shares  at least one; weights are areas in world space.
 /// Errors: as shareByErrors.
 [[nodiscard]] Result<void> shareByArea(std::uint64_t budget, std::span<BudgetShare> shares);
 
-/// The largest 2^(k/8), rounded down, that is not above a number of at least 1.
+/// Returns the largest 2^(k/8), rounded down, that does not exceed `bytes` (at least 1).
 [[nodiscard]] std::uint64_t roundDownToEighth(std::uint64_t bytes);
 
 }  // namespace relief

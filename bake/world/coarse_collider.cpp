@@ -12,7 +12,7 @@ namespace relief {
 namespace {
 
 constexpr std::uint64_t kCoarser = 16;
-/// Of the longest side: more than floats make of the corners of a box.
+/// Fraction of the longest side that exceeds the rounding of a box's corners.
 constexpr float kMargin = 1e-5F;
 
 }  // namespace
@@ -35,7 +35,7 @@ Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine
     const glm::vec3 margin(kMargin * fine.box.longestSide());
     coarse.roots_hold = Bounds{fine.box.min - margin, fine.box.max + margin};
     Collider collider = RELIEF_TRY(bake(coarse)).baked.collider;
-    collider.bounds = fine.bounds;  // its own have thicker shells
+    collider.bounds = fine.bounds;  // its own bounds include thicker shells
     return collider;
 }
 
@@ -46,7 +46,7 @@ Collider coarseTile(const Collider& coarse, const FineCollider& tile) {
     glm::uvec3 first;
     glm::uvec3 count;
     for (int i = 0; i < 3; ++i) {
-        // Rows of patches scale and shift, and no more.
+        // The map transform of patches only scales and translates.
         const double per_unit = 1.0 / double{map.object_per_map.x};
         const auto rootAt = [&](float place) {
             return std::floor(double{place} * per_unit + double{map.object_to_map.row[i].w});

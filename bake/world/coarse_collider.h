@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coarse likenesses of a level's colliders, which stand in for them while a program loads these (runtime/stream).
+// Bakes coarse versions of a level's colliders, which a program uses while it loads the fine ones (runtime/stream).
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace relief {
 
-/// Bytes on the GPU: a collider that takes no more has none, as that would save little.
+/// Bytes on the GPU: smaller colliders have no coarse version, because it would save little.
 inline constexpr std::uint64_t kCoarseFrom = 65'536;
 
-/// Whether a collider of a level has one: of a single map of patches, and not a small one.
+/// Whether a collider of a level has a coarse version: it is a single map of patches, and not small.
 [[nodiscard]] bool hasCoarse(const Collider& fine);
 
-/// The collider that a coarse one stands for.
+/// The collider that a coarse version replaces.
 struct FineCollider {
     Bounds box;     ///< solidBox()
     Bounds bounds;  ///< of its mesh
@@ -26,16 +26,17 @@ struct FineCollider {
     [[nodiscard]] static FineCollider of(const Collider& fine);
 };
 
-/// One of a sixteenth of the bytes, whose box holds that of the fine one, so that a program need not sort its bodies anew when
-/// it takes one for the other. Shells of open sheets are as thick as its texels ask for.
-/// \param request  that the fine one was baked by.
-/// \param bake  bakes the same mesh by another request.
+/// Bakes a coarse collider with a sixteenth of the bytes. Its box contains that of the fine one, so that a program need
+/// not re-sort its bodies when it replaces one with the other. Shells of open sheets are as thick as its texels
+/// require.
+/// \param request  that baked the fine collider.
+/// \param bake  bakes the same mesh with another request.
 /// Errors: those of bake().
 [[nodiscard]] Result<Collider> bakeCoarse(const BakeRequest& request, const FineCollider& fine,
                                           const std::function<Result<BakeResult>(const BakeRequest&)>& bake);
 
-/// The roots of a coarse one that hold the box of a tile, as a collider of their own.
-/// \param coarse  bakeCoarse() of the whole that the tile was cut from.
+/// Returns the roots of a coarse collider that contain the box of a tile, as a collider of their own.
+/// \param coarse  bakeCoarse() of the collider that the tile was cut from.
 [[nodiscard]] Collider coarseTile(const Collider& coarse, const FineCollider& tile);
 
 }  // namespace relief

@@ -19,7 +19,7 @@ constexpr int kVersion = 1;
 constexpr std::uint64_t kFileBytesMax = std::uint64_t{256} << 20;
 constexpr JsonLimits kLimits{.depth = 3, .values = 8'000'000};
 
-/// \return nullopt: it is no curve.
+/// \return nullopt if the values are not a curve.
 template <class Values>
 std::optional<ErrorCurve> curveOf(const Values& values) {
     if (!values.is_array() || values.empty() || values.size() % 2 != 0) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The curves by which the bytes of a level are shared, kept beside its containers, so that a run with nothing to do plans
-// nothing.
+// Reads and writes the error curves that determine the shares of a level. They are stored beside its containers, so
+// that a run without changes plans nothing.
 //
 //     {"format": "relief-curves", "version": 1, "curves": {"KEY": [bytes, errors, bytes, errors, …], …}}
 //
-// A key is the hash of all that its curve depends on (assetKey). The file is trusted as much as the cache of containers is: to
-// delete it costs a plan of each mesh.
+// A key is the hash of everything its curve depends on (assetKey). The file is trusted like the cache of containers;
+// deleting it costs one plan per mesh.
 #pragma once
 
 #include <filesystem>
@@ -19,17 +19,18 @@
 
 namespace relief {
 
-/// By key.
+/// Curves by key.
 using ErrorCurves = std::map<std::string, ErrorCurve>;
 
-/// Errors: kInvalidInput: no file of this version; kLimit.
+/// Errors: kInvalidInput (not a file of this version), kLimit.
 [[nodiscard]] Result<ErrorCurves> parseErrorCurves(std::string_view text);
 [[nodiscard]] std::string errorCurvesText(const ErrorCurves& curves);
 
-/// Those of a folder; no file is no error. Does not follow a symbolic link. Errors: kInvalidInput, kIo, kLimit.
+/// Loads the curves of a folder; empty if there is no file. Does not follow symbolic links. Errors: kInvalidInput, kIo,
+/// kLimit.
 [[nodiscard]] Result<ErrorCurves> loadErrorCurves(const std::filesystem::path& folder);
 
-/// In place of those that are there. Errors: kIo.
+/// Replaces the curves of a folder. Errors: kIo.
 [[nodiscard]] Result<void> saveErrorCurves(const std::filesystem::path& folder, const ErrorCurves& curves);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh of a level where a node places it: the truth of a check.
+// A mesh of a level at the pose of a node: the truth of a check.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -15,7 +15,7 @@ namespace relief {
 struct PlacedMesh {
     const LevelBody* body;
     const MeshQuery* query;
-    glm::dvec3 low;  ///< its box in the world
+    glm::dvec3 low;  ///< bounds in world space
     glm::dvec3 high;
 
     [[nodiscard]] glm::dvec3 turn(const glm::dvec3& p, double sign) const {
@@ -38,7 +38,7 @@ struct PlacedMesh {
     }
 };
 
-/// The nodes whose boxes meet a box.
+/// Returns the nodes whose bounds overlap a box.
 [[nodiscard]] inline std::vector<const PlacedMesh*> placedIn(const std::vector<PlacedMesh>& all,
                                                              const glm::dvec3& low, const glm::dvec3& high) {
     std::vector<const PlacedMesh*> found;

@@ -36,13 +36,13 @@ namespace fs = std::filesystem;
 
 static_assert(kLevelMeshesMax == kWorldCollidersMax && kLevelBodiesMax == kWorldBodiesMax);
 
-/// Options of a bake that decide how it goes, and none of its bytes.
+/// Options that affect how a bake runs, but not its bytes.
 constexpr std::array<std::string_view, 6> kWithoutEffect = {"threads",       "time_limit",  "no_check",
                                                             "import_memory", "import_time", "max_triangles"};
 constexpr std::size_t kKeyDigits = 16;
-/// Of the solids that wait for their bakes since they were planned, about; others are made again.
+/// Approximate limit on the triangles of solids kept between planning and baking; other solids are made again.
 constexpr std::uint64_t kTrianglesKept = 4'000'000;
-/// In the cache, before the names of all tiles of a mesh.
+/// Prefix of a cache option that lists the tiles of a mesh.
 constexpr std::string_view kTilesWord = "--tiles=";
 
 template <class... Arguments>
@@ -61,7 +61,7 @@ double areaOf(const TriangleMesh& mesh) {
     return 0.5 * twice;
 }
 
-/// The words of the options that the bytes depend on.
+/// Returns the words of the options that affect the bytes.
 std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t compress) {
     std::vector<std::string> words = {"--compress=" + std::to_string(compress)};
     for (const FieldWords& field : changedFields(request)) {
@@ -74,7 +74,7 @@ std::vector<std::string> optionWords(const BakeRequest& request, std::uint32_t c
     return words;
 }
 
-/// The import's options have done their work on the mesh.
+/// Resets the import options, which have already been applied to the mesh.
 BakeRequest withoutImport(BakeRequest request) {
     request.import = {};
     request.import_limits = {};
@@ -83,13 +83,13 @@ BakeRequest withoutImport(BakeRequest request) {
     return request;
 }
 
-/// Of wrong volume in the space of a mesh, without its bodies: what it is worth by the area to 3/4. By volume alone large
-/// meshes take nearly all, by area those that are small take too much.
+/// The weight of misclassified volume in object space: 1 / area^(3/4). By volume, large meshes would take nearly all
+/// bytes; by area, small meshes would take too many.
 double errorWeight(double area) {
     return area > 0.0 ? 1.0 / (std::sqrt(area) * std::sqrt(std::sqrt(area))) : 0.0;
 }
 
-/// Without its collider.
+/// Converts a body; does not set its collider.
 WorldBody bodyOf(const LevelBody& from) {
     WorldBody body;
     body.node = from.node;
@@ -153,7 +153,7 @@ class WorldBaker {
             ++collider.bodies;
             collider.largest_scale = std::max(collider.largest_scale, body.scale);
         }
-        // Of a level each collider keeps its own, even a single one: all of them are one surface.
+        // A level keeps the materials of each collider, even a single one, because all of them are one surface.
         const bool several = !request_.bake.materials && hasSeveralMaterials(level_.meshes);
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {
             TriangleMesh& mesh = level_.meshes[i];
@@ -182,7 +182,7 @@ class WorldBaker {
             tell(watcher_.begin, "sharing the budget");
             shares.resize(meshes_.size());
             for (const LevelBody& body : level_.bodies) {
-                // Volume / area^(3/4), in the world.
+                // Volume / area^(3/4), in world space.
                 shares[body.mesh].weight +=
                     errorWeight(meshes_[body.mesh].area) * body.scale * std::sqrt(body.scale);
             }
@@ -199,7 +199,7 @@ class WorldBaker {
         return {};
     }
 
-    /// By the curves of the meshes, which are kept for the next run.
+    /// Distributes the budget by error curves, which are saved for the next run.
     Result<void> shareKnowing(std::span<BudgetShare> shares) {
         Result<ErrorCurves> known = loadErrorCurves(request_.folder);
         if (!known) {
@@ -229,7 +229,7 @@ class WorldBaker {
     /// Keeps the solid for the bake.
     [[nodiscard]] Result<ErrorCurve> planMesh(std::size_t mesh, std::uint64_t bytes) {
         BakeRequest request = withoutImport(requests_[mesh]);
-        request.budget = kSharePerPlan * bytes;  // of which shells are as thick
+        request.budget = kSharePerPlan * bytes;  // shells have the thickness for this budget
         SolidMesh solid = RELIEF_TRY(solidFor(request, mesh));
         Result<ErrorCurve> curve = planErrors(request, solid, bytes);
         if (!solids_[mesh] && solid.suitsAnyBudget() && kept_triangles_ < kTrianglesKept) {
@@ -243,7 +243,7 @@ class WorldBaker {
         return solids_[mesh] ? *solids_[mesh] : prepareSolid(request, level_.meshes[mesh]);
     }
 
-    /// Names the containers, and compares those that are there.
+    /// Names the containers, and validates the existing ones.
     Result<void> findUpToDate() {
         tell(watcher_.begin, "looking for what is up to date");
         Result<BakeCacheEntries> cache = loadBakeCache(request_.folder);
@@ -283,13 +283,13 @@ class WorldBaker {
         return {};
     }
 
-    /// \param tile  its name; empty: of the whole mesh.
+    /// \param tile  its name; empty for the whole mesh.
     [[nodiscard]] std::string fileOf(std::size_t mesh, const std::string& tile) const {
         const auto& [front, back] = names_of_files_[mesh];
         return front + tile + (tile.empty() ? back.substr(1) : back);
     }
 
-    /// The option that an entry of the cache has of a tile, of all those of its mesh.
+    /// Returns the cache option that lists all tiles of a mesh; part of the entry of each tile.
     static std::string tilesWord(const std::vector<std::string>& tiles) {
         std::string word(kTilesWord);
         for (const std::string& tile : tiles) {
@@ -298,7 +298,7 @@ class WorldBaker {
         return word;
     }
 
-    /// The colliders of a mesh; none unless all are there.
+    /// Returns the colliders of a mesh; empty unless all are up to date.
     [[nodiscard]] std::vector<WorldColliderResult> upToDate(std::size_t mesh, BakeCacheEntry wanted,
                                                             const BakeCacheEntries& cache) const {
         WorldColliderResult part = meshes_[mesh];
@@ -323,7 +323,7 @@ class WorldBaker {
         return parts;
     }
 
-    /// The tiles of a mesh that an entry for one of them has.
+    /// Returns the tiles of a mesh, as listed in the entry of any of them.
     [[nodiscard]] std::vector<std::string> knownTiles(std::size_t mesh, const BakeCacheEntries& cache) const {
         const auto& [front, back] = names_of_files_[mesh];
         std::vector<std::string> tiles;
@@ -396,7 +396,7 @@ class WorldBaker {
         }
     }
 
-    /// The largest first, so that the last to end is a small one.
+    /// Bakes the largest first, so that the last to finish is a small one.
     Result<void> bakeStale() {
         tell(watcher_.begin, "baking colliders");
         std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
@@ -410,7 +410,7 @@ class WorldBaker {
         std::size_t done = level_.meshes.size() - stale_.size();
         std::mutex mutex;
         tbb::parallel_for_each(stale_.begin(), stale_.end(), [&](std::size_t i) {
-            // Or a thread that waits for a loop of one bake would begin another within it.
+            // Isolate, because a thread that waits in one bake could otherwise start another inside it.
             tbb::this_task_arena::isolate([&] { bakeOne(i); });
             const std::lock_guard lock(mutex);
             ++done;
@@ -436,7 +436,7 @@ class WorldBaker {
         parts_[i].front().ms = watch.ms();
     }
 
-    /// \return the colliders of a mesh, which are written.
+    /// Bakes and writes the colliders of a mesh. \return these colliders.
     Result<std::vector<WorldColliderResult>> tryBake(std::size_t i, WorldColliderResult& collider) {
         const SolidMesh solid = RELIEF_TRY(solidFor(requests_[i], i));
         solids_[i].reset();
@@ -499,7 +499,7 @@ class WorldBaker {
                     Collider part =
                         tiles.size() == 1 ? coarse : coarseTile(coarse, FineCollider::of(tiles[k].collider));
                     part.materials =
-                        tiles[k].collider.materials;  // a program keeps them when it exchanges maps
+                        tiles[k].collider.materials;  // a program keeps them when it replaces the maps
                     RELIEF_TRY(writeCoarse(part, parts[k]));
                 }
             }
@@ -514,7 +514,7 @@ class WorldBaker {
         return writeFile(request_.folder / of.coarse->file, bytes);
     }
 
-    /// \pre No other thread is in it.
+    /// \pre No other thread is in this function.
     void remember(std::size_t i) {
         BakeCacheEntry entry = entries_[i];
         if (parts_[i].size() > 1) {
@@ -534,7 +534,7 @@ class WorldBaker {
                 fresh_[part.coarse->file] = entry;
             }
         }
-        // A killed run loses so much; the last write reports errors.
+        // A killed run loses at most this much; the last write reports errors.
         if (since_cached_.seconds() > 2.0 && updateBakeCache(request_.folder, fresh_)) {
             fresh_.clear();
             since_cached_ = Stopwatch();
@@ -544,11 +544,11 @@ class WorldBaker {
     Result<void> writeWorld() {
         World& world = result_.world;
         world.unit = level_.unit;
-        std::vector<std::uint32_t> first;  // collider of each mesh
+        std::vector<std::uint32_t> first;  // index of the first collider of each mesh
         for (std::size_t i = 0; i < meshes_.size(); ++i) {
             first.push_back(static_cast<std::uint32_t>(result_.colliders.size()));
             if (parts_[i].empty()) {
-                parts_[i].push_back(meshes_[i]);  // which failed
+                parts_[i].push_back(meshes_[i]);  // the failed mesh
             }
             std::ranges::move(parts_[i], std::back_inserter(result_.colliders));
         }
@@ -582,22 +582,22 @@ class WorldBaker {
     const WorldRequest& request_;
     const WorldWatcher& watcher_;
     WorldBakeResult result_;
-    std::vector<std::string> names_;  // of --as
-    Level level_;                     // whose stale meshes are moved away
+    std::vector<std::string> names_;  // from --as
+    Level level_;                     // the meshes of stale entries are moved out
     std::string tool_;
     PatchTileOptions tiles_;
-    std::vector<WorldColliderResult> meshes_;              // what the colliders of each have in common
-    std::vector<std::vector<WorldColliderResult>> parts_;  // those colliders; none yet of a stale mesh
+    std::vector<WorldColliderResult> meshes_;              // shared by the colliders of each mesh
+    std::vector<std::vector<WorldColliderResult>> parts_;  // colliders of each mesh; empty while stale
     struct FileName {
         std::string front;
         std::string back;
     };
-    std::vector<FileName> names_of_files_;  // of the meshes
-    std::vector<BakeRequest> requests_;     // of the meshes
+    std::vector<FileName> names_of_files_;  // by mesh
+    std::vector<BakeRequest> requests_;     // by mesh
     std::vector<std::vector<InputFile>> inputs_;
-    std::vector<std::optional<SolidMesh>> solids_;  // of meshes whose share was measured
+    std::vector<std::optional<SolidMesh>> solids_;  // by mesh; kept from planning
     std::atomic<std::uint64_t> kept_triangles_ = 0;
-    std::vector<BakeCacheEntry> entries_;  // the same, without outputs
+    std::vector<BakeCacheEntry> entries_;  // by mesh, without outputs
     std::vector<std::size_t> stale_;       // meshes
     BakeCacheEntries fresh_;               // not yet in the cache file
     Stopwatch since_cached_;

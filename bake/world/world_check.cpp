@@ -23,9 +23,9 @@ namespace relief {
 namespace {
 
 constexpr std::uint64_t kSamplesMax = 100'000'000;
-constexpr std::uint64_t kPointsMin = 100;  ///< of a body
+constexpr std::uint64_t kPointsMin = 100;  ///< per body
 constexpr std::size_t kWorst = 10;
-/// Standard deviation of the points, in units of the longest side: that of AccuracyOptions.
+/// Standard deviation of the points, in units of the longest side, as in AccuracyOptions.
 constexpr double kSigma = AccuracyOptions().sigma_share;
 
 glm::dvec3 inBall(MersenneRandom& random) {
@@ -60,7 +60,7 @@ class WorldChecker {
     }
 
   private:
-    /// With the names that colliders were baked by.
+    /// Reads the level with the names that the colliders were baked with.
     Result<void> readLevel() {
         HiddenAs hidden = request_.check.import.hidden;
         for (const WorldCollider& collider : field_.world().colliders) {
@@ -102,12 +102,13 @@ class WorldChecker {
             ShapedMesh shaped = RELIEF_TRY(recordedSolid(recorded_[*collider], winding.mesh));
             queries_.push_back(RELIEF_TRY(MeshQuery::build(shaped.mesh)));
             parts_.push_back(std::move(shaped.parts));
-            static_cast<void>(queries_.back().prepared().areas());  // before threads do
+            static_cast<void>(queries_.back().prepared().areas());  // computed before threads use it
         }
         return {};
     }
 
-    /// A collider of a mesh: of several, which are its tiles or differ by --as NAME=KIND, the last that was baked by these.
+    /// Returns a collider of a mesh. If several exist (tiles, or different --as NAME=KIND), returns the last one baked
+    /// with `as`.
     [[nodiscard]] std::optional<std::size_t> colliderOf(const std::string& hash,
                                                         const std::vector<std::string>& as) const {
         const auto [begin, end] = by_hash_.equal_range(hash);
@@ -136,7 +137,8 @@ class WorldChecker {
         }
     }
 
-    /// The first body of each node: the tiles of its mesh follow each other in the order of the world's colliders, in one place.
+    /// Returns the first body of each node. The tiles of a mesh have the same pose, and follow each other in the order
+    /// of the world's colliders.
     [[nodiscard]] std::vector<std::size_t> firstBodies() const {
         const std::vector<WorldBody>& bodies = field_.world().bodies;
         std::vector<std::size_t> first;
@@ -157,7 +159,7 @@ class WorldChecker {
         return a.position == b.position && a.rotation == b.rotation && a.scale == b.scale;
     }
 
-    /// A world whose level has changed is measured all the same, and wrong.
+    /// Warns if the level has changed; the world is still measured.
     void comparePoses() {
         const std::vector<std::size_t> first = firstBodies();
         std::size_t other = 0;
@@ -170,7 +172,7 @@ class WorldChecker {
         for (std::size_t i = 0; i < std::min(first.size(), placed_.size()); ++i) {
             const LevelBody& body = *placed_[i].body;
             const WorldBody& own = field_.world().bodies[first[i]];
-            double turn = 0.0;  // a quaternion and its negative are one rotation
+            double turn = 0.0;  // a quaternion and its negative are the same rotation
             for (std::size_t k = 0; k < 4; ++k) {
                 turn += body.rotation[k] * double{own.rotation[k]};
             }
@@ -311,7 +313,7 @@ class WorldChecker {
         return counts;
     }
 
-    /// A point near the surface of a body, in the world.
+    /// Returns a point near the surface of a body, in world space.
     [[nodiscard]] glm::dvec3 draw(const PlacedMesh& placed, std::uint64_t number) const {
         MersenneRandom random(request_.check.seed, number);
         const TriangleMesh& mesh = placed.query->mesh();
@@ -328,15 +330,15 @@ class WorldChecker {
     const WorldCheckRequest& request_;
     const WorldField& field_;
     WorldAccuracy result_;
-    std::vector<BakeRequest> recorded_;                // of the colliders
-    std::multimap<std::string, std::size_t> by_hash_;  // colliders, by the hash of their mesh
+    std::vector<BakeRequest> recorded_;                // by collider
+    std::multimap<std::string, std::size_t> by_hash_;  // collider indices by the hash of their mesh
     std::vector<std::string> as_;                      // NAME=KIND of all colliders
     Level level_;
-    std::vector<MeshQuery> queries_;   // of its meshes
-    std::vector<SurfaceParts> parts_;  // of its meshes
+    std::vector<MeshQuery> queries_;   // by mesh of the level
+    std::vector<SurfaceParts> parts_;  // by mesh of the level
     std::vector<PlacedMesh> placed_;
-    std::vector<std::size_t> tiles_;  // of them: bodies of the world
-    std::vector<bool> moved_;         // of them: the world has it elsewhere
+    std::vector<std::size_t> tiles_;  // by placed mesh: number of bodies of the world
+    std::vector<bool> moved_;         // by placed mesh: the world has another pose
 };
 
 }  // namespace

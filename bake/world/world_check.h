@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world measured against the level that it was baked from. Truth is the union of the level's meshes where its nodes place
-// them, each by Embree in its own space: a point beside one body may be inside another.
+// Measures a world against the level from which it was baked. Truth is the union of the level's meshes at the poses of
+// its nodes, each queried by Embree in its own space: a point near one body may be inside another.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,10 @@
 namespace relief {
 
 struct WorldCheckRequest {
-    CheckRequest check;  ///< of which `mesh` is the level; `samples` are shared by its bodies; no detail
-    std::optional<float> within;  ///< world units; nullopt: as relief check measures one collider
-    bool pictures = false;        ///< slices through the places
+    /// `mesh` is the level; `samples` are distributed among its bodies; `detail` is unused.
+    CheckRequest check;
+    std::optional<float> within;  ///< world units; nullopt: as `relief check` for a single collider
+    bool pictures = false;        ///< adds slices through the worst places
 };
 
 /// The points near the surface of one body.
@@ -31,11 +32,12 @@ struct BodyAccuracy {
     std::uint64_t points = 0;
     WrongShare wrong;
     std::size_t tiles =
-        1;  ///< bodies of the world, in its order: several of a mesh in tiles; 0: the level has others
-    glm::vec3 place{0.0F};  ///< world space: a typical point on the wrong side, or the body's position
+        1;  ///< consecutive bodies of the world: several for a mesh in tiles; 0: the level differs
+    glm::vec3 place{0.0F};  ///< world space: a typical misclassified point, or the position of the body
 };
 
-/// Parts of a mesh of the level that its collider loses, each by its own size (measureParts()), wherever bodies stand.
+/// The parts of a mesh of the level that its collider loses, relative to their own size (measureParts()), regardless of
+/// poses.
 struct LostParts {
     std::string mesh;
     std::uint64_t lost = 0;
@@ -43,15 +45,15 @@ struct LostParts {
 };
 
 struct WorldAccuracy {
-    WrongShare all;                    ///< of the points of all bodies, as many of each
+    WrongShare all;                    ///< of all points; each body has the same number
     std::vector<BodyAccuracy> bodies;  ///< in the order of the level
-    std::vector<std::size_t> worst;    ///< bodies with points on the wrong side, at most ten, the worst first
-    std::vector<WorldPlace> places;    ///< of those, in the same order
+    std::vector<std::size_t> worst;    ///< bodies with misclassified points, worst first, at most ten
+    std::vector<WorldPlace> places;    ///< of `worst`, in the same order
     std::vector<LostParts> lost;       ///< meshes that lose parts, in the order of the level
-    std::size_t coarse = 0;            ///< other meshes with coarse parts
-    IgnoredParts ignored;              ///< of all meshes; sizes in the world
+    std::size_t coarse = 0;            ///< number of other meshes with coarse parts
+    IgnoredParts ignored;              ///< of all meshes; sizes in world space
     std::vector<std::string> warnings;
-    std::vector<std::string> dependencies;  ///< files that the level's file refers to
+    std::vector<std::string> dependencies;  ///< files that the level references
     double seconds = 0.0;
 
     /// \param max_error  percent; nullopt: no limit.
@@ -60,8 +62,9 @@ struct WorldAccuracy {
     }
 };
 
-/// Errors: kLimit (samples), kInvalidInput (a mesh of the level that no collider was baked from), those of
-/// importLevel, of the shapes and of Embree.
+/// Measures a world.
+/// Errors: kLimit (samples), kInvalidInput (a mesh of the level has no collider), those of importLevel, of the shapes
+/// and of Embree.
 [[nodiscard]] Result<WorldAccuracy> checkWorld(const WorldCheckRequest& request, const WorldField& field);
 
 }  // namespace relief

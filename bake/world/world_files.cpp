@@ -49,13 +49,13 @@ void keepMaterials(World& world, const World& before, const std::set<std::string
     }
 }
 
-/// A node that is placed: its body, or those of the tiles of its mesh.
+/// A placed node: its body, or the bodies of the tiles of its mesh.
 struct Placed {
     std::span<const WorldBody> bodies;
     std::string node;
     std::array<float, 8> pose;
-    std::vector<std::array<float, 6>> boxes;  ///< of the colliders, which stand for the mesh
-    std::size_t first = 0;                    ///< of the world's bodies
+    std::vector<std::array<float, 6>> boxes;  ///< of the colliders, which identify the mesh
+    std::size_t first = 0;                    ///< index into the bodies of the world
     bool matched = false;
 
     [[nodiscard]] std::array<float, 6> box() const {
@@ -96,7 +96,7 @@ bool sameResponse(const WorldBody& a, const WorldBody& b) {
     return a.restitution == b.restitution && a.friction == b.friction;
 }
 
-/// \return false if the bodies differ and `to` has other tiles.
+/// Copies the responses of a node. \return false if its bodies differ and `to` has other tiles.
 bool keepResponses(const Placed& from, const Placed& to, World& world) {
     const WorldBody& first = from.bodies.front();
     const bool alike =
@@ -111,8 +111,8 @@ bool keepResponses(const Placed& from, const Placed& to, World& world) {
 
 using Nodes = std::vector<Placed*>;
 
-/// Matches the nodes of one key, where nothing else can be meant: one each, or several that respond alike.
-/// \param exact  equal nodes are in the same place too, so that of as many each is the one in its turn.
+/// Matches the nodes of one key if the match is unambiguous: one each, or several with equal responses.
+/// \param exact  equal nodes also have equal poses; if their numbers match, they are paired in order.
 void matchNodes(const Nodes& before, const Nodes& now, bool exact, World& world) {
     if (before.empty() || now.empty()) {
         return;
@@ -136,7 +136,7 @@ void matchNodes(const Nodes& before, const Nodes& now, bool exact, World& world)
     }
 }
 
-/// \param read  `world` as a reader gets it, whose poses compare with those of `before`.
+/// \param read  `world` after a round trip through a reader, so that its poses compare with those of `before`.
 void keepBodies(World& world, const World& read, const World& before, std::vector<std::string>& warnings) {
     std::vector<Placed> old = placedOf(before);
     std::vector<Placed> now = placedOf(read);
@@ -218,7 +218,7 @@ Result<ReplacedWorld> replaceWorld(const fs::path& folder, World& world,
         replaced.warnings.push_back(before.error().message +
                                     "; it is replaced, without what was written into it by hand");
     }
-    // A world that no reader would take must not be written: scales or places that floats do not hold.
+    // Never write a world that no reader accepts, such as one with scales or positions out of range of floats.
     const World read = RELIEF_TRY(withPrefix(name, parseWorld(worldText(world))));
     if (before) {
         keepBodies(world, read, *before, replaced.warnings);

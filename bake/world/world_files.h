@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of a world in its folder: the one that names the others is written last, and then those go that only the one
-// before named.
+// Writes the files of a world. The file that names the others is written last. Files that only the previous world names
+// are then removed.
 #pragma once
 
 #include <filesystem>
@@ -14,20 +14,21 @@
 
 namespace relief {
 
-/// A name as a part of a file's: letters, digits and _ - . of ASCII.
+/// Converts a name to a part of a file name: ASCII letters, digits, '_', '-' and '.'.
 [[nodiscard]] std::string fileStem(std::string_view name);
 
 struct ReplacedWorld {
-    std::vector<std::string> removed;   ///< containers
-    std::vector<std::string> warnings;  ///< of what was written by hand and is left out; one line each
+    std::vector<std::string> removed;   ///< removed containers
+    std::vector<std::string> warnings;  ///< about settings written by hand that were dropped; one line each
 };
 
-/// Writes kWorldFileName; its containers are there. Containers of the world from before that this one does not name are removed,
-/// if they still are what that one named. What people write into that file stays: responses by the names of materials,
-/// restitution and friction of bodies by name, box and place of their nodes, or by less if that means one node only.
-/// \param materials  names of those of all its colliders.
-/// \param name       stands in front of what is wrong with the world.
-/// Errors: those of parseWorld: no reader would take it; kIo.
+/// Writes kWorldFileName; its containers must exist. Removes containers that only the previous world names, if their
+/// contents have not changed. Preserves settings written by hand: responses by material name, and the restitution and
+/// friction of bodies. Bodies are matched by the name, box and pose of their node, or by fewer of these if the match is
+/// unique.
+/// \param materials  names of the materials of all colliders.
+/// \param name       prefix for errors about the world.
+/// Errors: those of parseWorld (no reader would accept the world), kIo.
 [[nodiscard]] Result<ReplacedWorld> replaceWorld(const std::filesystem::path& folder, World& world,
                                                  const std::set<std::string>& materials,
                                                  const std::string& name);

@@ -12,7 +12,8 @@
 namespace relief {
 namespace {
 
-/// Sides of a picture: in distances of the point from the surface, so that these can be seen, and in longest sides of the body.
+/// Side of a picture: in distances of the point from the surface, to keep these visible, and in longest sides of the
+/// body.
 constexpr double kDistances = 40.0;
 constexpr double kLeast = 0.02;
 constexpr double kMost = 1.2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The place where a body of a world is typically wrong: why, and a picture of the union of all bodies there.
+// The place where a body of a world is typically wrong: its cause, and a slice through the union of all bodies there.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@
 namespace relief {
 
 enum class WorldCause : std::uint8_t {
-    kMoved,   ///< the world has the node elsewhere
-    kFloats,  ///< floatsLimit(): the mesh lies too far from its origin
+    kMoved,   ///< the world has the node at another pose
+    kFloats,  ///< floatsLimit(): the mesh is too far from its origin
     kTexel,   ///< the point is less than kTexelsOff texels from the surface
-    kMesh,    ///< it is farther: faces that cross, open edges, or a part that is lost
+    kMesh,    ///< it is farther away: intersecting faces, open edges, or a lost part
 };
 template <>
 inline constexpr std::array<std::string_view, 4> kWordsOf<WorldCause>{"moved", "floats", "texel", "mesh"};
@@ -28,7 +28,7 @@ inline constexpr double kTexelsOff = 1.5;
 
 struct WorldPlace {
     glm::vec3 normal{0.0F};  ///< of the nearest surface of the body's mesh, world space
-    double distance = 0.0;   ///< from that, world units
+    double distance = 0.0;   ///< from that surface, world units
     double texel = 0.0;      ///< side of the deciding body's texels there, world units; 0: no body decides
     WorldCause cause = WorldCause::kMesh;
     std::optional<VerdictSlice> slice;
@@ -37,10 +37,10 @@ struct WorldPlace {
 struct WorldPlaceQuery {
     const std::vector<PlacedMesh>& level;
     const WorldField& field;
-    std::size_t body = 0;  ///< of the level
+    std::size_t body = 0;  ///< index in the level
     glm::vec3 place{0.0F};
     bool moved = false;
-    double wrong = 0.0;  ///< percent of the body's points
+    double wrong = 0.0;  ///< percent of the points of the body
 };
 
 [[nodiscard]] WorldPlace worldPlace(const WorldPlaceQuery& question, bool picture);

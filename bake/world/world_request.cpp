@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of a level, and those of each mesh of it.
+// Splits the options of a level into those of its meshes.
 #include <array>
 #include <utility>
 

@@ -10,10 +10,11 @@
 namespace relief {
 namespace {
 
-/// Of a share, for the roots beyond each tile's own: of thirty along a side they take a fifteenth, of fewer more.
+/// One part in this many of a share is reserved for the roots that tiles duplicate: they take a fifteenth with thirty
+/// roots along a side, and more with fewer.
 constexpr std::uint64_t kOneInShare = 10;
 
-/// The part of a box that is in a tile's own roots.
+/// Returns the part of a box within the tile's own roots.
 Bounds partOf(const Bounds& box, const DepthMap& whole, const PatchTile& tile) {
     const double size = double{whole.object_per_map.x};
     Bounds part = box;

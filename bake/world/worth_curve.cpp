@@ -9,21 +9,21 @@
 namespace relief {
 namespace {
 
-/// Of meshes in general (bake/patches/NOTES.md), and the least and the most that is believed beyond the end of a curve, where
-/// what is steep becomes less so.
+/// The power of typical meshes (bake/patches/NOTES.md), and its limits beyond the end of a curve, where steep curves
+/// flatten.
 constexpr double kPower = 0.73;
 constexpr double kPowerLeast = 0.4;
 constexpr double kPowerMost = 1.0;
-/// The power is that of the last so many times the bytes.
+/// The power is fitted over a range of this factor of bytes at the end of the curve.
 constexpr double kPowerOver = 8.0;
-/// exp() of it is more than any budget.
+/// exp() of this exceeds any budget.
 constexpr double kLogMost = 60.0;
 
 double slope(const ErrorPoint& a, const ErrorPoint& b) {
     return (a.wrong - b.wrong) / (b.bytes - a.bytes);
 }
 
-/// The points with falling slopes between them.
+/// Returns the points of the convex hull, where slopes decrease.
 ErrorCurve hullOf(const ErrorCurve& curve) {
     ErrorCurve hull;
     for (const ErrorPoint& point : curve) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The errors of a mesh that a byte more mends, against the bytes that it has.
+// The error that one more byte saves in a mesh, by its bytes.
 #pragma once
 
 #include <limits>
@@ -9,15 +9,15 @@
 
 namespace relief {
 
-/// The slope of the convex hull of a curve of errors, on straight lines of logarithms, and beyond its end of the power law
-/// that it ends with.
+/// The slope of the convex hull of an error curve, interpolated linearly between logarithms. The power law at the end
+/// of the curve extends it.
 class WorthCurve {
   public:
-    /// \param curve  not empty. \param weight  of its errors, 0 or more.
+    /// \param curve  not empty. \param weight  factor on its errors, 0 or more.
     WorthCurve(const ErrorCurve& curve, double weight);
 
-    /// The bytes up to which each mends at least so much; they grow where the worth falls.
-    /// \param log_worth  natural logarithm.
+    /// Returns the bytes up to which each byte saves at least this much; they grow as the worth falls.
+    /// \param log_worth  natural logarithm of the worth.
     [[nodiscard]] double bytesAt(double log_worth) const;
 
   private:
@@ -27,9 +27,9 @@ class WorthCurve {
     };
     void add(double bytes, double worth);
 
-    std::vector<Knot> knots_;                                // worth falls
-    double power_;                                           // errors go by bytes^-power beyond the last
-    double most_ = std::numeric_limits<double>::infinity();  // bytes; more mend nothing
+    std::vector<Knot> knots_;  // in descending order of worth
+    double power_;             // errors are proportional to bytes^-power beyond the last knot
+    double most_ = std::numeric_limits<double>::infinity();  // bytes; more bytes save nothing
 };
 
 }  // namespace relief
