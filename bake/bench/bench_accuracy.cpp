@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief-accuracy: wrong points per byte of distance volumes, dense and sparse, of the paper's maps, and of ours, as JSON.
-// scripts/accuracy.sh runs it on its list of meshes, and makes tables of it.
+// relief-accuracy: misclassified points per byte of dense and sparse distance volumes, of the paper's maps and of our
+// maps, as JSON. scripts/accuracy.sh runs it on a list of meshes and makes tables of the results.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -33,16 +33,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One mesh, budget and method.
+/// The result of one mesh, budget and method.
 struct AccuracyEntry {
     std::string mesh;
     bool closed = false;
     std::uint64_t budget = 0;
-    std::string method;  ///< of Arguments
-    std::string what;    ///< lattice or maps
+    std::string method;  ///< from Arguments
+    std::string what;    ///< the lattice or the maps
     std::size_t maps = 0;
     std::uint64_t bytes = 0;
-    std::optional<double> build_seconds;  ///< of maps: acceleration structure, rays and fit
+    std::optional<double> build_seconds;  ///< for maps: acceleration structure, rays and fit
     Json accuracy;                        ///< of jsonFieldAccuracy or jsonColliderAccuracy
 };
 
@@ -58,10 +58,10 @@ Json toJson(const AccuracyEntry& entry) {
             {"accuracy", entry.accuracy}};
 }
 
-// --- methods ---
+// --- Methods ---
 
-/// Three front-back maps along the axes on tight boxes, texels as square and as equal in size as whole
-/// numbers allow, as many as fit.
+/// Returns three front-back maps along the axes on tight boxes. Their texels are as square and as equal in size as
+/// whole numbers allow, and as many as fit.
 Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t bytes) {
     std::vector<MapSpec> specs(3);
     glm::dvec2 extent[3];
@@ -102,7 +102,7 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
     return specs;
 }
 
-/// The paper's projected depth in the paper's front-back format.
+/// Bakes the projected depth of the paper in its front-back format.
 Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
     std::vector<MapSpec> specs = RELIEF_TRY(threeMaps(*mesh, bytes));
     BakeOptions options;
@@ -110,22 +110,22 @@ Result<Baked> bakePaper(const PreparedMesh& mesh, std::uint64_t bytes) {
     return bake(mesh, options);
 }
 
-/// As `relief bake --budget`.
+/// Bakes as `relief bake --budget`.
 Result<Baked> bakeOurs(const PreparedMesh& mesh, std::uint64_t bytes) {
     BakeRequest request;
     request.budget = bytes;
     return bakeSolid(request, mesh);
 }
 
-// --- measuring ---
+// --- Measurements ---
 
-/// The best of all ways to place and to quantise the volume.
-/// \param atlas  becomes that one's; null: not wanted. So below.
+/// Measures all positions and quantisations of the volume, and returns the best.
+/// \param atlas  receives the data of the best; null if not needed. The same applies below.
 AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples, std::uint64_t budget,
                             BrickAtlas* atlas) {
     AccuracyEntry entry;
     entry.method = "volume";
-    // Four standard deviations hold all but 6 in 100 000 of the points near the surface.
+    // Four standard deviations include all but 6 in 100,000 of the points near the surface.
     const double reach = 4.0 * samples.options.sigma_share * samples.longest_side;
     std::optional<FieldAccuracy> best;
     for (const LatticeFit fit : {LatticeFit::kCentered, LatticeFit::kCorner, LatticeFit::kStretched}) {
@@ -157,12 +157,13 @@ AccuracyEntry measureVolume(const MeshQuery& query, const TruthSamples& samples,
     return entry;
 }
 
-/// The best of several layouts.
+/// Measures several layouts, and returns the best.
 AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples, const std::string& method,
                             std::uint64_t budget, BrickAtlas* atlas) {
     AccuracyEntry entry;
     entry.method = method;
-    // Unreal's band is 2 to 4 voxels; 2 has the finest codes. Bricks of 3³ and an octree of 2³ were the best of 2³ to 8³.
+    // Unreal's band is 2 to 4 voxels; 2 has the finest codes. Bricks of 3³ and an octree of 2³ were the best of 2³ to
+    // 8³.
     std::vector<BrickLayout> layouts = {{.cells = 8, .flat_index = true}};
     if (method != "unreal") {
         const bool fitted = method == "fitted";
@@ -191,11 +192,11 @@ AccuracyEntry measureBricks(const MeshQuery& query, const TruthSamples& samples,
     return entry;
 }
 
-/// The truth about one mesh.
+/// The truth about a mesh.
 struct Truth {
-    const MeshQuery& query;  ///< of the solid that is baked
+    const MeshQuery& query;  ///< of the baked solid
     const TruthSamples& samples;
-    const std::vector<TruthPoint>& sheets;  ///< SheetTruth::sample
+    const std::vector<TruthPoint>& sheets;  ///< of SheetTruth::sample
 };
 
 AccuracyEntry measureMaps(const Truth& truth, const std::string& method, const Collider& collider) {
@@ -225,7 +226,7 @@ Result<AccuracyEntry> bakeAndMeasure(const Truth& truth, const std::string& meth
     return entry;
 }
 
-/// What `relief bake` has written, by whatever options.
+/// Loads and measures a file written by `relief bake` with any options.
 Result<AccuracyEntry> loadAndMeasure(const Truth& truth, const std::string& path) {
     const Collider collider = RELIEF_TRY(loadCollider(path));
     const TriangleMesh& mesh = truth.query.mesh();
@@ -236,7 +237,7 @@ Result<AccuracyEntry> loadAndMeasure(const Truth& truth, const std::string& path
     return measureMaps(truth, "ours", collider);
 }
 
-// --- the program ---
+// --- Program ---
 
 struct Arguments {
     std::vector<std::string> meshes;
@@ -262,10 +263,10 @@ Result<std::vector<std::uint64_t>> parseBudgets(const std::vector<std::string>& 
 
 struct Measured {
     Json meshes = Json::array();
-    Json results = Json::array();  ///< those of one mesh and budget are neighbours
+    Json results = Json::array();  ///< results of the same mesh and budget are adjacent
 };
 
-/// Parts, thickness and voids as the given collider records them.
+/// Returns the parts, thickness and voids recorded in the given collider.
 Result<BakeRequest> recordedShapeOf(const Arguments& arguments) {
     BakeRequest request;
     if (!arguments.collider.empty()) {
@@ -279,7 +280,7 @@ Result<BakeRequest> recordedShapeOf(const Arguments& arguments) {
 }
 
 /// Measures one mesh at one budget with all methods.
-/// \param shape  without a thickness: the default for the budget.
+/// \param shape  without a thickness, the default for the budget is used.
 Result<void> measureBudget(const PreparedMesh& imported, const Arguments& arguments, BakeRequest shape,
                            std::uint64_t budget, Measured& measured) {
     shape.budget = budget;

@@ -19,9 +19,9 @@ namespace relief {
 namespace {
 
 constexpr double kCodeMax = 127.0;
-// A fit looks at so many random points of each voxel along each axis, one in each part of it.
+// A fit uses one random point in each of this many parts of a voxel along each axis.
 constexpr unsigned kFitParts = 3;
-// Surface points that judge which cubes to split, for each byte of the budget and at most.
+// Surface points that determine which cubes to split: number per byte of the budget, and maximum.
 constexpr double kJudges = 0.5;
 constexpr std::uint32_t kJudgesMax = 1'500'000;
 
@@ -38,14 +38,14 @@ struct Box {
     [[nodiscard]] Box octant(unsigned i) const {
         return {low + 0.5 * size * glm::dvec3(i & 1U, i >> 1U & 1U, i >> 2U), 0.5 * size};
     }
-    /// The octant of a point in the box.
+    /// Returns the octant of a point in the box.
     [[nodiscard]] unsigned octantOf(const glm::dvec3& p) const {
         const glm::bvec3 upper = glm::greaterThanEqual(p, middle());
         return (upper.x ? 1U : 0U) + (upper.y ? 2U : 0U) + (upper.z ? 4U : 0U);
     }
 };
 
-/// Signed distances at points, each near the one before.
+/// Computes signed distances at a sequence of points, each near the previous one.
 class DistanceWalk {
   public:
     explicit DistanceWalk(const MeshQuery& query) : query_(query) {}
@@ -53,8 +53,8 @@ class DistanceWalk {
     [[nodiscard]] double at(const glm::dvec3& exact) {
         const glm::vec3 p = exact;
         const ClosestPoint closest = query_.closest(p, nearby_);
-        // No surface lies between two points that are closer to each other than one of them is to the surface; a little
-        // more for the rounding of p.
+        // No surface lies between two points if they are closer to each other than one of them is to the surface. The
+        // factor allows for the rounding of p.
         const bool same_side =
             nearby_ && query_.watertight() && std::abs(before_) > 1.01 * glm::distance(exact, from_);
         const bool inside = same_side ? before_ < 0.0 : query_.inside(p);
@@ -71,7 +71,7 @@ class DistanceWalk {
     double before_ = 0.0;
 };
 
-/// Whether surface lies in a box: certain but for a corner of a sixteenth of its side, which counts as surface.
+/// Whether a box contains surface. Exact, except for corners of a sixteenth of its side, which count as surface.
 bool holdsSurface(const MeshQuery& query, const Box& box, std::optional<std::uint32_t> hint = {},
                   unsigned halvings = 4) {
     const ClosestPoint closest = query.closest(glm::vec3(box.middle()), hint);
@@ -89,7 +89,7 @@ bool holdsSurface(const MeshQuery& query, const Box& box, std::optional<std::uin
     return false;
 }
 
-/// The eight corners' shares of a point in a voxel, x fastest.
+/// Returns the trilinear weights of the eight corners of a voxel, x fastest.
 std::array<double, 8> sharesAt(const glm::dvec3& t) {
     std::array<double, 8> shares;
     for (unsigned i = 0; i < 8; ++i) {
@@ -99,7 +99,7 @@ std::array<double, 8> sharesAt(const glm::dvec3& t) {
     return shares;
 }
 
-/// A brick of `cells`³ voxels: where a point lies in it.
+/// The nodes and voxels of a brick of `cells`³ voxels.
 struct BrickGrid {
     unsigned cells;
 
@@ -131,7 +131,7 @@ std::vector<double> exactNodes(const MeshQuery& query, const BrickGrid& grid, co
     DistanceWalk walk(query);
     const double voxel = box.size / grid.cells;
     for (unsigned i = 0; i < nodes.size(); ++i) {
-        // Back and forth, so that each node is next to the one before.
+        // Back and forth, so that consecutive nodes are neighbours.
         glm::uvec3 at = grid.node(i);
         at.y = at.z % 2 == 0 ? at.y : grid.cells - at.y;
         at.x = (at.z * grid.side() + at.y) % 2 == 0 ? at.x : grid.cells - at.x;
@@ -145,7 +145,7 @@ bool ofOneSign(const std::vector<double>& nodes) {
            std::ranges::all_of(nodes, [](double d) { return d < 0.0; });
 }
 
-/// Moves nodes so that the trilinear value is closest to the distances at points of the voxels that the surface crosses.
+/// Fits nodes so that the trilinear value is closest to the distances at points of the voxels that the surface crosses.
 void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std::vector<double>& nodes) {
     using Matrix = Eigen::MatrixXd;
     using Vector = Eigen::VectorXd;
@@ -153,7 +153,7 @@ void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std
     Matrix normal = Matrix::Zero(grid.nodes(), grid.nodes());
     Vector right = Vector::Zero(grid.nodes());
     DistanceWalk walk(query);
-    const glm::dvec3 place = box.middle() / box.size;  // a seed of the place alone
+    const glm::dvec3 place = box.middle() / box.size;  // a seed that depends only on the position
     Mersenne64 random(splitMix64(static_cast<std::uint64_t>(std::llround(place.x * 64.0))) +
                       splitMix64(static_cast<std::uint64_t>(std::llround(place.y * 64.0)) + 1) +
                       splitMix64(static_cast<std::uint64_t>(std::llround(place.z * 64.0)) + 2));
@@ -178,7 +178,7 @@ void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std
             }
         }
     }
-    // Nodes that few points tell about stay about where they were.
+    // Keep nodes near their previous values if few points constrain them.
     for (unsigned i = 0; i < grid.nodes(); ++i) {
         const double pull = 0.01 + 1e-3 * normal(i, i);
         normal(i, i) += pull;
@@ -257,11 +257,11 @@ class BrickBuilder {
     struct Leaf {
         Box box;
         unsigned level = 0;
-        std::uint32_t slot = 0;  // in roots_ at level 0, else in cubes_
+        std::uint32_t slot = 0;  // index into roots_ at level 0, else into cubes_
         bool surface = false;
         bool stored = false;
         bool split = false;
-        double error = 0.0;  // sum over its judges of the displacement of the surface
+        double error = 0.0;  // total displacement of the surface at its sample points
         std::vector<double> nodes;
         std::vector<std::uint32_t> judges;
     };
@@ -273,14 +273,14 @@ class BrickBuilder {
             volume_.root_size_};
     }
 
-    /// In order.
+    /// Returns the cells in ascending order.
     [[nodiscard]] std::vector<std::uint64_t> cellsWithSurface() const {
         const glm::uvec3 n = volume_.roots_count_;
         std::uint32_t span = 1;
         while (span < std::max({n.x, n.y, n.z})) {
             span *= 2;
         }
-        // A few levels down on one core, then on all.
+        // A few levels on one core, then on all.
         std::vector<glm::uvec3> blocks = {glm::uvec3(0)};
         for (int level = 0; level < 4 && span > 1; ++level) {
             span /= 2;
@@ -327,7 +327,7 @@ class BrickBuilder {
         }
     }
 
-    /// Adds a brick, unless a sign does as well.
+    /// Adds a brick, unless a sign is sufficient.
     [[nodiscard]] BrickVolume::Cube stored(const std::vector<double>& nodes, double size) {
         using Kind = BrickVolume::Kind;
         const double range = volume_.layout_.band * size / grid_.cells;
@@ -362,7 +362,7 @@ class BrickBuilder {
         for (const std::uint32_t judge : leaf.judges) {
             const glm::dvec3 in_voxels =
                 (glm::dvec3(judges_[judge].position) - box.low) / box.size * static_cast<double>(grid_.cells);
-            // A brick without a sign change displaces the surface to wherever it ends.
+            // A brick without a sign change displaces the surface to its boundary.
             leaf.error += leaf.stored ? std::abs(grid_.valueAt(leaf.nodes, in_voxels)) : 0.25 * box.size;
         }
         return leaf;
@@ -375,7 +375,7 @@ class BrickBuilder {
     /// Splits the leaves with the largest errors. \return false if the bytes are used up.
     bool splitWorst(std::uint64_t bytes) {
         const std::uint64_t now = bytesNow();
-        // Four of eight cubes hold surface, at least.
+        // At least four of eight cubes contain surface.
         const std::uint64_t cost = 3 * grid_.nodes() + 8 * 4;
         if (now + 2 * cost > bytes) {
             return false;
@@ -463,7 +463,7 @@ BrickVolume BrickVolume::withVoxels(const MeshQuery& query, const BrickLayout& l
 BrickVolume BrickVolume::build(const MeshQuery& query, const BrickLayout& layout, std::uint64_t bytes) {
     const auto longest = static_cast<double>(query.mesh().bounds.longestSide());
     if (layout.octree) {
-        // A root for each 80 bytes: an index of a twentieth.
+        // One root per 80 bytes: the index takes a twentieth.
         const glm::dvec3 size = query.mesh().bounds.size();
         const auto roots = [&](double root) {
             const glm::dvec3 n = glm::ceil(size / root);
@@ -475,7 +475,7 @@ BrickVolume BrickVolume::build(const MeshQuery& query, const BrickLayout& layout
         }
         return BrickBuilder(query, layout, root).octree(bytes);
     }
-    // Bytes go by the square of a voxel.
+    // The number of bytes is inversely proportional to the square of the voxel size.
     double large = longest / layout.cells;
     double small = large;
     while (BrickBuilder(query, layout, small * layout.cells).uniformBytes() <= bytes &&
@@ -488,7 +488,7 @@ BrickVolume BrickVolume::build(const MeshQuery& query, const BrickLayout& layout
         (BrickBuilder(query, layout, middle * layout.cells).uniformBytes() <= bytes ? large : small) = middle;
     }
     BrickVolume best = withVoxels(query, layout, large);
-    // Bricks of one sign made room.
+    // Bricks of a single sign freed bytes.
     for (int i = 0; i < 3 && best.bytes() < bytes - bytes / 64; ++i) {
         const double finer = best.voxel() * std::sqrt(static_cast<double>(best.bytes()) /
                                                       (static_cast<double>(bytes) * 0.997));
@@ -511,7 +511,7 @@ double BrickVolume::voxel() const {
 
 std::uint64_t BrickVolume::indexBytes(std::uint64_t bricks) const {
     const std::uint64_t roots = std::uint64_t{roots_count_.x} * roots_count_.y * roots_count_.z;
-    // Two signs need values of their own.
+    // Two values are reserved for the signs.
     const auto width = [](std::uint64_t values) { return values + 2 <= 65536 ? 2U : 4U; };
     if (layout_.octree) {
         return (roots + cubes_.size()) * width(bricks + cubes_.size() / 8);
@@ -520,7 +520,7 @@ std::uint64_t BrickVolume::indexBytes(std::uint64_t bricks) const {
     if (layout_.flat_index) {
         return least;
     }
-    // Blocks of k³ cubes, the first brick of each in the upper level; below, bricks count from there.
+    // Blocks of k³ cubes: the upper level stores the first brick of each, and the lower level stores offsets from it.
     for (std::uint64_t k = 2; k <= 8; ++k) {
         const glm::uvec3 upper = (roots_count_ + std::uint32_t(k - 1)) / std::uint32_t(k);
         std::vector<std::uint64_t> blocks;

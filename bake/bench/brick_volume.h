@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rivals that keep distances near the surface alone: bricks of 8-bit nodes in a sparse grid, as Unreal, PhysX and newton
-// bake them, or in an octree (Frisken 2000), made as strong as they can be for their bytes.
+// Sparse distance volumes to compare with: bricks of 8-bit nodes near the surface, in a sparse grid as Unreal, PhysX
+// and newton bake them, or in an octree (Frisken 2000). They are as accurate as possible for their bytes.
 //
-// - Cubes over the tight box of the mesh. A cube with surface in it has a brick: `cells`³ voxels with (cells + 1)³ nodes of
-//   its own, so that one filtered fetch reads it. A cube without one has a sign, that of the truth at its middle. A brick
-//   whose nodes are all of one sign is worth no more than that sign, and is not stored.
-// - Nodes hold exact distances, or are fitted: least squares of the exact distances at random points of the voxels that the
-//   surface crosses, those close to it weighing most.
-// - Codes of 8 bits for distances up to `band` voxels; larger ones are clamped.
-// - In an octree the cubes that displace most of the surface are split, until the bytes are used up.
-// - Bytes are those on the GPU: the nodes; and the index, a texel a cube in a dense grid or in one of two levels, whichever
-//   is smaller, or eight entries a split cube of an octree.
-// - A point beyond the box is outside, and its distance to the box is added.
+// - Cubes cover the tight box of the mesh. A cube with surface has a brick: `cells`³ voxels with (cells + 1)³ nodes of
+//   its own, so that one filtered fetch reads it. A cube without surface has a sign, that of the truth at its centre.
+//   A brick whose nodes have equal signs is stored as that sign.
+// - Nodes store exact distances or are fitted: by least squares of the exact distances at random points of the voxels
+//   that the surface crosses, with the largest weights close to the surface.
+// - 8-bit codes for distances up to `band` voxels; larger distances are clamped.
+// - In an octree, the cubes with the largest displacement of the surface are split until the bytes are used up.
+// - Bytes are those on the GPU: the nodes and the index. The index has a texel per cube in a dense or two-level grid,
+//   whichever is smaller, or eight entries per split cube of an octree.
+// - Points beyond the box are outside; their distance to the box is added.
 #pragma once
 
 #include <cstdint>
@@ -26,31 +26,31 @@
 namespace relief {
 
 struct BrickLayout {
-    unsigned cells = 3;  ///< voxels of a brick along each axis, 2 to 8
+    unsigned cells = 3;  ///< voxels along each axis of a brick, 2 to 8
     bool octree = false;
     bool fitted = false;
-    bool flat_index = false;  ///< a dense index even where one of two levels is smaller
+    bool flat_index = false;  ///< use a dense index even if a two-level index is smaller
     double band = 2.0;        ///< voxels
 };
 
 class BrickVolume {
   public:
-    /// As fine as `bytes` allow; at least one cube. \param query  borrowed.
+    /// Builds the finest volume within `bytes`, with at least one cube. \param query  borrowed.
     [[nodiscard]] static BrickVolume build(const MeshQuery& query, const BrickLayout& layout,
                                            std::uint64_t bytes);
-    /// With voxels of one size. \param layout  no octree.
+    /// Builds a volume with voxels of a given size. \param layout  not an octree.
     [[nodiscard]] static BrickVolume withVoxels(const MeshQuery& query, const BrickLayout& layout,
                                                 double voxel);
 
-    /// Distances of cubes without a brick, and clamped ones, are ±band.
+    /// Clamped distances and those of cubes without a brick are ±band.
     [[nodiscard]] FieldValue at(const glm::vec3& p) const;
     [[nodiscard]] std::uint64_t nodeBytes() const { return codes_.size(); }
     [[nodiscard]] std::uint64_t indexBytes() const { return indexBytes(bricks()); }
     [[nodiscard]] std::uint64_t bytes() const { return nodeBytes() + indexBytes(); }
     [[nodiscard]] std::size_t bricks() const { return codes_.size() / nodesOfBrick(); }
-    /// The smallest voxel, object units.
+    /// The side of the smallest voxel, object units.
     [[nodiscard]] double voxel() const;
-    /// For a GPU, with a dense index whatever indexBytes() counts. Of no octree.
+    /// Returns the data for a GPU, always with a dense index, regardless of indexBytes(). Not for an octree.
     [[nodiscard]] BrickAtlas atlas() const;
     /// "12345 bricks of 3x3x3 in an octree, fitted"
     [[nodiscard]] std::string text() const;
@@ -61,7 +61,7 @@ class BrickVolume {
     enum class Kind : std::uint8_t { kTruth, kOutside, kInside, kBrick, kSplit };
     struct Cube {
         Kind kind = Kind::kTruth;
-        std::uint32_t first = 0;  // the brick, or the first of eight cubes in cubes_
+        std::uint32_t first = 0;  // index of the brick, or of the first of eight cubes in cubes_
     };
     struct Root {
         std::uint64_t cell;  // x fastest
@@ -80,8 +80,8 @@ class BrickVolume {
     double root_size_;  // object units
     glm::dvec3 origin_;
     glm::uvec3 roots_count_;
-    std::vector<Root> roots_;  // those with surface, by cell
-    std::vector<Cube> cubes_;  // eights, x fastest
+    std::vector<Root> roots_;  // with surface, by cell
+    std::vector<Cube> cubes_;  // groups of eight, x fastest
     unsigned levels_ = 0;      // of splits
     std::vector<std::int8_t> codes_;
 };

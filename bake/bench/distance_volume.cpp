@@ -17,7 +17,7 @@ constexpr double kCodeMax = 32767.0;
 glm::uvec3 nodesFor(const glm::dvec3& size, double spacing) {
     glm::uvec3 nodes;
     for (int i = 0; i < 3; ++i) {
-        // A side that is a whole number of voxels but for rounding needs no voxel more.
+        // A side that is a whole number of voxels except for rounding needs no additional voxel.
         const double voxels = std::ceil(size[i] / spacing * (1.0 - 1e-12));
         nodes[i] = static_cast<std::uint32_t>(std::clamp(voxels, 1.0, 4e9)) + 1;
     }
@@ -59,13 +59,13 @@ DistanceGrid sampleDistances(const MeshQuery& query, const Lattice& lattice) {
         const std::uint32_t y = row % nodes.y;
         const std::uint32_t z = row / nodes.y;
         std::optional<std::uint32_t> nearby;
-        double before = 0.0;  // distance of the node before
+        double before = 0.0;  // distance of the previous node
         for (std::uint32_t x = 0; x < nodes.x; ++x) {
             const glm::vec3 p = lattice.origin + lattice.spacing * glm::dvec3(x, y, z);
             const ClosestPoint closest = query.closest(p, nearby);
             nearby = closest.triangle;
-            // No surface lies between this node and the one before if that is farther from the surface than
-            // from this node; a little more for the rounding of p.
+            // No surface lies between this node and the previous one if the previous one is farther from the surface
+            // than from this node. The factor allows for the rounding of p.
             const bool same_side = query.watertight() && std::abs(before) > 1.01 * lattice.spacing.x;
             const bool inside = same_side ? before < 0.0 : query.inside(p);
             before = inside ? -closest.distance : closest.distance;
@@ -115,7 +115,7 @@ FieldValue DistanceVolume::at(const glm::vec3& p) const {
         return static_cast<double>(codes_[first + dz * layer + dy * row + dx]);
     };
     const auto mix = [](double a, double b, double s) { return a + s * (b - a); };
-    // Along x first; [y][z].
+    // Interpolate along x first; [y][z].
     double edge[2][2];
     double slope[2][2];
     for (std::size_t dy = 0; dy < 2; ++dy) {

@@ -14,10 +14,11 @@
 namespace relief {
 namespace {
 
-/// Cosine between a triangle's normal and the way to the point that it is nearest to. Below it the nearest point is at an edge.
+/// Minimum cosine between the normal of a triangle and the direction to a point nearest to it. Below it, the nearest
+/// point is on an edge.
 constexpr double kFacing = 0.98;
 
-/// These triangles of a mesh.
+/// Returns a mesh of only these triangles.
 TriangleMesh subset(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles) {
     TriangleMesh part;
     part.name = mesh.name;
@@ -56,7 +57,7 @@ Result<SheetTruth> SheetTruth::build(const PreparedMesh& source, const ShapedMes
                 area += 0.5 * length(planeOf(sheet.positions, t).normal);
             }
             MeshQuery query = RELIEF_TRY(MeshQuery::build(std::move(sheet)));
-            static_cast<void>(query.prepared().areas());  // before threads use it
+            static_cast<void>(query.prepared().areas());  // computed before threads use it
             truth.sheets_.push_back({std::move(query), first.thickness, area});
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth about shells without the shells that bake/shape makes: a point is inside within half the thickness of the surface
-// as it came. Only which parts are sheets, and how thick, is that of the shape's report.
+// The truth about shells, independent of the shells made by bake/shape: a point is inside if it is within half the
+// thickness of the imported surface. Only the sheets and their thickness are taken from the shape's report.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,21 @@ namespace relief {
 
 class SheetTruth {
   public:
-    /// Without sheets if the mesh has none, has named parts, or lost copies of parts (Shaper::runWithout).
-    /// \param source  as it came, after windOutwards.
+    /// Builds the truth. It has no sheets if the mesh has none, has named parts, or lost duplicate parts
+    /// (Shaper::runWithout).
+    /// \param source  as imported, after windOutwards.
     /// Errors: those of finishMesh and MeshQuery::build.
     [[nodiscard]] static Result<SheetTruth> build(const PreparedMesh& source, const ShapedMesh& shaped);
 
     [[nodiscard]] bool empty() const { return sheets_.empty(); }
 
-    /// nullopt if it depends on the ends and mitres of a shell: the nearest point is at an edge, and within the thickness.
+    /// Returns nullopt if the result depends on the ends and mitres of a shell: the nearest point is on an edge and
+    /// within the thickness.
     [[nodiscard]] std::optional<bool> inside(const glm::vec3& p) const;
 
-    /// At normal offsets up to a thickness from area-weighted points of the sheets, with ±1 for distances. Points outside of all
-    /// sheets that the solid calls inside are left out if it has other parts than sheets, or voids. The same for any number of
-    /// threads.
+    /// Samples points at normal offsets, up to the thickness, from area-weighted points of the sheets. Distances are
+    /// ±1. Points that are outside all sheets but inside the solid are omitted if the solid has other parts or voids.
+    /// The result does not depend on the number of threads.
     /// \param solid  of the shaped mesh.
     [[nodiscard]] std::vector<TruthPoint> sample(const MeshQuery& solid,
                                                  const AccuracyOptions& options) const;
@@ -38,10 +40,10 @@ class SheetTruth {
     struct Sheet {
         MeshQuery query;
         double thickness;
-        double area;  ///< of it and all before
+        double area;  ///< cumulative, including all previous ones
     };
     std::vector<Sheet> sheets_;
-    bool others_ = false;  ///< than sheets
+    bool others_ = false;  ///< the solid has other parts than sheets
 };
 
 }  // namespace relief

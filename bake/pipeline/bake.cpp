@@ -15,13 +15,13 @@
 namespace relief {
 namespace {
 
-/// An animated mesh keeps its holes: its parts pass through each other as it moves, and are drawn as they are.
+/// An animated mesh keeps its holes: its parts pass through each other as it moves, and are drawn unchanged.
 BakeRequest completed(BakeRequest request) {
     request.holes = request.animated ? Holes::kKeep : request.holes;
     return request;
 }
 
-/// The settings of a bake, before anything large is read. \param given  instead of the file's; may be null.
+/// Returns the settings of a bake, before reading anything large. \param given  used instead of the file; may be null.
 Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleMesh* given) {
     BakeSettings settings = RELIEF_TRY(settingsOf(request));
     if (!request.heights.empty()) {
@@ -42,7 +42,7 @@ Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleM
     return settings;
 }
 
-/// --threads, for measurements too, as long as it lives.
+/// Limits the threads to --threads, also for measurements, during its lifetime.
 std::optional<tbb::global_control> threadLimit(const BakeRequest& request) {
     if (!request.threads) {
         return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<tbb::global_control> threadLimit(const BakeRequest& request) {
                                               *request.threads);
 }
 
-/// The files that the mesh refers to, a buffer or a material, none of which an output may replace.
+/// Returns the files that the mesh references, such as buffers and materials; no output may replace them.
 Result<std::vector<InputFile>> inputsOf(const TriangleMesh& mesh, FileGuard* files) {
     std::vector<InputFile> inputs;
     for (std::size_t i = 0; i < mesh.dependencies.size(); ++i) {
@@ -63,11 +63,11 @@ Result<std::vector<InputFile>> inputsOf(const TriangleMesh& mesh, FileGuard* fil
     return inputs;
 }
 
-/// The request that makes the same solid again, which recordedBake() reads back; the maps record themselves.
+/// Returns the request that makes the same solid again, for recordedBake(). The maps record themselves.
 BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, const SolidMesh& solid) {
     BakeRequest record;
     if (request.animated) {
-        // Which maps these are follows from it, and that its holes stay.
+        // `animated` determines the maps, and keeps the holes.
         record.animated = true;
         record.resolution = settings.bake.resolution;
     } else {
@@ -83,14 +83,14 @@ BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, c
     return record;
 }
 
-/// Maps with all that a container holds beside them.
+/// Completes a collider with everything that a container stores in addition to the maps.
 Collider finished(Collider collider, const BakeRequest& request, const BakeSettings& settings,
                   const SolidMesh& solid) {
     std::vector<RecordedOption>& options = collider.provenance.options;
     if (solid.animated) {
         collider.animation = writeAnimatedMesh(*solid.animated);
         for (DepthMap& map : collider.maps) {
-            map.encloses = false;  // the mesh may leave the box of its rest pose
+            map.encloses = false;  // the mesh may leave the bounds of its rest pose
         }
         std::erase_if(options, [](const RecordedOption& option) { return option.name == "map"; });
     }
@@ -103,7 +103,7 @@ Collider finished(Collider collider, const BakeRequest& request, const BakeSetti
     return collider;
 }
 
-/// \param nodes  as noticesOf().
+/// \param nodes  as in noticesOf().
 Result<BakeResult> bakeFrom(const BakeRequest& request, const BakeSettings& settings, SolidMesh prepared,
                             std::size_t nodes, const BakeWatcher& watcher) {
     BakeResult result{std::move(prepared), request, settings, {}, {}, {}, {}, {}, {}, {}};
@@ -118,10 +118,10 @@ Result<BakeResult> bakeFrom(const BakeRequest& request, const BakeSettings& sett
         }
     }
     BakedMaps made = RELIEF_TRY(std::move(maps));
-    result.imported.reset();  // only --max-error measured it
+    result.imported.reset();  // only --max-error needed it
     made.baked.collider = finished(std::move(made.baked.collider), request, settings, solid);
     std::optional<SelfCheck> check;
-    if (made.patches && !request.no_check) {  // named maps may be wrong on purpose
+    if (made.patches && !request.no_check) {  // named maps may be inaccurate on purpose
         const Stopwatch watch;
         notify(watcher.begin, "measuring the collider");
         check = RELIEF_TRY(selfCheck(solid.mesh.mesh, solid.parts, made.baked.collider));

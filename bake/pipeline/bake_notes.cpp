@@ -9,10 +9,10 @@
 namespace relief {
 namespace {
 
-/// From so many nodes on, a source may be a level.
+/// A source with at least this many nodes may be a level.
 constexpr std::size_t kLevelNodes = 100;
 
-/// Options that may help a bake that is wrong in many places.
+/// Returns options that may help if a bake is wrong in many places.
 std::string cureOf(const BakeRequest& request, const ShapeReport& shape) {
     const std::uint64_t budget = request.budget.value_or(kBudgetDefault);
     const std::string more = request.texel && !request.budget
@@ -35,7 +35,7 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     std::vector<std::string> parts = partWarnings(solid.parts, mesh.unit);
     std::for_each(parts.rbegin(), parts.rend(), warn);
     const auto forgotten = mesh.unit.empty() ? forgottenUnit(baked.collider.bounds) : std::nullopt;
-    // A terrain of hundreds of metres is nothing special.
+    // A terrain of hundreds of metres is normal.
     if (forgotten && solid.shape.terrains == 0) {
         warn(*forgotten);
     }

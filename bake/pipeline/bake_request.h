@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that decides what a bake makes, and how it goes about it. The options of `relief bake`, the keys of recipes, the
-// arguments of relief.bake() in Python and the provenance of a collider are derived from fields().
+// All options of a bake. The options of `relief bake`, the keys of recipes, the arguments of relief.bake() in Python
+// and the provenance of a collider are derived from fields().
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace relief {
 
-inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; where none is recorded too
+inline constexpr std::uint64_t kBudgetDefault = 1'000'000;  ///< bytes; also if a container records none
 
 enum class Holes : std::uint8_t { kClose, kKeep };
 template <>
@@ -38,9 +38,9 @@ template <>
 inline constexpr std::array<std::string_view, 2> kWordsOf<Decode>{"projected", "plane"};
 
 struct BakeRequest {
-    std::string mesh;                     ///< a file
-    std::vector<std::string> map;         ///< MapSpecs; empty: patches, unless paper, animated or holes
-    std::optional<Decode> decode;         ///< of `map`
+    std::string mesh;              ///< a file
+    std::vector<std::string> map;  ///< MapSpecs; empty: patches, unless `paper`, `animated` or `holes` is set
+    std::optional<Decode> decode;  ///< of `map`
     std::optional<FrontBackDepth> depth;  ///< of `map`
     bool paper = false;
     std::optional<std::uint64_t> resolution;
@@ -60,10 +60,10 @@ struct BakeRequest {
     std::optional<VoidsAs> voids;
     std::optional<MaterialsAs> materials;
     bool animated = false;
-    std::vector<std::string> clips;   ///< files, beside `mesh`, of `animated`
-    std::string heights;              ///< HeightsSpec: `mesh` is a height map; empty: it is a mesh
-    std::optional<float> time_limit;  ///< seconds; kept by the caller, who can end the bake
-    /// Object units: a box that the roots of patches hold beside the mesh. No option; it is not recorded.
+    std::vector<std::string> clips;   ///< files with additional clips for `animated`
+    std::string heights;              ///< HeightsSpec if `mesh` is a height map; empty if it is a mesh
+    std::optional<float> time_limit;  ///< seconds; enforced by the caller, who can end the bake
+    /// Object units: a box that the roots of patches contain in addition to the mesh. Not an option, and not recorded.
     std::optional<Bounds> roots_hold{};
 };
 
@@ -71,35 +71,35 @@ void fields(FieldVisitor& visit, BakeRequest& request);
 
 enum class MapSource : std::uint8_t { kPatches, kMaps, kPaper };
 
-/// A request, read and found consistent.
+/// A request, parsed and validated.
 struct BakeSettings {
     MapSource source = MapSource::kPatches;
     BakeOptions bake;
-    ShapeOptions shape;  ///< without a thickness: it depends on the mesh
+    ShapeOptions shape;  ///< without a thickness, which depends on the mesh
 };
 
-/// The rules across fields. Fails with kUsage for two ways to choose the maps, and for options that do nothing together; as
+/// Validates the combination of fields. Errors: kUsage (two ways to select the maps, options without effect), those of
 /// parseMapSpec, checkMapSize, parseShapeOptions and wrapAlpha.
 [[nodiscard]] Result<BakeSettings> settingsOf(const BakeRequest& request);
 
-/// A request as a container records it: the maps that were baked, with their sizes, and all else that the bytes depend on.
+/// A request as recorded in a container: the baked maps with their sizes, and everything else that affects the bytes.
 struct RecordedBake {
     BakeRequest request;
-    /// Every option is known; otherwise another version baked it, or the record is made up.
+    /// All options are known. If false, another version baked the collider, or the record is forged.
     bool understood = true;
 };
 
 [[nodiscard]] RecordedBake recordedBake(const std::vector<RecordedOption>& options);
-/// Hollow where the record says nothing: there were none, or they were no part of the shape yet.
+/// Hollow if the record has no value: there were no voids, or the version that baked it ignored them.
 [[nodiscard]] inline VoidsAs voidsOf(const BakeRequest& recorded) {
     return recorded.voids.value_or(VoidsAs::kHollow);
 }
 
-/// A bake of a mesh as a command line, quoted for a shell.
+/// Returns a bake of a mesh as a command line, quoted for a shell.
 [[nodiscard]] std::string commandLine(const BakeRequest& request, const std::string& output);
-/// The first option about the import that is set; empty: none.
+/// Returns the first import option that is set; empty if none is.
 [[nodiscard]] std::string importOptionOf(const ImportOptions& options, const ImportLimits& limits);
-/// A path as a word of a command line.
+/// Returns a path as a word of a command line.
 [[nodiscard]] std::string shellWord(const std::string& path);
 
 }  // namespace relief

@@ -11,15 +11,15 @@
 namespace relief {
 namespace {
 
-/// Bakes of meshes and budgets beyond these take more than a few seconds, and are not tried.
+/// Larger meshes and budgets take more than a few seconds to bake, and are not tried.
 constexpr std::uint64_t kTrialTrianglesMax = 200'000;
 constexpr std::uint64_t kTrialBytesMax = 2'500'000;
-/// Points near the surface that a trial is measured at.
+/// Points near the surface that measure a trial.
 constexpr std::uint32_t kTrialSamplesMax = 50'000;
-/// At most this share of the wrong points is left by an option that helps.
+/// An option helps if at most this fraction of the wrong points remains.
 constexpr double kHelps = 0.9;
 
-/// With four digits, so that commands stay short.
+/// Rounds to four digits, to keep commands short.
 float rounded(double value) {
     return parseFloat(shortNumber(value)).value_or(static_cast<float>(value));
 }
@@ -43,10 +43,10 @@ class Advisor {
         patches_.resolution.reset();
         patches_.budget = roundBudget(run.collider.texelBytes());
         if (!closes_) {
-            // Its maps follow --resolution, not a budget.
+            // The size of its maps is determined by --resolution, not by a budget.
             patches_.budget = std::min(*patches_.budget, kBudgetDefault);
         }
-        // A default thickness follows the budget of the next bake.
+        // A default thickness depends on the budget of the next bake.
         if (patches_.thickness && patches_.thickness->by_part) {
             patches_.thickness.reset();
         }
@@ -58,7 +58,7 @@ class Advisor {
     std::vector<Advice> run() {
         const bool sheet = any({WrongCause::kSheet});
         const bool open = any({WrongCause::kOpen});
-        // They mend most of what other maps do wrong, and cost each step no more.
+        // Patches fix most errors of other maps, and do not cost more per step.
         if (!run_.collider.hasPatches() && closes_ && !run_.places.empty()) {
             tryBudget(*patches_.budget, "patches of as many bytes");
         }
@@ -96,7 +96,7 @@ class Advisor {
     }
     [[nodiscard]] bool repaired() const { return !patches_.repair.method.empty(); }
 
-    /// The reason why a bake is not tried; empty: it is.
+    /// Returns why a bake is not tried; empty if it is tried.
     [[nodiscard]] std::string tooMuch(std::uint64_t bytes) const {
         if (!run_.recorded.understood) {
             return "the collider's record of its options is not understood";
@@ -108,7 +108,7 @@ class Advisor {
         return bytes > kTrialBytesMax ? bytesWord(bytes) + " would take more than a few seconds" : "";
     }
 
-    /// Percent of the points near the surface.
+    /// Returns the percentage of misclassified points near the surface.
     static Result<double> wrongOf(const BakeRequest& request, const PreparedMesh& solid,
                                   const TruthSamples& truth) {
         const Baked baked = RELIEF_TRY(bakeSolid(request, solid));
@@ -117,14 +117,14 @@ class Advisor {
     [[nodiscard]] Result<double> wrongOf(const BakeRequest& request) const {
         return wrongOf(request, run_.baked, truth_);
     }
-    /// Of another solid, against that solid.
+    /// Measures another solid against itself.
     [[nodiscard]] Result<double> wrongOfSolid(const BakeRequest& request) const {
         const ShapedMesh shaped = RELIEF_TRY(makeSolid(request, run_.imported));
         const MeshQuery query = RELIEF_TRY(MeshQuery::build(shaped.mesh));
         return wrongOf(request, shaped.mesh, sampleTruth(query, truth_.options));
     }
 
-    /// Tries, and advises if it could be tried or is too much to be.
+    /// Tries a bake, and adds it to the advice if the trial succeeded or was too large.
     void attempt(const BakeRequest& request, const char* about, std::uint64_t bytes, bool same_solid) {
         const std::string command = commandLine(request, output_);
         const std::string too_much = tooMuch(bytes);
@@ -141,7 +141,7 @@ class Advisor {
         attempt(request, about, budget, !(run_.shape.default_thickness > 0.0) || repaired());
     }
 
-    /// A bake without --holes keep.
+    /// Tries a bake without --holes keep.
     void trySolid() {
         if (!closes_) {
             attempt(patches_, "holes closed, and sheets made shells", *patches_.budget, false);
@@ -158,16 +158,16 @@ class Advisor {
 
     const MeshCheck& run_;
     const std::string& output_;
-    BakeRequest patches_;  // the recorded bake as patches of as many bytes, its holes closed
-    bool closes_;          // the recorded bake, its holes
-    TruthSamples truth_;   // only near the surface, and fewer
+    BakeRequest patches_;  // the recorded bake as patches of the same size, with closed holes
+    bool closes_;          // the recorded bake closes holes
+    TruthSamples truth_;   // only points near the surface, and fewer
     std::vector<Advice> advice_;
 };
 
 }  // namespace
 
 std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file, const std::string& output) {
-    // No maps help where floats are too coarse.
+    // If floats are too coarse, no maps help.
     return floatsLimit(*run.mesh, run.wrongPercent()) ? std::vector<Advice>()
                                                       : Advisor(run, mesh_file, output).run();
 }

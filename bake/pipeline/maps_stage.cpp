@@ -15,13 +15,13 @@ BakeOptions watched(const BakeSettings& settings, const BakeWatcher& watcher) {
     return options;
 }
 
-/// For --texel and --budget; nullopt: as many bytes as the texel takes.
+/// Returns the budget for --texel and --budget; nullopt if only the texel limits the bytes.
 std::optional<std::uint64_t> budgetOf(const BakeRequest& request) {
     return request.texel ? request.budget : request.budget.value_or(kBudgetDefault);
 }
 
-/// The least budget that keeps --max-error.
-/// \param truth  of the mesh whose points count: as it came, if it was repaired.
+/// Finds the smallest budget that meets --max-error.
+/// \param truth  of the mesh to measure against: the imported one, if it was repaired.
 Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSettings& settings,
                                         const MeshQuery& query, const MeshQuery& truth,
                                         const BakeWatcher& watcher) {

@@ -15,11 +15,11 @@ namespace relief {
 namespace {
 
 constexpr std::uint64_t kSamplesMax = 100'000'000;
-/// Bounds that differ by more, in units of the longest side, are those of another mesh.
+/// Bounds that differ by more than this, in units of the longest side, are those of another mesh.
 constexpr double kBoundsTolerance = 1e-3;
-/// Of a wrap, by which it moves the bounds: see wrapMesh.
+/// The offset of a wrap, which enlarges the bounds: see wrapMesh.
 constexpr double kWrapOffset = 1.0 / 30.0;
-/// A wrap finer than this takes minutes.
+/// A finer wrap takes minutes.
 constexpr double kWrapAlphaLeast = double{0.005F};
 
 Result<void> checkSameMesh(const Collider& collider, const std::string& repair, const TriangleMesh& mesh) {
@@ -42,7 +42,8 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
     return {};
 }
 
-/// The mesh, with the names and the hidden objects that the collider was baked with; of one that moves, its rest pose.
+/// Imports the mesh with the names and hidden objects that the collider was baked with; the rest pose if it is
+/// animated.
 Result<TriangleMesh> importFor(const std::vector<std::string>& names, const BakeRequest& recorded,
                                const CheckRequest& request) {
     ImportOptions options = request.import;
@@ -97,7 +98,7 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
     return {};
 }
 
-/// The mesh as it was baked, or as it came if the repair cannot be made again.
+/// Makes the mesh that was baked, or uses the imported one if the repair cannot be repeated.
 void makeBakedMesh(MeshCheck& run) {
     run.baked = run.mesh;
     const std::string& repair = run.recorded.request.repair.method;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A collider measured against the mesh that it was baked from: for `relief check --mesh`, `relief view --mesh` and
+// Measures a collider against the mesh that it was baked from, for `relief check --mesh`, `relief view --mesh` and
 // relief.check() in Python.
 #pragma once
 
@@ -26,71 +26,74 @@ struct CheckRequest {
     std::string mesh;  ///< a file
     std::uint64_t samples = 200'000;
     std::uint64_t seed = 1;
-    std::optional<float> detail;  ///< smaller parts do not count, object units
+    std::optional<float> detail;  ///< smaller parts are ignored, object units
     ImportOptions import;
     ImportLimits import_limits;
 };
 
-/// Those that go without the import's.
+/// Visits the fields of a check except the import options.
 void measurementFields(FieldVisitor& visit, CheckRequest& request);
 
 void fields(FieldVisitor& visit, CheckRequest& request);
 
-/// The truth of a mesh, and how far the collider is from it.
+/// The truth of a mesh, and the accuracy of the collider.
 struct Measured {
     TruthSamples samples;
     ColliderAccuracy accuracy;
 };
 
-/// A check against a mesh, and what its stages leave for the next.
+/// A check against a mesh, with the results of its stages.
 struct MeshCheck {
     Collider collider;
     PreparedMesh imported{TriangleMesh()};  ///< wound outwards
-    /// The solid that stands for it: where solids overlap, their winding decides what is inside.
+    /// The solid of the imported mesh: where solids overlap, their winding decides what is inside.
     PreparedMesh mesh{TriangleMesh()};
     ShapeReport shape;
     RecordedBake recorded;
-    PreparedMesh baked{TriangleMesh()};  ///< the same of the repaired mesh; `mesh` without a repair
-    std::optional<MeshQuery> query;      ///< of what is judged: `baked`
+    PreparedMesh baked{TriangleMesh()};  ///< the solid of the repaired mesh; `mesh` without a repair
+    std::optional<MeshQuery> query;      ///< of `baked`, which is judged
     bool same_file = false;
     std::vector<std::string> warnings;  ///< one line each
     bool watertight = false;
     Measured original;
-    std::optional<Measured> repaired;  ///< if the collider is of a repaired mesh
-    SurfaceParts parts;                ///< of what is judged
+    std::optional<Measured> repaired;  ///< if the collider was baked from a repaired mesh
+    SurfaceParts parts;                ///< of `baked`
     PartsAccuracy part_accuracy;
     std::vector<WorstPlace> places;
-    std::vector<Advice> advice;  ///< left to the caller, for it takes bakes
+    std::vector<Advice> advice;  ///< filled in by the caller, because it requires bakes
 
-    /// Against the mesh that was baked.
+    /// The measurement against the mesh that was baked.
     [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
     [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
-    /// Against the mesh as it came; and no part is lost. \param max_error  percent; nullopt: anything passes.
+    /// Whether the accuracy against the imported mesh is within the limit, and no part is lost. \param max_error
+    /// percent; nullopt: no limit.
     [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 
-/// The solid that was baked of a mesh. A thickness is recorded with every sheet. Sheets that a repair has replaced take that of
-/// the default budget, whatever the bake's: the repaired mesh is compared with the same solid at each.
+/// Returns the solid from which a collider was baked. A thickness is recorded with every sheet. Sheets of a repaired
+/// mesh use the thickness of the default budget, regardless of the bake's budget, so that all budgets are compared with
+/// the same solid.
 /// Errors: those of makeSolid.
 [[nodiscard]] Result<ShapedMesh> recordedSolid(BakeRequest recorded, const PreparedMesh& mesh);
 
-/// The same of the mesh as the recorded repair leaves it.
-/// Errors: those of repairMesh and makeSolid; kUnsupported: a repair that takes too long to be made again.
+/// Returns the solid of the mesh after the recorded repair.
+/// Errors: those of repairMesh and makeSolid; kUnsupported (repeating the repair would take too long).
 [[nodiscard]] Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh);
 
-/// Imports the mesh, measures, and looks for the worst places.
-/// \param given       as finishMesh leaves it: instead of the file that the request names.
-/// \param checkpoint  called between stages; what it throws comes out of here and ends the check.
-/// Errors: kLimit (samples); those of importMeshInWorker, of the shapes and of Embree; kInvalidInput (the mesh of another
-/// collider); kUsage (options or names that need the mesh's file).
+/// Imports the mesh, measures the collider, and finds the worst places.
+/// \param given       from finishMesh; used instead of the request's file.
+/// \param checkpoint  called between stages; its exceptions end the check and propagate.
+/// Errors: kLimit (samples); kInvalidInput (the mesh of another collider); kUsage (options or names that require the
+/// mesh file); those of importMeshInWorker, of the shapes and of Embree.
 [[nodiscard]] Result<MeshCheck> check(
     const CheckRequest& request, Collider collider, std::optional<TriangleMesh> given = {},
     const std::function<void()>& checkpoint = [] {});
 
-/// Commands that may help a collider that is wrong too often, tried in memory before they are advised. By the causes of the
-/// places: twice the budget, cubes at places that no map sees, holes filled, the mesh wrapped. The best comes first, what does
-/// not help last. The same for any number of threads, and on every machine: what is tried does not depend on the time it takes.
-/// \param run  a check's result. \param mesh_file  as the command names it. \param output  of the advised bake
+/// Suggests commands for a collider that is not accurate enough, after trying them in memory. The causes of the worst
+/// places determine them: patches of twice the bytes, closed holes, thicker sheets, a wrapped mesh. The best comes
+/// first; those that did not help come last. The result does not depend on the number of threads or the machine,
+/// because the choice of trials does not depend on time.
+/// \param run  result of a check. \param mesh_file  for the command. \param output  for the command
 [[nodiscard]] std::vector<Advice> adviceFor(const MeshCheck& run, const std::string& mesh_file,
                                             const std::string& output);
 

@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-/// Turns those triangles of an animated mesh that were turned in its rest pose.
-/// \param before, wound  the pose's triangles with an area, as they came and as they are.
+/// Reverses the triangles of an animated mesh that were reversed in its rest pose.
+/// \param before, wound  the pose's triangles with an area, as imported and after winding.
 void copyWinding(const std::vector<glm::uvec3>& before, const std::vector<glm::uvec3>& wound,
                  AnimatedMesh& mesh) {
     const std::vector<glm::vec3> rest = posed(mesh, restPose(mesh));
@@ -29,7 +29,7 @@ void copyWinding(const std::vector<glm::uvec3>& before, const std::vector<glm::u
     }
 }
 
-/// \param mesh  whose triangles are the source's. \return an empty one if none are kept.
+/// \param mesh  its triangles are those of the source. \return empty if no materials are kept.
 Result<MaterialSource> materialsOf(const BakeRequest& request, const TriangleMesh& mesh) {
     if (request.materials == MaterialsAs::kNone || request.animated) {
         return MaterialSource();
@@ -37,7 +37,7 @@ Result<MaterialSource> materialsOf(const BakeRequest& request, const TriangleMes
     return materialSource(mesh, request.materials.has_value());
 }
 
-/// MaterialSource::sides
+/// Returns MaterialSource::sides.
 bool hasKnownSides(const BakeRequest& request, const ShapeReport& shape) {
     return request.holes == Holes::kClose && request.repair.method.empty() && shape.sheets == 0 &&
            shape.terrains == 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages of a bake. Each is a function of the values that the stages before it made.
+// The stages of a bake. Each is a function of the results of the previous stages.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +24,14 @@ namespace relief {
 /// Follows a bake. Each function may be empty, and may throw: its exceptions propagate out of bake().
 struct BakeWatcher {
     std::function<void(const char* stage)> begin;  ///< "baking the maps"
-    std::function<void(double share)> progress;    ///< of the stage, in [0, 1]; any thread calls it
-    std::function<void()> checkpoint;              ///< within a stage without shares; any thread calls it
-    std::function<void(const BudgetTry&)> tried;   ///< of a search for the least budget
-    std::function<void(const TriangleMesh&)> imported;  ///< as it came
-    FileGuard* files = nullptr;  ///< gets the inputs that are known only after the import
+    std::function<void(double share)> progress;  ///< fraction of the stage, in [0, 1]; called from any thread
+    std::function<void()> checkpoint;            ///< called within a stage without progress, from any thread
+    std::function<void(const BudgetTry&)> tried;        ///< during the search for the smallest budget
+    std::function<void(const TriangleMesh&)> imported;  ///< the mesh as imported
+    FileGuard* files = nullptr;  ///< receives the inputs that are known only after the import
 };
 
-/// Calls a function of a watcher that may be empty.
+/// Calls a function of a watcher, which may be empty.
 template <class... Arguments>
 void notify(const std::function<void(Arguments...)>& function, Arguments... arguments) {
     if (function) {
@@ -40,32 +40,33 @@ void notify(const std::function<void(Arguments...)>& function, Arguments... argu
 }
 
 struct SourceMesh {
-    TriangleMesh mesh;                          ///< of an animated mesh its rest pose
+    TriangleMesh mesh;                          ///< the rest pose of an animated mesh
     std::optional<AnimatedMesh> animated = {};  ///< with --animated
 };
 
 /// Reads the mesh of a request. Errors: those of importMeshInWorker and importAnimatedInWorker.
 [[nodiscard]] Result<SourceMesh> importSource(const BakeRequest& request, const BakeSettings& settings);
 
-/// A mesh that is ready to be baked. Copies share it.
+/// A mesh ready to be baked. Copies share its data.
 struct SolidMesh {
-    std::uint64_t unused_vertices = 0;  ///< of the mesh file; repair discards this count
+    std::uint64_t unused_vertices = 0;  ///< in the mesh file; repair discards this count
     RepairedMesh mesh;
     ShapeReport shape;
     SurfaceParts parts;
-    std::shared_ptr<const MaterialSource> materials;  ///< null: none are kept
+    std::shared_ptr<const MaterialSource> materials;  ///< null: no materials are kept
     std::optional<AnimatedMesh> animated;             ///< with --animated
-    std::optional<PreparedMesh> imported;  ///< as it came, if it was repaired and --max-error measures it
+    std::optional<PreparedMesh> imported;  ///< the imported mesh, if repaired and measured by --max-error
 
-    /// It is the same with any budget: it has no shells.
+    /// Whether it is the same for any budget, because it has no shells.
     [[nodiscard]] bool suitsAnyBudget() const { return shape.sheets == 0; }
 };
 
-/// Repairs a mesh, and makes a solid of it. Errors: kUsage (--thickness); those of repairMesh, materialSource and makeSolid.
+/// Repairs a mesh, and makes its solid. Errors: kUsage (--thickness); those of repairMesh, materialSource and
+/// makeSolid.
 [[nodiscard]] Result<SolidMesh> solidOf(const BakeRequest& request, SourceMesh source,
                                         const BakeWatcher& watcher);
 
-/// The solid of a mesh that has been wound outwards: the mesh itself with --holes keep.
+/// Returns the solid of a mesh that is wound outwards; with --holes keep, the mesh itself.
 /// Errors: those of parseShapeOptions and shapeMesh.
 [[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
 
@@ -83,23 +84,24 @@ struct PatchesReport {
 struct BakedMaps {
     Baked baked = {};
     std::optional<PatchesReport> patches = {};
-    double search_ms = 0.0;  ///< of --max-error
+    double search_ms = 0.0;  ///< of the search for --max-error
 };
 
-/// The named maps of a solid, or patches for a budget, a texel or an error.
-/// Errors: those of bake(mesh), bakePatchesWithin and bakeForError; kDifference: floats are too coarse for --max-error.
+/// Bakes the named maps of a solid, or patches limited by a budget, a texel or an error.
+/// Errors: those of bake(mesh), bakePatchesWithin and bakeForError; kDifference (floats are too coarse for
+/// --max-error).
 [[nodiscard]] Result<BakedMaps> bakeMaps(const BakeRequest& request, const BakeSettings& settings,
                                          const SolidMesh& solid, const BakeWatcher& watcher);
 
-/// The maps of a solid, by their names, or patches for its budget (not for an error). Errors: as bake.
+/// Bakes the named maps of a solid, or patches for its budget (not for an error). Errors: as bake.
 [[nodiscard]] Result<Baked> bakeSolid(const BakeRequest& request, const PreparedMesh& solid);
 
-/// The warnings of a bake: of the import, the parts and the unit, then of the maps, then of the measurement.
-/// \param check  null: the collider is not measured.
+/// Returns the warnings of a bake: of the import, the parts and the unit, the maps, and the measurement.
+/// \param check  null if the collider is not measured.
 [[nodiscard]] std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh& solid,
                                                   const Baked& baked, const SelfCheck* check);
 
-/// \param nodes  of the source, that show something.
+/// \param nodes  number of visible nodes of the source.
 [[nodiscard]] std::vector<std::string> noticesOf(const SolidMesh& solid, std::size_t nodes);
 
 }  // namespace relief

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long work that Ctrl-C ends, though the work knows nothing of Python.
+// Runs long work that Ctrl-C interrupts, although the work is independent of Python.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -24,32 +24,32 @@
 
 namespace relief {
 
-/// f() without the GIL.
+/// Calls f() without the GIL.
 template <class F>
 auto released(const F& f) {
     const pybind11::gil_scoped_release release;
     return f();
 }
 
-/// Throws what a signal handler of Python raised: KeyboardInterrupt. With the GIL.
+/// Throws the exception of a Python signal handler, such as KeyboardInterrupt. Requires the GIL.
 inline void raiseSignals() {
     if (PyErr_CheckSignals() != 0) {
         throw pybind11::error_already_set();
     }
 }
 
-/// Between two looks at signals.
+/// Interval of signal checks.
 inline constexpr std::chrono::milliseconds kSignalInterval{50};
 
 /// Thrown by checkpoints in abandoned work.
 struct Abandoned {};
 
-/// Held by work that may be abandoned. A process that exits meanwhile ends at once: the work still uses what the
-/// destructors of libraries would take down.
+/// Held by work that may be abandoned. If the process exits while such work runs, it ends at once, because the work
+/// still uses objects that the destructors of libraries would destroy.
 class MayBeAbandoned {
   public:
     MayBeAbandoned() {
-        // Called before the destructors of libraries, whose registration is older.
+        // Called before the destructors of libraries, which were registered earlier.
         static const int registered = ::on_exit(endAtOnce, nullptr);
         static_cast<void>(registered);
         ++running;
@@ -68,12 +68,13 @@ class MayBeAbandoned {
     static inline std::atomic<int> running = 0;
 };
 
-/// work(checkpoint) on a thread of its own, without the GIL, while this one looks at signals: a handler of Python that
-/// raises, as Ctrl-C does, is obeyed at once. The work then goes on as far as its next checkpoint, where it ends.
-/// \param work     returns a Result<T>; owns all that it uses, and touches nothing of Python.
-/// \param seconds  that it may take; none: any.
-/// Errors: those of the work; kLimit: the time is up; kFailure: there is no thread. What the work throws, and what signal
-/// handlers raise, is thrown.
+/// Runs work(checkpoint) on its own thread, without the GIL, while this thread checks for signals. If a Python signal
+/// handler raises an exception, as on Ctrl-C, this function throws it at once. The work then ends at its next
+/// checkpoint.
+/// \param work     returns a Result<T>; owns everything it uses, and does not use Python.
+/// \param seconds  time limit; none: unlimited.
+/// Errors: those of the work; kLimit (time limit exceeded); kFailure (no thread). Exceptions of the work and of signal
+/// handlers propagate.
 template <class T, class Work>
 Result<T> interruptible(Work work, std::optional<float> seconds = {}) {
     struct State {

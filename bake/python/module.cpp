@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// relief._relief: the compiled part of the package relief. relief/__init__.py documents it for users.
+// relief._relief: the compiled module of the Python package. relief/__init__.py documents it for users.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -40,10 +40,10 @@ namespace {
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
 
-/// relief.Error and those derived from it, by ErrorCode; made by the module.
+/// relief.Error and its subclasses, by ErrorCode; created by the module.
 std::map<ErrorCode, py::object>* g_errors = nullptr;
 
-/// A message, which may hold the bytes of a file's name, as Python has such names.
+/// Converts a message, which may contain bytes of a file name, to a Python string with surrogate escapes.
 py::object textOf(const std::string& message) {
     return py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(message.data(), static_cast<py::ssize_t>(message.size()), "surrogateescape"));
@@ -64,7 +64,7 @@ py::list textsOf(const std::vector<std::string>& messages) {
     throw py::error_already_set();
 }
 
-/// The value, or the exception. With the GIL.
+/// Returns the value, or throws the Python exception. Requires the GIL.
 template <class T>
 T need(Result<T> result) {
     if (!result) {
@@ -79,7 +79,7 @@ void need(const Result<void>& done) {
     }
 }
 
-/// \param points  of shape (n, 3), as the package makes sure.
+/// \param points  shape (n, 3); validated by the package.
 std::span<const glm::vec3> pointsOf(const Floats& points) {
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
     return {reinterpret_cast<const glm::vec3*>(points.data()), static_cast<std::size_t>(points.shape(0))};
@@ -91,11 +91,10 @@ struct Samples {
     py::array_t<std::int32_t> map;
 };
 
-/// Points between two looks at signals: a tenth of a second on a few cores.
+/// Points between two signal checks: a tenth of a second on a few cores.
 constexpr std::size_t kPart = std::size_t{1} << 16;
 
-/// ask(p) at all points, on all cores. Of a point that is not finite, which no collider knows anything of, distance and
-/// normal are NaN.
+/// Calls ask(p) for all points, on all cores. A point that is not finite gets NaN as distance and normal.
 template <class Ask>
 Samples sampleAll(const Floats& points, const Ask& ask) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -139,7 +138,7 @@ py::tuple query(const Collider& collider, const Floats& points, const std::strin
     return py::make_tuple(s.distance, s.normal, s.map);
 }
 
-/// `map` is the body.
+/// The body is returned in the place of the map.
 py::tuple queryWorld(const WorldField& field, const Floats& points) {
     const Samples s = sampleAll(points, [&](const glm::vec3& p) {
         const WorldSample sample = field.evaluate(p);
@@ -148,7 +147,7 @@ py::tuple queryWorld(const WorldField& field, const Floats& points) {
     return py::make_tuple(s.distance, s.normal, s.map);
 }
 
-/// Each body's value of `kParts` floats.
+/// Returns `kParts` floats per body.
 template <std::size_t kParts, class Value>
 Floats ofBodies(const WorldField& field, const Value& value) {
     const std::vector<WorldBody>& bodies = field.world().bodies;
@@ -164,7 +163,7 @@ Floats cornersOf(const Bounds& bounds) {
     return Floats({2, 3}, std::array{low.x, low.y, low.z, high.x, high.y, high.z}.data());
 }
 
-/// The stored texels of a map, without a copy: they live as long as the collider.
+/// Returns the stored texels of a map without a copy; they keep the collider alive.
 py::array texelsOf(const py::object& self, std::size_t index) {
     const auto& collider = self.cast<const Collider&>();
     const DepthMap& map = collider.maps.at(index);
@@ -181,7 +180,7 @@ py::array texelsOf(const py::object& self, std::size_t index) {
     return array;
 }
 
-/// Depth of the front, or of the back, of every texel: NaN where there is none.
+/// Returns the depth of the front or back surface of every texel; NaN without one.
 Floats depthOf(const Collider& collider, std::size_t index, bool back) {
     const DepthMap& map = collider.maps.at(index);
     Floats out({static_cast<py::ssize_t>(map.faceCount()), static_cast<py::ssize_t>(map.height),
@@ -213,9 +212,9 @@ py::dict describe(const Collider& collider, std::size_t index) {
                     py::arg("encloses") = map.encloses, py::arg("empty_is_outside") = map.empty_is_outside);
 }
 
-// --- bake
+// --- Bake
 
-/// Nothing of a file, which is read later.
+/// Returns the mesh given by arrays; nullopt for a file, which is read later.
 std::optional<TriangleMesh> meshOf(const std::optional<std::filesystem::path>& file, const Floats& vertices,
                                    const Indices& triangles, const std::string& name) {
     if (file) {
@@ -234,7 +233,7 @@ std::optional<TriangleMesh> meshOf(const std::optional<std::filesystem::path>& f
     return need(finishMesh(std::move(mesh)));
 }
 
-/// Names of fields, and words for them.
+/// Pairs of field names and their values as words.
 using Words = std::vector<std::pair<std::string, std::string>>;
 using SharedCollider = std::shared_ptr<Collider>;
 
@@ -247,7 +246,7 @@ Request requestOf(const Words& words) {
     return request;
 }
 
-/// Of each field its name, kind ("flag", "value" or "list"), and its sentence with the default.
+/// Returns the name, kind ("flag", "value" or "list") and help text with the default for each field.
 template <class Request>
 py::list describeFields() {
     constexpr std::array<const char*, 3> kKinds = {"flag", "value", "list"};
@@ -261,7 +260,7 @@ py::list describeFields() {
     return described;
 }
 
-/// The collider of a height map, and the warnings of its bake.
+/// Returns the collider of a height map, and the warnings of its bake.
 py::tuple bakeGround(const BakeRequest& request) {
     FileGuard files;
     need(files.reads(request.mesh));
@@ -274,7 +273,7 @@ py::tuple bakeGround(const BakeRequest& request) {
                           textsOf(baked.warnings));
 }
 
-/// The same of whatever the request is for. \param mesh  instead of the request's.
+/// Bakes the mesh or height map of a request. \param mesh  used instead of the request's file.
 py::tuple bake(BakeRequest request, std::optional<TriangleMesh> mesh) {
     if (!request.heights.empty() && !mesh) {
         return bakeGround(request);
@@ -315,7 +314,8 @@ py::list placesOf(const std::vector<WorstPlace>& found) {
     return places;
 }
 
-/// The fields of relief.Accuracy, and the warnings of the check. \param mesh  instead of the request's.
+/// Returns the fields of relief.Accuracy, and the warnings of the check. \param mesh  used instead of the request's
+/// file.
 py::tuple check(const SharedCollider& collider, const CheckRequest& request,
                 std::optional<TriangleMesh> mesh) {
     const MeshCheck run = need(
@@ -335,13 +335,13 @@ py::tuple check(const SharedCollider& collider, const CheckRequest& request,
     return py::make_tuple(measured, textsOf(run.warnings));
 }
 
-// --- simulate
+// --- Simulate
 
 struct Hit : ParticleEvent {
-    std::uint64_t step = 0;  ///< its number
+    std::uint64_t step = 0;  ///< number of the step
 };
 
-/// One member of all, as an array: (n,), or of vectors (n, 3).
+/// Collects one member of all items into an array: (n,), or (n, 3) for vectors.
 template <class T, class Class, class Item>
 auto column(const std::vector<Item>& items, T Class::*member) {
     const auto count = static_cast<py::ssize_t>(items.size());
@@ -358,11 +358,11 @@ auto column(const std::vector<Item>& items, T Class::*member) {
     }
 }
 
-/// A scene without a window. One at a time holds the context of its thread.
+/// A scene without a window. Only one simulation at a time has its context current on a thread.
 class HeadlessSimulation {
   public:
-    /// \param root  as SceneOverrides has it.
-    /// \param hits  keeps them for takeHits().
+    /// \param root  SceneOverrides::root.
+    /// \param hits  stores hits for takeHits().
     HeadlessSimulation(const std::filesystem::path& scene, std::optional<std::uint64_t> seed,
                        const std::filesystem::path& root, bool hits)
         : context_(need(GlContext::create())) {
@@ -389,7 +389,8 @@ class HeadlessSimulation {
         }
     }
     ~HeadlessSimulation() {
-        // Collected by another thread, it leaves the context's objects alone: only the one that has it may free them.
+        // If another thread collects this object, it must not free the objects of the context: only the thread that has
+        // the context may.
         if (simulation_ && !context_->makeCurrent()) {
             static_cast<void>(simulation_.release());
             static_cast<void>(loaded_.release());
@@ -426,7 +427,7 @@ class HeadlessSimulation {
 
     [[nodiscard]] py::list takeWarnings() { return textsOf(simulation_->takeWarnings()); }
 
-    /// Those of all steps since the last call; waits for the GPU.
+    /// Returns the hits of all steps since the last call; waits for the GPU.
     [[nodiscard]] py::dict takeHits() {
         if (!hits_) {
             raise({ErrorCode::kUsage, "this simulation keeps no hits; make it with hits=True"});
@@ -453,7 +454,7 @@ class HeadlessSimulation {
   private:
     std::unique_ptr<GlContext> context_;
     std::unique_ptr<LoadedScene> loaded_;
-    std::unique_ptr<std::vector<Hit>> hits_;  // null: not kept
+    std::unique_ptr<std::vector<Hit>> hits_;  // null if hits are not stored
     std::unique_ptr<Simulation> simulation_;
 };
 
@@ -464,7 +465,7 @@ PYBIND11_MODULE(_relief, m) {
     using namespace relief;  // NOLINT: a module is one scope
     m.attr("version") = RELIEF_VERSION;
 
-    auto* const errors = new std::map<ErrorCode, py::object>;  // as long as the process
+    auto* const errors = new std::map<ErrorCode, py::object>;  // lives as long as the process
     const auto derive = [&](ErrorCode code, const char* name, const py::object& base) {
         const std::string full = std::string("relief.") + name;
         (*errors)[code] =
@@ -473,7 +474,7 @@ PYBIND11_MODULE(_relief, m) {
     };
     derive(ErrorCode::kFailure, "Error", py::reinterpret_borrow<py::object>(PyExc_RuntimeError));
     const py::object base = (*errors)[ErrorCode::kFailure];
-    // Also Python's own, for arguments that a function cannot take.
+    // Python raises it too, for invalid arguments of a function.
     derive(ErrorCode::kUsage, "UsageError", py::make_tuple(base, py::handle(PyExc_ValueError)));
     derive(ErrorCode::kInvalidInput, "InputError", base);
     derive(ErrorCode::kIo, "FileError", base);

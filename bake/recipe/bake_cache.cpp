@@ -27,7 +27,7 @@ constexpr std::uint64_t kCacheBytesMax = std::uint64_t{256} << 20;
 constexpr const char* kFormat = "relief-cache";
 constexpr int kCacheVersion = 1;
 
-/// Holds the lock of a folder, or none where the file system has no locks.
+/// Locks a folder; does nothing if the file system has no locks.
 class FolderLock {
   public:
     explicit FolderLock(const fs::path& folder)
@@ -40,7 +40,7 @@ class FolderLock {
     Descriptor folder_;
 };
 
-/// Throws Json::exception where a member is missing or of another type.
+/// Throws Json::exception if a member is missing or has another type.
 BakeCacheEntry entryOf(const Json& json) {
     BakeCacheEntry entry;
     entry.tool = json.at("tool").get<std::string>();
@@ -48,7 +48,7 @@ BakeCacheEntry entryOf(const Json& json) {
     entry.output_bytes = json.at("output_bytes").get_ref<const Json::number_unsigned_t&>();
     entry.options = json.at("options").get<std::vector<std::string>>();
     const Json& inputs = json.at("inputs");
-    static_cast<void>(inputs.at(0));  // an entry without inputs would hold for ever
+    static_cast<void>(inputs.at(0));  // an entry without inputs would always be valid
     for (const Json& input : inputs) {
         entry.inputs.push_back({input.at("file").get<std::string>(), input.at("hash").get<std::string>()});
     }
@@ -67,7 +67,7 @@ Result<std::string> toolIdentity() {
     const fs::path self = "/proc/self/exe";
     const auto bytes = RELIEF_TRY(readFile(self));
     std::string identity = std::string("relief ") + RELIEF_VERSION + " " + xxh3_128Hex(bytes);
-    // The worker that reads meshes, if it lies beside this program.
+    // The worker that imports meshes, if it is next to this program.
     std::error_code error;
     const fs::path importer = fs::read_symlink(self, error).parent_path() / "relief-import";
     if (const std::optional<std::string> hash = hashOfFile(importer); hash) {
@@ -116,7 +116,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
             return entries;
         }
     } catch (const Json::exception&) {
-        // The kind of error does not matter: the file is written anew.
+        // The kind of error does not matter: the file is rewritten.
     }
     return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
 }
@@ -161,7 +161,7 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
 
 Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntries& entries) {
     const FolderLock lock(output_folder);
-    // A cache that cannot be read is replaced.
+    // An unreadable cache is replaced.
     BakeCacheEntries all = loadBakeCache(output_folder).value_or(BakeCacheEntries{});
     for (const auto& [name, entry] : entries) {
         all.insert_or_assign(name, entry);
@@ -183,7 +183,7 @@ Result<void> updateBakeCache(const fs::path& output_folder, const BakeCacheEntri
 std::string assetKey(const std::string& tool, const std::vector<std::string>& options,
                      std::vector<InputFile> inputs) {
     std::ranges::sort(inputs, {}, &InputFile::path);
-    // Each part behind its length, so that no two lists give one text.
+    // Prefix each part with its length, so that different lists have different texts.
     std::string text;
     const auto add = [&](const std::string& part) { text += std::to_string(part.size()) + ":" + part; };
     add(tool);

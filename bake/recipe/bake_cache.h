@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inputs of each output of a recipe, so that only stale outputs are baked again.
+// Records the inputs of each output of a recipe, so that only stale outputs are baked again.
 //
-// An entry records hashes of inputs and of their output, the options and the program. Baking is deterministic, so an
-// entry that matches the present files proves that the output is right, whoever wrote it, and one that does not match
-// only costs a bake. Contents are always hashed; times are never compared.
+// An entry records the hashes of the inputs and the output, the options and the program. Baking is deterministic: if an
+// entry matches the present files, the output is correct, no matter who wrote it. If it does not match, the cost is one
+// bake. Contents are always hashed; times are never compared.
 #pragma once
 
 #include <filesystem>
@@ -21,55 +21,58 @@ namespace relief {
 struct BakeCacheEntry {
     std::string tool;                  ///< toolIdentity()
     std::vector<std::string> options;  ///< RecipeJob::options
-    std::vector<InputFile> inputs;     ///< from the recipe's folder; the mesh first
+    std::vector<InputFile> inputs;     ///< relative to the recipe's folder; the mesh first
     std::string output_hash;           ///< XXH3-128
-    std::uint64_t output_bytes = 0;    ///< with the containers
-    /// Of a world: the XXH3-128 of its containers, by their names in its folder.
+    std::uint64_t output_bytes = 0;    ///< including the containers
+    /// For a world: the XXH3-128 of its containers, by their names in its folder.
     std::map<std::string, std::string> containers = {};
-    std::optional<double> wrong_percent = {};  ///< as its bake measured it
+    std::optional<double> wrong_percent = {};  ///< as measured by its bake
 
     bool operator==(const BakeCacheEntry&) const = default;
 };
 
-/// By the output's name.
+/// Entries by the name of the output.
 using BakeCacheEntries = std::map<std::string, BakeCacheEntry>;
 
-/// "relief 0.1.0 HASH": another build is another tool. Errors: kIo.
+/// Returns "relief 0.1.0 HASH"; another build is another tool. Errors: kIo.
 [[nodiscard]] Result<std::string> toolIdentity();
 
-/// XXH3-128 of a regular file's bytes; nullopt for anything else, or what cannot be read.
+/// Returns the XXH3-128 of a regular file; nullopt for anything else, or if it cannot be read.
 [[nodiscard]] std::optional<std::string> hashOfFile(const std::filesystem::path& path);
 
-/// The same of an input; of a folder that of the names in it, but for those that start with a dot or that bakes write.
+/// Returns the hash of an input. For a folder, hashes the names in it, except those that start with a dot and files
+/// that bakes write.
 [[nodiscard]] std::optional<std::string> hashOfInput(const std::filesystem::path& path);
 
-/// The entries of a cache file's text. Errors: kInvalidInput: no cache file of this version.
+/// Parses the text of a cache file. Errors: kInvalidInput (not a cache file of this version).
 [[nodiscard]] Result<BakeCacheEntries> parseBakeCache(std::string_view text);
 [[nodiscard]] std::string bakeCacheText(const BakeCacheEntries& entries);
 
-/// The cache file in an output folder; none is no error. A symbolic link in its place is not followed, and replaced by the
-/// next update. Errors, all with the file in front: kInvalidInput, kIo, kLimit.
+/// Loads the cache file of an output folder; empty if there is none. Does not follow a symbolic link in its place; the
+/// next update replaces the link.
+/// Errors, prefixed with the file: kInvalidInput, kIo, kLimit.
 [[nodiscard]] Result<BakeCacheEntries> loadBakeCache(const std::filesystem::path& output_folder);
 
-/// Adds entries to the cache file, beside those that other runs have added meanwhile; entries of outputs
-/// that are gone are left out. Safe against any number of processes at once: the folder is locked (flock)
-/// meanwhile. Where it cannot be locked, entries may get lost, which costs a bake. Errors: kIo.
+/// Adds entries to the cache file, preserving entries that other runs have added in the meantime. Removes entries whose
+/// output is gone. Safe for any number of concurrent processes, because the folder is locked (flock). If it cannot be
+/// locked, entries may get lost, which costs a bake. Errors: kIo.
 [[nodiscard]] Result<void> updateBakeCache(const std::filesystem::path& output_folder,
                                            const BakeCacheEntries& entries);
 
-/// XXH3-128 of the program, the options and the inputs' names and contents: equal keys are equal outputs, byte for byte.
-/// For caches of other programs. \param tool  toolIdentity(). \param options  RecipeJob::options.
-/// \param inputs  named from the recipe's folder, in any order.
+/// Returns the XXH3-128 of the program, the options, and the names and contents of the inputs. Equal keys mean
+/// byte-identical outputs. For caches of other programs.
+/// \param tool  toolIdentity(). \param options  RecipeJob::options.
+/// \param inputs  named relative to the recipe's folder, in any order.
 [[nodiscard]] std::string assetKey(const std::string& tool, const std::vector<std::string>& options,
                                    std::vector<InputFile> inputs);
 
-/// A file that a bake read, named from the recipe's folder; as it is if it lies elsewhere.
+/// Returns the name of a file relative to the recipe's folder, or the unchanged name if the file is elsewhere.
 [[nodiscard]] std::string nameInRecipe(const std::filesystem::path& file,
                                        const std::filesystem::path& recipe_folder);
 
-/// The reason why a job is stale, in a few words; nullopt if its output is up to date.
+/// Returns why a job is stale, in a few words; nullopt if its output is up to date.
 /// \param entry  null if there is none.
-/// \param recipe_folder  where the names of inputs start.
+/// \param recipe_folder  the names of inputs are relative to this folder.
 [[nodiscard]] std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry* entry,
                                                    const std::string& tool,
                                                    const std::filesystem::path& recipe_folder);

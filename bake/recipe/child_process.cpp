@@ -30,7 +30,7 @@ bool isIgnored(int signal) {
     return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-/// The last bytes of a file, `most` of them.
+/// Returns at most the last `most` bytes of a file.
 std::string tailOf(const Descriptor& file, std::size_t most) {
     const auto size = static_cast<std::size_t>(std::max<off_t>(::lseek(file.get(), 0, SEEK_END), 0));
     std::string text(std::min(size, most), '\0');
@@ -43,7 +43,7 @@ std::string tailOf(const Descriptor& file, std::size_t most) {
 
 struct ChildProcesses::Child {
     Process process;
-    Descriptor out;  ///< files in memory
+    Descriptor out;  ///< in-memory files
     Descriptor err;
     Clock::time_point start = Clock::now();
     ChildEnd end = {};
@@ -54,7 +54,7 @@ struct ChildProcesses::Child {
 void ChildProcesses::endWithRecipe() {
     if (const char* const parent = std::getenv(kParentVariable)) {
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-        if (std::to_string(::getppid()) != parent) {  // it died before that
+        if (std::to_string(::getppid()) != parent) {  // the parent died before prctl()
             std::_Exit(128 + SIGTERM);
         }
     }
@@ -131,7 +131,7 @@ void ChildProcesses::collect(std::vector<ChildEnd>& ended) {
             ++child;
             continue;
         }
-        child->kill(SIGKILL);  // what it has started and left behind; while its number is still its own
+        child->kill(SIGKILL);  // ends descendants left behind, while the process group is still valid
         const ProcessEnd how = child->process.wait();
         ChildEnd end = std::move(child->end);
         end.out = tailOf(child->out, kChildOutputMax);
@@ -179,7 +179,7 @@ void ChildProcesses::endBySignal(int signal) {
     ::sigaddset(&set, signal);
     ::sigprocmask(SIG_UNBLOCK, &set, nullptr);
     ::raise(signal);
-    // A handler came back.
+    // The handler returned.
     std::signal(signal, SIG_DFL);
     ::raise(signal);
     ::_exit(128 + signal);

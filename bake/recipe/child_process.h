@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// This program run again, several times at once: each in a process group of its own, which shares nothing with this
-// process but its arguments, so that a crash affects that child alone.
+// Runs this program several times concurrently. Each child has its own process group, and shares only its arguments
+// with this process, so that a crash affects only that child.
 #pragma once
 
 #include <sys/types.h>
@@ -18,56 +18,57 @@ namespace relief {
 
 /// How a child ended.
 struct ChildEnd {
-    std::size_t tag = 0;  ///< as given to start()
+    std::size_t tag = 0;  ///< as passed to start()
     pid_t pid = 0;
     int exit_code = 0;  ///< valid if signal is 0
-    int signal = 0;     ///< that ended it
-    double ms = 0.0;    ///< from its start
-    std::string out;    ///< its standard output: the end of it, at most kChildOutputMax
-    std::string err;    ///< its standard error: the end of it, at most kChildErrorMax
+    int signal = 0;     ///< that ended the child; 0: it exited
+    double ms = 0.0;    ///< duration
+    std::string out;    ///< standard output: the last kChildOutputMax bytes
+    std::string err;    ///< standard error: the last kChildErrorMax bytes
 };
 
 inline constexpr std::size_t kChildOutputMax = std::size_t{64} << 20;
 inline constexpr std::size_t kChildErrorMax = std::size_t{64} << 10;
 
-/// Signals that ask this process to end (INT, TERM, HUP) are held back while one of these lives, and returned by
-/// askedToEnd(); ignored ones stay ignored. Use one at a time, and from one thread.
+/// Starts and waits for children. While an object exists, signals that request termination (INT, TERM, HUP) are
+/// deferred, and returned by askedToEnd(); ignored signals remain ignored. Only one object may exist at a time, used by
+/// one thread.
 class ChildProcesses {
   public:
     ChildProcesses();
     ChildProcesses(const ChildProcesses&) = delete;
     ChildProcesses& operator=(const ChildProcesses&) = delete;
-    /// Ends what still runs, as endAll().
+    /// Ends running children, as endAll().
     ~ChildProcesses();
 
-    /// Runs this same program again. Its standard input is empty. If this process dies, it is ended too; where
-    /// memory runs out, the system ends it before others.
+    /// Starts this program with other arguments. Its standard input is empty. It is ended if this process dies. If
+    /// memory runs out, the system ends it before other processes.
     /// \param arguments  without the program's name.
-    /// Errors: kFailure: no process, or no pipe.
+    /// Errors: kFailure (no process or no pipe).
     [[nodiscard]] Result<void> startSelf(const std::vector<std::string>& arguments, std::size_t tag);
 
     [[nodiscard]] std::size_t running() const;
 
-    /// Waits until a child has ended, a signal arrives, or a while has passed.
+    /// Waits until a child ends, a signal arrives, or the time is up.
     /// \return the children that have ended.
     [[nodiscard]] std::vector<ChildEnd> wait(std::chrono::milliseconds at_most);
 
-    /// The signal that asked this process to end, 0 if none did. Looks without waiting.
+    /// Returns the signal that requested termination, or 0. Does not wait.
     [[nodiscard]] int askedToEnd();
 
-    /// Ends all children and theirs: politely, and after a second by force. \return how they ended.
+    /// Ends all children and their descendants: by SIGTERM, and after a second by SIGKILL. \return how they ended.
     std::vector<ChildEnd> endAll();
 
-    /// For the start of main(): a process that startSelf() has started ends with the process that started it (SIGTERM).
+    /// To be called at the start of main(): a process started by startSelf() ends (SIGTERM) when its parent does.
     static void endWithRecipe();
 
-    /// After everything is cleaned up: ends this process by the signal that asked for it.
+    /// Ends this process by the signal that requested termination. To be called after cleanup.
     [[noreturn]] static void endBySignal(int signal);
 
   private:
     struct Child;
 
-    /// Waits for a signal. \return whether one came.
+    /// Waits for a signal. \return whether one arrived.
     bool takeSignal(std::chrono::nanoseconds at_most);
     void collect(std::vector<ChildEnd>& ended);
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::string_view kEscaped = " #$:";
 
-/// A name that both programs read back as it is. They differ in what backslashes before an escaped character
-/// mean, and neither has an escape for a few others.
+/// Escapes a name so that both programs read it unchanged. They treat backslashes before an escaped character
+/// differently, and have no escape for some characters.
 Result<std::string> escaped(const std::string& name, bool target) {
     const auto refuse = [&](const std::string& what) {
         return fail(ErrorCode::kUnsupported, quotedPath(name) + " cannot stand in a depfile: " + what +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depfiles: which files an output was made from, in the syntax that Make and Ninja read.
+// Writes depfiles: the input files of an output, in the syntax of Make and Ninja.
 #pragma once
 
 #include <filesystem>
@@ -13,21 +13,21 @@ namespace relief {
 /// A file that was read to make an output.
 struct InputFile {
     std::string path;  ///< as it was opened
-    std::string hash;  ///< XXH3-128 of what was read
+    std::string hash;  ///< XXH3-128 of the bytes read
 
     bool operator==(const InputFile&) const = default;
 };
 
-/// "OUT…: IN…", and for each input but the first an empty rule, so that Make goes on where one was deleted.
-/// Spaces, `#`, `$` and `:` are escaped.
+/// Returns "OUT…: IN…", and an empty rule for each input except the first, so that Make continues if one was deleted.
+/// Escapes spaces, `#`, `$` and `:`.
 /// \param targets  at least one.
 /// \param inputs   the primary one first; duplicates are written once.
-/// Errors: kUnsupported for a name that Make or Ninja would read as something else: with a control character,
-/// a `;` or `=`, a backslash before an escaped character or at the end; a target with `%`; an empty name.
+/// Errors: kUnsupported for a name that Make or Ninja would misread: with a control character, a `;` or `=`, a
+/// backslash before an escaped character or at the end; a target with `%`; an empty name.
 [[nodiscard]] Result<std::string> depfileText(const std::vector<std::string>& targets,
                                               const std::vector<std::string>& inputs);
 
-/// Errors: those of depfileText, kIo.
+/// Writes depfileText() to a file. Errors: those of depfileText, kIo.
 [[nodiscard]] Result<void> writeDepfile(const std::filesystem::path& path,
                                         const std::vector<std::string>& targets,
                                         const std::vector<std::string>& inputs);

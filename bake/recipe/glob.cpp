@@ -37,7 +37,7 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
         if (part == "..") {
             return invalid("leads upwards; name files below the recipe's folder");
         }
-        // A row of ** is one.
+        // Consecutive ** are equivalent to one.
         if (part != kFolders || pattern.parts_.empty() || pattern.parts_.back() != kFolders) {
             pattern.parts_.emplace_back(part);
         }
@@ -57,8 +57,8 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
     return pattern;
 }
 
-// state[i]: the parts before i have matched the names so far, and part i may come next. All ways to match are
-// followed at once, so that no pattern takes exponential time.
+// state[i]: the parts before i have matched the names so far, and part i may come next. All alternatives are followed
+// at once, so that no pattern takes exponential time.
 GlobPattern::State GlobPattern::start() const {
     State state(parts_.size() + 1, false);
     state[0] = true;
@@ -98,7 +98,7 @@ bool GlobPattern::matches(std::string_view path) const {
 
 Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern) {
     struct Pending {
-        std::string path;  // from `folder`, with a slash at the end unless empty
+        std::string path;  // relative to `folder`, with a trailing slash unless empty
         GlobPattern::State state;
         std::size_t depth;
     };
@@ -124,7 +124,7 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
                 return tooMuch("it looks through more than " + std::to_string(kNamesMax) + " names");
             }
             const std::string name = entry->path().filename().string();
-            std::error_code none;  // what cannot be looked at is neither a file nor a folder
+            std::error_code none;  // an inaccessible name is neither a file nor a folder
             const bool is_folder = entry->is_directory(none);
             GlobPattern::State next =
                 pattern.step(here.state, name.c_str(), is_folder && entry->is_symlink(none));

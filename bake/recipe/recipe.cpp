@@ -18,18 +18,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kRecipeVersion = 1;
-constexpr std::size_t kTextMax = 4096;  // bytes of a value
+constexpr std::size_t kTextMax = 4096;  // limit on the bytes of a value
 constexpr std::array<std::string_view, 3> kTopKeys = {"version", "defaults", "asset"};
-/// Options that choose the maps: an asset with one of them takes none from the defaults.
+/// Options that select the maps: an asset with any of these ignores those of the defaults.
 constexpr std::array<std::string_view, 8> kMapChoice = {"map",       "paper",  "budget", "texel",
                                                         "max-error", "decode", "depth",  "resolution"};
-/// The first of kMapChoice choose, the others refine the choice.
+/// The first options of kMapChoice select the maps; the others refine the selection.
 constexpr std::size_t kChoosers = 5;
 
-/// What an asset with a height map of its own takes from the defaults: all else is for meshes.
+/// Defaults that apply to an asset with its own height map; all others are for meshes.
 constexpr std::array<std::string_view, 2> kOfHeights = {"compress", "time-limit"};
 
-/// Thrown where a recipe exceeds a limit.
+/// Thrown if a recipe exceeds a limit.
 struct BeyondLimit {
     std::string message;
 };
@@ -46,7 +46,7 @@ void refuseUnknown(const TomlValue& table, std::span<const std::string_view> kno
     }
 }
 
-/// A string; numbers too, where an option takes one.
+/// Returns a string; accepts numbers if the option takes a number.
 std::string textOf(const TomlValue& value, bool number) {
     std::string text;
     if (number && value.node().is_integer()) {
@@ -71,7 +71,7 @@ std::string textOf(const TomlValue& value, bool number) {
     return text;
 }
 
-/// A string or a list of strings.
+/// Returns a string or a list of strings.
 std::vector<std::string> textsOf(const TomlValue& value) {
     if (value.array() == nullptr) {
         return {textOf(value, false)};
@@ -99,7 +99,7 @@ RecipeValue optionOf(const TomlValue& value, FieldKind kind) {
     return option;
 }
 
-/// \param is_asset  else the defaults.
+/// \param is_asset  false for the defaults.
 RecipeAsset readTable(const TomlValue& table, bool is_asset, const std::vector<RecipeKey>& keys) {
     if (!table.node().is_table()) {
         table.fail(is_asset ? "an asset must be a table; write [[asset]]"
@@ -113,7 +113,7 @@ RecipeAsset readTable(const TomlValue& table, bool is_asset, const std::vector<R
     refuseUnknown(table, known);
     RecipeAsset asset;
     asset.place = table.place();
-    // Names in messages are those of the keys alone.
+    // Messages name only the keys.
     const auto find = [&](const std::string& key) -> std::optional<TomlValue> {
         const toml::node* node = table.node().as_table()->get(key);
         return node == nullptr ? std::nullopt : std::optional(TomlValue(*node, key, table.file()));
@@ -156,12 +156,12 @@ void merge(RecipeAsset& asset, const RecipeAsset& defaults) {
     const auto is_one_of = [](std::span<const std::string_view> names, const std::string& name) {
         return std::ranges::find(names, name) != names.end();
     };
-    // A budget for one mesh is none for a level.
+    // A budget for single meshes does not apply to a level.
     const bool chooses = has_one_of(kChoosers) || asset.isWorld();
     const bool is_ground = asset.options.contains("heights");
     for (const auto& [name, value] : defaults.options) {
         if (!(chooses && is_one_of(kMapChoice, name)) && !(is_ground && !is_one_of(kOfHeights, name))) {
-            asset.options.emplace(name, value);  // the asset's own stays
+            asset.options.emplace(name, value);  // emplace() keeps the asset's own value
         }
     }
 }

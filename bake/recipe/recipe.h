@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recipes: many bakes in one TOML file, for people to write. bake/recipe/README.md is the normative
-// description.
+// Recipes: files in TOML that describe many bakes. bake/recipe/README.md is the normative description.
 #pragma once
 
 #include <cstdint>
@@ -16,32 +15,32 @@
 namespace relief {
 
 inline constexpr std::uint64_t kRecipeBytesMax = std::uint64_t{4} << 20;
-inline constexpr std::size_t kRecipeTablesMax = 10'000;   ///< [[asset]]
-inline constexpr std::size_t kRecipePatternsMax = 1'000;  ///< of one `mesh` or `exclude`
+inline constexpr std::size_t kRecipeTablesMax = 10'000;   ///< [[asset]] tables
+inline constexpr std::size_t kRecipePatternsMax = 1'000;  ///< in a `mesh` or `exclude`
 
-/// An option of `relief bake` that a recipe may set, by its long name.
+/// An option of `relief bake` that recipes may set, by its long name.
 struct RecipeKey {
     std::string name;  ///< "max-error"
     FieldKind kind = FieldKind::kValue;
 };
 
-/// A place in a recipe: "FILE:LINE:COLUMN".
+/// A position in a recipe: "FILE:LINE:COLUMN".
 using RecipePlace = std::string;
 
 struct RecipeValue {
-    std::vector<std::string> values;  ///< of a flag: none if it is off, "" if it is on
+    std::vector<std::string> values;  ///< a flag has none if it is off, and "" if it is on
     RecipePlace place;
 };
 
-/// Sorted by name, so that the same options are the same list whatever their order in the file.
+/// Sorted by name, so that the order in the file does not matter.
 using RecipeOptions = std::map<std::string, RecipeValue>;
 
-/// One [[asset]], the defaults merged in.
+/// An [[asset]] merged with the defaults.
 struct RecipeAsset {
-    std::vector<std::string> meshes;   ///< patterns (glob.h), from the recipe's folder
+    std::vector<std::string> meshes;   ///< patterns (glob.h), relative to the recipe's folder
     std::vector<std::string> exclude;  ///< patterns
-    std::string output;                ///< {stem}, {name}, {dir}; from the output folder
-    bool optional = false;             ///< a pattern may match nothing
+    std::string output;                ///< may contain {stem}, {name}, {dir}; relative to the output folder
+    bool optional = false;             ///< patterns without a match are allowed
     RecipeOptions options;
     RecipePlace place;
     RecipePlace mesh_place;
@@ -51,19 +50,20 @@ struct RecipeAsset {
     [[nodiscard]] bool isWorld() const;
 };
 
+/// Parses a recipe.
 /// \param keys  the options that may be set.
 /// \param path  for messages.
-/// Errors: kInvalidInput (no TOML, an unknown key, a wrong type, what is missing), kLimit. Messages start
-/// with "FILE:LINE:COLUMN: ".
+/// Errors: kInvalidInput (invalid TOML, an unknown key, a wrong type, a missing value), kLimit. Messages start with
+/// "FILE:LINE:COLUMN: ".
 [[nodiscard]] Result<std::vector<RecipeAsset>> parseRecipe(std::string_view text,
                                                            const std::vector<RecipeKey>& keys,
                                                            const std::filesystem::path& path);
 
-/// Reads a file of at most kRecipeBytesMax. Errors: kIo, kLimit, those of parseRecipe.
+/// Loads a recipe file of at most kRecipeBytesMax. Errors: kIo, kLimit, those of parseRecipe.
 [[nodiscard]] Result<std::vector<RecipeAsset>> loadRecipe(const std::filesystem::path& path,
                                                           const std::vector<RecipeKey>& keys);
 
-/// The options as arguments of `relief bake`, sorted: --map=cube --prefer=inside.
+/// Returns the options as sorted arguments of `relief bake`: --map=cube --prefer=inside.
 [[nodiscard]] std::vector<std::string> recipeArguments(const RecipeOptions& options);
 
 }  // namespace relief

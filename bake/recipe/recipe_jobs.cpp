@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The option whose values are files to be read.
+/// The option whose values are input files.
 constexpr const char* kFileOption = "clips";
 
 tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
@@ -29,13 +29,13 @@ tl::unexpected<Error> at(const RecipePlace& place, const std::string& message,
     return fail(code, place + ": " + message);
 }
 
-/// "x" -> "'x'", on one line.
+/// Quotes a text on one line: x becomes 'x'.
 std::string inQuotes(const std::string& text) {
     return "'" + cleanUtf8(text, 400) + "'";
 }
 
-/// A link in a folder that leads out of `root`, so that anybody's file would be read there.
-/// \param inside  the folder, from `root`.
+/// Returns the first link in a folder that leads out of `root`, through which any file could be read.
+/// \param inside  the folder, relative to `root`.
 std::optional<std::string> linkOut(const fs::path& root, const fs::path& inside) {
     std::set<std::string> out;
     std::error_code error;
@@ -86,7 +86,7 @@ class Expander {
         return {};
     }
 
-    /// Once all are known: no output may be an input, or another output under another name.
+    /// Checks that no output is an input, or another output under a different name.
     Result<RecipeJobs> finish(const fs::path& recipe) {
         FileGuard& files = result_.files;
         RELIEF_TRY(files.reads(recipe));
@@ -114,13 +114,13 @@ class Expander {
     }
 
   private:
-    /// A world removes containers that it no longer names, and names others by their contents: nothing else is
-    /// written into its folder.
+    /// A world removes containers that it no longer names, and names new ones by their contents. Nothing else may be
+    /// written to its folder.
     Result<void> keepWorldsApart() {
         if (std::ranges::none_of(result_.jobs, &RecipeJob::world)) {
             return {};
         }
-        std::map<fs::path, std::size_t> worlds;  // jobs by their folders
+        std::map<fs::path, std::size_t> worlds;  // job indices by folder
         std::vector<fs::path> folders;           // of all outputs
         for (std::size_t i = 0; i < result_.jobs.size(); ++i) {
             const RecipeJob& job = result_.jobs[i];
@@ -157,7 +157,7 @@ class Expander {
 
     static std::string bakeOf(const RecipeJob& job) { return "the bake of " + inQuotes(job.mesh); }
 
-    /// The files of all patterns, each once, without the excluded ones.
+    /// Returns the files that match the patterns, without duplicates and excluded files.
     Result<std::vector<std::string>> meshesOf(const RecipeAsset& asset) {
         std::vector<GlobPattern> excluded;
         for (const std::string& text : asset.exclude) {
@@ -256,7 +256,7 @@ class Expander {
         return {};
     }
 
-    /// The output's name for a mesh, in its shortest form.
+    /// Returns the normalized name of the output for a mesh.
     static Result<std::string> outputOf(const RecipeAsset& asset, const std::string& mesh, bool is_folder) {
         const fs::path path(mesh);
         std::string name;
@@ -302,7 +302,7 @@ class Expander {
     fs::path folder_;
     fs::path output_folder_;
     RecipeJobs result_;
-    std::vector<RecipePlace> places_;  // of the jobs' outputs
+    std::vector<RecipePlace> places_;  // of the outputs of the jobs
     std::vector<fs::path> inputs_;
 };
 

@@ -23,12 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Between two writes of the cache file while assets are baked; a killed run loses so much.
+/// Interval of cache updates during bakes; a killed run loses at most this much.
 constexpr auto kCacheInterval = std::chrono::seconds(2);
 constexpr std::string_view kErrorStart = "relief: error: ";
 constexpr std::string_view kWarningStart = "relief: warning: ";
 
-/// The output of a job as an entry of the cache: its bytes and hashes. Errors: none, or no world.
+/// Returns a cache entry with the bytes and hashes of a job's output. Errors: the output is missing, or not a world.
 Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     BakeCacheEntry entry;
     const std::optional<std::string> hash = hashOfFile(job.output_path);
@@ -50,12 +50,13 @@ Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     }
     for (const auto& [file, file_hash] : entry.containers) {
         const std::uintmax_t bytes = fs::file_size(job.output_path.parent_path() / file, error);
-        entry.output_bytes += error ? 0 : bytes;  // the next run finds it gone
+        entry.output_bytes += error ? 0 : bytes;  // the next run finds it missing
     }
     return entry;
 }
 
-/// `wrong_percent` of a bake's report; of a world that of its worst collider, nullopt unless all were measured.
+/// Returns `wrong_percent` of a bake's report. For a world, returns that of its worst collider, or nullopt unless all
+/// were measured.
 std::optional<double> wrongPercentOf(const nlohmann::json& report) {
     const auto of = [](const nlohmann::json& json) {
         const auto found = json.find("wrong_percent");
@@ -76,7 +77,7 @@ std::optional<double> wrongPercentOf(const nlohmann::json& report) {
     return worst;
 }
 
-/// A file that no bake is known to have made is replaced only by one of its kind: meshes may refer to it.
+/// Allows replacing an unknown file only if it is of the same kind, because meshes may reference it.
 Result<void> checkReplaced(const RecipeJob& job) {
     constexpr std::size_t kBegin = 4096;
     std::error_code error;
@@ -217,7 +218,7 @@ class Runner {
             return;
         }
         if (asset.job.mesh_is_folder) {
-            // As it is before its files are read: what comes later is noticed by the next run.
+            // Hash the mesh before the child reads it: the next run notices later changes.
             asset.inputs = {{asset.job.mesh, hashOfInput(asset.job.mesh_path).value_or("")}};
         }
         std::vector<std::string> arguments = {"bake", asset.job.mesh_path.string(),
@@ -229,7 +230,7 @@ class Runner {
         arguments.insert(arguments.end(), own.begin(), own.end());
         if (std::ranges::none_of(own,
                                  [](const std::string& word) { return word.starts_with("--time-limit"); })) {
-            arguments.emplace_back("--time-limit=3600");  // a bake that hangs must not hold up the others
+            arguments.emplace_back("--time-limit=3600");  // a hanging bake must not block the others
         }
         if (const Result<void> started = children_.startSelf(arguments, index); !started) {
             failAsset(asset, started.error());
@@ -260,7 +261,7 @@ class Runner {
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +
                                       ::strsignal(end.signal) + "); repair or simplify the mesh"});
             }
-            return;  // cancelled otherwise
+            return;  // otherwise it is cancelled
         }
         if (end.exit_code != 0) {
             const bool known = end.exit_code <= static_cast<int>(ErrorCode::kDifference);
@@ -277,7 +278,7 @@ class Runner {
     }
 
     void succeed(AssetResult& asset, const std::string& report) {
-        // Only the child knows what it read: the file may have changed since.
+        // Use the inputs reported by the child: a file may have changed since.
         const fs::path folder = recipeFolder(run_.recipe);
         const auto json = nlohmann::json::parse(report, nullptr, false);
         if (json.is_object() && json.contains("inputs") && json["inputs"].is_array()) {
@@ -315,7 +316,7 @@ class Runner {
 
 fs::path realFolder(const fs::path& path) {
     std::error_code error;
-    // A slash at the end would make another path of the same folder.
+    // A trailing slash would change the path of a folder.
     return fs::weakly_canonical(fs::absolute(path / ".", error), error).lexically_normal() / "";
 }
 
@@ -331,7 +332,7 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
                                 const std::vector<fs::path>& folders,
                                 const std::vector<AssetResult>& assets) {
     const fs::path folder = recipeFolder(run.recipe);
-    // As they were given, in their shortest form: as a build file has them.
+    // Normalized, but otherwise as given, to match the names in a build file.
     const auto name = [](const fs::path& file) { return file.lexically_normal().string(); };
     std::vector<std::string> targets;
     std::vector<std::string> inputs;
@@ -358,7 +359,7 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
     }
     for (const fs::path& searched : looked_through) {
         if (!written.contains(realFolder(searched))) {
-            // "rocks/" and "rocks" are two files to Make.
+            // "rocks/" and "rocks" are different files for Make.
             const fs::path normal = (searched / "").lexically_normal();
             inputs.push_back(normal == "./" || normal == "." ? "." : normal.parent_path().string());
         }
@@ -366,7 +367,7 @@ Result<void> writeRecipeDepfile(const fs::path& path, const std::string& stamp,
     if (!stamp.empty()) {
         targets = {stamp};
     }
-    // A shard may have nothing to do.
+    // A shard may be empty.
     return targets.empty() ? Result<void>() : writeDepfile(path, targets, inputs);
 }
 

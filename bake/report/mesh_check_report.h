@@ -17,7 +17,7 @@ struct MeshCheckReport {
     std::string file;                     ///< name of the collider
     std::optional<float> max_error = {};  ///< percent
 
-    /// The grade; in the text, with `max_error`, whether that is kept by the mesh as it came.
+    /// The grade. With `max_error`, its text includes whether the imported mesh meets the limit.
     [[nodiscard]] Verdict verdict() const;
 };
 

@@ -20,21 +20,21 @@
 namespace relief {
 namespace {
 
-constexpr int kBand = 3;    // voxels to either side
-constexpr int kMargin = 4;  // voxels of outside about the bounds, so that the band ends within
+constexpr int kBand = 3;    // voxels on each side
+constexpr int kMargin = 4;  // voxels around the bounds, to contain the band
 
-// Kinds of voxels by their place to the surface.
+// Classes of voxels by their distance from the surface.
 constexpr char kNone = 0;
 constexpr char kNear = 1;
 constexpr char kBeside = 2;
 
-constexpr double kIndexMax = 0x1p30;  // of a voxel, from the origin
+constexpr double kIndexMax = 0x1p30;  // maximum index of a voxel, from the origin
 constexpr double kCellsMax = 0x1p31;
 
-/// The voxels about a collider: on which side each is, and which are of the band.
+/// The voxels around a collider: their side, and whether they belong to the band.
 class Voxels {
   public:
-    /// \param box  what they cover, and a margin
+    /// \param box  the region they cover, plus a margin
     /// Errors: kLimit.
     static Result<Voxels> create(const Collider& collider, const Bounds& box, std::uint32_t along) {
         Voxels voxels(collider, double{collider.bounds.longestSide()} / along);
@@ -61,7 +61,7 @@ class Voxels {
         return voxels;
     }
 
-    /// The outermost voxels are outside, so that the surface is closed.
+    /// Whether the outermost voxels are outside, so that the surface is closed.
     [[nodiscard]] bool closed() const {
         std::atomic<bool> closed = true;
         forEach([&](const glm::ivec3& at, std::size_t cell) {
@@ -79,7 +79,7 @@ class Voxels {
     }
     [[nodiscard]] double size() const { return size_; }
 
-    /// Within kBand voxels, along each axis, of a voxel on the other side.
+    /// Finds the voxels within kBand voxels, along each axis, of a voxel on the other side.
     void findBand() {
         forEach([this](const glm::ivec3& at, std::size_t cell) {
             band_[cell] = besideTheOtherSide(at, inside_[cell]) ? kBeside : kNone;
@@ -89,8 +89,8 @@ class Voxels {
         }
     }
 
-    /// Of the surface, the share about which no voxel lies on the other side: parts thinner than a voxel. An estimate: of
-    /// all voxels that touch a surface from outside, those that are not of the band.
+    /// Estimates the fraction of the surface in parts thinner than a voxel, which contain no voxel centre. Counts the
+    /// outside voxels that touch the surface but are not in the band, relative to all outside voxels that touch it.
     [[nodiscard]] double missing() const {
         std::atomic<std::size_t> missed = 0;
         std::atomic<std::size_t> seen = 0;
@@ -111,7 +111,7 @@ class Voxels {
             if (band_[cell] == kNone) {
                 return;
             }
-            // The surface passes between neighbours of two sides, whatever the distance.
+            // The surface passes between neighbours on different sides, regardless of the distance.
             const float most = static_cast<float>(band_[cell] == kBeside ? size_ : kBand * size_);
             const SurfaceSample sample = nearestSurface(collider_, place(at));
             const float length = sample.map < 0 ? most : std::min(std::abs(sample.distance), most);
@@ -137,7 +137,7 @@ class Voxels {
     }
     [[nodiscard]] glm::vec3 place(const glm::ivec3& at) const { return size_ * glm::dvec3(low_ + at); }
 
-    /// Calls use(at, cell), the voxels of a slice of equal z in order, slices at once.
+    /// Calls use(at, cell) for the voxels of each slice of equal z in order, with slices in parallel.
     template <class Use>
     void forEach(Use use) const {
         tbb::parallel_for(0, count_.z, [&](int k) {
@@ -161,7 +161,7 @@ class Voxels {
         }
         return false;
     }
-    /// By kBand − 1 voxels: those beside the other side are of the band already.
+    /// Widens the band by kBand − 1 voxels: voxels beside the other side are already in the band.
     void widen(int axis) {
         const std::vector<char> before = band_;
         forEach([&](const glm::ivec3& at, std::size_t cell) {
@@ -173,7 +173,7 @@ class Voxels {
             }
         });
     }
-    /// For P outside: a surface passes through the ball about this voxel, and behind it is an inside.
+    /// For P outside: whether a surface with an inside behind it passes through the ball around this voxel.
     [[nodiscard]] bool touchesSurface(const glm::vec3& p) const {
         const auto reach = static_cast<float>(0.5 * std::numbers::sqrt3 * size_);
         const FieldSample vote = evaluate(collider_, p);  // most voxels are far, and their votes are cheap
