@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the wheel that `pip install .` installs: the backend that pyproject.toml names (PEP 517).
+"""Builds the wheel for `pip install .`: the PEP 517 backend named in pyproject.toml.
 
-CMake builds and installs the component `python`; its files and their metadata are the wheel. Nothing but Python's own library
-is used, so that pip needs no network for it. README.md beside this file says how it is called.
+CMake builds and installs the component `python`; the wheel contains its files and their metadata. Only the standard library
+is used, so that pip needs no network. README.md in this folder describes its use.
 """
 import base64
 import hashlib
@@ -23,7 +23,7 @@ def run(*command):
 
 
 def built_folder(settings):
-    """The build folder that the setting build-dir names, as it is; else one of our own, built now."""
+    """Returns the build folder of the setting build-dir without building it; without the setting, builds its own."""
     if "build-dir" in settings:
         return pathlib.Path(settings["build-dir"]).resolve()
     run("cmake", "--preset", "packages", "-S", SOURCE, "-B", BUILD, "-DRELIEF_BUILD_OPENVDB=OFF")
@@ -48,7 +48,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
         module = package / f"_relief{suffix}"
         if not module.exists():
-            raise SystemExit(f"no {module.name} was built: the module is for Debian's Python; take /usr/bin/python3 -m pip")
+            raise SystemExit(f"no {module.name} was built: the module requires Debian's Python; use /usr/bin/python3 -m pip")
         python = "cp" + sysconfig.get_config_var("py_version_nodot")
         tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
         about = f"{project['name']}-{version}.dist-info"
@@ -63,7 +63,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def write(path, files, record):
-    """A zip file of {name: (bytes, mode)} and of their hashes, of the same bytes whenever it is written."""
+    """Writes a reproducible zip file of {name: (bytes, mode)} and their hashes."""
     rows = [f"{name},sha256={base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b'=').decode()},{len(data)}\n"
             for name, (data, _) in files.items()]
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as wheel:
@@ -75,4 +75,4 @@ def write(path, files, record):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    raise SystemExit("Relief makes no source package for pip; clone its repository, and `pip install .` there")
+    raise SystemExit("Relief has no source package for pip; clone its repository and run `pip install .` there")

@@ -121,8 +121,9 @@ Result<T> interruptible(Work work, std::optional<float> seconds = {}) {
             throw pybind11::error_already_set();
         }
         if (late) {
-            return fail(ErrorCode::kLimit, "the bake did not end within " + shortest(*seconds) +
-                                               " s; simplify the mesh, ask for less, or raise --time-limit");
+            return fail(ErrorCode::kLimit,
+                        "the bake did not end within " + shortest(*seconds) +
+                            " s; simplify the mesh, lower the budget or resolution, or raise --time-limit");
         }
     }
     if (state->thrown) {

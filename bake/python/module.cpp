@@ -430,7 +430,7 @@ class HeadlessSimulation {
     /// Returns the hits of all steps since the last call; waits for the GPU.
     [[nodiscard]] py::dict takeHits() {
         if (!hits_) {
-            raise({ErrorCode::kUsage, "this simulation keeps no hits; make it with hits=True"});
+            raise({ErrorCode::kUsage, "this simulation stores no hits; create it with hits=True"});
         }
         need(context_->makeCurrent());
         need(simulation_->finishEvents());

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Relief: meshes baked into depth maps that points and particles collide with.
+"""Relief bakes meshes into depth maps for collisions with points and particles.
 
     import relief
     collider = relief.bake("bunny.obj", budget=1_000_000)
@@ -7,10 +7,10 @@
     collider.save("bunny.relief")
     print(relief.check(collider, "bunny.obj").wrong_percent)
 
-Points and vertices are arrays of shape (n, 3), triangles of indices (n, 3). Lengths are in the mesh's units, times in
-seconds. Everything that takes long releases the GIL, uses all cores and ends at Ctrl-C. Errors are relief.Error, or one
-of those derived from it: relief.UsageError, which is a ValueError too, names the argument and the cure. An argument of a
-wrong type is a TypeError.
+Points and vertices are arrays of shape (n, 3); triangles are arrays of indices of shape (n, 3). Lengths are in the units of
+the mesh, times in seconds. Long operations release the GIL, use all cores and end on Ctrl-C. Errors are relief.Error or its
+subclasses. relief.UsageError, which is also a ValueError, names the argument and the fix. An argument of a wrong type raises
+TypeError.
 """
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ __all__ = ["Accuracy", "Collider", "DepthMap", "Error", "FileError", "Hits", "In
 
 Path = Union[str, "os.PathLike[str]"]
 Number = Union[int, float, str]
-"""As the command line has it: 1, 1.5, "1%"; of bytes 1_000_000, 1e6, "1MB"."""
+"""A number or a string as on the command line: 1, 1.5, "1%"; for bytes also "1MB"."""
 
 
 class _Field(NamedTuple):
-    """A field of a request of the baker."""
+    """A field of a bake or check request."""
 
     name: str
     kind: str
@@ -48,7 +48,7 @@ class _Field(NamedTuple):
 
 
 def _named(fields: list[tuple[str, str, str]]) -> dict[str, _Field]:
-    """Fields by the names of arguments: Python has the words "map" and "as" itself."""
+    """Returns the fields by argument name. "map" and "as" are renamed, because Python defines them."""
     return {{"map": "maps", "as": "as_"}.get(field[0], field[0]): _Field(*field) for field in fields}
 
 
@@ -61,7 +61,7 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
 def _hinting(function: _Function) -> _Function:
-    """The function, whose error about an unknown argument names the nearest one."""
+    """Wraps a function so that the error about an unknown argument suggests the nearest one."""
     known = list(inspect.signature(function).parameters)
     name = function.__qualname__.removesuffix(".__init__")
 
@@ -89,26 +89,26 @@ class Samples(NamedTuple):
     """A collider evaluated at n points."""
 
     distance: np.ndarray
-    """(n,) float32: negative inside; 1e30 where a point is outside and no more is known; NaN where a point is not finite."""
+    """(n,) float32: negative inside; 1e30: outside at an unknown distance; NaN: the point is not finite."""
     normal: np.ndarray
-    """(n, 3) float32, outwards; zero where no more than "outside" is known; NaN where a point is not finite."""
+    """(n, 3) float32, outwards; zero: outside at an unknown distance; NaN: the point is not finite."""
     map: np.ndarray
-    """(n,) int32: the map that decides; -1 where no map says anything."""
+    """(n,) int32: the map that decides; -1 if no map votes."""
 
 
 class WorldSamples(NamedTuple):
     """A world evaluated at n points."""
 
     distance: np.ndarray
-    """(n,) float32, as that of Samples, in world units: the least of all bodies."""
+    """(n,) float32: as Samples.distance, in world units; the minimum over all bodies."""
     normal: np.ndarray
-    """(n, 3) float32, as that of Samples, in the world."""
+    """(n, 3) float32: as Samples.normal, in world space."""
     body: np.ndarray
-    """(n,) int32: the body that decides; -1 where no body says anything."""
+    """(n,) int32: the body that decides; -1 if no body votes."""
 
 
 class DepthMap:
-    """One map of a collider. Its arrays live as long as the collider."""
+    """A map of a collider. Its arrays keep the collider alive."""
 
     def __init__(self, collider: "Collider", index: int) -> None:
         self._collider = collider
@@ -126,24 +126,24 @@ class DepthMap:
 
     @property
     def texels(self) -> np.ndarray:
-        """(faces, height, width, 4), read-only and without a copy: uint8, uint16 or float32 as the format stores them
-        (formats/README.md). Of a map of patches they are the words of its tree, and have no place in an image."""
+        """(faces, height, width, 4), read-only, without a copy: uint8, uint16 or float32, depending on the format
+        (formats/README.md). For a map of patches these are the words of its tree, not an image."""
         return self._collider._handle.map_texels(self.index)
 
     @property
     def depth(self) -> np.ndarray:
-        """(faces, height, width) float32: 0 at the near plane, 1 at the far one, of a cube the distance from its centre;
-        NaN where there is no surface. Row 0 is y = 0. A map of patches has none."""
+        """(faces, height, width) float32: 0 at the near plane, 1 at the far plane; for a cube, the distance from its centre.
+        NaN without a surface. Row 0 is y = 0. Not available for a map of patches."""
         return self._depth(False)
 
     @property
     def back_depth(self) -> np.ndarray:
-        """The same of the far surface, of a front-back map."""
+        """The depth of the far surface of a front-back map."""
         return self._depth(True)
 
     def _depth(self, back: bool) -> np.ndarray:
         if self.format == "patches":
-            raise UsageError(f"map {self.index} is of patches, which lie in no image; texels has the words of its tree")
+            raise UsageError(f"map {self.index} has patches and no depth image; use texels for the words of its tree")
         return self._collider._handle.map_depth(self.index, back)
 
     def __repr__(self) -> str:
@@ -155,8 +155,8 @@ def _of_handle(name: str, about: str) -> Any:
 
 
 class Collider:
-    """Depth maps that stand for a body; made by bake() and load(). Nothing changes one, so that a copy is itself; it can
-    be pickled."""
+    """Depth maps that represent an object; made by bake() and load(). Immutable, so copies are the same object; can be
+    pickled."""
 
     def __init__(self, handle: Any) -> None:
         if not isinstance(handle, _relief.Collider):
@@ -172,10 +172,10 @@ class Collider:
     def __reduce__(self) -> tuple[Any, ...]:
         return load, (self.to_bytes(),)
 
-    bounds = _of_handle("bounds", "(2, 3): the least and the largest corner of the mesh's box.")
-    unit = _of_handle("unit", 'Of lengths: "m", or "" where the mesh does not say.')
-    options = _of_handle("options", "How it was baked, as options of `relief bake`.")
-    gpu_bytes = _of_handle("gpu_bytes", "What its maps take on a GPU.")
+    bounds = _of_handle("bounds", "(2, 3): the minimum and maximum corners of the mesh's bounds.")
+    unit = _of_handle("unit", 'Unit of lengths: "m", or "" if the mesh has none.')
+    options = _of_handle("options", "The options of its bake, as for `relief bake`.")
+    gpu_bytes = _of_handle("gpu_bytes", "Size of its maps on a GPU, bytes.")
 
     @property
     def maps(self) -> list[DepthMap]:
@@ -183,10 +183,10 @@ class Collider:
 
     @_hinting
     def query(self, points: Any, distance: str = "plane") -> Samples:
-        """Evaluates it at points, (n, 3).
+        """Evaluates the collider at points, (n, 3).
 
-        distance: "plane": to the plane that decides the side, which is what particles collide with; "nearest": to the
-        nearest surface, which is searched for, some thirteen times the work.
+        distance: "plane": to the plane that decides the side, as in collisions of particles; "nearest": to the nearest
+        surface, which takes about thirteen times as long.
         """
         if distance not in ("plane", "nearest"):
             raise UsageError(f"distance is {distance!r} but must be 'plane' or 'nearest'")
@@ -194,12 +194,12 @@ class Collider:
 
     @_hinting
     def save(self, path: Path, compression: int = 0) -> None:
-        """Writes a .relief file, whole or not at all. compression: zstd's level, 1 to 19; 0: none."""
+        """Writes a .relief file atomically. compression: zstd level, 1 to 19; 0: none."""
         _relief.save(self._handle, _path(path), _whole(compression, "compression", 0, 19))
 
     @_hinting
     def to_bytes(self, compression: int = 0) -> bytes:
-        """What save() writes, for load()."""
+        """Returns the bytes that save() writes, for load()."""
         return _relief.to_bytes(self._handle, _whole(compression, "compression", 0, 19))
 
     def __repr__(self) -> str:
@@ -207,7 +207,7 @@ class Collider:
 
 
 class World:
-    """The world.json of `relief bake --world`, with its colliders. Body i is the file's i-th. Nothing changes one: arrays are
+    """The world.json of `relief bake --world`, with its colliders. Bodies have the order of the file. Immutable: arrays are
     copies."""
 
     @_hinting
@@ -215,12 +215,12 @@ class World:
         self._handle = _relief.load_world(_path(path))
         self._nodes = list(self._handle.nodes)
 
-    bounds = _of_handle("bounds", "(2, 3): the least and the largest corner of the box that holds all bodies.")
-    unit = _of_handle("unit", 'Of lengths: "m", or "" where the level does not say.')
-    positions = _of_handle("positions", "(n, 3) float32: where each body's collider has its origin.")
-    rotations = _of_handle("rotations", "(n, 4) float32: of each body, a unit quaternion x, y, z, w.")
-    scales = _of_handle("scales", "(n,) float32: world units of a unit of each body's collider.")
-    collider_of = _of_handle("collider_of", "(n,) uint32: the number of each body's collider.")
+    bounds = _of_handle("bounds", "(2, 3): the minimum and maximum corners of the bounds of all bodies.")
+    unit = _of_handle("unit", 'Unit of lengths: "m", or "" if the level has none.')
+    positions = _of_handle("positions", "(n, 3) float32: the position of each body's collider origin.")
+    rotations = _of_handle("rotations", "(n, 4) float32: the rotation of each body, a unit quaternion x, y, z, w.")
+    scales = _of_handle("scales", "(n,) float32: world units per unit of each body's collider.")
+    collider_of = _of_handle("collider_of", "(n,) uint32: the index of each body's collider.")
 
     @property
     def nodes(self) -> list[str]:
@@ -229,19 +229,19 @@ class World:
 
     @property
     def colliders(self) -> list[Collider]:
-        """Each different shape once."""
+        """The distinct colliders."""
         return [Collider(self._handle.collider(i)) for i in range(self._handle.collider_count)]
 
     def find(self, node: str) -> list[int]:
-        """The bodies of the node of this name: several in one place where its mesh was cut into tiles."""
+        """Returns the bodies of the node with this name: several at one place if its mesh was cut into tiles."""
         if not isinstance(node, str):
             _wrong_type(node, "node", "text")
         if node not in self._nodes:
-            raise UsageError(f"node is {node!r}, and no body of the world is of one named so; nodes has all")
+            raise UsageError(f"node is {node!r}, but no body of the world has a node of this name; see nodes")
         return [body for body, name in enumerate(self._nodes) if name == node]
 
     def query(self, points: Any) -> WorldSamples:
-        """Evaluates the union of all bodies at points, (n, 3), of the world. Takes time by the number of bodies."""
+        """Evaluates the union of all bodies at points, (n, 3), in world space. Time is proportional to the number of bodies."""
         return WorldSamples(*self._handle.query(_coordinates(points, "points")))
 
     def __len__(self) -> int:
@@ -256,42 +256,42 @@ class WorstPlace:
     """A part of the surface with many points near it on the wrong side."""
 
     position: tuple[float, float, float]
-    """A point on the wrong side, in the thick of it."""
+    """A point on the wrong side, surrounded by others."""
     size: float
-    """Of the box of its points on the wrong side: the longest side."""
+    """Longest side of the box of its points on the wrong side."""
     share_percent: float
-    """Of all points near the surface on the wrong side."""
+    """Percentage of all wrong points near the surface."""
     inside_percent: float
-    """Of its points: called inside."""
+    """Percentage of its points that are classified as inside."""
     map: int
-    """That decides most of them; -1: no map says anything."""
+    """Map that decides most of them; -1: no map votes."""
     cause: str
-    """ "sheet", "open", "unseen", "silhouette" or "texel", as `relief check --json` has it."""
+    """ "sheet", "open", "unseen", "silhouette" or "texel", as in `relief check --json`."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Accuracy:
-    """How far a collider is from a mesh."""
+    """The accuracy of a collider against a mesh."""
 
     false_inside_percent: float
-    """Of points near the surface: outside in truth."""
+    """Percentage of points near the surface that are inside, but outside in truth."""
     false_outside_percent: float
-    """Of points near the surface: inside in truth."""
+    """Percentage of points near the surface that are outside, but inside in truth."""
     distance_mean: float
     """Mean error of the distance near the surface, in the mesh's units."""
     distance_p99: float
     normal_mean: float
     """Mean error of normals on the surface, degrees."""
     unknown_percent: float
-    """Of points near the surface: no map votes."""
+    """Percentage of points near the surface without a vote."""
     lost_parts: int
-    """Parts of the mesh of whose points, by the part's own size, more than a quarter are on the wrong side."""
+    """Parts of the mesh with more than a quarter of their points on the wrong side, relative to the size of the part."""
     ignored_parts: int
-    """Parts that are lost or thicker than in the mesh, and too small, or too little off, to lower the grade."""
+    """Parts that are lost or thicker than in the mesh, but too small or too slightly off to lower the grade."""
     grade: str
-    """ "good", "fair" or "poor", as `relief check` grades: the worse of the whole's and the parts'. A lost part is poor. Coarse
-    parts lower it to "fair" if they and the ignored parts together miss more than 1 % of the points near the surface. Without
-    coarse parts, ignored ones do not count."""
+    """ "good", "fair" or "poor", as in `relief check`: the worse of the grades of the whole mesh and of its parts. A lost part
+    is poor. Coarse parts lower the grade to "fair" if they and the ignored parts together miss more than 1 % of the points near
+    the surface. Ignored parts alone do not lower it."""
     places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 
@@ -309,8 +309,8 @@ def _path(value: Any, name: str = "path") -> str:
         _wrong_type(value, name, "a path")
     path = os.fsdecode(value)
     if "\0" in path:
-        raise UsageError(f"{name} holds a null character, which no file's name does")
-    return "./-" if path == "-" else path  # else it stands for standard input and output
+        raise UsageError(f"{name} contains a null character; remove it")
+    return "./-" if path == "-" else path  # "-" alone means standard input and output
 
 
 def _is_number(value: Any) -> bool:
@@ -322,7 +322,7 @@ def _is_whole(value: Any) -> bool:
 
 
 def _whole(value: Any, name: str, least: int, most: int) -> int:
-    """A whole number, which a float may hold."""
+    """Validates a whole number; accepts integral floats."""
     if not _is_number(value):
         _wrong_type(value, name, "a whole number")
     if not _is_whole(value) or not least <= value <= most:
@@ -331,40 +331,40 @@ def _whole(value: Any, name: str, least: int, most: int) -> int:
 
 
 def _array(values: Any, name: str, kinds: str, wanted: str) -> np.ndarray:
-    """Values as an array of shape (n, 3), of one of these kinds of numpy's."""
+    """Returns the values as an array of shape (n, 3) with one of the given numpy kinds."""
     if np.ma.is_masked(values):
-        raise UsageError(f"{name} are masked in part; fill them, or leave them out")
+        raise UsageError(f"{name} are partly masked; fill the masked values, or remove them")
     try:
         array = np.asarray(values)
     except ValueError:
-        raise UsageError(f"{name} are an array of shape (n, 3), not rows of several lengths") from None
+        raise UsageError(f"{name} must be an array of shape (n, 3), not rows of different lengths") from None
     if array.ndim != 2 or array.shape[1] != 3:
-        raise UsageError(f"{name} are an array of shape (n, 3), not {array.shape}")
+        raise UsageError(f"{name} must be an array of shape (n, 3), not {array.shape}")
     if array.dtype.kind not in kinds:
-        raise TypeError(f"{name} are an array of {wanted}, not of {array.dtype}")
+        raise TypeError(f"{name} must be an array of {wanted}, not of {array.dtype}")
     return array
 
 
 def _coordinates(values: Any, name: str) -> np.ndarray:
     array = _array(values, name, "fiu", "numbers")
-    with np.errstate(over="ignore"):  # to infinity, which is no coordinate either
+    with np.errstate(over="ignore"):  # overflow gives infinity, which is rejected later
         return np.ascontiguousarray(array, dtype=np.float32)
 
 
 def _source(mesh: Any, triangles: Any, name: str) -> tuple[Optional[str], np.ndarray, np.ndarray, bytes]:
-    """A mesh as the module takes it: the path of a file, or vertices and triangles."""
+    """Returns a mesh for the module: the path of a file, or vertices and triangles."""
     if isinstance(mesh, (str, os.PathLike)):
         if triangles is not None:
-            raise UsageError("a file has its own triangles")
+            raise UsageError("triangles cannot be given for a mesh file; remove them")
         return _path(mesh, "mesh"), np.empty((0, 3), np.float32), np.empty((0, 3), np.uint32), b""
     if triangles is None:
-        raise UsageError("vertices need triangles")
+        raise UsageError("triangles are missing; give them with the vertices")
     if not isinstance(name, str):
         _wrong_type(name, "name", "text")
     positions = _coordinates(mesh, "vertices")
     corners = _array(triangles, "triangles", "iu", "indices, whole numbers of an integer type")
     if corners.size and corners.min() < 0:
-        raise UsageError("triangles are indices of vertices, from 0 up")
+        raise UsageError("triangles must be vertex indices of at least 0")
     if corners.size and corners.max() > np.iinfo(np.uint32).max:
         raise InputError(f"{name}: a triangle uses vertex {corners.max()} but there are {len(positions)}; export it again")
     return None, positions, np.ascontiguousarray(corners, dtype=np.uint32), name.encode(errors="replace")
@@ -379,7 +379,7 @@ def _word(value: Any, name: str) -> str:
 
 
 def _words(fields: dict[str, _Field], arguments: dict[str, Any]) -> list[tuple[str, bytes]]:
-    """Arguments as words for the fields of a request."""
+    """Returns the arguments as words for the fields of a request."""
     words = []
     for name, field in fields.items():
         value = arguments[name]
@@ -396,18 +396,18 @@ def _words(fields: dict[str, _Field], arguments: dict[str, Any]) -> list[tuple[s
         else:
             texts = [_word(value, name)]
         if any("\0" in text for text in texts):
-            raise UsageError(f"{name} holds a null character; leave it out")
+            raise UsageError(f"{name} contains a null character; remove it")
         words += [(field.name, os.fsencode(text)) for text in texts]
     return words
 
 
 def _in_python(text: str) -> str:
-    """A message with the names of arguments, where the command line has options."""
+    """Replaces the options in a message with the names of arguments."""
     return re.sub(r"(?<![\w'-])--[a-z][a-z-]*[a-z]", lambda found: _ARGUMENTS.get(found[0], found[0]), text)
 
 
 def _run(work: Callable[..., tuple[Any, list[str]]], *arguments: Any) -> Any:
-    """What the module makes; its messages name arguments, and its warnings are Python's."""
+    """Calls the module; converts options in its messages to arguments, and its warnings to Python warnings."""
     try:
         made, said = work(*arguments)
     except Error as error:
@@ -451,12 +451,12 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
          time_limit: Optional[Number] = None,
          # end of bake-arguments by scripts/generate.sh
          ) -> Collider:
-    """Bakes a mesh as `relief bake` does: the same options and defaults, the same bytes.
+    """Bakes a mesh like `relief bake`, with the same options, defaults and bytes.
 
-    mesh: a file's path, read in a sandbox of its own; or vertices, (n, 3), with triangles, (m, 3).
-    name: the mesh's name in the container, if it is no file.
+    mesh: the path of a file, read in a sandboxed process; or vertices, (n, 3), with triangles, (m, 3).
+    name: the name of the mesh in the container, if it is not a file.
 
-    Warnings of the tool are ReliefWarnings. The other arguments are its options:
+    Warnings are ReliefWarnings. The other arguments are the options of `relief bake`:
     """
     words = _words(_BAKE, locals())
     return Collider(_run(_relief.bake, words, *_source(mesh, triangles, name)))
@@ -464,7 +464,7 @@ def bake(mesh: Any, triangles: Any = None, *, name: str = "mesh",
 
 @_hinting
 def load(source: Union[Path, bytes, bytearray, memoryview]) -> Collider:
-    """A .relief file, or its bytes."""
+    """Loads a collider from a .relief file or its bytes."""
     if isinstance(source, (bytes, bytearray, memoryview)):
         return Collider(_relief.read(bytes(source)))
     return Collider(_relief.load(_path(source, "source")))
@@ -484,10 +484,11 @@ def check(collider: Collider, mesh: Any, triangles: Any = None, *,
           max_triangles: Optional[Number] = None,
           # end of check-arguments by scripts/generate.sh
           ) -> Accuracy:
-    """How wrong a collider is, at random points about the mesh that it was baked from: a file, or vertices and triangles.
+    """Measures the accuracy of a collider at random points around the mesh that it was baked from: a file, or vertices and
+    triangles.
 
-    The verdict is that of `relief check`, with the same options: against the solid that was baked, the repaired one if it
-    was baked with repair. They are:
+    The verdict is that of `relief check`: against the baked solid, which is the repaired one if it was baked with repair. The
+    options are the same:
     """
     if not isinstance(collider, Collider):
         _wrong_type(collider, "collider", "a relief.Collider")
@@ -502,28 +503,28 @@ for _function, _fields in ((bake, _BAKE), (check, _CHECK)):
 
 
 class Hits(NamedTuple):
-    """n hits: a particle touches a body or the ground, and in the step before it touched nothing."""
+    """n hits. A hit is a contact of a particle that touched nothing in the previous step."""
 
     step: np.ndarray
-    """(n,) uint64: the step, from 1; it rises."""
+    """(n,) uint64: the step, from 1, ascending."""
     time: np.ndarray
     """(n,) float64: seconds, within the step."""
     id: np.ndarray
-    """(n,) uint32: the particle, as in Simulation.ids."""
+    """(n,) uint32: the id of the particle, as in Simulation.ids."""
     type: np.ndarray
     """(n,) uint32"""
     body: np.ndarray
-    """(n,) int32: which collider of the scene, from 0; -1: the ground."""
+    """(n,) int32: index of the scene's collider; -1: the ground."""
     material: np.ndarray
-    """(n,) int32: of the surface there, in Simulation.materials; -1: the collider has none, or the ground."""
+    """(n,) int32: index into Simulation.materials; -1: the ground, or a collider without materials."""
     position: np.ndarray
-    """(n, 3) float32: where the surface was touched."""
+    """(n, 3) float32: contact point."""
     normal: np.ndarray
-    """(n, 3) float32: of the surface, out of the body."""
+    """(n, 3) float32: surface normal, out of the body."""
     velocity: np.ndarray
-    """(n, 3) float32: that the particle came with."""
+    """(n, 3) float32: velocity of the particle before the contact."""
     speed: np.ndarray
-    """(n,) float32: of approach along the normal, relative to the surface."""
+    """(n,) float32: speed of approach along the normal, relative to the surface."""
 
 
 def _of_state(name: str, about: str) -> Any:
@@ -531,13 +532,13 @@ def _of_state(name: str, about: str) -> Any:
 
 
 class Simulation:
-    """A scene of `relief-sim`, without a window. It belongs to the thread that makes it; several may take turns there."""
+    """A `relief-sim` scene without a window. Use it only on the thread that created it; several may share a thread."""
 
     @_hinting
     def __init__(self, scene: Path, *, seed: Optional[int] = None, root: Optional[Path] = None,
                  hits: bool = False) -> None:
-        """seed: of every emitter, instead of the scene's. root: a folder whose files the scene may name beside those of
-        its own. hits: keep them for take_hits(), which costs time in each step."""
+        """seed: for every emitter, instead of the scene's. root: an additional folder whose files the scene may reference.
+        hits: store hits for take_hits(), which costs time in each step."""
         self._open: Optional[_relief.Simulation] = None
         self._read: Optional[dict[str, np.ndarray]] = None
         if seed is not None:
@@ -554,7 +555,7 @@ class Simulation:
         return self._open
 
     def close(self) -> None:
-        """Gives its memory back now, as the end of a with block does."""
+        """Frees its memory, like the end of a with block."""
         self._open = self._read = None
 
     def __enter__(self) -> "Simulation":
@@ -564,7 +565,7 @@ class Simulation:
         self.close()
 
     def step(self, count: int = 1) -> None:
-        """So many steps of the scene's length. Ctrl-C ends it between two of them."""
+        """Runs `count` steps of the scene's time step. Ctrl-C interrupts between steps."""
         count = _whole(count, "count", 0, 2**32 - 1)
         self._read = None
         self._handle.step(count)
@@ -575,11 +576,11 @@ class Simulation:
         return list(self._handle.materials)
 
     def take_hits(self) -> Hits:
-        """Those of the steps since the last call, in the order of steps; waits for the GPU. Up to 262,144 a step."""
+        """Returns the hits since the last call, ordered by step; waits for the GPU. At most 262,144 per step."""
         return Hits(**self._handle.take_hits())
 
-    time = _of_handle("time", "Seconds since its beginning.")
-    alive = _of_handle("alive", "Particles.")
+    time = _of_handle("time", "Simulated time, seconds.")
+    alive = _of_handle("alive", "Number of living particles.")
 
     def _state(self, name: str) -> np.ndarray:
         handle = self._handle
@@ -587,10 +588,10 @@ class Simulation:
             self._read = handle.read()
         return self._read[name]
 
-    positions = _of_state("positions", "(n, 3) float32, in the order of ids, velocities and the others. Read back once a step.")
+    positions = _of_state("positions", "(n, 3) float32, in the same order as the other arrays. Read back once per step.")
     velocities = _of_state("velocities", "(n, 3) float32")
-    ids = _of_state("ids", "(n,) uint32: births before its own.")
-    types = _of_state("types", "(n,) uint32: the numbers of their [[type]].")
+    ids = _of_state("ids", "(n,) uint32: number of births before its own.")
+    types = _of_state("types", "(n,) uint32: index of the [[type]].")
     ages = _of_state("ages", "(n,) float32: seconds since birth.")
     lifetimes = _of_state("lifetimes", "(n,) float32: seconds from birth to death.")
     collisions = _of_state("collisions", "(n,) uint32: steps in contact so far.")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the compiled module offers to relief/__init__.py, which documents it for users."""
+"""Interface of the compiled module to relief/__init__.py, which documents it for users."""
 import os
 from typing import Any, Optional, Union
 

@@ -64,24 +64,24 @@ def test_indices_do_not_wrap_round(number, collider):
 
 
 @pytest.mark.parametrize("vertices,triangles,error,words", [
-    (VERTICES, TRIANGLES - 1, ValueError, "from 0 up"),
-    (VERTICES, TRIANGLES.astype(float), TypeError, "triangles are an array of indices, .* not of float64"),
+    (VERTICES, TRIANGLES - 1, ValueError, "of at least 0"),
+    (VERTICES, TRIANGLES.astype(float), TypeError, "triangles must be an array of indices, .* not of float64"),
     (VERTICES, TRIANGLES.astype(bool), TypeError, "not of bool"),
     (VERTICES, [[0, 1, 2**70]], TypeError, "not of object"),
-    (VERTICES, TRIANGLES.ravel(), ValueError, "triangles are an array of shape"),
-    (VERTICES, [[0, 1, 2], [0, 1]], ValueError, "rows of several lengths"),
+    (VERTICES, TRIANGLES.ravel(), ValueError, "triangles must be an array of shape"),
+    (VERTICES, [[0, 1, 2], [0, 1]], ValueError, "rows of different lengths"),
     (VERTICES, np.zeros((0, 3), int), relief.InputError, "no triangle has an area"),
-    (VERTICES, None, ValueError, "need triangles"),
+    (VERTICES, None, ValueError, "triangles are missing"),
     (VERTICES, "abc", ValueError, "shape"),
-    (VERTICES * 1j, TRIANGLES, TypeError, "vertices are an array of numbers, not of complex128"),
-    (VERTICES.astype(str), TRIANGLES, TypeError, "vertices are an array of numbers"),
-    (VERTICES[:, :2], TRIANGLES, ValueError, r"vertices are an array of shape \(n, 3\), not \(4, 2\)"),
+    (VERTICES * 1j, TRIANGLES, TypeError, "vertices must be an array of numbers, not of complex128"),
+    (VERTICES.astype(str), TRIANGLES, TypeError, "vertices must be an array of numbers"),
+    (VERTICES[:, :2], TRIANGLES, ValueError, r"vertices must be an array of shape \(n, 3\), not \(4, 2\)"),
     (VERTICES * 1e300, TRIANGLES, relief.InputError, "not a number or beyond 1e15"),
     (VERTICES * np.nan, TRIANGLES, relief.InputError, "not a number"),
     (np.ma.masked_less(VERTICES, 0.5), TRIANGLES, ValueError, "masked"),
     (None, TRIANGLES, ValueError, "shape"),
     (np.zeros((0, 3)), TRIANGLES, relief.InputError, "there are 0"),
-    ("mesh.obj", TRIANGLES, ValueError, "a file has its own triangles"),
+    ("mesh.obj", TRIANGLES, ValueError, "triangles cannot be given for a mesh file"),
     ("mesh\0.obj", None, ValueError, "null character"),
     (b"mesh.obj", TRIANGLES, ValueError, "shape"),
 ], ids=range(20))
@@ -118,7 +118,7 @@ def test_points_that_are_not_finite_give_nan(collider):
     (np.zeros((2, 3), bool), TypeError), (np.zeros((2, 3), "datetime64[s]"), TypeError), (np.zeros((1, 2, 3)), ValueError),
 ], ids=range(12))
 def test_points_that_are_none(points, error, collider):
-    with pytest.raises(error, match="^points are an array of"):
+    with pytest.raises(error, match="^points must be an array of"):
         collider.query(points)
 
 

@@ -165,7 +165,7 @@ def test_checks_refuse_other_meshes(mesh, tmp_path):
     (tmp_path / "other.obj").write_text(SCENE.replace("v 1 2 1", "v 1 2 9"))
     with pytest.raises(relief.InputError, match="the mesh that it was baked from"):
         relief.check(collider, tmp_path / "other.obj")
-    with pytest.raises(relief.UsageError, match="baked by names"):
+    with pytest.raises(relief.UsageError, match="baked with names"):
         relief.check(collider, np.eye(3), [[0, 1, 2]])
 
 
@@ -193,7 +193,7 @@ def test_wrong_types_are_type_errors_that_name_the_argument(arguments):
 def test_the_time_limit_is_kept(mesh):
     with pytest.raises(relief.LimitError, match="time_limit"):
         relief.bake(mesh, budget="64MB", quality="best", time_limit=0.05)
-    with pytest.raises(relief.UsageError, match="^unit is for a mesh that is read from a file"):
+    with pytest.raises(relief.UsageError, match="^unit applies only to a mesh read from a file"):
         relief.bake(np.eye(3), [[0, 1, 2]], unit="mm")
-    with pytest.raises(relief.UsageError, match="NAME=KIND is for a mesh that is read from a file"):
+    with pytest.raises(relief.UsageError, match="NAME=KIND applies only to a mesh read from a file"):
         relief.bake(np.eye(3), [[0, 1, 2]], as_="a=shell")

@@ -117,7 +117,7 @@ def test_patches_have_a_tree_and_no_depths(tmp_path):
     kinds = one.texels[0].reshape(-1, 4)[1:1 + roots.prod(), 0] & 3
     assert roots.min() >= 1 and (kinds >= 2).any()
     for name in ("depth", "back_depth"):
-        with pytest.raises(relief.UsageError, match="map 0 is of patches"):
+        with pytest.raises(relief.UsageError, match="map 0 has patches"):
             getattr(one, name)
 
 
