@@ -91,7 +91,7 @@ Result<std::vector<MapSpec>> threeMaps(const TriangleMesh& mesh, std::uint64_t b
     };
     double large = static_cast<double>(mesh.bounds.longestSide()) * 2.0;
     if (!resize(large)) {
-        return fail(ErrorCode::kUsage, "--budget is too small for three maps; give it more bytes");
+        return fail(ErrorCode::kUsage, "--budget is too small for three maps; raise it");
     }
     double small = 0.0;
     for (int i = 0; i < 60; ++i) {
@@ -232,7 +232,7 @@ Result<AccuracyEntry> loadAndMeasure(const Truth& truth, const std::string& path
     const TriangleMesh& mesh = truth.query.mesh();
     if (collider.provenance.mesh_hash != mesh.content_hash) {
         return fail(ErrorCode::kInvalidInput, quotedPath(path) + " was not baked from " + mesh.name +
-                                                  "; give --collider what relief bake makes of it");
+                                                  "; bake that mesh, or give --collider another file");
     }
     return measureMaps(truth, "ours", collider);
 }
@@ -338,14 +338,15 @@ Result<void> run(const Arguments& arguments) {
     if (!arguments.atlas.empty()) {
         if (arguments.meshes.size() != 1 || budgets.size() != 1 || arguments.methods.size() != 1 ||
             !isVolume(arguments.methods[0])) {
-            return fail(ErrorCode::kUsage,
-                        "--atlas is of one volume; give one MESH, one --budget, and as --methods volume, "
-                        "unreal, bricks or fitted");
+            return fail(
+                ErrorCode::kUsage,
+                "--atlas writes a single volume; give one MESH, one --budget, and one of --methods volume, "
+                "unreal, bricks or fitted");
         }
         RELIEF_TRY(preflightFile(arguments.atlas, "--atlas"));
     }
     if (!arguments.collider.empty() && (arguments.meshes.size() != 1 || budgets.size() != 1)) {
-        return fail(ErrorCode::kUsage, "--collider is of one mesh; give one MESH and one --budget");
+        return fail(ErrorCode::kUsage, "--collider is for a single mesh; give one MESH and one --budget");
     }
     const BakeRequest shape = RELIEF_TRY(recordedShapeOf(arguments));
     ImportOptions import;
@@ -374,24 +375,25 @@ int report(const Error& error) {
 
 int main(int argc, char** argv) {
     using namespace relief;
-    CLI::App app("Wrong points per byte: distance volumes, the paper's maps, and ours", "relief-accuracy");
+    CLI::App app("Measures wrong points per byte of distance volumes, the paper's maps and our maps",
+                 "relief-accuracy");
     Arguments arguments;
     app.add_option("mesh", arguments.meshes, "Meshes")->option_text("MESH...")->required();
-    app.add_option("--budgets,--budget", arguments.budgets, "Bytes for each collider; default 0.25MB,1MB,4MB")
+    app.add_option("--budgets,--budget", arguments.budgets, "Bytes per collider (default: 0.25MB,1MB,4MB)")
         ->delimiter(',');
-    app.add_option("--samples", arguments.samples, "Points of each kind; default 200000")
+    app.add_option("--samples", arguments.samples, "Points of each kind (default: 200000)")
         ->check(CLI::Range(1U, 100'000'000U));
-    app.add_option("--seed", arguments.seed, "Of the points; default 1");
+    app.add_option("--seed", arguments.seed, "Seed of the points (default: 1)");
     app.add_option("--methods", arguments.methods,
-                   "volume, unreal, bricks, fitted, paper or ours; default: all")
+                   "volume, unreal, bricks, fitted, paper or ours (default: all)")
         ->delimiter(',')
         ->check(CLI::IsMember({"volume", "unreal", "bricks", "fitted", "paper", "ours"}));
+    app.add_option("--collider", arguments.collider,
+                   "Measure this output of `relief bake` instead of baking; for one mesh and one budget");
     app.add_option(
-        "--collider", arguments.collider,
-        "Measure this file of `relief bake` as ours, and bake nothing; for one mesh and one budget");
-    app.add_option("--atlas", arguments.atlas,
-                   "Write the volume there, for relief-bench step --bricks: without an octree; for one mesh, "
-                   "budget and method");
+        "--atlas", arguments.atlas,
+        "Write the volume (not an octree) to this file, for relief-bench step --bricks; for one mesh, "
+        "budget and method");
     CLI11_PARSE(app, argc, argv);
     try {
         const Result<void> done = run(arguments);

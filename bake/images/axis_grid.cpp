@@ -71,7 +71,7 @@ Result<AxisGrid> gridAcross(const Bounds& bounds, int view, std::uint32_t size, 
     grid.corner = center - half;
     const double farthest = std::max(std::abs(center.x) + half.x, std::abs(center.y) + half.y);
     if (!(sides.x >= 0.0 && sides.y >= 0.0 && farthest < double{std::numeric_limits<float>::max()})) {
-        return invalidInput("the collider's bounds cannot be drawn; bake it again");
+        return invalidInput("the collider's bounds are too large for floats; bake it again");
     }
     return grid;
 }

@@ -89,7 +89,7 @@ Result<std::vector<std::byte>> Canvas::png() {
     };
     const cairo_status_t status = cairo_surface_write_to_png_stream(surface_.get(), append, &png);
     if (status != CAIRO_STATUS_SUCCESS) {
-        return fail(ErrorCode::kFailure, std::string("cannot draw the slice: ") +
+        return fail(ErrorCode::kFailure, std::string("cannot draw the image: ") +
                                              cairo_status_to_string(status) + "; lower --size");
     }
     return png;

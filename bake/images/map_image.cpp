@@ -101,7 +101,7 @@ ExrImage mapImage(const DepthMap& map, std::uint32_t face, const std::string& un
         {"relief.Z", cube ? "object units along the ray from the centre of the cube; +inf: no surface"
                           : "object units along the view from the near plane; +inf: no surface"},
         {"relief.N", "unit normal in object space, outwards; zero: no surface"},
-        {"relief.rows", cube ? "top row: t = 0 of OpenGL's cube face" : "top row: the highest y of the map"},
+        {"relief.rows", cube ? "top row: t = 0 of the OpenGL cube face" : "top row: highest y of the map"},
     };
     if (cube) {
         image.attributes.emplace_back("relief.face", kDirectionNames[face]);

@@ -181,7 +181,7 @@ Result<ExrImage> drawView(const Collider& collider, int view, std::uint32_t size
     const Bounds box = solidBox(collider);
     const int axis = grid.axis();
     if (!std::isfinite(box.min[axis]) || !std::isfinite(box.max[axis])) {
-        return invalidInput("the collider's maps are too large to be drawn; bake it again");
+        return invalidInput("the collider's maps are too large for floats; bake it again");
     }
     const double near = grid.sign() > 0.0 ? collider.bounds.min[axis] : collider.bounds.max[axis];
     ExrImage image =
@@ -222,7 +222,7 @@ Result<ExrImage> viewImage(const Collider& collider, int view, std::uint32_t siz
     try {
         return drawView(collider, view, size);
     } catch (const std::bad_alloc&) {
-        return fail(ErrorCode::kLimit, "out of memory for a view of so many texels; lower --resolution");
+        return fail(ErrorCode::kLimit, "out of memory while drawing a view; lower --resolution");
     }
 }
 

@@ -71,7 +71,7 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
     const std::vector<MapSpec> specs = options.maps.empty() ? paperMapSpecs() : options.maps;
     const ContainerLimits limits;
     if (specs.size() > limits.maps) {
-        return fail(ErrorCode::kLimit, std::to_string(specs.size()) + " maps are more than the limit of " +
+        return fail(ErrorCode::kLimit, std::to_string(specs.size()) + " maps exceed the limit of " +
                                            std::to_string(limits.maps) + "; bake fewer");
     }
     std::vector<Job> jobs;
@@ -84,9 +84,9 @@ Result<std::vector<Job>> planJobs(const PreparedMesh& mesh, const BakeOptions& o
         bytes += jobs.back().texels() * texelSize(view.format);
     }
     if (bytes > limits.texel_bytes) {
-        return fail(ErrorCode::kLimit,
-                    "the maps' texels take " + std::to_string(bytes) + " bytes, more than the limit of " +
-                        std::to_string(limits.texel_bytes) + "; lower --resolution or the maps' sizes");
+        return fail(ErrorCode::kLimit, "the texels of the maps take " + std::to_string(bytes) +
+                                           " bytes; the limit is " + std::to_string(limits.texel_bytes) +
+                                           "; lower --resolution or the sizes of the maps");
     }
     return jobs;
 }
@@ -119,17 +119,17 @@ void warnAbout(const PreparedMesh& mesh, const std::vector<Job>& jobs, BakeRepor
         if (view.centre_on_surface) {
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") has its centre on the surface of the mesh; move center into free space");
+                ") has its centre on the surface of the mesh; move the center into free space");
         } else if (jobs[i].centre_inside) {
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") compares less but its centre seems to lie inside the mesh; move center, or "
+                ") has compare=less, but its centre seems to be inside the mesh; move the center, or "
                 "use compare=greater");
         }
         if (report.maps[i].covered == 0) {
             report.warnings.push_back(
                 "map " + std::to_string(i) + " (" + toString(jobs[i].spec) +
-                ") is empty: its rays meet no outer side of the mesh; change its dir, box or size");
+                ") is empty: its rays hit no outer side of the mesh; change its dir, box or size");
         }
     }
 }
@@ -383,8 +383,8 @@ class Bake {
         finish(job.texels());
         if (tree.texel > options.texel) {
             baked_.report.warnings.push_back(
-                mesh_->name + ": its texel is " + shortest(static_cast<float>(tree.texel)) + " where " +
-                shortest(job.spec.texel) + " is wanted, which takes more than its " +
+                mesh_->name + ": the texel is " + shortest(static_cast<float>(tree.texel)) + ", not " +
+                shortest(job.spec.texel) + " as requested, which would take more than " +
                 std::to_string(job.spec.bytes) + " bytes; give a larger --budget or --texel");
         }
         return {};
@@ -397,13 +397,13 @@ class Bake {
                                            [](const Job& job) { return kindOf(job) == Kind::kPatches; });
             return fail(
                 ErrorCode::kFailure,
-                mesh_->name + ": no map sees a surface of the mesh" +
-                    (tree != jobs_.end() ? ", whose parts are smaller than a texel of " +
+                mesh_->name + ": no map sees the surface of the mesh" +
+                    (tree != jobs_.end() ? ": its parts are smaller than a texel of " +
                                                shortest(static_cast<float>(finestTexel())) + " in a box of " +
                                                shortest(mesh_->bounds.longestSide()) +
-                                               "; bake parts that lie far apart by themselves, or " +
+                                               "; bake parts that are far apart separately, or " +
                                                (tree->spec.texel > 0.0F ? "lower --texel" : "raise --budget")
-                                         : "; raise the maps' sizes, or change their dir or box"));
+                                         : "; raise the sizes of the maps, or change their dir or box"));
         }
         return {};
     }
@@ -468,7 +468,7 @@ std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh) {
         return std::nullopt;
     }
     return mesh.name +
-           " lies more than 1000 times its size away from the origin, where floats are coarse; move it to "
+           " is more than 1000 times its size away from the origin, where floats are coarse; move it to "
            "the "
            "origin";
 }

@@ -111,7 +111,7 @@ class Search {
 Result<Baked> bakePatchesWithin(const MeshQuery& query, std::uint64_t budget_bytes, BakeOptions options) {
     if (budget_bytes > 0 && budget_bytes < kBudgetMin) {
         return fail(ErrorCode::kUsage, "a budget of " + std::to_string(budget_bytes) +
-                                           " bytes is below the least of " + std::to_string(kBudgetMin));
+                                           " bytes is below the minimum of " + std::to_string(kBudgetMin));
     }
     MapSpec spec;
     spec.format = MapFormat::kPatches;
@@ -128,10 +128,10 @@ Result<BudgetSearchResult> bakeForError(const MeshQuery& query, const MeshQuery&
 }
 
 void fields(FieldVisitor& visit, const BudgetTry& made) {
-    visit("budget", made.budget, {"Bytes of texels allowed"});
-    visit("bytes", made.bytes, {"Bytes of texels used"});
+    visit("budget", made.budget, {"Maximum bytes of texels"});
+    visit("bytes", made.bytes, {"Actual bytes of texels"});
     visit("wrong_percent", made.wrong_percent,
-          {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
+          {"Points near the surface that are on the wrong side", "%", kPercentRange});
 }
 
 }  // namespace relief

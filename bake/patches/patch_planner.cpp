@@ -498,19 +498,19 @@ class Planner {
     Result<void> searchTexel() {
         const double finest = farthest() / kTexelsMost;
         if (options_.texel < finest) {
-            return fail(ErrorCode::kUsage, query_.mesh().name + ": --texel is " +
-                                               shortest(static_cast<float>(options_.texel)) +
-                                               ", finer than floats resolve there; give at least " +
-                                               shortest(static_cast<float>(finest)));
+            return fail(ErrorCode::kUsage,
+                        query_.mesh().name + ": --texel is " + shortest(static_cast<float>(options_.texel)) +
+                            ", too fine for floats this far from the origin; give at least " +
+                            shortest(static_cast<float>(finest)));
         }
         if (planTexel(options_.texel)) {
             return {};
         }
         if (!options_.coarsen) {
-            return fail(ErrorCode::kLimit,
-                        query_.mesh().name + ": a texel of " + shortest(static_cast<float>(options_.texel)) +
-                            " takes more than the " + std::to_string(options_.bytes) +
-                            " bytes that a tree of patches may have; give a larger --texel");
+            return fail(ErrorCode::kLimit, query_.mesh().name + ": a texel of " +
+                                               shortest(static_cast<float>(options_.texel)) +
+                                               " takes more than the " + std::to_string(options_.bytes) +
+                                               " bytes allowed for a tree of patches; give a larger --texel");
         }
         double fine = options_.texel;
         double coarse = 2.0 * fine;

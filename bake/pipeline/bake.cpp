@@ -25,19 +25,18 @@ BakeRequest completed(BakeRequest request) {
 Result<BakeSettings> checkedSettings(const BakeRequest& request, const TriangleMesh* given) {
     BakeSettings settings = RELIEF_TRY(settingsOf(request));
     if (!request.heights.empty()) {
-        return fail(ErrorCode::kUsage,
-                    "--heights is for a height map that is read from a file; leave it out");
+        return fail(ErrorCode::kUsage, "--heights applies only to a height map read from a file; remove it");
     }
     const std::string import = importOptionOf(request.import, request.import_limits);
     if (given != nullptr && !import.empty()) {
-        return fail(ErrorCode::kUsage, import + " is for a mesh that is read from a file; leave it out");
+        return fail(ErrorCode::kUsage, import + " applies only to a mesh read from a file; remove it");
     }
     if (given != nullptr && request.animated) {
-        return fail(ErrorCode::kUsage, "--animated is for a mesh that is read from a file; leave it out");
+        return fail(ErrorCode::kUsage, "--animated applies only to a mesh read from a file; remove it");
     }
     if (given != nullptr && given->marks.empty() && !settings.shape.named.empty()) {
         return fail(ErrorCode::kUsage,
-                    "--as NAME=KIND is for a mesh that is read from a file; leave NAME= out");
+                    "--as NAME=KIND applies only to a mesh read from a file; remove NAME=");
     }
     return settings;
 }

@@ -42,7 +42,7 @@ std::vector<std::string> warningsOf(const BakeRequest& request, const SolidMesh&
     for (auto named = solid.shape.named.rbegin(); named != solid.shape.named.rend(); ++named) {
         if (named->triangles == 0) {
             warn("--as " + named->shape.name + "=" + std::string(wordOf(named->shape.as)) +
-                 " changes nothing: a later --as names all its triangles too, or they have no area; give it "
+                 " has no effect: a later --as also selects all its triangles, or they have no area; give it "
                  "last");
         }
     }
@@ -74,18 +74,19 @@ std::vector<std::string> noticesOf(const SolidMesh& solid, std::size_t nodes) {
     }
     if (const std::uint64_t shells = solid.shape.unjoined_shells; shells > 0) {
         notices.push_back(countText(shells, "open shell") +
-                          " within another one, with mouths too far apart to join: the space within is full; "
-                          "to free it, close the gap between the rims in the mesh");
+                          " inside another one, with rims too far apart to join: the space inside is solid; "
+                          "to make it hollow, close the gap between the rims in the mesh");
     }
     if (const std::uint64_t walls = solid.shape.unclear_walls; walls > 0) {
-        notices.push_back(countText(walls, "wall") +
-                          " made of two open shells whose winding does not tell a lining from a body: the "
-                          "space within is free; bake bodies in their clothes with --as solid");
+        notices.push_back(
+            countText(walls, "wall") +
+            " made of two open shells; their winding does not tell a lining from a body, so the "
+            "space inside is free; bake clothed bodies with --as solid");
     }
     if (const std::uint64_t sheets = solid.shape.closable_sheets; sheets > 0) {
         notices.push_back(countText(sheets, "sheet") +
-                          " would be solid with closed holes: if no vessel should stay open, bake with --as "
-                          "solid");
+                          " would be solid with closed holes; bake with --as solid unless a vessel must stay "
+                          "open");
     }
     for (std::string& notice : notices) {
         notice.insert(0, mesh.name + ": ");

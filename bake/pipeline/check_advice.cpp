@@ -60,10 +60,10 @@ class Advisor {
         const bool open = any({WrongCause::kOpen});
         // Patches fix most errors of other maps, and do not cost more per step.
         if (!run_.collider.hasPatches() && closes_ && !run_.places.empty()) {
-            tryBudget(*patches_.budget, "patches of as many bytes");
+            tryBudget(*patches_.budget, "patches of the same size");
         }
         if (closes_ && any({WrongCause::kTexel, WrongCause::kSilhouette, WrongCause::kUnseen})) {
-            tryBudget(roundBudget(2 * run_.collider.texelBytes()), "patches of twice the bytes");
+            tryBudget(roundBudget(2 * run_.collider.texelBytes()), "patches of twice the size");
         }
         if (run_.shape.sheets > 0 && run_.shape.thickness > 0.0) {
             tryThicker();
@@ -75,7 +75,7 @@ class Advisor {
                 })) {
                 BakeRequest wrapped = patches_;
                 wrapped.repair.method = "wrap";
-                advice_.push_back({commandLine(wrapped, output_), "a closed surface wrapped round the mesh",
+                advice_.push_back({commandLine(wrapped, output_), "a closed surface wrapped around the mesh",
                                    std::nullopt, "wrapping takes up to a minute", false});
             }
         }
@@ -99,7 +99,7 @@ class Advisor {
     /// Returns why a bake is not tried; empty if it is tried.
     [[nodiscard]] std::string tooMuch(std::uint64_t bytes) const {
         if (!run_.recorded.understood) {
-            return "the collider's record of its options is not understood";
+            return "the options recorded in the collider are not understood";
         }
         const std::size_t triangles = run_.baked->triangles.size();
         if (triangles > kTrialTrianglesMax) {
@@ -144,7 +144,7 @@ class Advisor {
     /// Tries a bake without --holes keep.
     void trySolid() {
         if (!closes_) {
-            attempt(patches_, "holes closed, and sheets made shells", *patches_.budget, false);
+            attempt(patches_, "closed holes, and sheets as shells", *patches_.budget, false);
         }
     }
 

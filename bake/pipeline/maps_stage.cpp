@@ -25,13 +25,13 @@ std::optional<std::uint64_t> budgetOf(const BakeRequest& request) {
 Result<BudgetSearchResult> searchBudget(const BakeRequest& request, const BakeSettings& settings,
                                         const MeshQuery& query, const MeshQuery& truth,
                                         const BakeWatcher& watcher) {
-    notify(watcher.begin, "searching for the least budget");
+    notify(watcher.begin, "searching for the smallest budget");
     BudgetSearchOptions options;
     options.max_error_percent = double{*request.max_error};
     if (const double floats = wrongByFloats(truth.mesh()); floats > 2.0 * options.max_error_percent) {
         return fail(ErrorCode::kDifference, truth.mesh().name + ": --max-error is " +
                                                 percentText(options.max_error_percent) +
-                                                ", and floats so far from the origin leave about " +
+                                                ", but floats this far from the origin make about " +
                                                 percentText(floats) + " wrong; move it to the origin");
     }
     options.budget_max = request.budget.value_or(options.budget_max);

@@ -32,11 +32,11 @@ Result<void> checkSameMesh(const Collider& collider, const std::string& repair, 
             std::abs(double{collider.bounds.max[i]} - double{mesh.bounds.max[i]}) <= tolerance;
         if (!same) {
             return fail(ErrorCode::kInvalidInput,
-                        mesh.name + " has the bounds " + shortest(mesh.bounds.min) + " to " +
+                        mesh.name + " has bounds " + shortest(mesh.bounds.min) + " to " +
                             shortest(mesh.bounds.max) + " but the collider, of " +
                             cleanUtf8(collider.provenance.mesh_name) + ", has " +
                             shortest(collider.bounds.min) + " to " + shortest(collider.bounds.max) +
-                            "; give --mesh the mesh that it was baked from");
+                            "; set --mesh to the mesh that it was baked from");
         }
     }
     return {};
@@ -58,7 +58,7 @@ Result<TriangleMesh> importFor(const std::vector<std::string>& names, const Bake
     if (!mesh && mesh.error().code == ErrorCode::kUsage && !options.names.empty()) {
         return invalidInput(
             mesh.error().message +
-            "; the collider was baked by that name: give --mesh the mesh that it was baked from");
+            "; the collider was baked with this name: set --mesh to the mesh that it was baked from");
     }
     return mesh;
 }
@@ -71,10 +71,11 @@ Result<void> readMesh(const CheckRequest& request, std::optional<TriangleMesh> g
         given = RELIEF_TRY(importFor(names, recorded, request));
     } else if (const std::string option = importOptionOf(request.import, request.import_limits);
                !option.empty()) {
-        return fail(ErrorCode::kUsage, option + " is for a mesh that is read from a file; leave it out");
+        return fail(ErrorCode::kUsage, option + " applies only to a mesh read from a file; remove it");
     } else if (!names.empty()) {
-        return fail(ErrorCode::kUsage,
-                    given->name + ": the collider was baked by names in the mesh's file; give that file");
+        return fail(
+            ErrorCode::kUsage,
+            given->name + ": the collider was baked with names from the mesh file; check against that file");
     }
     Winding winding = RELIEF_TRY(windOutwards(std::move(*given)));
     run.imported = std::move(winding.mesh);
@@ -105,7 +106,7 @@ void makeBakedMesh(MeshCheck& run) {
     if (repair.empty()) {
         return;
     }
-    std::string reason = "it is not the same file";
+    std::string reason = "the file differs";
     if (run.same_file) {
         Result<ShapedMesh> baked = repairedSolid(run.recorded.request, run.imported);
         if (baked) {
@@ -116,8 +117,9 @@ void makeBakedMesh(MeshCheck& run) {
         }
         reason = baked.error().message;
     }
-    run.warnings.push_back("the collider is of a mesh repaired by " + repair + ", which is not made again (" +
-                           reason + "); all is measured against " + run.mesh->name + " as it came");
+    run.warnings.push_back("the collider was baked from a mesh repaired by " + repair +
+                           ", and the repair was not repeated (" + reason + "); measured against " +
+                           run.mesh->name + " as imported");
 }
 
 Result<void> measure(const CheckRequest& request, MeshCheck& run) {
@@ -163,7 +165,7 @@ bool MeshCheck::passes(std::optional<float> max_error) const {
 Result<ShapedMesh> repairedSolid(const BakeRequest& recorded, const PreparedMesh& mesh) {
     const double alpha = RELIEF_TRY(wrapAlpha(recorded.repair.method));
     if (alpha > 0.0 && alpha < kWrapAlphaLeast) {
-        return fail(ErrorCode::kUnsupported, "--repair " + recorded.repair.method + " takes long");
+        return fail(ErrorCode::kUnsupported, "--repair " + recorded.repair.method + " takes too long");
     }
     RepairOptions options = recorded.repair;
     options.examine = false;
@@ -190,15 +192,15 @@ Result<MeshCheck> check(const CheckRequest& request, Collider collider, std::opt
 void measurementFields(FieldVisitor& visit, CheckRequest& request) {
     visit("samples", request.samples,
           {.help = "Points of each kind", .range = {1.0}, .must = "a whole number of at least 1"});
-    visit("seed", request.seed, {.help = "Of the points", .value = "S"});
+    visit("seed", request.seed, {.help = "Seed of the points", .value = "S"});
     visit("detail", request.detail,
-          {.help = "Length from which on a lost part of the mesh lowers the grade",
+          {.help = "Minimum length of a lost part that lowers the grade",
            .unit = "object units",
            .range = {0.0, double{1e15F}},
-           .fallback = "a hundredth of the mesh's diagonal, in metres at most 0.1",
+           .fallback = "a hundredth of the mesh's diagonal; at most 0.1 if the unit is metres",
            .value = "LENGTH",
-           .must =
-               "a length of at least 0, in the collider's units; of metres also with mm, cm or m behind it"});
+           .must = "a length of at least 0, in the collider's units; if these are metres, also with the "
+                   "suffix mm, cm or m"});
 }
 
 void fields(FieldVisitor& visit, CheckRequest& request) {

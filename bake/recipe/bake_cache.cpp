@@ -118,7 +118,7 @@ Result<BakeCacheEntries> parseBakeCache(std::string_view text) {
     } catch (const Json::exception&) {
         // The kind of error does not matter: the file is rewritten.
     }
-    return fail(ErrorCode::kInvalidInput, "its contents are not those of a cache");
+    return fail(ErrorCode::kInvalidInput, "not a cache file, or one of another version");
 }
 
 std::string bakeCacheText(const BakeCacheEntries& entries) {
@@ -152,7 +152,7 @@ Result<BakeCacheEntries> loadBakeCache(const fs::path& output_folder) {
     }
     // A link could lead out of the folder.
     if (!fs::is_regular_file(fs::symlink_status(path, error))) {
-        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": not a regular file");
     }
     const auto bytes = RELIEF_TRY(readFile(path, kCacheBytesMax));
     return withPrefix(quotedPath(path),
@@ -205,19 +205,19 @@ std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry*
                                      const std::string& tool, const fs::path& recipe_folder) {
     std::error_code error;
     if (!fs::exists(job.output_path, error)) {
-        return entry == nullptr ? "new" : "the output is gone";
+        return entry == nullptr ? "new" : "the output is missing";
     }
     if (entry == nullptr || entry->containers.empty() == job.world) {
-        return "nothing is known of the output";
+        return "the output is not in the cache";
     }
     if (entry->tool != tool) {
-        return "made by another version of relief";
+        return "baked by another version of relief";
     }
     if (entry->options != job.options) {
         return "the options changed";
     }
     if (entry->inputs.front().path != job.mesh) {
-        return "the mesh is another";
+        return "the mesh is a different file";
     }
     for (const InputFile& input : entry->inputs) {
         if (hashOfInput(recipe_folder / input.path) != input.hash) {
@@ -230,7 +230,7 @@ std::optional<std::string> staleness(const RecipeJob& job, const BakeCacheEntry*
     for (const auto& [file, hash] : entry->containers) {
         const fs::path path = job.output_path.parent_path() / file;
         if (hashOfFile(path) != hash) {
-            return "its " + quotedPath(file) + (fs::exists(path, error) ? " changed" : " is gone");
+            return "its " + quotedPath(file) + (fs::exists(path, error) ? " changed" : " is missing");
         }
     }
     return std::nullopt;

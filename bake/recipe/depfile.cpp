@@ -15,8 +15,8 @@ constexpr std::string_view kEscaped = " #$:";
 /// differently, and have no escape for some characters.
 Result<std::string> escaped(const std::string& name, bool target) {
     const auto refuse = [&](const std::string& what) {
-        return fail(ErrorCode::kUnsupported, quotedPath(name) + " cannot stand in a depfile: " + what +
-                                                 " means something else to Make or Ninja; rename the file");
+        return fail(ErrorCode::kUnsupported, quotedPath(name) + " cannot be written to a depfile: " + what +
+                                                 " is not portable between Make and Ninja; rename the file");
     };
     if (name.empty()) {
         return refuse("an empty name");
@@ -32,7 +32,7 @@ Result<std::string> escaped(const std::string& name, bool target) {
             return refuse(std::string("'") + c + "'");
         }
         if (c == '\\' && (i + 1 == name.size() || kEscaped.find(name[i + 1]) != std::string_view::npos)) {
-            return refuse("a backslash there");
+            return refuse("a backslash in this place");
         }
         if (c == '$') {
             text += "$$";

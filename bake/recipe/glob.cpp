@@ -24,10 +24,10 @@ constexpr std::string_view kFolders = "**";
 Result<GlobPattern> GlobPattern::parse(std::string_view text) {
     const auto invalid = [](const std::string& message) { return fail(ErrorCode::kInvalidInput, message); };
     if (text.find('\0') != std::string_view::npos) {
-        return invalid("holds a zero byte; remove it");
+        return invalid("contains a zero byte; remove it");
     }
     if (text.starts_with('/')) {
-        return invalid("is an absolute path; name files from the recipe's folder");
+        return invalid("is an absolute path; write it relative to the recipe's folder");
     }
     GlobPattern pattern;
     for (const std::string_view part : split(text, '/')) {
@@ -35,7 +35,7 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
             continue;
         }
         if (part == "..") {
-            return invalid("leads upwards; name files below the recipe's folder");
+            return invalid("leaves the recipe's folder; name files below it");
         }
         // Consecutive ** are equivalent to one.
         if (part != kFolders || pattern.parts_.empty() || pattern.parts_.back() != kFolders) {
@@ -45,14 +45,14 @@ Result<GlobPattern> GlobPattern::parse(std::string_view text) {
     }
     pattern.of_folders_ = text.ends_with('/');
     if (pattern.parts_.empty()) {
-        return invalid("names no file; name one, or several as in rocks/*.obj");
+        return invalid("names no file; write a file or a pattern such as rocks/*.obj");
     }
     if (pattern.parts_.back() == kFolders) {
-        return invalid("ends with **, which stands for folders; write **/* for the files in them");
+        return invalid("ends with **, which matches folders; write **/* for the files in them");
     }
     if (pattern.parts_.size() > kPartsMax) {
         return fail(ErrorCode::kLimit,
-                    "has more than " + std::to_string(kPartsMax) + " parts; name files less deep");
+                    "has more than " + std::to_string(kPartsMax) + " parts; use a shorter path");
     }
     return pattern;
 }
@@ -110,7 +110,7 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
     std::vector<Pending> pending{{"", pattern.start(), 0}};
     std::size_t names = 0;
     const auto tooMuch = [](const std::string& what) {
-        return fail(ErrorCode::kLimit, what + "; name a folder that holds less");
+        return fail(ErrorCode::kLimit, what + "; use a smaller folder");
     };
     while (!pending.empty()) {
         const Pending here = std::move(pending.back());
@@ -121,7 +121,7 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
         fs::directory_iterator entry(full, error);
         for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
             if (++names > kNamesMax) {
-                return tooMuch("it looks through more than " + std::to_string(kNamesMax) + " names");
+                return tooMuch("it visits more than " + std::to_string(kNamesMax) + " names");
             }
             const std::string name = entry->path().filename().string();
             std::error_code none;  // an inaccessible name is neither a file nor a folder
@@ -138,13 +138,13 @@ Result<GlobResult> globFiles(const fs::path& folder, const GlobPattern& pattern)
                     continue;
                 }
                 if (here.depth == kPartsMax) {
-                    return tooMuch("its folders are more than " + std::to_string(kPartsMax) + " deep");
+                    return tooMuch("its folders are nested more than " + std::to_string(kPartsMax) + " deep");
                 }
                 pending.push_back({here.path + name + "/", std::move(next), here.depth + 1});
             }
         }
         if (error) {
-            return fail(ErrorCode::kIo, "cannot look through " + quotedPath(full) + ": " + error.message() +
+            return fail(ErrorCode::kIo, "cannot read " + quotedPath(full) + ": " + error.message() +
                                             "; check its permissions");
         }
     }

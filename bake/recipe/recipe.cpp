@@ -41,7 +41,7 @@ void refuseUnknown(const TomlValue& table, std::span<const std::string_view> kno
             const std::string guess = didYouMean(key->str(), known);
             throw TomlError{table.file().name + ":" + std::to_string(at.line) + ":" +
                             std::to_string(at.column) + ": unknown key '" + cleanUtf8(key->str(), 80) + "'" +
-                            (guess.empty() ? "; known are " + listed(known) : guess)};
+                            (guess.empty() ? "; use one of " + listed(known) : guess)};
         }
     }
 }
@@ -66,7 +66,7 @@ std::string textOf(const TomlValue& value, bool number) {
                           std::to_string(kTextMax) + " bytes"};
     }
     if (text.find('\0') != std::string::npos) {
-        value.fail(value.name() + " holds a zero byte; remove it");
+        value.fail(value.name() + " contains a zero byte; remove it");
     }
     return text;
 }
@@ -126,7 +126,7 @@ RecipeAsset readTable(const TomlValue& table, bool is_asset, const std::vector<R
         asset.meshes = textsOf(*mesh);
         asset.mesh_place = mesh->place();
         if (asset.meshes.empty()) {
-            mesh->fail("mesh names nothing; name a file or a pattern");
+            mesh->fail("mesh is an empty list; name a file or a pattern");
         }
     }
     if (const auto exclude = find("exclude")) {
@@ -169,10 +169,10 @@ void merge(RecipeAsset& asset, const RecipeAsset& defaults) {
 std::vector<RecipeAsset> readRecipe(const TomlValue& top, const std::vector<RecipeKey>& keys) {
     const auto version = top.find("version");
     if (!version) {
-        top.fail("a recipe starts with version = 1");
+        top.fail("a recipe needs version = 1");
     }
     if (version->node().value_exact<std::int64_t>() != kRecipeVersion) {
-        version->fail("version must be 1, the only one that is known");
+        version->fail("version must be 1, the only supported version");
     }
     refuseUnknown(top, kTopKeys);
     const auto table = top.find("defaults");
@@ -183,7 +183,7 @@ std::vector<RecipeAsset> readRecipe(const TomlValue& top, const std::vector<Reci
     }
     if (tables->array()->size() > kRecipeTablesMax) {
         throw BeyondLimit{tables->place() + ": " + std::to_string(tables->array()->size()) +
-                          " [[asset]] are more than the limit of " + std::to_string(kRecipeTablesMax) +
+                          " [[asset]] tables exceed the limit of " + std::to_string(kRecipeTablesMax) +
                           "; use patterns, or several recipes"};
     }
     std::vector<RecipeAsset> assets;
@@ -194,7 +194,7 @@ std::vector<RecipeAsset> readRecipe(const TomlValue& top, const std::vector<Reci
             (*tables)[i].fail("an asset needs mesh = \"FILE or pattern\"");
         }
         if (asset.output.empty()) {
-            (*tables)[i].fail("an asset needs output = \"{stem}.relief\" or such");
+            (*tables)[i].fail("an asset needs an output such as output = \"{stem}.relief\"");
         }
     }
     return assets;

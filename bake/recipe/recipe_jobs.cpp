@@ -102,8 +102,7 @@ class Expander {
             }
             if (other) {
                 return at(places_[i], other->option + " and " + bakeOf(job) + " would both write " +
-                                          inQuotes(job.output) +
-                                          "; tell them apart by {stem}, {name} or {dir}");
+                                          inQuotes(job.output) + "; use {stem}, {name} or {dir} in output");
             }
         }
         RELIEF_TRY(keepWorldsApart());
@@ -135,9 +134,9 @@ class Expander {
                 const auto found = worlds.find(folder);
                 if (found != worlds.end() && found->second != i) {
                     return at(places_[i], "the output " + inQuotes(result_.jobs[i].output) +
-                                              " lies in the folder of the world " +
+                                              " is in the folder of the world " +
                                               inQuotes(result_.jobs[found->second].output) +
-                                              ", which has it for itself; name another folder");
+                                              ", which must not contain other outputs; use another folder");
                 }
                 if (!folder.has_relative_path()) {
                     break;
@@ -186,7 +185,7 @@ class Expander {
             if (pattern->ofFolders() && !asset.isWorld()) {
                 return at(asset.mesh_place,
                           "mesh " + inQuotes(text) +
-                              " names folders, which are levels; write */* for the files in "
+                              " matches folders, which are levels; write */* for the files in "
                               "them, or let output end in /world.json");
             }
             if (found->files.empty() && !asset.optional) {
@@ -195,8 +194,8 @@ class Expander {
                 return at(asset.mesh_place, "mesh " + inQuotes(text) + " matches no " +
                                                 (pattern->ofFolders() ? "folder" : "file") + " in " +
                                                 quotedPath(folder_) +
-                                                (folder ? "; it is a folder: end it with / for a level"
-                                                        : "; mend it, or set optional = true"));
+                                                (folder ? "; it is a folder: append / to bake it as a level"
+                                                        : "; correct it, or set optional = true"));
             }
             for (const std::string& mesh : found->files) {
                 const bool out = std::any_of(excluded.begin(), excluded.end(),
@@ -215,7 +214,7 @@ class Expander {
             if (excluded[i].ofFolders() && !of_folders) {
                 return at(asset.place,
                           "exclude " + inQuotes(asset.exclude[i]) +
-                              " names folders, and mesh names files; write **/* for the files in "
+                              " matches folders, but mesh matches files; write **/* for the files in "
                               "them");
             }
         }
@@ -235,8 +234,9 @@ class Expander {
         job.mesh_is_folder = fs::is_directory(*path, error);
         if (job.mesh_is_folder) {
             if (const auto link = linkOut(folder_, mesh)) {
-                return at(asset.mesh_place, "mesh " + inQuotes(mesh) + " has a link " + inQuotes(*link) +
-                                                ", which leads out of the recipe's folder; remove it");
+                return at(asset.mesh_place, "mesh " + inQuotes(mesh) + " contains the link " +
+                                                inQuotes(*link) +
+                                                ", which points outside the recipe's folder; remove it");
             }
         }
         std::string output = RELIEF_TRY(outputOf(asset, mesh, job.mesh_is_folder));
@@ -244,8 +244,8 @@ class Expander {
         job.world = asset.isWorld();
         if (!resolveInside(output_folder_, job.output)) {
             return at(asset.output_place, "the output " + inQuotes(job.output) +
-                                              " leads out of the output folder " +
-                                              quotedPath(output_folder_) + "; name a file in it");
+                                              " is outside the output folder " + quotedPath(output_folder_) +
+                                              "; name a file inside it");
         }
         job.output_path = output_folder_ / job.output;
         job.arguments = arguments;
@@ -263,7 +263,7 @@ class Expander {
         for (std::size_t i = 0; i < asset.output.size(); ++i) {
             const char c = asset.output[i];
             if (c == '}') {
-                return at(asset.output_place, "output has a } without {; use {stem}, {name} or {dir}");
+                return at(asset.output_place, "output has a } without a {; use {stem}, {name} or {dir}");
             }
             if (c != '{') {
                 name += c;
@@ -279,21 +279,21 @@ class Expander {
             } else if (word == "dir") {
                 name += path.has_parent_path() ? path.parent_path().string() : ".";
             } else {
-                return at(asset.output_place,
-                          "output has {" + cleanUtf8(word, 80) + "}, but known are {stem}, {name} and {dir}");
+                return at(asset.output_place, "output has the unknown {" + cleanUtf8(word, 80) +
+                                                  "}; use {stem}, {name} or {dir}");
             }
             i = end;
         }
         if (name.find('\0') != std::string::npos || fs::path(name).is_absolute()) {
             return at(asset.output_place, "the output " + inQuotes(name) +
-                                              " must be a relative path; choose the folder by --output");
+                                              " must be a relative path; set the folder with --output");
         }
         name = fs::path(name).lexically_normal().string();
         const fs::path file = fs::path(name).filename();
         if (asset.isWorld() ? file != kWorldFileName
                             : !name.ends_with(kColliderExtension) || file == kColliderExtension) {
             return at(asset.output_place, "the output " + inQuotes(name) +
-                                              " must end in .relief, or for a level in /world.json: a recipe "
+                                              " must end in .relief, or in /world.json for a level: a recipe "
                                               "writes nothing else");
         }
         return name;

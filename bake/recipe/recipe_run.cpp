@@ -35,7 +35,7 @@ Result<BakeCacheEntry> entryOf(const RecipeJob& job) {
     std::error_code error;
     entry.output_bytes = fs::file_size(job.output_path, error);
     if (!hash || error) {
-        return fail(ErrorCode::kFailure, "its bake left no output; bake it alone to see more");
+        return fail(ErrorCode::kFailure, "its bake wrote no output; bake it separately for details");
     }
     entry.output_hash = *hash;
     if (!job.world) {
@@ -95,9 +95,9 @@ Result<void> checkReplaced(const RecipeJob& job) {
                                                {}, [](char c) { return static_cast<std::uint8_t>(c); });
     return ours || begin.empty()
                ? Result<void>()
-               : fail(ErrorCode::kUsage, "the output " + quotedPath(job.output_path) + " exists and is no " +
-                                             (job.world ? "world" : "collider") +
-                                             ", and would be lost; remove it, or name another output");
+               : fail(ErrorCode::kUsage, "the output " + quotedPath(job.output_path) +
+                                             " exists and is not a " + (job.world ? "world" : "collider") +
+                                             ", and would be overwritten; remove it, or name another output");
 }
 
 class Runner {
@@ -138,7 +138,7 @@ class Runner {
     Result<void> findStale(std::vector<RecipeJob> jobs) {
         Result<BakeCacheEntries> cache = loadBakeCache(run_.output_folder);
         if (!cache) {
-            tell(run_.warn, cache.error().message + "; everything is baked again");
+            tell(run_.warn, cache.error().message + "; baking everything again");
             cache = BakeCacheEntries{};
         }
         const fs::path folder = recipeFolder(run_.recipe);
@@ -149,7 +149,7 @@ class Runner {
             const bool known = entry != cache->end();
             const std::optional<std::string> reason =
                 children_.askedToEnd() != 0
-                    ? "not looked at"
+                    ? "not examined"
                     : staleness(asset.job, known ? &entry->second : nullptr, tool_, folder);
             if (!known) {
                 RELIEF_TRY(checkReplaced(asset.job));
@@ -213,7 +213,7 @@ class Runner {
         fs::create_directories(asset.job.output_path.parent_path(), error);
         if (error) {
             failAsset(asset,
-                      {ErrorCode::kIo, "cannot make the folder of " + quotedPath(asset.job.output_path) +
+                      {ErrorCode::kIo, "cannot create the folder of " + quotedPath(asset.job.output_path) +
                                            ": " + error.message() + "; choose another output"});
             return;
         }
@@ -269,8 +269,8 @@ class Runner {
                 return;
             }
             failAsset(asset, {known ? static_cast<ErrorCode>(end.exit_code) : ErrorCode::kFailure,
-                              message.empty() ? "its bake ended with " + std::to_string(end.exit_code) +
-                                                    " and no message; bake it alone to see more"
+                              message.empty() ? "its bake exited with code " + std::to_string(end.exit_code) +
+                                                    " and no message; bake it separately for details"
                                               : message});
             return;
         }
@@ -293,9 +293,9 @@ class Runner {
         }
         Result<BakeCacheEntry> entry = entryOf(asset.job);
         if (!entry || asset.inputs.empty()) {
-            failAsset(asset,
-                      entry ? Error{ErrorCode::kFailure, "its bake left no report; bake it alone to see more"}
-                            : entry.error());
+            failAsset(asset, entry ? Error{ErrorCode::kFailure,
+                                           "its bake wrote no report; bake it separately for details"}
+                                   : entry.error());
             return;
         }
         asset.inputs.front().path = asset.job.mesh;

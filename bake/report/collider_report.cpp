@@ -56,7 +56,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
         const glm::vec4& row = map.object_to_map.row[i];
         rows[i] = {row.x, row.y, row.z, row.w};
     }
-    visit("index", index, {"Position in the container, from 0"});
+    visit("index", index, {"Index in the container, from 0"});
     visit("format", mapFormatName(map.format), {.help = "Format of the texels", .words = kMapFormatWords});
     visit("projection", projectionName(map.projection()),
           {.help = "Projection of the map", .words = kWords<"orthographic", "cube", "local">});
@@ -65,7 +65,7 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
            .words = kWords<"less", "greater", "both">});
     visit("width", map.width, {"Width", "texels", kFromOne});
     visit("height", map.height, {"Height", "texels", kFromOne});
-    visit("faces", map.faceCount(), {.help = "Images: 6 of a cube", .words = kWords<"1", "6">});
+    visit("faces", map.faceCount(), {.help = "Number of images: 6 for a cube", .words = kWords<"1", "6">});
     visit("bytes", payload.raw_size, {"Size of all texels in memory", "bytes"});
     visit("stored_bytes", payload.stored_size, {"Size in the file", "bytes"});
     visit("compression", packingName(payload.packing),
@@ -74,37 +74,37 @@ void fields(FieldVisitor& visit, const ColliderMapReport& report) {
     visit("object_to_map", rows, {"Rows of the affine map from object space to map space"});
     visit("object_per_map", map.object_per_map,
           {"Length of one unit along each axis of the map", "object units"});
-    visit("encloses", map.encloses, {"The volume of the map contains the whole collider"});
-    visit("empty_is_outside", map.empty_is_outside, {"A point on a ray that meets no surface is outside"});
+    visit("encloses", map.encloses, {"Whether the volume of the map contains the whole collider"});
+    visit("empty_is_outside", map.empty_is_outside,
+          {"Whether a point on a ray that hits no surface is outside"});
 }
 
 void fields(FieldVisitor& visit, const MeshClip& clip) {
-    visit("name", clip.name, {"Name, which no other clip has"});
+    visit("name", clip.name, {"Name, unique among the clips"});
     visit("seconds", clip.seconds, {"Length", "s", kFromZero});
 }
 
 void fields(FieldVisitor& visit, const AnimatedMesh& mesh) {
-    visit("vertices", mesh.positions.size(), {"Vertices, instances counted one by one"});
+    visit("vertices", mesh.positions.size(), {"Vertices; each instance counts"});
     visit("triangles", mesh.triangles.size(), {"Triangles"});
-    visit("nodes", mesh.nodes.size(), {"Nodes, those of the skeleton included"});
+    visit("nodes", mesh.nodes.size(), {"Nodes, including those of the skeleton"});
     visit("joints", mesh.joints.size(), {"Joints: nodes that move vertices"});
     visit("morph_targets", mesh.weights.size(), {"Morph targets"});
-    visit("clips", mesh.clips, {"Clips, those of the mesh file first"});
+    visit("clips", mesh.clips, {"Clips; those of the mesh file come first"});
     visit("groups", groupNames(mesh),
-          {"Names of joints and nodes with vertices of their own: emitter.group"});
-    visit("materials", mesh.materials, {"Names of materials, \"\" for none: emitter.material"});
+          {"Names of joints and nodes with their own vertices, for emitter.group"});
+    visit("materials", mesh.materials, {"Names of materials for emitter.material; \"\" for none"});
 }
 
 void fields(FieldVisitor& visit, const Material& material) {
-    visit("name", material.name,
-          {"Name, which no other material of the collider has; empty of surfaces without one"});
+    visit("name", material.name, {"Name, unique in the collider; empty for surfaces without a material"});
     visit("restitution", material.restitution, {"Factor of the particles' own restitution", {}, kShareRange});
     visit("friction", material.friction,
           {"1 − friction is a factor of the particles' own 1 − friction", {}, kShareRange});
     visit("lifetime_loss", material.lifetime_loss,
-          {"Lifetime that each step in contact costs", "s", {0.0, double{kMaterialLossMax}}});
+          {"Lifetime lost per step in contact", "s", {0.0, double{kMaterialLossMax}}});
     visit("area_percent", 100.0 * double{material.area_share},
-          {"Share of the mesh's surface", "%", kPercentRange});
+          {"Fraction of the mesh's surface", "%", kPercentRange});
 }
 
 void colliderFields(FieldVisitor& visit, const Collider& collider, const ContainerInfo& info, FieldRef maps,
@@ -112,20 +112,19 @@ void colliderFields(FieldVisitor& visit, const Collider& collider, const Contain
     visit("version", std::to_string(info.major) + "." + std::to_string(info.minor),
           {.help = "Version of the container format", .pattern = "^[0-9]+\\.[0-9]+$"});
     visit("file_size", info.file_size, {"Size of the file", "bytes"});
-    visit("bounds", collider.bounds, {"Box of the mesh"});
-    visit("unit", collider.unit, {"Unit of lengths: m, or empty if the source names none"});
+    visit("bounds", collider.bounds, {"Bounds of the mesh"});
+    visit("unit", collider.unit, {"Unit of lengths: m, or empty if unknown"});
     visit("texel_bytes", collider.texelBytes(), {"Size of all maps on the GPU", "bytes"});
     visit("maps", maps, {.help = "Maps, in the order of the file", .items = kFromOne});
-    visit("materials", collider.materials.list,
-          {"Materials of its surface, by their ids; none: its surface is all the same"});
+    visit("materials", collider.materials.list, {"Materials of the surface, by id; empty if it has none"});
     visit("material_bytes", collider.materials.bytes(), {"Size of the materials", "bytes"});
     visit("animation", animated == nullptr ? std::nullopt : std::optional(*animated),
-          {"How it moves; null if it does not"});
+          {"Animation; null for a static mesh"});
     visit("provenance", collider.provenance, {"Origin of the collider"});
 }
 void fields(FieldVisitor& visit, const ColliderReport<ColliderMapReport>& report) {
     visit("file", report.file,
-          {.help = "File name without its folder, if several files were given",
+          {.help = "File name without its folder, if there are several files",
            .left_out = report.file.empty()});
     colliderFields(visit, report.collider, report.info, report.maps, report.animated);
 }

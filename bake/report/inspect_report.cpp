@@ -22,11 +22,11 @@ std::string trustText(const Inspection& inspection) {
         }
     }
     if (inspection.metadata != PartState::kSound) {
-        return "Nothing of it can be trusted: what describes the maps is " +
+        return "Nothing in the file is usable: the description of the maps is " +
                std::string(wordOf(inspection.metadata)) + ".\n";
     }
-    return count == 0 ? "What describes the maps can be trusted, none of the maps can.\n"
-                      : "Can be trusted: what describes the maps, and of them" + maps + ".\n";
+    return count == 0 ? "The description of the maps is usable; none of the maps is.\n"
+                      : "Usable: the description of the maps, and maps" + maps + ".\n";
 }
 
 }  // namespace
@@ -84,16 +84,16 @@ void fields(FieldVisitor& visit, const Issue& issue) {
     visit("severity", issue.severity(), {"Severity of the code"});
     visit("map", onlyIf(issue.map >= 0, issue.map),
           {"Index of the map; null if the issue is not about a map", {}, kFromZero});
-    visit("offset", issue.offset, {"Byte of the file; null if there is none to name"});
-    visit("message", issue.message, {"One line for people"});
+    visit("offset", issue.offset, {"Byte offset in the file; null if not applicable"});
+    visit("message", issue.message, {"Message in one line"});
 }
 
 void fields(FieldVisitor& visit, const MapInspectionReport& report) {
     const std::optional<DepthMap>& frame = report.map.frame;
     const std::optional<PayloadInfo>& payload = report.map.payload;
-    visit("index", report.index, {"Position in the container"});
+    visit("index", report.index, {"Index in the container"});
     visit("state", report.map.state,
-          {"unverified: the map is right, but the metadata that describes it has a wrong checksum"});
+          {"unverified: the map is intact, but the metadata that describes it has a wrong checksum"});
     visit(
         "format", frame ? std::optional(mapFormatName(frame->format)) : std::nullopt,
         {.help = "Format of the texels; null if the map's description is invalid", .words = kMapFormatWords});
@@ -104,7 +104,7 @@ void fields(FieldVisitor& visit, const MapInspectionReport& report) {
     visit("stored_bytes", payload ? std::optional(payload->stored_size) : std::nullopt,
           {"Size of the payload, according to the metadata", "bytes"});
     visit("coverage", report.map.coverage,
-          {"Share of the texels that hold a surface; null if they could not be read", {}, kShareRange});
+          {"Fraction of the texels that store a surface; null if they could not be read", {}, kShareRange});
 }
 
 void fields(FieldVisitor& visit, const InspectionReport& report) {
@@ -114,15 +114,16 @@ void fields(FieldVisitor& visit, const InspectionReport& report) {
     visit("version", onlyIf(all.major != 0, std::to_string(all.major) + "." + std::to_string(all.minor)),
           {.help = "Version of the container format; null if the header is unreadable",
            .pattern = "^[0-9]+\\.[0-9]+$"});
-    visit("verdict", inspectionVerdict(all),
-          {.help = "Readers refuse damaged files", .words = kWords<"sound", "suspicious", "damaged">});
-    visit("fatal", all.count(Severity::kFatal), {"Issues behind which nothing can be read"});
-    visit("errors", all.count(Severity::kError), {"Issues for which readers refuse the file"});
+    visit(
+        "verdict", inspectionVerdict(all),
+        {.help = "Verdict; readers reject damaged files", .words = kWords<"sound", "suspicious", "damaged">});
+    visit("fatal", all.count(Severity::kFatal), {"Issues that prevent reading the rest of the file"});
+    visit("errors", all.count(Severity::kError), {"Issues for which readers reject the file"});
     visit("warnings", all.count(Severity::kWarning), {"Issues that readers accept"});
     visit("header", all.header, {"State of the first 64 bytes"});
     visit("metadata", all.metadata, {"State of the description of the maps"});
     visit("issues", all.issues, {"Issues, in the order of the file"});
-    visit("maps", report.maps(), {"Maps, as many as the metadata lists"});
+    visit("maps", report.maps(), {"Maps listed in the metadata"});
 }
 
 }  // namespace relief

@@ -10,8 +10,8 @@ Verdict MeshCheckReport::verdict() const {
     if (max_error && (!within || run.passes(max_error))) {
         const std::string ignored = ignoredText(run.part_accuracy.ignored, run.collider.unit);
         verdict.text = percentText(wrong) + " wrong near the surface" +
-                       (run.repaired ? " of the mesh as it came" : "") + ": " +
-                       (within ? "within" : "above") + " --max-error " + percentText(double{*max_error}) +
+                       (run.repaired ? " of the imported mesh" : "") + ": " + (within ? "within" : "above") +
+                       " --max-error " + percentText(double{*max_error}) +
                        (ignored.empty() ? "" : "; " + ignored);
     }
     return verdict;
@@ -25,18 +25,18 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
     const auto mesh = [&](FieldVisitor& visit_mesh) {
         visit_mesh("name", run.mesh->name, {"File name"});
         visit_mesh("hash", run.mesh->content_hash, {.help = "XXH3-128 of the file", .pattern = kHashPattern});
-        visit_mesh("triangles", run.mesh->sourceTriangles(), {"Its triangles"});
-        visit_mesh("watertight", run.watertight, {"The mesh is closed"});
+        visit_mesh("triangles", run.mesh->sourceTriangles(), {"Triangles of the mesh"});
+        visit_mesh("watertight", run.watertight, {"Whether the mesh is closed"});
         visit_mesh("shape", madeShapes(run.shape),
                    {"Treatment of the parts of the mesh; null if it was baked with --holes keep"});
-        visit_mesh("baked_from_it", run.same_file, {"The collider was baked from this very file"});
+        visit_mesh("baked_from_it", run.same_file, {"Whether the collider was baked from exactly this file"});
     };
     visit("mesh", group(mesh), {"Mesh that the collider is measured against"});
     visit("unit", run.collider.unit, {"Unit of lengths; may be empty"});
     const auto verdict = [&](FieldVisitor& visit_verdict) {
         visit_verdict(
             "wrong_percent", run.wrongPercent(),
-            {"Share of the points near the surface that are on the wrong side, of the repaired mesh if there "
+            {"Points near the surface that are on the wrong side, against the repaired mesh if there "
              "is one",
              "%", kPercentRange});
         visit_verdict("lost_parts", run.part_accuracy.countOf(PartVerdict::kLost),
@@ -50,14 +50,14 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
                      "fair: at most 10 %; unknown with fewer than 300 points",
              .words = kWords<"good", "fair", "poor", "unknown">});
         visit_verdict("inside_text", insideVerdictText(run.judged().accuracy.field.inside),
-                      {"That grade in words; empty if it is good or unknown"});
+                      {"The grade in words; empty if it is good or unknown"});
     };
     visit("verdict", group(verdict), {"Summary"});
     visit("parts", PartsReport{run.part_accuracy, run.parts, run.collider},
-          {"Each part of the mesh judged by its own size"});
+          {"Accuracy of each part of the mesh relative to its size"});
     visit("worst_places", viewsOf<WorstPlaceReport>(run.places, run.collider),
           {.help = "At most three places, the worst first", .items = {0.0, 3.0}});
-    visit("advice", run.advice, {"Commands to try; empty if the verdict is good and --max-error is kept"});
+    visit("advice", run.advice, {"Commands to try; empty if the verdict is good and --max-error is met"});
     visit("sampling", samples, {"Points of the measurement"});
     visit("accuracy", ColliderAccuracyReport{accuracy, samples.longest_side},
           {"Accuracy against the mesh as imported"});
@@ -66,13 +66,13 @@ void fields(FieldVisitor& visit, const MeshCheckReport& report) {
         visit_repaired("repair", run.recorded.request.repair.method, {"--repair of the bake"});
         visit_repaired("triangles", run.baked->triangles.size(), {"Triangles of the repaired mesh"});
         visit_repaired("accuracy", ColliderAccuracyReport{measured.accuracy, measured.samples.longest_side},
-                       {"Accuracy against it"});
+                       {"Accuracy against the repaired mesh"});
     };
     visit("repaired", groupIf(run.repaired.has_value(), repaired),
           {"Comparison with the mesh that --repair made; null without a repair"});
     visit("max_error_percent", report.max_error, {"--max-error; null without it", "%", kFromZero});
     visit("passed", run.passes(report.max_error),
-          {"--max-error is kept, and no part is lost; true without --max-error"});
+          {"Whether --max-error is met and no part is lost; true without --max-error"});
     visit("warnings", run.warnings, {"Warnings, one line each"});
     const auto times = [&](FieldVisitor& visit_time) {
         visit_time("truth", 1000.0 * samples.seconds,

@@ -53,7 +53,7 @@ Result<std::vector<glm::vec3>> parsePoints(std::string_view text, const std::str
             return fail(ErrorCode::kInvalidInput, name + ":" + std::to_string(reader.number()) + ": '" +
                                                       cleanUtf8(line.substr(0, kQuotedMax)) +
                                                       (line.size() > kQuotedMax ? "…" : "") +
-                                                      "' is no point; write three finite numbers x,y,z");
+                                                      "' is not a point; write three finite numbers x,y,z");
         }
         header_allowed = false;
     }

@@ -40,7 +40,7 @@ Result<void> checkOlderLog(const std::string& path) {
         return {};
     }
     return fail(ErrorCode::kUsage, quotedPath(path) +
-                                       " holds no events of an earlier run, and would be lost; remove it, or "
+                                       " is not an event log, and would be overwritten; remove it, or "
                                        "give --events another file");
 }
 
@@ -142,7 +142,7 @@ Result<void> RecipeEvents::finish() const {
     if (error_ != 0) {
         return fail(ErrorCode::kIo,
                     "cannot write events to " + (path_ == "-" ? "standard output" : quotedPath(path_)) +
-                        ": " + std::system_category().message(error_) + "; what was baked is in place");
+                        ": " + std::system_category().message(error_) + "; the baked outputs are complete");
     }
     return {};
 }
@@ -194,7 +194,7 @@ std::vector<std::string> warningLines(std::span<const OwnWarnings> all, std::str
         out.push_back((count == 1 ? group.owners.front()
                                   : std::to_string(count) + " " + std::string(owners) + " (" + listed(named) +
                                         more + ")") +
-                      ": " + (group.same ? "" : "of the first: ") + group.warning);
+                      ": " + (group.same ? "" : "first of several: ") + group.warning);
     }
     return out;
 }
@@ -215,28 +215,27 @@ void fields(FieldVisitor& visit, const AssetReport& report) {
     const bool failed = state == AssetState::kFailed;
     const bool tried = state == AssetState::kBaked || failed;
     visit("asset", asset.job.output, {"Output, relative to the output folder: a collider, or a world"});
-    visit("mesh", asset.job.mesh, {"Its mesh, level or height map, relative to the folder of the recipe"});
+    visit("mesh", asset.job.mesh, {"Mesh, level or height map, relative to the recipe's folder"});
     visit("state", wordOf(state),
           {.help = "State of the asset", .words = {&kWordsOf<AssetState>[std::size_t(state)], 1}});
     if (state != AssetState::kUpToDate) {
-        visit("reason", asset.reason, {"Reason why it is not up to date"});
+        visit("reason", asset.reason, {"Why it is not up to date"});
     }
     if (tried) {
         visit("ms", asset.ms, {"Time", "ms", kFromZero});
     }
     if (made) {
-        visit("bytes", asset.bytes, {"Size of the output, with its containers", "bytes"});
-        visit(
-            "wrong_percent", asset.wrong_percent,
-            {"Share of the points near the surface that are on the wrong side, of a world that of its worst "
-             "collider; null unless the bake measured all",
-             "%", kPercentRange});
+        visit("bytes", asset.bytes, {"Size of the output, including its containers", "bytes"});
+        visit("wrong_percent", asset.wrong_percent,
+              {"Points near the surface that are on the wrong side; for a world, those of its worst "
+               "collider; null unless the bake measured all",
+               "%", kPercentRange});
         visit("hash", asset.hash,
-              {.help = "XXH3-128 of the output; that of a world has those of its containers",
+              {.help = "XXH3-128 of the output; for a world, it covers the containers",
                .pattern = kHashPattern});
         visit("containers", asset.containers,
               {.help = "Containers of a world, relative to the output folder", .left_out = true});
-        visit("inputs", asset.inputs, {.help = "All files that it was made from", .items = kFromOne});
+        visit("inputs", asset.inputs, {.help = "All input files", .items = kFromOne});
     }
     if (made || !report.event) {
         visit("key", asset.key,
@@ -246,7 +245,7 @@ void fields(FieldVisitor& visit, const AssetReport& report) {
     }
     if (failed) {
         visit("code", static_cast<int>(asset.error.code), {"Exit code", {}, {1.0, 7.0}});
-        visit("error", asset.error.message, {"One line for people"});
+        visit("error", asset.error.message, {"Error message in one line"});
     }
     if (tried) {
         visit("warnings", asset.warnings, {.help = "Warnings, one line each", .left_out = true});
@@ -254,20 +253,20 @@ void fields(FieldVisitor& visit, const AssetReport& report) {
 }
 
 void fields(FieldVisitor& visit, const RecipeCounts& counts) {
-    visit("assets", counts.all(), {"All assets"});
+    visit("assets", counts.all(), {"Number of assets"});
     visit("stale", counts.of(AssetState::kStale), {"Assets to be baked, in a dry run"});
     visit("baked", counts.of(AssetState::kBaked), {"Assets baked"});
-    visit("up_to_date", counts.of(AssetState::kUpToDate), {"Assets not baked because nothing changed"});
+    visit("up_to_date", counts.of(AssetState::kUpToDate), {"Assets that were already up to date"});
     visit("failed", counts.of(AssetState::kFailed), {"Assets that failed"});
-    visit("cancelled", counts.of(AssetState::kCancelled), {"Assets not baked because the run ended before"});
-    visit("bytes", counts.bytes, {"Size of all outputs that are up to date now", "bytes"});
+    visit("cancelled", counts.of(AssetState::kCancelled), {"Assets not baked because the run ended early"});
+    visit("bytes", counts.bytes, {"Size of all outputs that are up to date", "bytes"});
 }
 
 void fields(FieldVisitor& visit, const RecipeJson& report) {
-    visit("recipe", report.recipe, {"Recipe as given"});
+    visit("recipe", report.recipe, {"Recipe, as on the command line"});
     visit("output", report.output, {"Output folder"});
     visit("shard", shardText(report.shard), kShardField);
-    visit("counts", report.counts, {"Numbers of assets"});
+    visit("counts", report.counts, {"Assets by state"});
     visit("ms", report.ms, {"Time of the whole run", "ms", kFromZero});
     visit("assets", report.assets, {"Assets, in the order of the recipe"});
 }
@@ -275,8 +274,8 @@ void fields(FieldVisitor& visit, const RecipeJson& report) {
 void fields(FieldVisitor& visit, const RecipeStart& start) {
     visit("event", "start", {.help = "The first line", .words = kWords<"start">});
     toolField(visit);
-    visit("recipe", start.recipe, {"Recipe as given"});
-    visit("assets", start.assets, {"All assets"});
+    visit("recipe", start.recipe, {"Recipe, as on the command line"});
+    visit("assets", start.assets, {"Number of assets"});
     visit("shard", shardText(start.shard), kShardField);
     visit("at_once", start.at_once, {"Assets baked at the same time", {}, kFromOne});
 }

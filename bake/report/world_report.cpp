@@ -66,7 +66,7 @@ std::string worldBakeText(const WorldBakeResult& result, const std::string& fold
     }
     if (!result.removed.empty()) {
         text += "removed " + countText(result.removed.size(), "container") +
-                " that only the world from before named\n";
+                " referenced only by the previous world\n";
     }
     return text;
 }
@@ -75,47 +75,47 @@ void fields(FieldVisitor& visit, const WorldColliderReport& report) {
     const WorldColliderResult& c = report.collider;
     const bool failed = c.state == WorldColliderState::kFailed;
     visit("mesh", c.mesh, {"Name of its mesh in the level"});
-    visit("tile", c.tile,
-          {"Its place among the tiles of its mesh, such as 0-1-0; empty if it is all of the mesh"});
-    visit("file", c.file, {"Its container, in the folder of the world"});
+    visit("tile", c.tile, {"Position among the tiles of its mesh, such as 0-1-0; empty for the whole mesh"});
+    visit("file", c.file, {"Container, relative to the folder of the world"});
     visit("state", c.state, {"State of the container"});
-    visit("bodies", c.bodies, {"Nodes that place it", {}, kFromOne});
-    visit("area", c.area, {"Area of its mesh's surface", "object units squared", kFromZero});
+    visit("bodies", c.bodies, {"Number of its bodies", {}, kFromOne});
+    visit("area", c.area, {"Area of the mesh's surface", "object units squared", kFromZero});
     visit("largest_scale", c.largest_scale, {"Largest scale of its bodies", {}, kFromZero});
-    visit("budget", c.budget, {"Its mesh's share of the budget; null of --texel alone", "bytes"});
+    visit("budget", c.budget,
+          {"Share of the budget for its mesh; null for --texel without --budget", "bytes"});
     visit("bytes", c.bytes, {"Size of the container; 0 if it failed", "bytes"});
-    visit("gpu_bytes", c.gpu_bytes, {"Bytes that it takes on the GPU; 0 if it failed", "bytes"});
+    visit("gpu_bytes", c.gpu_bytes, {"Size on the GPU; 0 if it failed", "bytes"});
     visit("coarse", c.coarse,
-          {"Container that stands in for it while it is not on the GPU; null where that would save little"});
+          {"Coarse version that replaces it until it is on the GPU; null if that would save little"});
     visit("hash", c.hash, {.help = "XXH3-128 of the container; empty if it failed", .pattern = kHashPattern});
     visit("wrong_percent", c.wrong ? std::optional(c.wrong->total()) : std::nullopt,
-          {"Share of the points near its mesh's surface that are on the wrong side; null unless it was baked "
+          {"Points near the mesh's surface that are on the wrong side; null unless it was baked "
            "and "
            "measured",
            "%", kPercentRange});
     visit("verdict", c.verdict, {"Summary; null unless it was baked and measured"});
     visit("ignored_parts", c.ignored,
-          {"Parts of its mesh that the grade ignores because they are small; sizes in the world"});
-    visit(
-        "ms", c.ms,
-        {"Time of its mesh's bake; 0 if it was up to date, and of all tiles but the first", "ms", kFromZero});
+          {"Parts of its mesh that the grade ignores because they are small; sizes in world units"});
+    visit("ms", c.ms,
+          {"Time to bake its mesh; 0 if it was up to date, and for all tiles except the first", "ms",
+           kFromZero});
     visit("warnings", c.warnings, {"Warnings, one line each"});
     visit("error", failed ? std::optional(c.error.message) : std::nullopt,
-          {"One line for people; null if it did not fail"});
+          {"Error message in one line; null if it did not fail"});
 }
 
 void fields(FieldVisitor& visit, const WorldBakeJson& report) {
     const WorldBakeResult& r = report.result;
     toolField(visit);
-    visit("output", report.output, {"Folder of the world as given"});
-    visit("written", r.written, {"Whether its world.json is there; false if a collider failed"});
-    visit("unit", r.world.unit, {"Unit of lengths: m, or empty"});
+    visit("output", report.output, {"Folder of the world, as on the command line"});
+    visit("written", r.written, {"Whether world.json was written; false if a collider failed"});
+    visit("unit", r.world.unit, {"Unit of lengths: m, or empty if unknown"});
     visit("bodies", r.world.bodies.size(), {"Bodies"});
     visit("budget", r.budget,
-          {"Bytes that all colliders may take on the GPU; null of --texel alone", "bytes"});
-    visit("gpu_bytes", r.gpuBytes(), {"Bytes that they take", "bytes"});
+          {"Budget of all colliders on the GPU; null for --texel without --budget", "bytes"});
+    visit("gpu_bytes", r.gpuBytes(), {"Size of all colliders on the GPU", "bytes"});
     visit("baked", r.countOf(WorldColliderState::kBaked), {"Colliders that were baked"});
-    visit("up_to_date", r.countOf(WorldColliderState::kUpToDate), {"Colliders that were left as they were"});
+    visit("up_to_date", r.countOf(WorldColliderState::kUpToDate), {"Colliders that were already up to date"});
     visit("failed", r.countOf(WorldColliderState::kFailed), {"Colliders that failed"});
     folderFields(visit, r.removed, report.ms, r.inputs, r.warnings);
     visit("colliders", viewsOf<WorldColliderReport>(r.colliders), {"Colliders, in the order of the world"});
@@ -143,20 +143,19 @@ std::string WorldPlaceReport::advice() const {
     }
     switch (place().cause) {
         case WorldCause::kMoved:
-            return "the world has it elsewhere than the level: bake the level again";
+            return "its pose in the world differs from the level: bake the level again";
         case WorldCause::kFloats:
-            return "floats are coarse so far from the origin of its mesh: move the mesh there, and its node "
-                   "back";
+            return "floats are coarse this far from the origin of its mesh: move the mesh to the origin, and "
+                   "its node back";
         case WorldCause::kTexel:
-            return "it is finer than the texels: bake with --budget " +
+            return "its details are finer than the texels: bake with --budget " +
                    bytesWord(roundBudget(2 * gpuBytesOf(*field))) +
                    ", which makes them about 0.7 times as wide";
         case WorldCause::kMesh:
             break;
     }
-    return "more than texels are wide: its mesh may be open there, or faces cross; mend it, or name what it "
-           "is by "
-           "--as " +
+    return "the error exceeds the texels: its mesh may be open or intersect itself there; repair it, or set "
+           "its kind with --as " +
            shellQuoted((body().node.empty() ? body().mesh : body().node) + "=solid") + ", shell or terrain";
 }
 
@@ -165,17 +164,19 @@ std::string worldCheckText(const WorldField& field, const std::string& name, con
                        countText(field.world().colliders.size(), "collider") + ", " +
                        bytesText(gpuBytesOf(field));
     if (accuracy == nullptr) {
-        return text + "; every container is there, and as the world has it\n";
+        return text + "; all containers exist and match the world\n";
     }
     const std::uint64_t points = accuracy->bodies.front().points;
     text += "\n" + percentText(accuracy->all.total()) +
             " of the points near the surface are on the wrong side (" +
-            percentText(accuracy->all.false_inside) + " inside by error, " +
-            percentText(accuracy->all.false_outside) + " outside), of " + countText(points, "point") +
-            " for each body\n" + verdictOf(*accuracy, field.world().unit).text + "\n";
+            percentText(accuracy->all.false_inside) + " wrongly inside, " +
+            percentText(accuracy->all.false_outside) + " wrongly outside), with " +
+            countText(points, "point") + " per body\n" + verdictOf(*accuracy, field.world().unit).text + "\n";
     for (const LostParts& mesh : accuracy->lost) {
-        text += (&mesh == &accuracy->lost.front() ? "\nLost parts, each by its own size:\n  " : "  ") +
-                mesh.mesh + ": " + mesh.text + "\n";
+        text +=
+            (&mesh == &accuracy->lost.front() ? "\nLost parts, each measured relative to its own size:\n  "
+                                              : "  ") +
+            mesh.mesh + ": " + mesh.text + "\n";
     }
     if (accuracy->worst.empty()) {
         return text;
@@ -203,24 +204,24 @@ void fields(FieldVisitor& visit, const WorldPlaceReport& report) {
     visit("node", body.node, {"Name of its node in the level"});
     visit("mesh", body.mesh, {"Name of its mesh"});
     visit("wrong_percent", body.wrong.total(),
-          {"Share of the points near it that are on the wrong side", "%", kPercentRange});
-    visit("position", body.place, {"A typical point on the wrong side, in the world", "[x, y, z]"});
-    visit("normal", place.normal, {"Of the surface beside it, outwards", "[x, y, z]"});
-    visit("distance", place.distance, {"From that surface", "world units", kFromZero});
+          {"Points near it that are on the wrong side", "%", kPercentRange});
+    visit("position", body.place, {"A typical point on the wrong side, world space", "[x, y, z]"});
+    visit("normal", place.normal, {"Normal of the nearest surface, outwards", "[x, y, z]"});
+    visit("distance", place.distance, {"Distance from that surface", "world units", kFromZero});
     visit("texel", place.texel,
-          {"Side of the texels of the body that decides there; 0: none does", "world units", kFromZero});
-    visit(
-        "cause", place.cause,
-        {"moved: the world has the node elsewhere; texel: the point is less than a texel and a half from the "
-         "surface; mesh: it is farther"});
+          {"Side of the texels of the body that decides there; 0 if none decides", "world units", kFromZero});
+    visit("cause", place.cause,
+          {"moved: the node has another pose in the world; texel: the point is less than 1.5 texels from the "
+           "surface; mesh: it is farther away"});
     visit("advice", schema ? std::string() : report.advice(),
-          {"What to do, one sentence; empty of a body with at most 1 % wrong"});
+          {"Advice in one sentence; empty if at most 1 % is wrong"});
 }
 
 void fields(FieldVisitor& visit, const LostParts& parts) {
     visit("mesh", parts.mesh, {"Name of the mesh"});
-    visit("lost", parts.lost, {"Parts that its collider loses, each judged by its own size", {}, kFromOne});
-    visit("text", parts.text, {"How many of how many, the largest, and what would keep it"});
+    visit("lost", parts.lost,
+          {"Parts that its collider loses, each measured relative to its own size", {}, kFromOne});
+    visit("text", parts.text, {"Their number, the largest one, and how to keep it"});
 }
 
 void fields(FieldVisitor& visit, const BodyAccuracy& body) {
@@ -229,10 +230,11 @@ void fields(FieldVisitor& visit, const BodyAccuracy& body) {
     visit("points", body.points, {"Points near its surface", {}, kFromOne});
     fields(visit, body.wrong);
     visit("tiles", body.tiles,
-          {"Bodies of the world that follow those of the body before: several of a mesh in tiles; 0 of all "
-           "if the level has other nodes"});
+          {"Consecutive bodies of the world: several for a mesh in tiles; 0 for all "
+           "if the level has different nodes"});
     visit("place", body.place,
-          {"A typical point on the wrong side, in the world; the body's position without any", "[x, y, z]"});
+          {"A typical point on the wrong side, world space; the body's position if there is none",
+           "[x, y, z]"});
 }
 
 void fields(FieldVisitor& visit, const WorldCheckJson& report) {
@@ -240,11 +242,11 @@ void fields(FieldVisitor& visit, const WorldCheckJson& report) {
     const WorldAccuracy& accuracy = report.accuracy != nullptr ? *report.accuracy : kNone<WorldAccuracy>;
     toolField(visit);
     visit("file", report.file, {"File of the world"});
-    visit("unit", world.unit, {"Unit of lengths: m, or empty"});
+    visit("unit", world.unit, {"Unit of lengths: m, or empty if unknown"});
     visit("bodies", world.bodies.size(), {"Bodies"});
     visit("colliders", world.colliders.size(), {"Colliders"});
     visit("gpu_bytes", report.field != nullptr ? gpuBytesOf(*report.field) : std::uint64_t{0},
-          {"Bytes that the colliders take on the GPU", "bytes"});
+          {"Size of all colliders on the GPU", "bytes"});
     visit("verdict",
           report.accuracy != nullptr ? std::optional(verdictOf(accuracy, world.unit)) : std::nullopt,
           {"Summary; null without --mesh"});
@@ -254,18 +256,17 @@ void fields(FieldVisitor& visit, const WorldCheckJson& report) {
                       fields(inner, accuracy.all);
                       inner("max_error_percent", report.max_error,
                             {"--max-error; null without it", "%", kPercentRange});
-                      inner("worst", accuracy.worst,
-                            {"Indices of the bodies that are most often wrong, the worst first"});
+                      inner("worst", accuracy.worst, {"Indices of the worst bodies, the worst first"});
                       inner("places", placesOf(report),
-                            {"Of those the place where each is typically wrong, and what to do"});
+                            {"A typical wrong place of each of these bodies, and advice"});
                       inner("lost_parts", accuracy.lost, {"Meshes that lose parts"});
                       inner("ignored_parts", accuracy.ignored,
-                            {"Parts that the grade ignores because they are small; sizes in the world"});
+                            {"Parts that the grade ignores because they are small; sizes in world units"});
                       inner("bodies", accuracy.bodies, {"Bodies, in the order of the level"});
                       inner("warnings", accuracy.warnings, {"Warnings, one line each"});
                       inner("seconds", accuracy.seconds, {"Time of the measurement", "s", kFromZero});
                   }),
-          {"The world measured against its level; null without --mesh"});
+          {"Accuracy of the world against its level; null without --mesh"});
 }
 
 }  // namespace relief

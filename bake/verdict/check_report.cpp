@@ -76,7 +76,7 @@ std::string accuracyText(const ColliderAccuracy& accuracy, const TruthSamples& s
         {"surface that no map sees", precisely(accuracy.unseen_percent)},
         {"inside, the nearest face does not decide", precisely(field.inside.far_face_percent)}};
     if (accuracy.buried_percent > 0.0) {
-        rows.push_back({"surface inside the object, left out", precisely(accuracy.buried_percent)});
+        rows.push_back({"surface inside the object, not measured", precisely(accuracy.buried_percent)});
     }
     rows.push_back({"on the GPU", bytesText(accuracy.gpu_bytes)});
     text += table(rows);
@@ -112,7 +112,7 @@ std::string mapWords(const Collider& collider, int map) {
     for (int i = 0; i < 3; ++i) {
         center[i] = -of.object_to_map.row[i].w / of.object_to_map.row[i][i] + 0.0F;
     }
-    return name + " round " + positionText(center) + ")";
+    return name + " around " + positionText(center) + ")";
 }
 
 std::string causeText(const WorstPlace& place, const Collider& collider) {
@@ -121,20 +121,21 @@ std::string causeText(const WorstPlace& place, const Collider& collider) {
     const std::string texels = "texels are " + lengthText(place.texel, collider.unit) + " wide";
     switch (place.cause) {
         case WrongCause::kSheet:
-            return "a sheet: the surface has no inside there; " + decides;
+            return "a sheet: the surface has no inside here; " + decides;
         case WrongCause::kOpen:
-            return "an open mesh: " + (place.map < 0 ? "a map" : map) + " looks in where the surface ends";
+            return "an open mesh: " + (place.map < 0 ? "a map" : map) +
+                   " looks into the object through an opening";
         case WrongCause::kUnseen:
             return "unseen by any map; " + decides;
         case WrongCause::kSilhouette:
-            return "behind a silhouette: " + decides + ", for which another part lies before it";
+            return "behind a silhouette: " + decides + ", and another part occludes the surface";
         case WrongCause::kTexel:
             break;
     }
     if (place.map >= 0 &&
         collider.maps[static_cast<std::size_t>(place.map)].projection() == Projection::kLocal) {
         return "finer than the patches: " + decides + ", whose heights are " +
-               lengthText(place.texel, collider.unit) + " apart there";
+               lengthText(place.texel, collider.unit) + " apart here";
     }
     return "below the texel size: " + decides + ", whose " + texels;
 }
@@ -167,7 +168,7 @@ std::string adviceText(std::span<const Advice> advice, double wrong_percent) {
         commands += "\n";
     }
     return (commands.empty() ? "" : "What to do:\n" + commands) +
-           (vain.empty() ? "" : "Tried, and of no help: " + vain + "\n");
+           (vain.empty() ? "" : "Tried without success: " + vain + "\n");
 }
 
 void fields(FieldVisitor& visit, const FieldAccuracyReport& report) {
@@ -204,13 +205,14 @@ void fields(FieldVisitor& visit, const FieldAccuracyReport& report) {
         const auto depth_error = lengths(field.inside.depth_mean, field.inside.depth_p99);
         const auto normal_error = angles(field.inside.normal_mean, field.inside.normal_p99);
         visit_inside("points", field.inside.points, {"Points that were measured"});
-        visit_inside("far_face_percent", field.inside.far_face_percent,
-                     {"Points at which the nearest face does not decide: called outside, with a normal away "
-                      "from it, or more than 1.25 times as deep",
-                      "%", kPercentRange});
+        visit_inside(
+            "far_face_percent", field.inside.far_face_percent,
+            {"Points where the nearest face does not decide: classified as outside, with a normal away "
+             "from it, or more than 1.25 times as deep",
+             "%", kPercentRange});
         visit_inside("depth_error", group(depth_error), {"Error of the depth"});
         visit_inside("normal_error_degrees", group(normal_error),
-                     {"Angle between the normal and the way to the nearest face"});
+                     {"Angle between the normal and the direction to the nearest face"});
     };
     visit("inside", group(inside), {"Votes at points inside, up to 0.45 of the thickness below a face"});
 }
@@ -222,7 +224,7 @@ void fields(FieldVisitor& visit, const ColliderAccuracyReport& report) {
     visit("unseen_area_percent", accuracy.unseen_percent,
           {"Area of the surface that no map sees", "%", kPercentRange});
     visit("buried_area_percent", accuracy.buried_percent,
-          {"Area of the surface that lies inside the object and is not measured", "%", kPercentRange});
+          {"Area of the surface that is inside the object and not measured", "%", kPercentRange});
     visit("gpu_bytes", accuracy.gpu_bytes, {"Size of the maps on the GPU", "bytes"});
 }
 
@@ -232,7 +234,7 @@ void fields(FieldVisitor& visit, const TruthSamples& samples) {
     visit("sigma", samples.options.sigma_share * samples.longest_side,
           {"Standard deviation of the distance of the points near the surface", "object units", kFromZero});
     visit("sigma_percent", 100.0 * samples.options.sigma_share,
-          {"The same deviation", "% of the longest side", kFromZero});
+          {"The same standard deviation", "% of the longest side", kFromZero});
     visit("step", kSurfaceStep * samples.longest_side,
           {"Distance from the surface at which normals are measured", "object units", kFromZero});
     visit("longest_side", samples.longest_side,
@@ -242,34 +244,35 @@ void fields(FieldVisitor& visit, const TruthSamples& samples) {
 void fields(FieldVisitor& visit, const WorstPlaceReport& report) {
     const WorstPlace& place = report.place;
     const bool has_map = place.map >= 0;
-    visit("position", place.position, {"A point on the wrong side, amid the others", "object units"});
+    visit("position", place.position, {"A point on the wrong side, surrounded by others", "object units"});
     visit("size", place.size(),
           {"Longest side of the box of its points on the wrong side", "object units", kFromZero});
     visit("points", place.points, {"Points near the surface on the wrong side", {}, kFromOne});
     visit("share_percent", place.share_percent,
-          {"Share of all points near the surface that are on the wrong side", "%", kPercentRange});
+          {"Fraction of all wrong points near the surface", "%", kPercentRange});
     visit("false_inside_percent", place.inside_percent,
-          {"Share of its points that are classified as inside", "%", kPercentRange});
+          {"Fraction of its points that are classified as inside", "%", kPercentRange});
     visit("map", onlyIf(has_map, place.map),
           {"Index of the map that decides most of its points; null if no map votes", {}, kFromZero});
-    visit("map_percent", place.map_percent, {"Share of its points decided by that map", "%", kPercentRange});
+    visit("map_percent", place.map_percent,
+          {"Fraction of its points that the map decides", "%", kPercentRange});
     visit("cause", place.cause, {"Cause at most of its points (bake/measure/README.md)"});
     visit("cause_percent", place.cause_percent,
-          {"Share of the examined points with this cause", "%", kPercentRange});
+          {"Fraction of the examined points with this cause", "%", kPercentRange});
     visit("texel", onlyIf(has_map, place.texel),
-          {"Side of that map's texels at the position; null if no map votes", "object units", kFromZero});
+          {"Side of the map's texels at the position; null if no map votes", "object units", kFromZero});
     visit("why", causeText(place, report.collider), {"Explanation in one line"});
 }
 
 void fields(FieldVisitor& visit, const Advice& advice) {
     visit("command", advice.command, {"One line for a shell"});
     visit("about", advice.about, {"Description of the command"});
-    visit("tried", advice.wrong_percent.has_value(), {"The command was tried in memory"});
+    visit("tried", advice.wrong_percent.has_value(), {"Whether the command was tried in memory"});
     visit("wrong_percent", advice.wrong_percent,
-          {"Share of at most 50000 points near the surface that the trial left on the wrong side; null if "
+          {"Points, out of at most 50000 near the surface, that the trial left on the wrong side; null if "
            "not tried",
            "%", kPercentRange});
-    visit("helps", advice.helps, {"The trial left at most nine tenths of the points on the wrong side"});
+    visit("helps", advice.helps, {"Whether the trial left at most nine tenths of the wrong points"});
     visit("untried", nonEmpty(advice.untried), {"Reason why the command was not tried; null if it was"});
 }
 

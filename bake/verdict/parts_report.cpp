@@ -157,8 +157,9 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
     if (patches) {
         // Cells are split where the errors are, so other parts do not take much more.
         const double bytes = kMorePatches * static_cast<double>(collider.texelBytes());
-        cure += cure.empty() ? "its patches' heights are " + lengthText(texel, collider.unit) + " apart; try "
-                             : ", and try ";
+        cure += cure.empty()
+                    ? "the heights of its patches are " + lengthText(texel, collider.unit) + " apart; try "
+                    : ", and try ";
         cure += bytes <= kBudgetAdvisedMax ? "--budget " + megabytes(bytes) + ", or " : "";
     } else {
         std::uint32_t side = 0;
@@ -167,13 +168,13 @@ std::string partCure(const SurfacePart& part, const Collider& collider) {
         }
         const double resolution = std::ceil(side * (texel / needed));
         cure += cure.empty() ? "its texels are " + lengthText(texel, collider.unit) + " wide; " : " with ";
-        cure += "texels of " + lengthText(needed, collider.unit) + " take ";
+        cure += "texels of " + lengthText(needed, collider.unit) + " need ";
         if (resolution <= kMapSizeMax) {
             const std::string texels = std::to_string(static_cast<std::uint32_t>(resolution));
             cure += "--resolution " + texels + " (--map: size=" + texels + "), or ";
         }
     }
-    return cure + (part.node.empty() ? "a bake of this part by itself" : "a bake of its node by itself");
+    return cure + (part.node.empty() ? "a separate bake of this part" : "a separate bake of its node");
 }
 
 std::string partText(const PartAccuracy& accuracy, const SurfaceParts& parts, const Collider& collider) {
@@ -196,9 +197,9 @@ std::string partsText(const PartsAccuracy& accuracy, const SurfaceParts& parts, 
                 partText(part, parts, collider) + "\n";
     }
     if (!text.empty()) {
-        text =
-            (shown == 1 ? "The worst part, by its own size:\n" : "The worst parts, each by its own size:\n") +
-            text;
+        text = (shown == 1 ? "The worst part, relative to its size:\n"
+                           : "The worst parts, relative to their size:\n") +
+               text;
     }
     text += groupsText(accuracy, false, collider.unit) + groupsText(accuracy, true, collider.unit);
     if (accuracy.countOf(PartVerdict::kMinor) > 0) {
@@ -253,11 +254,11 @@ std::optional<std::string> strayText(const SurfaceParts& parts, const std::strin
     const SurfacePart& part = parts.parts[first];
     const std::size_t others = strays.parts.size() - 1;
     return partName(part, first) + " (" + countText(part.triangles, "triangle") + ")" +
-           (others > 0 ? " and " + std::to_string(others) + " more parts lie" : " lies") + " astray at " +
-           positionText(part.bounds.center()) + ", far from all else, which is " +
+           (others > 0 ? " and " + std::to_string(others) + " more parts are" : " is") +
+           " far from everything else, at " + positionText(part.bounds.center()) + "; the rest is " +
            lengthText(double{strays.rest.longestSide()}, unit) + " long at " +
            positionText(strays.rest.center()) +
-           ": the space between is empty, and takes bytes from the surface; delete it from the mesh";
+           ": the empty space between them wastes bytes; delete the outliers from the mesh";
 }
 
 std::vector<std::string> partWarnings(const SurfaceParts& parts, const std::string& unit) {
@@ -290,17 +291,17 @@ void fields(FieldVisitor& visit, const Verdict& verdict) {
           {.help = "good: at most 1 % wrong; fair: at most 5 %; at best fair if coarse parts miss more than "
                    "1 % of the points; poor if a part is lost",
            .words = kWords<"good", "fair", "poor">});
-    visit("text", verdict.text, {"The grade in words, and how many parts it ignores"});
+    visit("text", verdict.text, {"The grade in words, with the number of ignored parts"});
 }
 
 void fields(FieldVisitor& visit, const IgnoredParts& ignored) {
     visit("parts", ignored.parts, {"Parts of the mesh"});
     visit("lost", ignored.lost,
-          {"Parts that are not represented, and too small to lower the grade: more than 25 % of the points "
+          {"Parts that are not represented, but too small to lower the grade: more than 25 % of the points "
            "near each are wrong, most of them called outside"});
-    visit("size", ignored.size, {"Longest side of the largest of them", "object units", kFromZero});
+    visit("size", ignored.size, {"Longest side of the largest ignored part", "object units", kFromZero});
     visit("thick", ignored.thick,
-          {"Parts that are thicker than in the mesh, and too small, or too little off, to lower the grade: "
+          {"Parts that are thicker than in the mesh, but too small or too slightly off to lower the grade: "
            "more than 25 % of the "
            "points near each are wrong, most of them called inside"});
     visit("unmeasured", ignored.unmeasured, {"Parts that were not measured: the smallest of too many"});
@@ -310,29 +311,29 @@ void fields(FieldVisitor& visit, const PartReport& report) {
     const auto& [accuracy, part, collider] = report;
     const bool wants = accuracy.state == PartVerdict::kLost || accuracy.state == PartVerdict::kCoarse ||
                        accuracy.state == PartVerdict::kMinor;
-    visit("part", accuracy.part + 1,
-          {"Number, from 1, in the order of the parts' first triangles", {}, kFromOne});
-    visit("node", part.node, {"Node of the file; empty without a name"});
-    visit("material", part.material, {"Material of the file; empty without a name"});
-    visit("kind", part.kind, {"Shape that it is treated as; a surface is baked as it is"});
+    visit("part", accuracy.part + 1, {"Number from 1, in the order of the first triangles", {}, kFromOne});
+    visit("node", part.node, {"Name of its node in the file; may be empty"});
+    visit("material", part.material, {"Name of its material in the file; may be empty"});
+    visit("kind", part.kind, {"Treatment of the part; a surface is baked unchanged"});
     visit("state", accuracy.state,
-          {"held: at most 10 % of its points are wrong; coarse: at most 25 %; lost: more; hidden: inside "
-           "other parts; minor: more, but too small to be noticed; rest: not measured because there are too "
+          {"held: at most 10 % of the points near it are wrong; coarse: at most 25 %; lost: more; hidden: "
+           "inside other parts; minor: more, but too small to be noticed; rest: not measured because there "
+           "are too "
            "many parts"});
     visit("size", part.size(), {"Longest side of its box", "object units", kFromZero});
-    visit("position", part.bounds.center(), {"Middle of its box", "object units"});
-    visit("triangles", part.triangles, {"Its triangles"});
+    visit("position", part.bounds.center(), {"Center of its box", "object units"});
+    visit("triangles", part.triangles, {"Number of triangles"});
     visit("thickness", onlyIf(part.thickness > 0.0, part.thickness),
           {"Thickness of the shell that replaces it; null without one", "object units", kFromZero});
-    visit("points", accuracy.points, {"Points near it that were measured"});
+    visit("points", accuracy.points, {"Number of measured points near it"});
     visit("sigma", accuracy.sigma,
-          {"Standard deviation of their distance from it", "object units", kFromZero});
+          {"Standard deviation of the distance of these points", "object units", kFromZero});
     fields(visit, accuracy.wrong);
     visit("texel", partTexel(part, collider),
-          {"Side of the finest texels at its middle, or of the finest patches' in its box", "object units",
+          {"Side of the finest texels at its center, or of the finest patches in its box", "object units",
            kFromZero});
     visit("cure", wants ? std::optional(partCure(part, collider)) : std::nullopt,
-          {"A way to keep it; null unless coarse, lost or minor"});
+          {"How to keep it; null unless coarse, lost or minor"});
 }
 
 void fields(FieldVisitor& visit, const GroupAccuracy& group) {
@@ -343,7 +344,7 @@ void fields(FieldVisitor& visit, const GroupAccuracy& group) {
     visit("lost", group.lost, {"Lost parts"});
     visit("size", double{group.bounds.longestSide()},
           {"Longest side of the box of its parts", "object units", kFromZero});
-    visit("position", group.bounds.center(), {"Middle of that box", "object units"});
+    visit("position", group.bounds.center(), {"Center of that box", "object units"});
     fields(visit, group.wrong);
 }
 
@@ -356,16 +357,17 @@ void fields(FieldVisitor& visit, const PartsReport& report) {
         "Parts with more that are too small to be noticed",
         "Parts not measured"};
     const PartsAccuracy& accuracy = report.accuracy;
-    visit("detail", accuracy.detail, {"Shorter parts do not lower the grade", "object units", kFromZero});
+    visit("detail", accuracy.detail,
+          {"Parts shorter than this do not lower the grade", "object units", kFromZero});
     visit("count", accuracy.parts.size(), {"Parts of the mesh"});
     for (std::size_t i = 0; i < kPartVerdicts; ++i) {
         visit(kWordsOf<PartVerdict>[i], accuracy.count[i], {kCounts[i]});
     }
     visit("worst", report.worst(),
-          {"At most 100 parts, the lost ones first; a part is connected, and of one node and "
+          {"At most 100 parts, the lost ones first; a part is connected, and belongs to one node and "
            "one material"});
     visit("groups", report.groups(),
-          {"The worst 100 named nodes, then the worst 100 materials, where there are "
+          {"The worst 100 named nodes, then the worst 100 materials, if there are "
            "several; their parts are weighted by area"});
 }
 

@@ -118,9 +118,9 @@ std::optional<std::string> forgottenUnit(const Bounds& bounds) {
         return std::nullopt;
     }
     const glm::vec3 size = bounds.size();
-    return std::string(kNoUnit) + ", and the box is " + sidesText(size) + ": with --unit cm " +
+    return std::string(kNoUnit) + ", and the size is " + sidesText(size) + ": with --unit cm " +
            sidesText(size * 0.01F) + " m, with --unit mm " + sidesText(size * 0.001F) +
-           " m; say which, or --unit m if these are metres";
+           " m; set the right --unit (m if these are metres)";
 }
 
 std::string table(const std::vector<std::vector<std::string>>& rows) {

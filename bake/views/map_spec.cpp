@@ -142,7 +142,7 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
     }
     const auto index = static_cast<std::size_t>(found - kKeys.begin());
     if (std::exchange(seen_.at(index), true)) {
-        return usage(std::string(key) + " is given twice; keep one");
+        return usage(std::string(key) + " is set twice; remove one");
     }
     if (const std::string useless = uselessness(key); !useless.empty()) {
         return usage(std::string(key) + useless);
@@ -171,17 +171,15 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
 std::string MapSpecBuilder::uselessness(std::string_view key) const {
     const bool of_patches = key == "bytes" || key == "texel";
     if (of_patches != (spec_.format == MapFormat::kPatches)) {
-        return of_patches ? " does nothing but for patches; set size"
-                          : " does nothing for patches; leave it out";
+        return of_patches ? " applies only to patches; set size" : " does not apply to patches; remove it";
     }
     if ((key == "dir" || key == "up") && isCube()) {
-        return " does nothing for a cube, which looks all round; leave it out";
+        return " does not apply to a cube, which has all directions; remove it";
     }
     if (key == "center" && !isCube()) {
-        return " does nothing but for a cube; use box to move an orthographic map";
+        return " applies only to a cube; use box to move an orthographic map";
     }
-    return key == "depth" && !isFrontBack(spec_.format) ? " does nothing but for front-back; leave it out"
-                                                        : "";
+    return key == "depth" && !isFrontBack(spec_.format) ? " applies only to front-back; remove it" : "";
 }
 
 Result<void> MapSpecBuilder::setWord(std::string_view key, std::string_view value) {
@@ -195,14 +193,14 @@ Result<void> MapSpecBuilder::setWord(std::string_view key, std::string_view valu
         const bool greater = RELIEF_TRY(parseWord(key, value, {"less", "greater"}));
         spec_.compare = greater ? Compare::kGreater : Compare::kLess;
     } else {
-        return usage("front-back keeps both surfaces; leave compare out");
+        return usage("front-back keeps both surfaces; remove compare");
     }
     return {};
 }
 
 Result<MapSpec> MapSpecBuilder::finish() const {
     if (isCube() && spec_.center && spec_.box) {
-        return usage("a cube with a box is centred on the box; leave out center or box");
+        return usage("a cube with a box is centred on the box; remove center or box");
     }
     RELIEF_TRY(checkUp(spec_));
     return spec_;
@@ -270,7 +268,7 @@ Result<void> checkUp(const MapSpec& spec) {
         return glm::normalize(glm::dvec3(v) / static_cast<double>(largest));
     };
     if (!(glm::length(glm::cross(unit(spec.direction), unit(*spec.up))) > kUpSineMin)) {
-        return usage("up is parallel to dir, and so no side of the image; turn one of them");
+        return usage("up is parallel to dir; change one of them");
     }
     return {};
 }

@@ -44,14 +44,14 @@ class Voxels {
             const double high = std::ceil(double{box.max[i]} / voxels.size_) + kMargin;
             if (!(std::abs(low) < kIndexMax && std::abs(high) < kIndexMax)) {
                 return fail(ErrorCode::kLimit,
-                            "it lies too far from the origin for voxels this small; ask for fewer");
+                            "it is too far from the origin for voxels this small; use fewer voxels");
             }
             voxels.low_[i] = static_cast<int>(low);
             voxels.count_[i] = static_cast<int>(high - low) + 1;
             cells *= high - low + 1.0;
         }
         if (cells > kCellsMax) {
-            return fail(ErrorCode::kLimit, "the box about its inside has too many voxels; ask for fewer");
+            return fail(ErrorCode::kLimit, "the box around its inside has too many voxels; use fewer");
         }
         voxels.inside_.resize(static_cast<std::size_t>(cells));
         voxels.band_.resize(voxels.inside_.size());
@@ -214,13 +214,13 @@ Result<Voxels> checkedVoxels(const Collider& collider, const FieldGridOptions& o
     }
     if (!voxels.anyInside()) {
         return invalidInput(
-            "no voxel lies inside this collider, so that it has no surface on such a grid; ask for "
+            "no voxel is inside this collider, so it has no surface on this grid; use "
             "smaller voxels, more of them along the longest side");
     }
     if (!voxels.closed()) {
         return invalidInput(
-            "its inside goes on beyond its bounds without end, so that its surface is not closed; bake it "
-            "with a map that holds the whole mesh");
+            "its inside extends infinitely beyond its bounds, so its surface is not closed; bake it "
+            "with a map that contains the whole mesh");
     }
     voxels.findBand();
     return voxels;
@@ -275,7 +275,7 @@ Result<FieldGrids> encodeGrids(const Collider& collider, const FieldGridOptions&
     try {
         return makeGrids(collider, options);
     } catch (const std::bad_alloc&) {
-        return fail(ErrorCode::kLimit, "out of memory for so many voxels; ask for fewer");
+        return fail(ErrorCode::kLimit, "out of memory for this number of voxels; use fewer");
     }
 }
 

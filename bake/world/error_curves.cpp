@@ -52,13 +52,13 @@ Result<ErrorCurves> parseErrorCurves(std::string_view text) {
     const auto curves = member("curves");
     if (format == json.end() || *format != kFormat || version == json.end() || *version != kVersion ||
         curves == json.end() || !curves->is_object()) {
-        return fail(ErrorCode::kInvalidInput, "its contents are not those of a file of curves");
+        return fail(ErrorCode::kInvalidInput, "not a file of error curves, or one of another version");
     }
     ErrorCurves all;
     for (const auto& [key, values] : curves->items()) {
         std::optional<ErrorCurve> curve = curveOf(values);
         if (!curve) {
-            return fail(ErrorCode::kInvalidInput, "it has a curve that does not fall");
+            return fail(ErrorCode::kInvalidInput, "it contains a curve that does not decrease");
         }
         all.emplace(key, std::move(*curve));
     }
@@ -86,7 +86,7 @@ Result<ErrorCurves> loadErrorCurves(const fs::path& folder) {
         return ErrorCurves{};
     }
     if (!fs::is_regular_file(status)) {
-        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": it is not a regular file");
+        return fail(ErrorCode::kInvalidInput, quotedPath(path) + ": not a regular file");
     }
     const auto bytes = RELIEF_TRY(readFile(path, kFileBytesMax));
     return withPrefix(quotedPath(path),

@@ -179,7 +179,7 @@ class WorldBaker {
         result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
         std::vector<BudgetShare> shares;
         if (!request_.bake.texel) {
-            tell(watcher_.begin, "sharing the budget");
+            tell(watcher_.begin, "distributing the budget");
             shares.resize(meshes_.size());
             for (const LevelBody& body : level_.bodies) {
                 // Volume / area^(3/4), in world space.
@@ -203,8 +203,7 @@ class WorldBaker {
     Result<void> shareKnowing(std::span<BudgetShare> shares) {
         Result<ErrorCurves> known = loadErrorCurves(request_.folder);
         if (!known) {
-            result_.warnings.push_back(known.error().message +
-                                       "; the shares of the budget are planned again");
+            result_.warnings.push_back(known.error().message + "; planning all shares of the budget again");
             known = ErrorCurves{};
         }
         ErrorCurves used;
@@ -245,10 +244,10 @@ class WorldBaker {
 
     /// Names the containers, and validates the existing ones.
     Result<void> findUpToDate() {
-        tell(watcher_.begin, "looking for what is up to date");
+        tell(watcher_.begin, "comparing with the cache");
         Result<BakeCacheEntries> cache = loadBakeCache(request_.folder);
         if (!cache) {
-            result_.warnings.push_back(cache.error().message + "; everything is baked again");
+            result_.warnings.push_back(cache.error().message + "; baking everything again");
             cache = BakeCacheEntries{};
         }
         for (std::size_t i = 0; i < level_.meshes.size(); ++i) {

@@ -93,10 +93,9 @@ class WorldChecker {
             const std::optional<std::size_t> collider =
                 colliderOf(mesh.content_hash, requestOf(named, names, mesh).as);
             if (!collider) {
-                return invalidInput(
-                    level_.name + " has a mesh '" + mesh.name +
-                    "' that no collider of the world was baked from; bake the level again, or give "
-                    "--mesh the level that it was baked from");
+                return invalidInput(level_.name + " has a mesh '" + mesh.name +
+                                    "' without a collider in the world; bake the level again, or give "
+                                    "--mesh the level that it was baked from");
             }
             Winding winding = RELIEF_TRY(windOutwards(std::move(mesh)));
             ShapedMesh shaped = RELIEF_TRY(recordedSolid(recorded_[*collider], winding.mesh));
@@ -185,13 +184,12 @@ class WorldChecker {
             moved_[i] = !same;
         }
         if (first.size() != placed_.size() || other > 0) {
-            result_.warnings.push_back(
-                level_.name + ": " +
-                (first.size() != placed_.size()
-                     ? "it places " + countText(placed_.size(), "mesh", "meshes") + ", and the world " +
-                           std::to_string(first.size())
-                     : countText(other, "node") + " of it stand elsewhere than the world has them") +
-                "; bake the level again");
+            result_.warnings.push_back(level_.name + ": " +
+                                       (first.size() != placed_.size()
+                                            ? "it places " + countText(placed_.size(), "mesh", "meshes") +
+                                                  ", and the world " + std::to_string(first.size())
+                                            : countText(other, "node") + " differ in pose from the world") +
+                                       "; bake the level again");
         }
     }
 

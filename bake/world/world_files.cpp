@@ -44,8 +44,8 @@ void keepMaterials(World& world, const World& before, const std::set<std::string
         }
     }
     if (!gone.empty()) {
-        warnings.push_back(std::string(kWorldFileName) + ": no collider has a material " + listedNames(gone) +
-                           " any more; the response by that name is left out");
+        warnings.push_back(std::string(kWorldFileName) + ": no collider has the material " +
+                           listedNames(gone) + " any more; its response is dropped");
     }
 }
 
@@ -171,7 +171,7 @@ void keepBodies(World& world, const World& read, const World& before, std::vecto
     }
     if (!gone.empty()) {
         warnings.push_back(std::string(kWorldFileName) + ": the bodies of " + listedNames(gone) +
-                           " are gone or others; their restitution and friction are left out");
+                           " are missing or ambiguous; their restitution and friction are dropped");
     }
 }
 
@@ -216,7 +216,7 @@ Result<ReplacedWorld> replaceWorld(const fs::path& folder, World& world,
         keepMaterials(world, *before, materials, replaced.warnings);
     } else if (fs::exists(path, error)) {
         replaced.warnings.push_back(before.error().message +
-                                    "; it is replaced, without what was written into it by hand");
+                                    "; it is replaced, and settings written by hand are lost");
     }
     // Never write a world that no reader accepts, such as one with scales or positions out of range of floats.
     const World read = RELIEF_TRY(withPrefix(name, parseWorld(worldText(world))));

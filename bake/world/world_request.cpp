@@ -22,7 +22,7 @@ Result<void> checkWorldRequest(const BakeRequest& request) {
     for (const auto& [option, given] : of_one) {
         if (given) {
             return fail(ErrorCode::kUsage,
-                        std::string(option) + " is for one mesh, and a level has many; leave it out");
+                        std::string(option) + " applies to a single mesh, not to a level; remove it");
         }
     }
     static_cast<void>(RELIEF_TRY(settingsOf(request)));

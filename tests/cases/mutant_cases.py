@@ -23,7 +23,7 @@ PACKAGED = [('OBJ/box.obj', None), ('PLY/cube.ply', None), ('PLY/cube_binary.ply
             ('glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf', None), ('glTF2/BoxTextured-glTF/BoxTextured.gltf', 'BoxTextured0.bin')]
 TEXTS = ('box.obj', 'cube.ply', 'Spider_ascii.stl', 'BoxTextured.gltf')
 OPTIONS = ('-o', 'out.relief', '--map', 'fixed8:size=16', '-q', '--import-time', '10', '--import-memory', '1GB')
-UNSEEN = 'no map sees a surface'  # a flat mesh that the one map looks along: exit code 4, and no fault
+UNSEEN = 'no map sees the surface'  # a flat mesh that the one map looks along: exit code 4, and no fault
 PR_SET_CHILD_SUBREAPER = 36
 
 

@@ -45,9 +45,9 @@ P
 }
 "$relief" bake "$bunny" -o few.relief --budget 20kB -q
 promises "$bunny" few.relief '--budget 40kB'
-json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["about"] for a in d["advice"]] == ["patches of twice the bytes"]'
+json before.json '{p["cause"] for p in d["worst_places"]} == {"texel"} and [a["about"] for a in d["advice"]] == ["patches of twice the size"]'
 "$relief" bake "$bunny" -o maps.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
-promises "$bunny" maps.relief 'patches of as many bytes'
+promises "$bunny" maps.relief 'patches of the same size'
 json after.json 'd["accuracy"]["gpu_bytes"] <= 1e5 and [p["map"] for p in d["worst_places"]] == [0] * 3'
 
 # A cavity that no map sees, a ball in a box: patches help.
@@ -70,7 +70,7 @@ for f in faces:
     print('f', *(v + 1 for v in f))
 P
 "$relief" bake hollow.obj -o h.relief -q --map front-back:dir=-x,size=64 --map front-back:dir=-y,size=64 --map front-back:dir=-z,size=64
-promises hollow.obj h.relief 'patches of as many bytes'
+promises hollow.obj h.relief 'patches of the same size'
 json before.json '{p["cause"] for p in d["worst_places"]} == {"unseen"} and d["accuracy"]["unseen_area_percent"] > 9'
 json before.json 'all(abs(math.dist(p["position"], (0.2, 0, 0)) - 0.5) < 0.06 for p in d["worst_places"])'
 

@@ -115,9 +115,9 @@ for file in levels/yard/box-*.relief levels/yard/box-coarse-*.relief levels/yard
     asset=$(dirname "$file")/world.json
     rm "out/$file"
     case $file in # and how many files are written anew, the world's own included
-    *.json) because "$asset" 'the output is gone' && anew=1 ;;
-    ground/*) because "$asset" "its \\'$(basename "$file")\\' is gone" && anew=$(ls out/ground | wc -l) anew=$((anew + 1)) ;;
-    *) because "$asset" "its \\'$(basename "$file")\\' is gone" && anew=3 ;; # a container and its coarse one
+    *.json) because "$asset" 'the output is missing' && anew=1 ;;
+    ground/*) because "$asset" "its \\'$(basename "$file")\\' is missing" && anew=$(ls out/ground | wc -l) anew=$((anew + 1)) ;;
+    *) because "$asset" "its \\'$(basename "$file")\\' is missing" && anew=3 ;; # a container and its coarse one
     esac
     rebakes "$asset"
     baked out | diff first - || die "$file is not made good"

@@ -85,7 +85,7 @@ assert shown.rfind(' s\x1b[K') <= shown.rfind('\r\x1b[K'), 'the line stays'
 sys.exit(os.waitstatus_to_exitcode(status))
 P
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 0.5% -j 1 --time-limit 600 >lines || die "on a terminal: $(cat lines)"
-grep -qE "bunny\.obj': searching for the least budget, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
+grep -qE "bunny\.obj': searching for the smallest budget, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --paper --resolution 1024 -j 1 --quality best >lines || die "on a terminal: $(cat lines)"
 grep -qE "bunny\.obj': baking the maps \[#+\.*\] [0-9]+ %, [0-9]+ s" lines || die "the line says: $(head -3 lines)"
 python3 terminal.py "$relief" bake "$bunny" -o x.relief --max-error 2% -q >lines || die "on a terminal: $(cat lines)"

@@ -87,16 +87,16 @@ TEST_F(BakeCache, EveryChangeIsSeen) {
     put("m.relief", "M.relief");
     EXPECT_EQ(why(), "the output changed");
     fs::remove(folder_ / "m.relief");
-    EXPECT_EQ(why(), "the output is gone");
+    EXPECT_EQ(why(), "the output is missing");
     EXPECT_EQ(*staleness(job_, nullptr, "relief 1", folder_), "new");
     put("m.relief", "m.relief");
-    EXPECT_EQ(*staleness(job_, nullptr, "relief 1", folder_), "nothing is known of the output");
-    EXPECT_EQ(*staleness(job_, &entry_, "relief 2", folder_), "made by another version of relief");
+    EXPECT_EQ(*staleness(job_, nullptr, "relief 1", folder_), "the output is not in the cache");
+    EXPECT_EQ(*staleness(job_, &entry_, "relief 2", folder_), "baked by another version of relief");
     job_.options = {"--compress=4"};
     EXPECT_EQ(why(), "the options changed");
     job_.options = entry_.options;
     job_.mesh = "m.bin";
-    EXPECT_EQ(why(), "the mesh is another");
+    EXPECT_EQ(why(), "the mesh is a different file");
 }
 
 TEST_F(BakeCache, APipeIsNoInput) {
@@ -115,13 +115,13 @@ TEST_F(BakeCache, AWorldIsUpToDateWithAllItsContainers) {
     job_.output_path = folder_ / job_.output;
     job_.world = true;
     entry_.output_hash = hash("w/world.json");
-    EXPECT_EQ(why(), "nothing is known of the output") << "a world has containers";
+    EXPECT_EQ(why(), "the output is not in the cache") << "a world has containers";
     entry_.containers = {{"a.relief", hash("w/a.relief")}, {"b.relief", hash("w/b.relief")}};
     EXPECT_EQ(why(), "up to date");
     put("w/b.relief", "w/B.relief");
     EXPECT_EQ(why(), "its 'b.relief' changed");
     fs::remove(folder_ / "w/b.relief");
-    EXPECT_EQ(why(), "its 'b.relief' is gone");
+    EXPECT_EQ(why(), "its 'b.relief' is missing");
     put("w/b.relief", "w/b.relief");
     put("w/world.json", "{}");
     EXPECT_EQ(why(), "the output changed");

@@ -105,7 +105,7 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
         patterns += "'a',";
     }
     const Case cases[] = {
-        {"", "r.toml:1:1: a recipe starts with version = 1"},
+        {"", "r.toml:1:1: a recipe needs version = 1"},
         {"version = 2\n" + asset, "r.toml:1:11: version must be 1"},
         {"version = ", "r.toml:1:"},
         {recipe(""), "r.toml:1:1: a recipe needs at least one [[asset]]"},
@@ -119,8 +119,8 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
         {recipe(asset + "\"a\\u001bb\" = 3\n"), "r.toml:5:1: unknown key"},
         {recipe(asset + "threads = 3\n"), "r.toml:5:1: unknown key 'threads'"},
         {recipe("[[asset]]\noutput = 'a.relief'"), "r.toml:2:1: an asset needs mesh"},
-        {recipe("[[asset]]\nmesh = 'a.relief'"), "r.toml:2:1: an asset needs output"},
-        {recipe("[[asset]]\nmesh = []\noutput = 'a.relief'"), "r.toml:3:8: mesh names nothing"},
+        {recipe("[[asset]]\nmesh = 'a.relief'"), "r.toml:2:1: an asset needs an output"},
+        {recipe("[[asset]]\nmesh = []\noutput = 'a.relief'"), "r.toml:3:8: mesh is an empty list"},
         {recipe("[[asset]]\nmesh = ''\noutput = 'a.relief'"), "r.toml:3:8: mesh is empty"},
         {recipe("[[asset]]\nmesh = 3\noutput = 'a.relief'"), "r.toml:3:8: mesh must be a string"},
         {recipe(asset + "compress = true"), "r.toml:5:12: compress must be a string or a number"},
@@ -128,7 +128,7 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
         {recipe(asset + "map = [1]"), "r.toml:5:8: map must be a string"},
         {recipe(asset + "paper = 'yes'"), "r.toml:5:9: paper must be true or false"},
         {recipe(asset + "optional = 1"), "r.toml:5:12: optional must be true or false"},
-        {recipe(asset + "prefer = \"a\\u0000b\""), "r.toml:5:10: prefer holds a zero byte"},
+        {recipe(asset + "prefer = \"a\\u0000b\""), "r.toml:5:10: prefer contains a zero byte"},
         {recipe(asset + "prefer = '" + std::string(5000, 'x') + "'"), "longer than", ErrorCode::kLimit},
         {many, "10001 [[asset]]", ErrorCode::kLimit},
         {recipe("[[asset]]\n" + patterns + "]"), "mesh lists more than 1000", ErrorCode::kLimit},
@@ -219,7 +219,7 @@ TEST_F(RecipeJobsTest, AWorldHasItsFolderForItself) {
     const std::string level = "[[asset]]\nmesh = 'rocks/'\noutput = 'w/world.json'\n";
     for (const char* other : {"w/x/world.json", "link/x.relief", "w/a/b/c.relief"}) {
         fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = '" + other + "'\n",
-              std::string("the output '") + other + "' lies in the folder of the world 'w/world.json'");
+              std::string("the output '") + other + "' is in the folder of the world 'w/world.json'");
     }
     fails(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'link/world.json'\n", "would both write");
     EXPECT_TRUE(jobs(level + "[[asset]]\nmesh = 'hill.off'\noutput = 'wx/world.json'\n"));
@@ -256,20 +256,20 @@ TEST_F(RecipeJobsTest, NothingOutsideOfTheFoldersIsReached) {
     std::ofstream(folder_.parent_path() / "secret.obj") << "x";
     fs::create_symlink("../secret.obj", folder_ / "secret.obj");
     fs::create_symlink("..", folder_ / "up");
-    fails(mesh("../secret.obj"), "leads upwards");
+    fails(mesh("../secret.obj"), "leaves the recipe's folder");
     fails(mesh("/etc/passwd"), "is an absolute path");
     fails(mesh("secret.obj"), "leads out of the recipe's folder");
     fails(mesh("up/*.obj"), "leads out of the recipe's folder");
     for (const char* name : {"../x.relief", "up/x.relief", "up/world.json"}) {
-        fails(output(name), "leads out of the output folder");
+        fails(output(name), "is outside the output folder");
     }
     for (const char* name : {"hill.off", "{stem}/.relief", "{stem}/world.json/", "{dir}world.json"}) {
         fails(output(name), "must end in .relief");
     }
     fails(output("/x.relief"), "must be a relative path");
     fails(output("{sten}.relief"), "{sten}");
-    fails(output("{stem.relief"), "known are");
-    fails(output("stem}.relief"), "} without {");
+    fails(output("{stem.relief"), "use {stem}");
+    fails(output("stem}.relief"), "} without a {");
     fails(output("hill.relief") + "clips = '../p.glb'\n",
           "clips '../p.glb' leads out of the recipe's folder");
 }
@@ -292,9 +292,10 @@ TEST_F(RecipeJobsTest, FilesOfOtherKindsAreNotReplaced) {
     put("w/world.json");
     fs::create_symlink("rocks/b.mtl", folder_ / "link.relief");
     for (const char* file : {"rock.relief", "link.relief"}) {
-        EXPECT_NE(outcome({file}).find(file + std::string("' exists and is no collider")), std::string::npos);
+        EXPECT_NE(outcome({file}).find(file + std::string("' exists and is not a collider")),
+                  std::string::npos);
     }
-    EXPECT_NE(outcome({"w/world.json"}).find("w/world.json' exists and is no world"), std::string::npos);
+    EXPECT_NE(outcome({"w/world.json"}).find("w/world.json' exists and is not a world"), std::string::npos);
     std::ofstream(folder_ / "rock.relief") << "\xabRELIEF\xbb\r\n\x1a\n and damaged";
     std::ofstream(folder_ / "w/world.json") << "{\"format\": \"relief-world\", damaged";
     std::ofstream(folder_ / "none.relief");

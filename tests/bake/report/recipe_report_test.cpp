@@ -41,7 +41,7 @@ TEST(RecipeReport, AForgottenUnitIsToldOnce) {
     };
     const std::string unit = *forgottenUnit({glm::vec3(0.0F), glm::vec3(1800.0F)});
     EXPECT_EQ(warningLines({told("a", 1800.0F), told("b", 200.0F), told("c", 300.0F)}),
-              (std::vector<std::string>{"3 assets (a.relief, b.relief, c.relief): of the first: " + unit,
+              (std::vector<std::string>{"3 assets (a.relief, b.relief, c.relief): first of several: " + unit,
                                         "a.relief: 1800 % is wrong", "b.relief: 200 % is wrong",
                                         "c.relief: 300 % is wrong"}));
     EXPECT_EQ(warningLines({told("a", 1800.0F)})[0], "a.relief: " + unit);
@@ -52,7 +52,7 @@ TEST(RecipeReport, WarningsOfALevelAreToldOnceWhateverTheirNumbers) {
     const std::vector<std::string> lamp = {"lamp: 12 % wrong with 5 kB", "lamp: open"};
     const std::vector<OwnWarnings> all = {{"chair", "chair", chair}, {"lamp", "lamp", lamp}};
     EXPECT_EQ(warningLines(all, "meshes", true),
-              (std::vector<std::string>{"2 meshes (chair, lamp): of the first: 5.1 % wrong with 4.1 kB",
+              (std::vector<std::string>{"2 meshes (chair, lamp): first of several: 5.1 % wrong with 4.1 kB",
                                         "lamp: open"}));
     EXPECT_EQ(warningLines(all, "meshes", false).size(), 3U);
 }

@@ -37,10 +37,9 @@ TEST(PartCure, OfMapsIsTheirSizeAndNoBudget) {
     collider.bounds = {glm::vec3(-2.0F), glm::vec3(2.0F)};
     SurfacePart rod;
     rod.bounds = {glm::vec3(0.0F), {1.0F, 0.046875F, 0.046875F}};
-    EXPECT_EQ(
-        partCure(rod, collider),
-        "its texels are 0.062 wide; texels of 0.016 take --resolution 256 (--map: size=256), or a bake of "
-        "this part by itself");
+    EXPECT_EQ(partCure(rod, collider),
+              "its texels are 0.062 wide; texels of 0.016 need --resolution 256 (--map: size=256), or a "
+              "separate bake of this part");
 }
 
 }  // namespace

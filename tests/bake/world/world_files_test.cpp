@@ -98,8 +98,8 @@ TEST_F(WrittenByHand, ResponsesOfMaterialsStayByName) {
     const WorldBakeResult changed = bake("w");
     EXPECT_EQ(changed.world.materials, (std::vector<MaterialResponse>{given[1]}));
     EXPECT_EQ(changed.warnings, std::vector<std::string>{
-                                    "world.json: no collider has a material 'stone' any more; the response "
-                                    "by that name is left out"});
+                                    "world.json: no collider has the material 'stone' any more; its response "
+                                    "is dropped"});
     EXPECT_TRUE(loadWorld(worldFile())) << "a reader refuses names of no material";
     EXPECT_TRUE(bake("w").warnings.empty());
 }
@@ -128,9 +128,9 @@ TEST_F(WrittenByHand, BodiesKeepTheirResponsesByNode) {
     world = placed({{"gate"}, {"gate"}, {"gate"}});
     const std::vector<std::string> warnings = replace(world);
     EXPECT_EQ(frictionOf(world), (Bodies{{"gate", 0.0F}, {"gate", 0.0F}, {"gate", 0.0F}}));
-    EXPECT_EQ(warnings,
-              std::vector<std::string>{"world.json: the bodies of 'floor', 'gate' are gone or others; their "
-                                       "restitution and friction are left out"});
+    EXPECT_EQ(warnings, std::vector<std::string>{
+                            "world.json: the bodies of 'floor', 'gate' are missing or ambiguous; their "
+                            "restitution and friction are dropped"});
     // Alike, they are those of any number, such as tiles.
     edit([](World& edited) {
         for (WorldBody& body : edited.bodies) {
