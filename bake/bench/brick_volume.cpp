@@ -22,8 +22,8 @@ constexpr double kCodeMax = 127.0;
 // A fit uses one random point in each of this many parts of a voxel along each axis.
 constexpr unsigned kFitParts = 3;
 // Surface points that determine which cubes to split: number per byte of the budget, and maximum.
-constexpr double kJudges = 0.5;
-constexpr std::uint32_t kJudgesMax = 1'500'000;
+constexpr double kSamplesPerByte = 0.5;
+constexpr std::uint32_t kSamplesMax = 1'500'000;
 
 /// A cube in object space.
 struct Box {
@@ -90,7 +90,7 @@ bool holdsSurface(const MeshQuery& query, const Box& box, std::optional<std::uin
 }
 
 /// Returns the trilinear weights of the eight corners of a voxel, x fastest.
-std::array<double, 8> sharesAt(const glm::dvec3& t) {
+std::array<double, 8> weightsAt(const glm::dvec3& t) {
     std::array<double, 8> shares;
     for (unsigned i = 0; i < 8; ++i) {
         shares[i] = ((i & 1U) != 0 ? t.x : 1.0 - t.x) * ((i >> 1U & 1U) != 0 ? t.y : 1.0 - t.y) *
@@ -117,7 +117,7 @@ struct BrickGrid {
     template <class Value>
     [[nodiscard]] double valueAt(const std::vector<Value>& values, const glm::dvec3& in_voxels) const {
         const glm::uvec3 voxel = voxelAt(in_voxels);
-        const std::array<double, 8> shares = sharesAt(in_voxels - glm::dvec3(voxel));
+        const std::array<double, 8> shares = weightsAt(in_voxels - glm::dvec3(voxel));
         double value = 0.0;
         for (unsigned i = 0; i < 8; ++i) {
             value += shares[i] * static_cast<double>(values[corner(voxel, i)]);
@@ -140,7 +140,7 @@ std::vector<double> exactNodes(const MeshQuery& query, const BrickGrid& grid, co
     return nodes;
 }
 
-bool ofOneSign(const std::vector<double>& nodes) {
+bool haveSameSign(const std::vector<double>& nodes) {
     return std::ranges::all_of(nodes, [](double d) { return d >= 0.0; }) ||
            std::ranges::all_of(nodes, [](double d) { return d < 0.0; });
 }
@@ -168,7 +168,7 @@ void fitNodes(const MeshQuery& query, const BrickGrid& grid, const Box& box, std
             const glm::dvec3 t = (part + glm::dvec3(unit(), unit(), unit())) / double{kFitParts};
             const double distance = walk.at(box.low + voxel * (glm::dvec3(at) + t)) / voxel;
             const double weight = 1.0 / (0.01 + distance * distance);
-            const std::array<double, 8> shares = sharesAt(t);
+            const std::array<double, 8> shares = weightsAt(t);
             for (unsigned a = 0; a < 8; ++a) {
                 const unsigned row = grid.corner(at, a);
                 right(row) += weight * shares[a] * distance;
@@ -224,24 +224,24 @@ class BrickBuilder {
     [[nodiscard]] BrickVolume octree(std::uint64_t bytes) && {
         AccuracyOptions options;
         options.samples = static_cast<std::uint32_t>(
-            std::clamp(kJudges * static_cast<double>(bytes), 1e4, 1.0 * kJudgesMax));
+            std::clamp(kSamplesPerByte * static_cast<double>(bytes), 1e4, 1.0 * kSamplesMax));
         options.seed = 0x6f637472;
-        judges_ = sampleSurface(query_, options);
-        std::erase_if(judges_, [](const SurfacePoint& point) { return point.buried; });
+        samples_ = sampleSurface(query_, options);
+        std::erase_if(samples_, [](const SurfacePoint& point) { return point.buried; });
         for (const std::uint64_t cell : cellsWithSurface()) {
             volume_.roots_.push_back({cell, {}});
         }
         leaves_.resize(volume_.roots_.size());
-        std::vector<std::vector<std::uint32_t>> judged(leaves_.size());
-        for (std::uint32_t i = 0; i < judges_.size(); ++i) {
-            const std::uint64_t cell = volume_.cellAt(judges_[i].position);
+        std::vector<std::vector<std::uint32_t>> samples_by_root(leaves_.size());
+        for (std::uint32_t i = 0; i < samples_.size(); ++i) {
+            const std::uint64_t cell = volume_.cellAt(samples_[i].position);
             const auto at = std::ranges::lower_bound(volume_.roots_, cell, {}, &BrickVolume::Root::cell);
             if (at != volume_.roots_.end() && at->cell == cell) {
-                judged[static_cast<std::size_t>(at - volume_.roots_.begin())].push_back(i);
+                samples_by_root[static_cast<std::size_t>(at - volume_.roots_.begin())].push_back(i);
             }
         }
         forEachIndex(0, leaves_.size(), 16, [&](std::size_t i) {
-            leaves_[i] = makeLeaf(boxOf(volume_.roots_[i].cell), 0, std::move(judged[i]));
+            leaves_[i] = makeLeaf(boxOf(volume_.roots_[i].cell), 0, std::move(samples_by_root[i]));
             leaves_[i].slot = static_cast<std::uint32_t>(i);
         });
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
@@ -263,7 +263,7 @@ class BrickBuilder {
         bool split = false;
         double error = 0.0;  // total displacement of the surface at its sample points
         std::vector<double> nodes;
-        std::vector<std::uint32_t> judges;
+        std::vector<std::uint32_t> samples;
     };
 
     [[nodiscard]] Box boxOf(std::uint64_t cell) const {
@@ -348,20 +348,20 @@ class BrickBuilder {
         return {Kind::kBrick, brick};
     }
 
-    [[nodiscard]] Leaf makeLeaf(const Box& box, unsigned level, std::vector<std::uint32_t> judges) const {
+    [[nodiscard]] Leaf makeLeaf(const Box& box, unsigned level, std::vector<std::uint32_t> samples) const {
         Leaf leaf;
         leaf.box = box;
         leaf.level = level;
-        leaf.judges = std::move(judges);
+        leaf.samples = std::move(samples);
         leaf.surface = holdsSurface(query_, box);
         if (!leaf.surface) {
             return leaf;
         }
         leaf.nodes = exactNodes(query_, grid_, box);
-        leaf.stored = !ofOneSign(leaf.nodes);
-        for (const std::uint32_t judge : leaf.judges) {
-            const glm::dvec3 in_voxels =
-                (glm::dvec3(judges_[judge].position) - box.low) / box.size * static_cast<double>(grid_.cells);
+        leaf.stored = !haveSameSign(leaf.nodes);
+        for (const std::uint32_t sample : leaf.samples) {
+            const glm::dvec3 in_voxels = (glm::dvec3(samples_[sample].position) - box.low) / box.size *
+                                         static_cast<double>(grid_.cells);
             // A brick without a sign change displaces the surface to its boundary.
             leaf.error += leaf.stored ? std::abs(grid_.valueAt(leaf.nodes, in_voxels)) : 0.25 * box.size;
         }
@@ -396,12 +396,12 @@ class BrickBuilder {
         std::vector<std::array<Leaf, 8>> made(count);
         forEachIndex(0, count, 4, [&](std::size_t i) {
             const Leaf& leaf = leaves_[worst[i]];
-            std::array<std::vector<std::uint32_t>, 8> judges;
-            for (const std::uint32_t judge : leaf.judges) {
-                judges[leaf.box.octantOf(judges_[judge].position)].push_back(judge);
+            std::array<std::vector<std::uint32_t>, 8> samples;
+            for (const std::uint32_t sample : leaf.samples) {
+                samples[leaf.box.octantOf(samples_[sample].position)].push_back(sample);
             }
             for (unsigned k = 0; k < 8; ++k) {
-                made[i][k] = makeLeaf(leaf.box.octant(k), leaf.level + 1, std::move(judges[k]));
+                made[i][k] = makeLeaf(leaf.box.octant(k), leaf.level + 1, std::move(samples[k]));
             }
         });
         for (std::size_t i = 0; i < count; ++i) {
@@ -409,7 +409,7 @@ class BrickBuilder {
             parent.split = true;
             bricks_ -= parent.stored ? 1 : 0;
             cubeOf(parent) = {BrickVolume::Kind::kSplit, static_cast<std::uint32_t>(volume_.cubes_.size())};
-            parent.judges = {};
+            parent.samples = {};
             parent.nodes = {};
             volume_.levels_ = std::max(volume_.levels_, parent.level + 1);
             for (Leaf& leaf : made[i]) {
@@ -443,7 +443,7 @@ class BrickBuilder {
     const MeshQuery& query_;
     BrickGrid grid_;
     BrickVolume volume_;
-    std::vector<SurfacePoint> judges_;
+    std::vector<SurfacePoint> samples_;
     std::vector<Leaf> leaves_;
     std::uint64_t bricks_ = 0;
 };
@@ -554,7 +554,7 @@ FieldValue BrickVolume::inBrick(std::uint32_t brick, const glm::dvec3& in_voxels
     const BrickGrid grid{layout_.cells};
     const glm::uvec3 at = grid.voxelAt(in_voxels);
     const glm::dvec3 t = in_voxels - glm::dvec3(at);
-    const std::array<double, 8> shares = sharesAt(t);
+    const std::array<double, 8> shares = weightsAt(t);
     double value = 0.0;
     glm::dvec3 gradient(0.0);
     for (unsigned i = 0; i < 8; ++i) {
@@ -563,7 +563,7 @@ FieldValue BrickVolume::inBrick(std::uint32_t brick, const glm::dvec3& in_voxels
         for (int axis = 0; axis < 3; ++axis) {
             glm::dvec3 without = t;
             without[axis] = (i >> unsigned(axis) & 1U) != 0 ? 1.0 : 0.0;
-            gradient[axis] += ((i >> unsigned(axis) & 1U) != 0 ? 1.0 : -1.0) * sharesAt(without)[i] * code;
+            gradient[axis] += ((i >> unsigned(axis) & 1U) != 0 ? 1.0 : -1.0) * weightsAt(without)[i] * code;
         }
     }
     FieldValue result{.distance = static_cast<float>(value / kCodeMax * layout_.band * voxel)};

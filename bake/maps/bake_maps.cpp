@@ -147,7 +147,7 @@ FittedMapOptions fitOptions(const TriangleMesh& mesh, const View& view, const Ba
     // A hundredth of a texel, which no texel can resolve.
     options.good_enough = 0.01 * side / std::max(view.width, view.height);
     options.cautious = bake.prefer == Prefer::kInside;
-    options.let_back = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
+    options.inward_shift = bake.prefer == Prefer::kOutside ? 0.4 : 0.0;
     return options;
 }
 

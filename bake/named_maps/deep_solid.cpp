@@ -39,13 +39,13 @@ void DeepSolid::place() {
                 length(centre_.direction);
     known_ = true;
     any_known_ = false;
-    asked_ = 0;
+    traced_ = 0;
     spans_.assign(1, kAllDepths);
 }
 
 void DeepSolid::narrow() {
-    const double shrunk = kPlaces[asked_].half_chord * diagonal_;
-    const TexelRay& line = lines_[asked_++];
+    const double shrunk = kPlaces[traced_].half_chord * diagonal_;
+    const TexelRay& line = lines_[traced_++];
     if (!query_.spansInside(line.origin, line.direction, of_line_)) {
         return;
     }
@@ -99,7 +99,7 @@ bool DeepSolid::cutBy(const glm::dvec3& normal, double offset) {
         return span.begin < reach.up_to || span.end > reach.from;
     };
     while (std::ranges::any_of(spans_, isCut)) {
-        if (asked_ == kLines) {
+        if (traced_ == kLines) {
             return any_known_ || query_.watertight();
         }
         narrow();

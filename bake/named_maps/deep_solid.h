@@ -63,8 +63,8 @@ class DeepSolid {
     std::array<TexelRay, kLines> lines_;
     std::array<TexelRay, kCorners> corners_;
     TexelRay centre_;
-    double diagonal_ = 0.0;  // of the cross-section at depth 1, in units of depth
-    std::size_t asked_ = 0;  // number of lines traced
+    double diagonal_ = 0.0;   // of the cross-section at depth 1, in units of depth
+    std::size_t traced_ = 0;  // number of lines traced
     bool any_known_ = false;
     std::vector<LineSpan> spans_;  // candidates for deep solid
     std::vector<LineSpan> of_line_;

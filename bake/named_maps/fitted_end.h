@@ -24,7 +24,7 @@ struct FittedMapOptions {
     /// If true, surface points up to half a sample beyond the texel may not lie in front of its plane either. This
     /// halves the points that are wrongly outside, and adds half as many again that are wrongly inside.
     bool cautious = false;
-    double let_back = 0.0;  ///< PlaneFitOptions::let_back
+    double inward_shift = 0.0;  ///< PlaneFitOptions::inward_shift
 };
 
 /// The ring of texels that stays empty (depth_map.h).
@@ -45,7 +45,7 @@ struct FittedMapOptions {
     fit.reach = map.reach / unit;
     fit.pixel_cost = map.good_enough / unit;
     fit.refinements = map.refinements;
-    fit.let_back = map.let_back;
+    fit.inward_shift = map.inward_shift;
     return fit;
 }
 

@@ -216,7 +216,7 @@ class PlaneSearch {
         good_enough_ = options_.pixel_cost * static_cast<double>(rays_.size());
         const glm::dvec3 facing = -centre_.direction / direction_length_;
         if (hits_ == 0) {  // a surface enters the footprint between its rays
-            return takeFacing(facing, edge_);
+            return facingPlane(facing, edge_);
         }
         // Try the mean first: on a smooth surface nothing else is needed.
         const double sum_length = length(sum);
@@ -236,13 +236,13 @@ class PlaneSearch {
             tryCode(codeOf(facing));
         }
         refine();
-        return best_cost_ < kInfinity ? std::optional(best_) : takeFacing(facing, rays_);
+        return best_cost_ < kInfinity ? std::optional(best_) : facingPlane(facing, rays_);
     }
 
   private:
     /// Finds the best plane if all rays hit one surface and are nearly parallel. \return false: continue the search.
     bool trySupported() {
-        if (options_.refinements == 0 || options_.let_back > 0.0 || options_.cautious ||
+        if (options_.refinements == 0 || options_.inward_shift > 0.0 || options_.cautious ||
             hits_ < static_cast<int>(rays_.size())) {
             return false;
         }
@@ -309,9 +309,9 @@ class PlaneSearch {
         if (options_.cautious || cosine > -kDeepCosine) {
             offset = std::max(offset, supportOf(around(), normal));
         }
-        if (options_.let_back > 0.0) {
+        if (options_.inward_shift > 0.0) {
             const double spread = offset - lowestOf(rays_, normal);
-            offset -= spread < 0.25 * options_.span ? options_.let_back * spread : 0.0;
+            offset -= spread < 0.25 * options_.span ? options_.inward_shift * spread : 0.0;
         }
         const double scaled = std::floor(offset / along / options_.u_max * kDepthCodes);
         if (!(scaled >= 0.0 && scaled <= kDepthCodes)) {
@@ -320,7 +320,7 @@ class PlaneSearch {
         const double stored = scaled / kDepthCodes * options_.u_max * along;
         double cost = points_ ? points_->freeSpaceBehind(stored, along)
                               : table_->freeSpaceBehind(stored, options_.reach, best_cost_);
-        if (options_.let_back > 0.0) {
+        if (options_.inward_shift > 0.0) {
             for (const FootprintRay& ray : rays_) {
                 cost += solidInFront(ray, normal, stored);
             }
@@ -329,7 +329,7 @@ class PlaneSearch {
             return;
         }
         const bool vouched =
-            options_.starts_free && options_.let_back == 0.0 && -cosine > options_.rays_apart;
+            options_.starts_free && options_.inward_shift == 0.0 && -cosine > options_.rays_apart;
         if (!vouched && isDeep(normal, stored)) {
             return;
         }
@@ -346,10 +346,10 @@ class PlaneSearch {
     }
 
     std::span<const FootprintRay> around() {
-        if (!around_asked_ && around_) {
+        if (!around_traced_ && around_) {
             around_rays_ = around_();
         }
-        around_asked_ = true;
+        around_traced_ = true;
         return around_rays_;
     }
 
@@ -395,7 +395,7 @@ class PlaneSearch {
 
     /// Fallback if every plane is too steep or outside the depth range: a plane at the nearest sample that faces the
     /// viewer. Returns nullopt if the result is unknown.
-    std::optional<FittedPlane> takeFacing(const glm::dvec3& facing, std::span<const FootprintRay> rays) {
+    std::optional<FittedPlane> facingPlane(const glm::dvec3& facing, std::span<const FootprintRay> rays) {
         double nearest = kInfinity;
         for (const FootprintRay& ray : rays) {
             if (ray.u >= 0.0) {
@@ -420,7 +420,7 @@ class PlaneSearch {
     std::optional<RayTable> table_;  // made on demand
     const AroundRays& around_;
     std::span<const FootprintRay> around_rays_;
-    bool around_asked_ = false;
+    bool around_traced_ = false;
     std::span<const FootprintRay> edge_;
     const FootprintRay& centre_;
     glm::dvec3 from_zero_;

@@ -47,7 +47,7 @@ struct PlaneFitOptions {
     int refinements = 3;      ///< rounds of search among neighbouring normals; 0: none
     /// Moves planes inwards by this fraction of the spread of the sampled points around them, in exchange for more free
     /// space. Has no effect at steps, where the spread exceeds `span`/4.
-    double let_back = 0.0;
+    double inward_shift = 0.0;
     /// Maximum distance of a point of the texel from a ray, in texel diagonals. A plane whose cosine is smaller drops
     /// by more than the diagonal between two rays.
     double rays_apart = 0.0;

@@ -63,7 +63,7 @@ Hit RayProbe::trace(std::uint32_t face, std::uint32_t x, std::uint32_t y) {
     }
     const Hit hit = hitOf(face, x, y, query.hit.primID);
     // Only a hit on the inner side of a closed mesh is doubtful: no ray from free space can reach it.
-    return scene_.closed() && metInside(hit) ? lookAgain(face, x, y, hit) : hit;
+    return scene_.closed() && metInside(hit) ? traceBeside(face, x, y, hit) : hit;
 }
 
 RTCRayHit RayProbe::traced(const Segment& segment) const {
@@ -87,7 +87,7 @@ std::uint32_t RayProbe::bestFacing(std::span<const std::uint32_t> triangles,
     return best;
 }
 
-Hit RayProbe::lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
+Hit RayProbe::traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit) {
     const Segment segment = segmentOf(view_.ray(face, x, y));
     const EmbreeMesh& tree = scene_.tree();
     const glm::dvec3 direction = segment.direction * tree.scale;

@@ -38,7 +38,7 @@ class RayProbe {
     [[nodiscard]] bool metInside(const Hit& hit) const { return hit.fromBehind() != scene_.insideOut(); }
     /// Traces again beside the ray, because Embree misses some vertices and edges that a ray hits exactly, even in
     /// robust mode. A triangle that such a ray hits before `hit` counts if the original ray touches it.
-    [[nodiscard]] Hit lookAgain(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
+    [[nodiscard]] Hit traceBeside(std::uint32_t face, std::uint32_t x, std::uint32_t y, const Hit& hit);
     [[nodiscard]] RTCRayHit traced(const Segment& segment) const;
     /// \param along  dot(normal, direction of growing depth)
     [[nodiscard]] bool isFromBehind(double along) const {

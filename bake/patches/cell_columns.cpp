@@ -68,7 +68,7 @@ class Path {
         return {index, glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c), cross(b - a, c - a)};
     }
 
-    void go(const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
+    void countCrossings(const glm::dvec3& from, const glm::dvec3& to, BodyCounter& counter) const {
         if (triangles_.size() > kTreeTriangles &&
             query_.segmentIsFree(cell_.low + cell_.size * from, cell_.low + cell_.size * to)) {
             return;
@@ -382,7 +382,7 @@ std::array<MeshCell, 8> childrenOf(const MeshQuery& query, const MeshCell& cell,
         child.size = 0.5 * cell.size;
         child.low = cell.low + cell.size * corner;
         child.bodies = cell.bodies;
-        path.go(MeshCell::kKnown, corner + 0.5 * MeshCell::kKnown, child.bodies);
+        path.countCrossings(MeshCell::kKnown, corner + 0.5 * MeshCell::kKnown, child.bodies);
     }
     return children;
 }
@@ -450,14 +450,14 @@ LineGrid::LineGrid(const PatchFrame& frame, unsigned across)
 }
 
 template <class Visit>
-void LineGrid::forEachWayBy(const UnitTriangle& over, const Visit& visit) const {
+void LineGrid::forEachSegmentNear(const UnitTriangle& over, const Visit& visit) const {
     const auto size = static_cast<int>(across_);
     const auto [low, high] = std::minmax({over[0].y, over[1].y, over[2].y});
     const auto [left, right] = std::minmax({over[0].x, over[1].x, over[2].x});
     const auto column = [&](double at) { return static_cast<int>(std::clamp<double>(at, -1.0, size)); };
     const int from = column(std::ceil(left - kRounding));
     const int to = column(std::floor(right + kRounding));
-    const auto visitWay = [&](std::size_t start) {
+    const auto visitSegment = [&](std::size_t start) {
         if (start > 0 && start < starts_.size()) {
             visit(start);
         }
@@ -469,7 +469,7 @@ void LineGrid::forEachWayBy(const UnitTriangle& over, const Visit& visit) const 
         if (count == 0) {
             continue;
         }
-        visitWay(first);
+        visitSegment(first);
         const auto begin = static_cast<int>(starts_[first].column);
         const auto [least, most] =
             row % 2 == 0 ? std::pair(from - begin, to + 1 - begin) : std::pair(begin - to, begin + 1 - from);
@@ -477,7 +477,7 @@ void LineGrid::forEachWayBy(const UnitTriangle& over, const Visit& visit) const 
             visit(first + i);
         }
     }
-    visitWay(row_starts_[end_row]);
+    visitSegment(row_starts_[end_row]);
 }
 
 bool LineGrid::nearStarts(const UnitTriangle& triangle) const {
@@ -523,7 +523,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
         }
         if (grid.nearStarts(triangles[i])) {
             const Path::Crossed crossed = path.crossed(i);
-            grid.forEachWayBy(over, [&](std::size_t start) {
+            grid.forEachSegmentNear(over, [&](std::size_t start) {
                 const int side =
                     path.sideCrossed(crossed, grid.starts()[start - 1].point, grid.starts()[start].point);
                 if (side != 0) {
@@ -539,7 +539,7 @@ CellColumns::CellColumns(const MeshQuery& query, const MeshCell& cell,
     turns_.reserve(hits_);
     const bool no_voids = query.awayFromVoids(cell.low, cell.low + cell.size);
     BodyCounter counter = cell.bodies;
-    path.go(MeshCell::kKnown, grid.starts().front().point, counter);
+    path.countCrossings(MeshCell::kKnown, grid.starts().front().point, counter);
     bool enters_inside = counter.inside();
     auto crossing = crossings.begin();
     for (std::size_t i = 0; i < grid.starts().size(); ++i) {

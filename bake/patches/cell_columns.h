@@ -111,7 +111,7 @@ class LineGrid {
     /// Calls visit(i) for each i > 0 for which the segment from starts()[i − 1] to starts()[i] may cross a triangle.
     /// \param over  the triangle in grid coordinates: lines are at integer x and y.
     template <class Visit>
-    void forEachWayBy(const UnitTriangle& over, const Visit& visit) const;
+    void forEachSegmentNear(const UnitTriangle& over, const Visit& visit) const;
     /// The expected number of lines that meet a piece of a surface, by its area.
     [[nodiscard]] double expectedHits(const ClippedTriangle& piece) const;
     /// One unit of w, as a vector in the cube.

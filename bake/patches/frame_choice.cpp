@@ -15,15 +15,15 @@ namespace {
 constexpr double kOtherSide = 0.03;
 
 /// The unit gradients of w of all frames.
-const std::array<glm::dvec3, 13>& waysOfFrames() {
-    static const auto kWays = [] {
+const std::array<glm::dvec3, 13>& frameAxes() {
+    static const auto kAxes = [] {
         std::array<glm::dvec3, 13> ways;
         std::ranges::transform(patchFrames(), ways.begin(), [](const PatchFrame& frame) {
             return unit(glm::dvec3(frame.gradient(0.0F, 0.0F)));
         });
         return ways;
     }();
-    return kWays;
+    return kAxes;
 }
 
 /// A weight by the cosine to the frame's axis: steep pieces count little, pieces that face away count negatively.
@@ -38,12 +38,12 @@ FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces) {
     FrameChoice both{.two_sides = true};
     double best_single = -std::numeric_limits<double>::infinity();
     double best_both = best_single;
-    for (std::uint8_t frame = 0; frame < waysOfFrames().size(); ++frame) {
+    for (std::uint8_t frame = 0; frame < frameAxes().size(); ++frame) {
         double above = 0.0;
         double below = 0.0;
         double either = 0.0;
         for (const ClippedTriangle& piece : pieces) {
-            const double cosine = dot(piece.normal, waysOfFrames()[frame]);
+            const double cosine = dot(piece.normal, frameAxes()[frame]);
             above += piece.area * worthSeen(cosine);
             below += piece.area * worthSeen(-cosine);
             either += piece.area * worthSeen(std::abs(cosine));
@@ -59,7 +59,7 @@ FrameChoice chooseFrame(std::span<const ClippedTriangle> pieces) {
     }
     double area[2] = {};
     for (const ClippedTriangle& piece : pieces) {
-        area[dot(piece.normal, waysOfFrames()[both.index]) < 0.0 ? 0 : 1] += piece.area;
+        area[dot(piece.normal, frameAxes()[both.index]) < 0.0 ? 0 : 1] += piece.area;
     }
     return std::min(area[0], area[1]) > kOtherSide * (area[0] + area[1]) ? both : single;
 }

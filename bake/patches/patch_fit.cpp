@@ -353,7 +353,7 @@ PatchFitter::PatchFitter(const CellColumns& columns, const ErrorCosts& costs, co
     }
     inside_volume_ = ((inside[0] + inside[1]) + (inside[2] + inside[3])) * columns.grid().volumePerLength();
     outside_below_ = outside_below.value_or(lower < 0.0);
-    aimAtEnds();
+    setTargetsWithoutTurns();
     for (const std::uint32_t line : columns.turning()) {
         bool by_error = true;
         targets_.set(line, targetOf(columns[line], by_error));
@@ -365,7 +365,7 @@ PatchFitter::PatchFitter(const CellColumns& columns, const ErrorCosts& costs, co
     }
 }
 
-void PatchFitter::aimAtEnds() {
+void PatchFitter::setTargetsWithoutTurns() {
     const LineGrid& grid = columns_.grid();
     const auto above = static_cast<float>(outside_below_ ? costs_.false_outside : costs_.false_inside);
     const auto below = static_cast<float>(outside_below_ ? costs_.false_inside : costs_.false_outside);

@@ -110,7 +110,7 @@ class PatchFitter {
     template <std::size_t kSide>
     [[nodiscard]] double wrongOf(const std::array<double, kSide * kSide>& heights) const;
     /// Sets the targets of lines without turns.
-    void aimAtEnds();
+    void setTargetsWithoutTurns();
 
     const CellColumns& columns_;
     ErrorCosts costs_;

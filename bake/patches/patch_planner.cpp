@@ -101,7 +101,7 @@ class Planner {
         } else {
             roots_.size = rootSizeByBytes();
             makeRoots();
-            takeDepthPlanes(kSpareByte * leaveForDepth(narrow(descend(), kSpare)));
+            takeDepthPlanes(kSpareByte * reserveForDepthPlanes(narrow(descend(), kSpare)));
         }
         std::vector<const PatchNode*> roots;
         for (const PatchNode& node : nodes_) {
@@ -230,7 +230,7 @@ class Planner {
 
     /// Chooses the cheapest tree below a node if a byte is worth `byte` of misclassified volume.
     void choose(PatchNode& node, double byte, std::uint32_t level) {
-        if (static_cast<double>(++looked_at_) > kCellsPerByte * bytes_) {
+        if (static_cast<double>(++visited_) > kCellsPerByte * bytes_) {
             return;  // chooseAll() discards the result
         }
         fitter_.tryWorth(node, byte);
@@ -256,7 +256,7 @@ class Planner {
 
     /// \return the bytes of the whole tree, or infinity if it is far too large.
     double chooseAll(double byte) {
-        looked_at_ = 0;
+        visited_ = 0;
         all_least_ = true;
         forEachIndex(0, nodes_.size(), 4, [&](std::size_t i) {
             const double least = root_bytes_[i];
@@ -266,7 +266,7 @@ class Planner {
             choose(nodes_[i], std::isfinite(least) ? std::max(byte, least) : byte, 0);
             report(kSearchShare * std::min(1.0, taken_ / bytes_));
         });
-        if (static_cast<double>(looked_at_) > kCellsPerByte * bytes_) {
+        if (static_cast<double>(visited_) > kCellsPerByte * bytes_) {
             return std::numeric_limits<double>::infinity();
         }
         wrong_ = 0.0;
@@ -338,7 +338,7 @@ class Planner {
     /// Shrinks the tree if depth planes are worth more than its last bytes.
     /// \param byte  the worth of a byte for which the tree was chosen.
     /// \return the worth of a byte for the remaining tree.
-    double leaveForDepth(double byte) {
+    double reserveForDepthPlanes(double byte) {
         findDepthPlanes(kSpareByte * byte);  // takeDepthPlanes() also needs these
         const double wanted = depth_planes_.bytesWorth(byte);
         if (takenBytes(wanted) <= bytes_) {
@@ -548,7 +548,7 @@ class Planner {
     double wrong_ = 0.0;
     double taken_ = 0.0;  // bytes of the last tree tried
     std::vector<ErrorPoint> tried_;
-    std::atomic<std::size_t> looked_at_ = 0;
+    std::atomic<std::size_t> visited_ = 0;
     std::atomic<bool> all_least_ =
         false;                  // the last tree tried used the minimum worth of a byte below each root
     double texel_ = 0.0;        // of the chosen nodes

@@ -74,8 +74,8 @@ ChildProcesses::ChildProcesses() {
 
 ChildProcesses::~ChildProcesses() {
     endAll();
-    if (asked_ != 0) {
-        static_cast<void>(askedToEnd());  // one request is enough; others would be delivered now
+    if (termination_signal_ != 0) {
+        static_cast<void>(terminationSignal());  // one request is enough; others would be delivered now
     }
     ::sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
     ::unsetenv(kParentVariable);
@@ -112,14 +112,15 @@ bool ChildProcesses::takeSignal(std::chrono::nanoseconds at_most) {
     const auto seconds = std::chrono::floor<std::chrono::seconds>(at_most);
     const timespec time{seconds.count(), (at_most - seconds).count()};
     const int signal = ::sigtimedwait(&wanted_, nullptr, &time);
-    asked_ = asked_ == 0 && signal > 0 && signal != SIGCHLD ? signal : asked_;
+    termination_signal_ =
+        termination_signal_ == 0 && signal > 0 && signal != SIGCHLD ? signal : termination_signal_;
     return signal > 0;
 }
 
-int ChildProcesses::askedToEnd() {
+int ChildProcesses::terminationSignal() {
     while (takeSignal({})) {
     }
-    return asked_;
+    return termination_signal_;
 }
 
 void ChildProcesses::collect(std::vector<ChildEnd>& ended) {
@@ -150,7 +151,7 @@ std::vector<ChildEnd> ChildProcesses::wait(std::chrono::milliseconds at_most) {
     while (true) {
         collect(ended);
         const Clock::time_point now = Clock::now();
-        if (!ended.empty() || askedToEnd() != 0 || now >= until || children_.empty()) {
+        if (!ended.empty() || terminationSignal() != 0 || now >= until || children_.empty()) {
             return ended;
         }
         takeSignal(until - now);

@@ -31,8 +31,8 @@ inline constexpr std::size_t kChildOutputMax = std::size_t{64} << 20;
 inline constexpr std::size_t kChildErrorMax = std::size_t{64} << 10;
 
 /// Starts and waits for children. While an object exists, signals that request termination (INT, TERM, HUP) are
-/// deferred, and returned by askedToEnd(); ignored signals remain ignored. Only one object may exist at a time, used by
-/// one thread.
+/// deferred, and returned by terminationSignal(); ignored signals remain ignored. Only one object may exist at a time,
+/// used by one thread.
 class ChildProcesses {
   public:
     ChildProcesses();
@@ -54,7 +54,7 @@ class ChildProcesses {
     [[nodiscard]] std::vector<ChildEnd> wait(std::chrono::milliseconds at_most);
 
     /// Returns the signal that requested termination, or 0. Does not wait.
-    [[nodiscard]] int askedToEnd();
+    [[nodiscard]] int terminationSignal();
 
     /// Ends all children and their descendants: by SIGTERM, and after a second by SIGKILL. \return how they ended.
     std::vector<ChildEnd> endAll();
@@ -73,7 +73,7 @@ class ChildProcesses {
     void collect(std::vector<ChildEnd>& ended);
 
     std::vector<Child> children_;
-    int asked_ = 0;
+    int termination_signal_ = 0;
     sigset_t wanted_{};
     sigset_t mask_before_{};
 };

@@ -109,7 +109,7 @@ class Runner {
         if (!run_.dry_run) {
             bakeStale();
         }
-        result_.signal = children_.askedToEnd();
+        result_.signal = children_.terminationSignal();
         if (result_.signal != 0) {
             for (const ChildEnd& end : children_.endAll()) {
                 take(end);
@@ -118,7 +118,7 @@ class Runner {
         for (AssetResult& asset : result_.assets) {
             if (asset.state == AssetState::kStale && !(run_.dry_run && result_.signal == 0)) {
                 asset.state = AssetState::kCancelled;
-                tell(run_.ended, asset);
+                notify(run_.ended, asset);
             }
         }
         if (!fresh_.empty()) {
@@ -129,7 +129,7 @@ class Runner {
 
   private:
     template <class Function, class Argument>
-    static void tell(const Function& function, const Argument& argument) {
+    static void notify(const Function& function, const Argument& argument) {
         if (function) {
             function(argument);
         }
@@ -138,7 +138,7 @@ class Runner {
     Result<void> findStale(std::vector<RecipeJob> jobs) {
         Result<BakeCacheEntries> cache = loadBakeCache(run_.output_folder);
         if (!cache) {
-            tell(run_.warn, cache.error().message + "; baking everything again");
+            notify(run_.warn, cache.error().message + "; baking everything again");
             cache = BakeCacheEntries{};
         }
         const fs::path folder = recipeFolder(run_.recipe);
@@ -148,7 +148,7 @@ class Runner {
             const auto entry = cache->find(asset.job.output);
             const bool known = entry != cache->end();
             const std::optional<std::string> reason =
-                children_.askedToEnd() != 0
+                children_.terminationSignal() != 0
                     ? "not examined"
                     : staleness(asset.job, known ? &entry->second : nullptr, tool_, folder);
             if (!known) {
@@ -174,13 +174,13 @@ class Runner {
         for (const auto& [file, hash] : entry.containers) {
             asset.containers.push_back((fs::path(asset.job.output).parent_path() / file).string());
         }
-        tell(run_.ended, asset);
+        notify(run_.ended, asset);
     }
 
     void bakeStale() {
         std::size_t next = 0;
         Clock::time_point cached = Clock::now();
-        while (children_.askedToEnd() == 0) {
+        while (children_.terminationSignal() == 0) {
             while (children_.running() < run_.at_once) {
                 while (next < result_.assets.size() && result_.assets[next].state != AssetState::kStale) {
                     ++next;
@@ -208,7 +208,7 @@ class Runner {
 
     void start(std::size_t index) {
         AssetResult& asset = result_.assets[index];
-        tell(run_.started, asset);
+        notify(run_.started, asset);
         std::error_code error;
         fs::create_directories(asset.job.output_path.parent_path(), error);
         if (error) {
@@ -240,7 +240,7 @@ class Runner {
     void failAsset(AssetResult& asset, Error error) {
         asset.state = AssetState::kFailed;
         asset.error = std::move(error);
-        tell(run_.ended, asset);
+        notify(run_.ended, asset);
     }
 
     void take(const ChildEnd& end) {
@@ -256,7 +256,7 @@ class Runner {
         }
         if (end.signal != 0) {
             TemporaryFile::removeLeftovers(asset.job.output_path.parent_path());
-            if (children_.askedToEnd() == 0) {
+            if (children_.terminationSignal() == 0) {
                 failAsset(asset, {ErrorCode::kFailure,
                                   "its bake was ended by signal " + std::to_string(end.signal) + " (" +
                                       ::strsignal(end.signal) + "); repair or simplify the mesh"});
@@ -265,7 +265,7 @@ class Runner {
         }
         if (end.exit_code != 0) {
             const bool known = end.exit_code <= static_cast<int>(ErrorCode::kDifference);
-            if (!known && children_.askedToEnd() != 0) {
+            if (!known && children_.terminationSignal() != 0) {
                 return;
             }
             failAsset(asset, {known ? static_cast<ErrorCode>(end.exit_code) : ErrorCode::kFailure,

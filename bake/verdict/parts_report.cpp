@@ -57,7 +57,7 @@ std::string partSideText(const PartAccuracy& accuracy) {
 }
 
 /// Returns a text like "27 of 82 parts are lost".
-std::string ofMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
+std::string countOfMeasured(std::uint64_t count, const PartsAccuracy& accuracy, const char* what) {
     const std::uint64_t rest = accuracy.countOf(PartVerdict::kRest);
     const std::uint64_t measured = accuracy.parts.size() - rest - accuracy.countOf(PartVerdict::kHidden);
     return std::to_string(count) + " of " + (rest == 0 ? "" : "the largest ") + countText(measured, "part") +
@@ -112,12 +112,13 @@ Verdict verdictOf(double wrong_percent, const std::string& grade, const std::str
 Verdict verdictOf(double wrong_percent, const PartsAccuracy& accuracy, const std::string& unit) {
     const std::uint64_t lost = accuracy.countOf(PartVerdict::kLost);
     const std::uint64_t coarse = accuracy.countOf(PartVerdict::kCoarse);
-    return verdictOf(wrong_percent,
-                     lost > 0                              ? "poor"
-                     : coarse > 0 && accuracy.minor_counts ? "fair"
-                                                           : "good",
-                     lost > 0 ? ofMeasured(lost, accuracy, "lost") : ofMeasured(coarse, accuracy, "coarse"),
-                     accuracy.ignored, unit);
+    return verdictOf(
+        wrong_percent,
+        lost > 0                              ? "poor"
+        : coarse > 0 && accuracy.minor_counts ? "fair"
+                                              : "good",
+        lost > 0 ? countOfMeasured(lost, accuracy, "lost") : countOfMeasured(coarse, accuracy, "coarse"),
+        accuracy.ignored, unit);
 }
 
 std::string partName(const SurfacePart& part, std::size_t index) {
@@ -241,7 +242,7 @@ std::optional<std::string> lostPartsWarning(const PartsAccuracy& accuracy, const
     const auto largest =
         std::max_element(accuracy.parts.begin(), end,
                          [&](const PartAccuracy& a, const PartAccuracy& b) { return size(a) < size(b); });
-    return ofMeasured(lost, accuracy, "lost") + (lost == 1 ? ": " : ", the largest ") +
+    return countOfMeasured(lost, accuracy, "lost") + (lost == 1 ? ": " : ", the largest ") +
            partName(parts.parts[largest->part], largest->part) + ", " + partText(*largest, parts, collider);
 }
 

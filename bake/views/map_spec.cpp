@@ -106,7 +106,7 @@ class MapSpecBuilder {
 
   private:
     [[nodiscard]] bool isCube() const { return spec_.format == MapFormat::kCube8; }
-    [[nodiscard]] std::string uselessness(std::string_view key) const;
+    [[nodiscard]] std::string whyIneffective(std::string_view key) const;
     Result<void> setWord(std::string_view key, std::string_view value);
     Result<void> setSize(std::string_view value);
     Result<void> setBox(std::string_view value);
@@ -144,7 +144,7 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
     if (std::exchange(seen_.at(index), true)) {
         return usage(std::string(key) + " is set twice; remove one");
     }
-    if (const std::string useless = uselessness(key); !useless.empty()) {
+    if (const std::string useless = whyIneffective(key); !useless.empty()) {
         return usage(std::string(key) + useless);
     }
     if (key == "dir") {
@@ -168,7 +168,7 @@ Result<void> MapSpecBuilder::set(std::string_view key, std::string_view value) {
 }
 
 /// Returns why a key has no effect for the format and how to fix it; empty if it has an effect.
-std::string MapSpecBuilder::uselessness(std::string_view key) const {
+std::string MapSpecBuilder::whyIneffective(std::string_view key) const {
     const bool of_patches = key == "bytes" || key == "texel";
     if (of_patches != (spec_.format == MapFormat::kPatches)) {
         return of_patches ? " applies only to patches; set size" : " does not apply to patches; remove it";

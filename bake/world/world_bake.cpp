@@ -16,6 +16,7 @@
 #include "bake/import/level_folder.h"
 #include "bake/measure/self_check.h"
 #include "bake/pipeline/bake.h"
+#include "bake/pipeline/stages.h"
 #include "bake/recipe/bake_cache.h"
 #include "bake/shape/shape_options.h"
 #include "bake/verdict/report_text.h"
@@ -44,13 +45,6 @@ constexpr std::size_t kKeyDigits = 16;
 constexpr std::uint64_t kTrianglesKept = 4'000'000;
 /// Prefix of a cache option that lists the tiles of a mesh.
 constexpr std::string_view kTilesWord = "--tiles=";
-
-template <class... Arguments>
-void tell(const std::function<void(Arguments...)>& function, Arguments... arguments) {
-    if (function) {
-        function(arguments...);
-    }
-}
 
 double areaOf(const TriangleMesh& mesh) {
     double twice = 0.0;
@@ -125,7 +119,7 @@ class WorldBaker {
 
   private:
     Result<void> readLevel() {
-        tell(watcher_.begin, "reading the level");
+        notify(watcher_.begin, "reading the level");
         names_ = RELIEF_TRY(parseShapeOptions(request_.bake.as)).names();
         ImportOptions options = request_.bake.import;
         options.names = names_;
@@ -179,14 +173,14 @@ class WorldBaker {
         result_.budget = request_.bake.budget.value_or(kWorldBudgetDefault);
         std::vector<BudgetShare> shares;
         if (!request_.bake.texel) {
-            tell(watcher_.begin, "distributing the budget");
+            notify(watcher_.begin, "distributing the budget");
             shares.resize(meshes_.size());
             for (const LevelBody& body : level_.bodies) {
                 // Volume / area^(3/4), in world space.
                 shares[body.mesh].weight +=
                     errorWeight(meshes_[body.mesh].area) * body.scale * std::sqrt(body.scale);
             }
-            RELIEF_TRY(shareKnowing(shares));
+            RELIEF_TRY(shareByCurves(shares));
         } else {
             for (const WorldColliderResult& collider : meshes_) {
                 shares.push_back({collider.area * collider.largest_scale * collider.largest_scale});
@@ -200,7 +194,7 @@ class WorldBaker {
     }
 
     /// Distributes the budget by error curves, which are saved for the next run.
-    Result<void> shareKnowing(std::span<BudgetShare> shares) {
+    Result<void> shareByCurves(std::span<BudgetShare> shares) {
         Result<ErrorCurves> known = loadErrorCurves(request_.folder);
         if (!known) {
             result_.warnings.push_back(known.error().message + "; planning all shares of the budget again");
@@ -244,7 +238,7 @@ class WorldBaker {
 
     /// Names the containers, and validates the existing ones.
     Result<void> findUpToDate() {
-        tell(watcher_.begin, "comparing with the cache");
+        notify(watcher_.begin, "comparing with the cache");
         Result<BakeCacheEntries> cache = loadBakeCache(request_.folder);
         if (!cache) {
             result_.warnings.push_back(cache.error().message + "; baking everything again");
@@ -267,10 +261,9 @@ class WorldBaker {
                     entry.options.push_back("--tiles-most=" + std::to_string(tiles_.most));
                 }
             }
-            names_of_files_.push_back(
-                {fileStem(collider.mesh) + "-",
-                 "-" + assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
-                     std::string(kColliderExtension)});
+            file_names_.push_back({fileStem(collider.mesh) + "-",
+                                   "-" + assetKey(tool_, entry.options, entry.inputs).substr(0, kKeyDigits) +
+                                       std::string(kColliderExtension)});
             collider.file = fileOf(i, "");
             parts_[i] = upToDate(i, entry, *cache);
             if (parts_[i].empty()) {
@@ -284,7 +277,7 @@ class WorldBaker {
 
     /// \param tile  its name; empty for the whole mesh.
     [[nodiscard]] std::string fileOf(std::size_t mesh, const std::string& tile) const {
-        const auto& [front, back] = names_of_files_[mesh];
+        const auto& [front, back] = file_names_[mesh];
         return front + tile + (tile.empty() ? back.substr(1) : back);
     }
 
@@ -324,7 +317,7 @@ class WorldBaker {
 
     /// Returns the tiles of a mesh, as listed in the entry of any of them.
     [[nodiscard]] std::vector<std::string> knownTiles(std::size_t mesh, const BakeCacheEntries& cache) const {
-        const auto& [front, back] = names_of_files_[mesh];
+        const auto& [front, back] = file_names_[mesh];
         std::vector<std::string> tiles;
         for (auto at = cache.lower_bound(front); at != cache.end() && at->first.starts_with(front); ++at) {
             const std::vector<std::string>& options = at->second.options;
@@ -397,7 +390,7 @@ class WorldBaker {
 
     /// Bakes the largest first, so that the last to finish is a small one.
     Result<void> bakeStale() {
-        tell(watcher_.begin, "baking colliders");
+        notify(watcher_.begin, "baking colliders");
         std::stable_sort(stale_.begin(), stale_.end(), [this](std::size_t a, std::size_t b) {
             const auto size = [this](std::size_t i) {
                 const WorldColliderResult& collider = meshes_[i];
@@ -413,7 +406,7 @@ class WorldBaker {
             tbb::this_task_arena::isolate([&] { bakeOne(i); });
             const std::lock_guard lock(mutex);
             ++done;
-            remember(i);
+            cacheResult(i);
             if (watcher_.ended) {
                 watcher_.ended(done, level_.meshes.size());
             }
@@ -514,7 +507,7 @@ class WorldBaker {
     }
 
     /// \pre No other thread is in this function.
-    void remember(std::size_t i) {
+    void cacheResult(std::size_t i) {
         BakeCacheEntry entry = entries_[i];
         if (parts_[i].size() > 1) {
             std::vector<std::string> tiles;
@@ -591,8 +584,8 @@ class WorldBaker {
         std::string front;
         std::string back;
     };
-    std::vector<FileName> names_of_files_;  // by mesh
-    std::vector<BakeRequest> requests_;     // by mesh
+    std::vector<FileName> file_names_;   // by mesh
+    std::vector<BakeRequest> requests_;  // by mesh
     std::vector<std::vector<InputFile>> inputs_;
     std::vector<std::optional<SolidMesh>> solids_;  // by mesh; kept from planning
     std::atomic<std::uint64_t> kept_triangles_ = 0;
