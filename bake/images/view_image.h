@@ -28,8 +28,8 @@ inline constexpr std::uint32_t kViewSizeMax = 4096;
 /// "view_+x.exr"
 [[nodiscard]] std::string viewImageName(int view);
 
-/// Draws a view of the bounds. Depths are exact to 1/1024 of a step of the ray, which is at most a cell of a patch near
-/// a surface.
+/// Draws a view of the bounds. Depths are exact to 1/1024 of a ray step; near a surface, a step is at most one cell of
+/// a patch.
 ///
 /// A wall or a gap may be missed if its thickness along the ray is below 1/64 of its cell plus 1/8 of the finest texel
 /// (finestTexel; or 1/16384 of the ray). Between the two surfaces of a pair of patches, 1/4 of the cell is added to

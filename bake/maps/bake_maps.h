@@ -60,15 +60,15 @@ struct Baked {
 /// Returns a warning if a mesh is more than 1000 times its size away from the origin, else nullopt.
 [[nodiscard]] std::optional<std::string> coarseFloatsWarning(const TriangleMesh& mesh);
 /// Estimates the percentage of points near the surface that are misclassified only because floats are coarse at the
-/// mesh, regardless of the maps. Based on the spacing of floats at the farthest corner, in standard deviations of the
-/// points' distance. At most 50.
+/// mesh, regardless of the maps. Depends on the spacing of floats at the farthest corner, relative to the standard
+/// deviation of the points' distance from the surface. At most 50.
 [[nodiscard]] double wrongByFloats(const TriangleMesh& mesh);
 /// Whether floats cause at least half of the percentage: more bytes do not help.
 [[nodiscard]] inline bool floatsLimit(const TriangleMesh& mesh, double wrong_percent) {
     return 2.0 * wrongByFloats(mesh) > wrong_percent;
 }
 
-/// Returns the errors of trees of patches by their bytes (see planErrors in patch_planner.h).
+/// Returns the error curve of trees of patches (planErrors in patch_planner.h).
 /// \param bytes  of the largest tree, kPatchBytesMin to kPatchBytesMax.
 /// Errors: kFailure (Embree).
 [[nodiscard]] Result<ErrorCurve> planErrors(const PreparedMesh& mesh, const BakeOptions& options,

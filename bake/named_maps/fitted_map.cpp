@@ -80,8 +80,7 @@ class EndFitter {
         rays_.resize(std::size_t{samples_} * samples_);
     }
 
-    /// \param hits   of the fine view, from row `first_row` of the face on, including the rows next to those of the
-    /// texel
+    /// \param hits   of the fine view, starting at row `first_row` of the face; includes the rows next to the texel
     /// \param other  the fitter of the other end, if it has already fitted this texel
     std::optional<Surface> fit(std::uint32_t face, std::uint32_t x, std::uint32_t y, std::uint32_t first_row,
                                std::span<const Hit> hits, const EndFitter* other = nullptr) {

@@ -59,7 +59,7 @@ class RayScene : public MeshQuery {
     bool closed_;
 };
 
-/// Whether rays of this end that hit an inner side started in the solid, although empty texels of the view are free.
+/// Whether a ray of this end that hits an inner side started in the solid, even though empty texels mean outside.
 [[nodiscard]] inline bool mayStartInside(const RayScene& scene, const View& view, RayEnd end) {
     return view.centre_on_surface && end == RayEnd::kNear && scene.closed();
 }

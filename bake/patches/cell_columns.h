@@ -69,7 +69,8 @@ struct CellPlane {
 
 /// A square of `across` × `across` lines through the unit cube along one frame, with the data that all cells share.
 /// Rows are ordered by v. A row interleaves its four quarters: the first line of each quarter, then the second of each,
-/// and so on. Fits can thus process four lines at once (lanes.h), in up to four squares between heights.
+/// and so on. Fits can thus process four lines at once (lanes.h), which may lie in four different squares between
+/// heights.
 class LineGrid {
   public:
     /// Distance from the side of the cube to the first line, in line spacings. Not 0.5, because models are built on
@@ -105,8 +106,7 @@ class LineGrid {
     [[nodiscard]] const std::vector<double>& lengths() const { return lengths_; }
     /// The starts of all lines that do not miss the cube, along a path of short segments.
     [[nodiscard]] const std::vector<Start>& starts() const { return starts_; }
-    /// Whether the path from one start to the next may cross the triangle, because the triangle is near a side where
-    /// lines enter.
+    /// Whether the triangle is near a side where lines enter, so that the path from one start to the next may cross it.
     [[nodiscard]] bool nearStarts(const UnitTriangle& triangle) const;
     /// Calls visit(i) for each i > 0 for which the segment from starts()[i − 1] to starts()[i] may cross a triangle.
     /// \param over  the triangle in grid coordinates: lines are at integer x and y.

@@ -24,7 +24,7 @@ constexpr double kTurn = 0.25;
 constexpr double kGain = 0.004;
 /// ... and, in a leaf without a surface, leave less than this fraction of it.
 constexpr double kLeftAtMost = 0.6;
-/// Cells are skipped if this mean error, in cells, would not pay off: larger errors are rare.
+/// Assumed maximum mean error, in cells: cells are skipped if planes would not pay off even at this error.
 constexpr double kErrorMost = 1.0;
 /// The corners of a cell lie at least this far behind its depth planes, in cells.
 constexpr double kBehind = 1.0 / 256.0;
@@ -40,8 +40,8 @@ constexpr double kWorth = 1e-3;
 constexpr double kFaceLength = 4.0;
 /// ... within this distance of their centers, in cells, ...
 constexpr double kFaceNear = 2.0;
-/// ... and tilted by more than this angle, in radians, against the plane that the leaves would otherwise have. The
-/// angle is clamped to kFaceTurnMost, the maximum error of a coarse plane of 7 + 7 bits.
+/// ... and tilted by more than this angle, in radians, relative to the plane that the leaves would otherwise have.
+/// The angle is clamped to kFaceTurnMost, the maximum error of a coarse plane of 7 + 7 bits.
 constexpr double kFaceTurn = 0.016;
 constexpr double kFaceTurnMost = 0.03;
 /// Tolerance of the flatness test, in cells: distances of the leaf's corners to the mesh and to the plane of the face.
@@ -326,7 +326,7 @@ class LeafChooser {
 };
 
 /// Returns the plane of the nearest face for a leaf without a surface, if that face is flat and the plane of the split
-/// cell above is tilted against it.
+/// cell above is tilted relative to it.
 std::optional<DepthGain> facePlane(const MeshQuery& query, std::span<const FlatFace> faces, PatchNode& leaf,
                                    const Baseline& above, double roots_per_cell) {
     const MeshCell& cell = leaf.cell;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth planes: planes that a leaf stores for points deep inside the mesh. A leaf gets them if its own plane, or that
 // of the split cell above, does not belong to the nearest face. Leaves beside a flat face get them if the plane of the
-// split cell above is tilted against that face.
+// split cell above is tilted relative to that face.
 #pragma once
 
 #include <array>

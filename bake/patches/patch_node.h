@@ -64,8 +64,8 @@ struct PatchNode {
     std::array<PatchRecord, 2> depth;     ///< records of `planes`
 
     [[nodiscard]] bool empty() const { return cell.triangles.empty(); }
-    /// Equals empty() after a trial, without reading the cell, which is not in the cache: a node with triangles has
-    /// tried both flats.
+    /// The same as empty() after a trial, but does not access the cell, which is rarely in the CPU cache: a node with
+    /// triangles has tried both flats.
     [[nodiscard]] bool seenEmpty() const { return tried == 1; }
     [[nodiscard]] const PatchShape& shape() const { return kPatchShapes[chosen]; }
     [[nodiscard]] bool surface() const { return shape().side > 0; }

@@ -62,7 +62,7 @@ Result<std::vector<InputFile>> inputsOf(const TriangleMesh& mesh, FileGuard* fil
     return inputs;
 }
 
-/// Returns the request that makes the same solid again, for recordedBake(). The maps record themselves.
+/// Returns the request that makes the same solid again, for recordedBake(). Maps record their own settings.
 BakeRequest recordOf(const BakeRequest& request, const BakeSettings& settings, const SolidMesh& solid) {
     BakeRequest record;
     if (request.animated) {

@@ -65,8 +65,8 @@ struct MeshCheck {
     /// The measurement against the mesh that was baked.
     [[nodiscard]] const Measured& judged() const { return repaired ? *repaired : original; }
     [[nodiscard]] double wrongPercent() const { return judged().accuracy.field.near.total(); }
-    /// Whether the accuracy against the imported mesh is within the limit, and no part is lost. \param max_error
-    /// percent; nullopt: no limit.
+    /// Whether the accuracy against the imported mesh is within the limit, and no part is lost.
+    /// \param max_error  percent; nullopt: no limit.
     [[nodiscard]] bool passes(std::optional<float> max_error) const;
 };
 

@@ -138,7 +138,7 @@ py::tuple query(const Collider& collider, const Floats& points, const std::strin
     return py::make_tuple(s.distance, s.normal, s.map);
 }
 
-/// The body is returned in the place of the map.
+/// Returns the body in place of the map.
 py::tuple queryWorld(const WorldField& field, const Floats& points) {
     const Samples s = sampleAll(points, [&](const glm::vec3& p) {
         const WorldSample sample = field.evaluate(p);

@@ -8,8 +8,8 @@
 
 namespace relief {
 
-/// The kind of error to accept in doubt, for maps whose decode is plane. kInside: doubtful space is solid, so that no
-/// particle enters a wall. kOutside: doubtful space is free, so that no free volume is lost.
+/// How to classify doubtful space, for maps whose decode is plane. kInside: as solid, so that no particle enters a
+/// wall. kOutside: as free, so that no free volume is lost.
 enum class Prefer : std::uint8_t { kNeither, kInside, kOutside };
 
 template <>

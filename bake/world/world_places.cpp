@@ -12,8 +12,8 @@
 namespace relief {
 namespace {
 
-/// Side of a picture: in distances of the point from the surface, to keep these visible, and in longest sides of the
-/// body.
+/// Side of a slice: this multiple of the point's distance from the surface, which keeps the distance visible, clamped
+/// to a range of fractions of the body's longest side.
 constexpr double kDistances = 40.0;
 constexpr double kLeast = 0.02;
 constexpr double kMost = 1.2;

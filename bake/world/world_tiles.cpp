@@ -10,8 +10,8 @@
 namespace relief {
 namespace {
 
-/// One part in this many of a share is reserved for the roots that tiles duplicate: they take a fifteenth with thirty
-/// roots along a side, and more with fewer.
+/// A tenth of a share is reserved for the roots that tiles duplicate. With thirty roots along a side they take a
+/// fifteenth; with fewer roots, more.
 constexpr std::uint64_t kOneInShare = 10;
 
 /// Returns the part of a box within the tile's own roots.
