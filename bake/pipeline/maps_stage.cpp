@@ -48,7 +48,7 @@ Result<BakedMaps> bakePatches(const BakeRequest& request, const BakeSettings& se
     const double tree_ms = watch.ms();
     BakedMaps made;
     PatchesReport report;
-    report.wanted_texel = request.texel;
+    report.requested_texel = request.texel;
     if (request.max_error) {
         const MeshQuery truth = solid.imported ? RELIEF_TRY(MeshQuery::build(*solid.imported)) : query;
         BudgetSearchResult found = RELIEF_TRY(searchBudget(request, settings, query, truth, watcher));

@@ -94,9 +94,9 @@ struct Samples {
 /// Points between two signal checks: a tenth of a second on a few cores.
 constexpr std::size_t kPart = std::size_t{1} << 16;
 
-/// Calls ask(p) for all points, on all cores. A point that is not finite gets NaN as distance and normal.
-template <class Ask>
-Samples sampleAll(const Floats& points, const Ask& ask) {
+/// Calls evaluate_at(p) for all points, on all cores. A point that is not finite gets NaN as distance and normal.
+template <class Evaluate>
+Samples sampleAll(const Floats& points, const Evaluate& evaluate_at) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     const auto at = pointsOf(points);
     const auto count = static_cast<py::ssize_t>(at.size());
@@ -112,7 +112,7 @@ Samples sampleAll(const Floats& points, const Ask& ask) {
             map[i] = -1;
             return;
         }
-        const auto sample = ask(p);
+        const auto sample = evaluate_at(p);
         distance[i] = sample.distance;
         std::copy_n(&sample.normal.x, 3, normal + 3 * i);
         map[i] = sample.map;

@@ -74,13 +74,14 @@ std::string careText(const RepairReport& care, bool verbose) {
 }
 
 std::string patchesLine(const PatchesReport& report, const std::string& unit) {
-    const std::optional<float>& wanted = report.wanted_texel;
-    std::string line = "patches for " +
-                       (wanted ? "a texel of " + shortNumber(double{*wanted}) + " " + unitText(unit) : "") +
-                       (wanted && report.budget ? " and at most " : "") +
-                       (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + " take " +
-                       bytesText(report.bytes) + ": heights at least " + shortNumber(report.texel) + " " +
-                       unitText(unit) + " apart";
+    const std::optional<float>& requested = report.requested_texel;
+    std::string line =
+        "patches for " +
+        (requested ? "a texel of " + shortNumber(double{*requested}) + " " + unitText(unit) : "") +
+        (requested && report.budget ? " and at most " : "") +
+        (report.budget ? bytesText(*report.budget) + " on the GPU" : "") + " take " +
+        bytesText(report.bytes) + ": heights at least " + shortNumber(report.texel) + " " + unitText(unit) +
+        " apart";
     if (report.max_error) {
         line += "; " + shortNumber(report.wrong_percent) +
                 " % of the points near the surface are on the wrong side, found by " +

@@ -35,8 +35,8 @@ tl::unexpected<Error> usage(const std::string& message) {
     return fail(ErrorCode::kUsage, message);
 }
 
-tl::unexpected<Error> badValue(std::string_view key, std::string_view value, const std::string& wanted) {
-    return usage(std::string(key) + " is '" + cleanUtf8(value) + "' but must be " + wanted);
+tl::unexpected<Error> badValue(std::string_view key, std::string_view value, const std::string& expected) {
+    return usage(std::string(key) + " is '" + cleanUtf8(value) + "' but must be " + expected);
 }
 
 tl::unexpected<Error> unknown(const std::string& what, std::string_view word,

@@ -291,23 +291,23 @@ class WorldBaker {
     }
 
     /// Returns the colliders of a mesh; empty unless all are up to date.
-    [[nodiscard]] std::vector<WorldColliderResult> upToDate(std::size_t mesh, BakeCacheEntry wanted,
+    [[nodiscard]] std::vector<WorldColliderResult> upToDate(std::size_t mesh, BakeCacheEntry expected,
                                                             const BakeCacheEntries& cache) const {
         WorldColliderResult part = meshes_[mesh];
-        if (isUpToDate(wanted, cache, part)) {
-            return coarseIsUpToDate(wanted, cache, part) ? std::vector{part}
-                                                         : std::vector<WorldColliderResult>();
+        if (isUpToDate(expected, cache, part)) {
+            return coarseIsUpToDate(expected, cache, part) ? std::vector{part}
+                                                           : std::vector<WorldColliderResult>();
         }
         std::vector<WorldColliderResult> parts;
         const std::vector<std::string> tiles = knownTiles(mesh, cache);
-        wanted.options.push_back(tilesWord(tiles));
+        expected.options.push_back(tilesWord(tiles));
         for (const std::string& tile : tiles) {
             part.tile = tile;
             part.file = fileOf(mesh, tile);
             part.coarse.reset();
             const bool twice = !parts.empty() && std::ranges::count(tiles, tile) > 1;
-            if (twice || !isTileName(tile) || !isUpToDate(wanted, cache, part) ||
-                !coarseIsUpToDate(wanted, cache, part)) {
+            if (twice || !isTileName(tile) || !isUpToDate(expected, cache, part) ||
+                !coarseIsUpToDate(expected, cache, part)) {
                 return {};
             }
             parts.push_back(part);
@@ -340,14 +340,14 @@ class WorldBaker {
         return file.substr(0, key) + "coarse-" + file.substr(key);
     }
 
-    [[nodiscard]] bool coarseIsUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntries& cache,
+    [[nodiscard]] bool coarseIsUpToDate(const BakeCacheEntry& expected, const BakeCacheEntries& cache,
                                         WorldColliderResult& collider) const {
         if (!collider.has_coarse) {
             return true;
         }
         WorldColliderResult coarse;
         coarse.file = coarseFile(collider.file);
-        if (!isUpToDate(wanted, cache, coarse)) {
+        if (!isUpToDate(expected, cache, coarse)) {
             return false;
         }
         collider.coarse = WorldFile{coarse.file, coarse.hash, coarse.gpu_bytes};
@@ -355,14 +355,15 @@ class WorldBaker {
         return true;
     }
 
-    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& wanted, const BakeCacheEntries& cache,
+    [[nodiscard]] bool isUpToDate(const BakeCacheEntry& expected, const BakeCacheEntries& cache,
                                   WorldColliderResult& collider) const {
         const auto found = cache.find(collider.file);
         if (found == cache.end()) {
             return false;
         }
         const BakeCacheEntry& known = found->second;
-        if (known.tool != wanted.tool || known.options != wanted.options || known.inputs != wanted.inputs) {
+        if (known.tool != expected.tool || known.options != expected.options ||
+            known.inputs != expected.inputs) {
             return false;
         }
         const auto bytes = readFile(request_.folder / collider.file);

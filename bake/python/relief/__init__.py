@@ -300,8 +300,8 @@ class Accuracy:
         return self.false_inside_percent + self.false_outside_percent
 
 
-def _wrong_type(value: Any, name: str, wanted: str) -> NoReturn:
-    raise TypeError(f"{name} is of type {type(value).__name__} but must be {wanted}")
+def _wrong_type(value: Any, name: str, expected: str) -> NoReturn:
+    raise TypeError(f"{name} is of type {type(value).__name__} but must be {expected}")
 
 
 def _path(value: Any, name: str = "path") -> str:
@@ -330,7 +330,7 @@ def _whole(value: Any, name: str, least: int, most: int) -> int:
     return int(value)
 
 
-def _array(values: Any, name: str, kinds: str, wanted: str) -> np.ndarray:
+def _array(values: Any, name: str, kinds: str, expected: str) -> np.ndarray:
     """Returns the values as an array of shape (n, 3) with one of the given numpy kinds."""
     if np.ma.is_masked(values):
         raise UsageError(f"{name} are partly masked; fill the masked values, or remove them")
@@ -341,7 +341,7 @@ def _array(values: Any, name: str, kinds: str, wanted: str) -> np.ndarray:
     if array.ndim != 2 or array.shape[1] != 3:
         raise UsageError(f"{name} must be an array of shape (n, 3), not {array.shape}")
     if array.dtype.kind not in kinds:
-        raise TypeError(f"{name} must be an array of {wanted}, not of {array.dtype}")
+        raise TypeError(f"{name} must be an array of {expected}, not of {array.dtype}")
     return array
 
 
