@@ -22,7 +22,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// from the support.
 constexpr double kSteepCosine = 0.35;
 /// Steeper planes cut deep: a surface that rises between the rays of the footprint and the rim of the texel would leave
-/// a pit in the solid. They must therefore also lie in front of the rays around the footprint.
+/// a pit in the solid. The surface points of the rays around the footprint must therefore lie behind them, too.
 constexpr double kDeepCosine = 0.1;
 
 std::uint16_t codeOf(const glm::dvec3& normal) {

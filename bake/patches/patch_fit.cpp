@@ -520,7 +520,7 @@ FittedPair PairFitter::fitOf(int rounds) const {
     };
     for (int round = 0; round < rounds; ++round) {
         if (round > 0) {
-            // Where nothing should lie between the surfaces, let both meet halfway.
+            // Both surfaces meet halfway where nothing should lie between them.
             lay();
             for (const std::uint32_t i : without_) {
                 const LineGrid::Line& line = grid.lines()[i];

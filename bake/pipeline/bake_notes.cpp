@@ -80,7 +80,7 @@ std::vector<std::string> noticesOf(const SolidMesh& solid, std::size_t nodes) {
     if (const std::uint64_t walls = solid.shape.unclear_walls; walls > 0) {
         notices.push_back(
             countText(walls, "wall") +
-            " made of two open shells; their winding does not tell a lining from a body, so the "
+            " made of two open shells; their winding does not distinguish a lining from a body: the "
             "space inside is free; bake clothed bodies with --as solid");
     }
     if (const std::uint64_t sheets = solid.shape.closable_sheets; sheets > 0) {

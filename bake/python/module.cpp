@@ -104,7 +104,7 @@ Samples sampleAll(const Floats& points, const Evaluate& evaluate_at) {
     float* const distance = out.distance.mutable_data();
     float* const normal = out.normal.mutable_data();
     std::int32_t* const map = out.map.mutable_data();
-    const auto askOne = [&](std::size_t i) {
+    const auto sampleOne = [&](std::size_t i) {
         const glm::vec3& p = at[i];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
             distance[i] = kNan;
@@ -122,7 +122,7 @@ Samples sampleAll(const Floats& points, const Evaluate& evaluate_at) {
         released([&] {
             tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 4096), [&](const auto& range) {
                 for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                    askOne(i);
+                    sampleOne(i);
                 }
             });
         });

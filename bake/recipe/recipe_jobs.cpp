@@ -186,7 +186,7 @@ class Expander {
                 return at(asset.mesh_place,
                           "mesh " + inQuotes(text) +
                               " matches folders, which are levels; write */* for the files in "
-                              "them, or let output end in /world.json");
+                              "them, or end output in /world.json");
             }
             if (found->files.empty() && !asset.optional) {
                 std::error_code error;

@@ -291,7 +291,7 @@ class Accuracy:
     grade: str
     """ "good", "fair" or "poor", as in `relief check`: the worse of the grades of the whole mesh and of its parts. A lost part
     is poor. Coarse parts lower the grade to "fair" if they and the ignored parts together miss more than 1 % of the points near
-    the surface. Ignored parts alone do not lower it."""
+    the surface. Ignored parts by themselves do not lower it."""
     places: tuple[WorstPlace, ...] = ()
     """The worst first; at most three."""
 
@@ -310,7 +310,7 @@ def _path(value: Any, name: str = "path") -> str:
     path = os.fsdecode(value)
     if "\0" in path:
         raise UsageError(f"{name} contains a null character; remove it")
-    return "./-" if path == "-" else path  # "-" alone means standard input and output
+    return "./-" if path == "-" else path  # "-" means standard input and output
 
 
 def _is_number(value: Any) -> bool:
