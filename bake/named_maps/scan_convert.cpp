@@ -172,8 +172,7 @@ class ScanConverter::Shape {
 
     Grid grid_;
     std::array<glm::dvec3, 3> corners_;
-    double
-        volume_;  // six times the volume of the tetrahedron with the centre; for an orthographic view, twice the area
+    double volume_;  // six times the tetrahedron with the centre; orthographic: twice the area
 };
 
 ScanConverter::ScanConverter(const RayScene& scene, const View& view)

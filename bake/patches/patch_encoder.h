@@ -13,8 +13,8 @@
 
 namespace relief {
 
-/// The roots of a tree.
-struct PatchRoots {          ///< The grid of a tree's roots.
+/// The grid of a tree's roots.
+struct PatchRoots {
     double size = 0.0;       ///< side of a root, object units
     glm::dvec3 origin{0.0};  ///< low corner of the first root, object space
     glm::uvec3 count{1};     ///< along each axis; x fastest

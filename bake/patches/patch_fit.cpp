@@ -166,8 +166,8 @@ class HeightLanes {
 };
 
 /// Sums over lines between two heights, by products of their weights.
-struct RowSums {           ///< first · first, first · second, second · second
-    Lanes square[3] = {};  // both the first's share, one each, both the second's
+struct RowSums {
+    Lanes square[3] = {};  // first · first, first · second, second · second
     Lanes right[2] = {};
 };
 

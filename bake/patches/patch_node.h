@@ -51,8 +51,8 @@ struct PatchNode {
     bool walls = true;     ///< the inside lies between the surfaces of a pair
     bool in_void = false;  ///< a node without triangles lies in a void
     DepthPlanes planes = DepthPlanes::kNone;
-    std::array<double, kPatchShapes.size()>
-        errors;               ///< of each shape tried: weighted volume, object units cubed
+    /// Of each shape tried: weighted volume, object units cubed.
+    std::array<double, kPatchShapes.size()> errors;
     double pair_least = 0.0;  ///< lower bound of the errors of any pair
     double passed_by = 0.0;   ///< volume missed between the lines; included in all errors
     double bytes = 0.0;       ///< of the chosen subtree

@@ -23,8 +23,8 @@ struct PatchOptions {
     /// patch exceeds a quarter of the texel and its side is longer than two texels.
     double texel = 0.0;
     bool coarsen = false;  ///< if the tree exceeds the bytes, uses a larger texel
-    std::optional<Bounds>
-        roots_hold{};  ///< object units: a box that the roots contain in addition to the mesh
+    /// Object units: a box that the roots contain in addition to the mesh.
+    std::optional<Bounds> roots_hold{};
     /// A tree by texel that exceeds this size has small roots, so that it can be cut into tiles of this size
     /// (patch_tiles.h). A tree by bytes always has small roots.
     std::uint64_t tile_bytes = PatchTileOptions().bytes;
