@@ -57,7 +57,7 @@ class ScanConverter {
     inline void meet(const SeenPlane& plane, std::uint32_t x, std::uint32_t y, const Block& block) const;
     [[nodiscard]] inline bool isInView(double depth, std::uint32_t face, std::uint32_t x,
                                        std::uint32_t y) const;
-    /// Whether a hit replaces another one, considering almost equal depths.
+    /// Whether a hit replaces another one. Resolves ties of almost equal depth.
     [[nodiscard]] bool isBetter(std::uint32_t triangle, double depth, const Hit& than, RayEnd end,
                                 std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
     [[nodiscard]] bool atEdge(std::uint32_t triangle, std::uint32_t face, std::uint32_t x,

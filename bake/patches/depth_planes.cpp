@@ -44,7 +44,8 @@ constexpr double kFaceNear = 2.0;
 /// The angle is clamped to kFaceTurnMost, the maximum error of a coarse plane of 7 + 7 bits.
 constexpr double kFaceTurn = 0.016;
 constexpr double kFaceTurnMost = 0.03;
-/// Tolerance of the flatness test, in cells: distances of the leaf's corners to the mesh and to the plane of the face.
+/// Tolerance of the flatness test, in cells: the distances of the leaf's corners to the mesh and to the plane of the
+/// face agree within this.
 constexpr double kFaceFlat = 1e-3;
 /// Weight of that angle (radians times the volume of the cell), relative to misclassified volume.
 constexpr double kFaceWorth = 0.01;

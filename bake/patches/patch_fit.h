@@ -16,8 +16,8 @@ namespace relief {
 /// The best height on a line.
 struct HeightTarget {
     double height = 0.0;
-    /// Costs of errors above and below the height. Zero on one side if a line has no surface, and any height at least,
-    /// or at most, this high is right. Zero on both if the line misses the cube.
+    /// Costs of errors above and below the height. One is zero if a line has no surface, so that any greater, or any
+    /// smaller, height is right. Both are zero if the line misses the cube.
     double above = 0.0;
     double below = 0.0;
 };
