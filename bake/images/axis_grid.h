@@ -38,8 +38,8 @@ struct AxisGrid {
     [[nodiscard]] int axis() const { return view / 2; }
     /// The direction of the view along its axis.
     [[nodiscard]] double sign() const { return view % 2 == 0 ? 1.0 : -1.0; }
-    /// \param x   sample from the left. \param y  sample from the bottom. \param at  coordinate along the axis, object
-    /// units.
+    /// \param x, y  sample from the left and from the bottom.
+    /// \param at  coordinate along the axis, object units.
     [[nodiscard]] glm::vec3 point(std::uint32_t x, std::uint32_t y, float at) const;
     /// The index of a sample in an image whose first row is at the top.
     [[nodiscard]] std::size_t pixel(std::uint32_t x, std::uint32_t y) const {

@@ -115,7 +115,7 @@ class HeightLanes {
     [[nodiscard]] float rowShare(std::size_t index) const {
         return (static_cast<float>(index) + kOffset) * per_line_;
     }
-    /// The same for the index-th lanes of a row.
+    /// The weights of the second height for the index-th lanes of a row.
     [[nodiscard]] Lanes shares(std::size_t index) const {
         return (first_ + static_cast<float>(index)) * per_line_;
     }
