@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bake from the request to the collider: import, repair, solid, maps, measurement and warnings. The command line,
-// Python, recipes, advice and benchmarks call this.
+// Bakes a request into a collider: import, repair, solid, maps, measurement and warnings. Used by the command line,
+// Python, recipes, advice and benchmarks.
 #pragma once
 
 #include <cstdint>
@@ -19,44 +19,46 @@ namespace relief {
 
 struct BakeTimes {
     double import_ms = 0.0;
-    double search_ms = 0.0;  ///< of --max-error: all its bakes and measurements
-    double check_ms = 0.0;   ///< of a bake that measures itself
+    double search_ms = 0.0;  ///< of --max-error: all bakes and measurements of the search
+    double check_ms = 0.0;   ///< measurement of the collider, unless --no-check
     double write_ms = 0.0;
     double total_ms = 0.0;
 };
 
-/// The solid that was baked, the collider, and the results of the stages.
+/// The baked solid, the collider, and the results of the stages.
 struct BakeResult : SolidMesh {
     BakeRequest request;
     BakeSettings settings;  ///< in effect
     Baked baked;
     std::optional<PatchesReport> patches;
-    std::optional<WrongShare> wrong;             ///< near the surface; not of named maps
-    std::optional<PartsAccuracy> part_accuracy;  ///< of several parts; not of named maps
-    std::vector<std::string> notices;            ///< one line each; ready to be shown
-    std::vector<InputFile> inputs;               ///< the mesh, the files that it refers to
+    std::optional<WrongShare> wrong;             ///< near the surface; not for named maps
+    std::optional<PartsAccuracy> part_accuracy;  ///< if there are several parts; not for named maps
+    std::vector<std::string> notices;            ///< one line each, for display
+    std::vector<InputFile> inputs;               ///< the mesh, and the files it references
     BakeTimes times;
 
-    /// Nothing if it is not measured.
+    /// Returns nullopt if the collider was not measured.
     [[nodiscard]] std::optional<Verdict> verdict() const;
-    /// --threads, or those of the machine.
+    /// Returns --threads, or the number of the machine's threads.
     [[nodiscard]] int threads() const;
 };
 
-/// Writes nothing. Warnings are in baked.report.
-/// \param mesh  as finishMesh leaves it: instead of a file.
-/// Errors: those of settingsOf, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePatchesWithin and bake; kUsage: an option that needs the mesh's file.
+/// Bakes a mesh in memory; writes no files. Warnings are in baked.report.
+/// \param mesh  from finishMesh; used instead of the request's file.
+/// Errors: those of settingsOf, importMeshInWorker, repairMesh, shapeMesh, bakeForError, bakePatchesWithin and bake;
+/// kUsage (an option that requires the mesh file).
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const BakeWatcher& watcher = {},
                                       std::optional<TriangleMesh> mesh = {});
 
-/// Errors: as bake().
+/// Prepares the solid of a mesh. Errors: as bake().
 [[nodiscard]] Result<SolidMesh> prepareSolid(const BakeRequest& request, TriangleMesh mesh);
 
-/// The same as bake() of the mesh that prepareSolid() had, with that request or one of another budget that it suits.
+/// Bakes a prepared solid, with the request of prepareSolid(), or one with another budget if
+/// SolidMesh::suitsAnyBudget().
 [[nodiscard]] Result<BakeResult> bake(const BakeRequest& request, const SolidMesh& solid);
 
-/// The errors of its tree of patches against the bytes (bake/patches/patch_planner.h).
-/// \param request  of patches. \param bytes  of the largest tree.
+/// Returns the error curve of the trees of patches of a solid (bake/patches/patch_planner.h).
+/// \param request  for patches. \param bytes  of the largest tree.
 /// Errors: as bake().
 [[nodiscard]] Result<ErrorCurve> planErrors(const BakeRequest& request, const SolidMesh& solid,
                                             std::uint64_t bytes);

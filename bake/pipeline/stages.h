@@ -70,14 +70,14 @@ struct SolidMesh {
 /// Errors: those of parseShapeOptions and shapeMesh.
 [[nodiscard]] Result<ShapedMesh> makeSolid(const BakeRequest& request, const PreparedMesh& mesh);
 
-/// Patches for a budget, a texel or an error.
+/// Patches limited by a budget, a texel or an error.
 struct PatchesReport {
-    std::optional<std::uint64_t> budget;  ///< bytes; not of --texel without --budget
-    std::uint64_t bytes = 0;              ///< on the GPU
-    double texel = 0.0;                   ///< object units: least distance of two heights
-    std::optional<float> wanted_texel;    ///< --texel, object units
-    std::optional<double> max_error;      ///< percent; of --max-error, as are the next two
-    double wrong_percent = 0.0;           ///< measured
+    std::optional<std::uint64_t> budget;   ///< bytes; nullopt for --texel without --budget
+    std::uint64_t bytes = 0;               ///< on the GPU
+    double texel = 0.0;                    ///< object units: minimum distance of two heights
+    std::optional<float> requested_texel;  ///< --texel, object units
+    std::optional<double> max_error;       ///< percent; for --max-error, as are the next two
+    double wrong_percent = 0.0;            ///< measured
     std::vector<BudgetTry> tries;
 };
 

@@ -61,14 +61,15 @@ std::string careText(const RepairReport& care, bool verbose) {
         return "";
     }
     std::string text =
-        "mesh: " + (care.repaired ? std::to_string(care.health->triangles) + " triangles as it came; " : "") +
+        "mesh: " +
+        (care.repaired ? std::to_string(care.health->triangles) + " triangles as imported; " : "") +
         healthLine(*care.health) + "\n";
     text += verbose ? linesOf(*care.health) : "";
     if (care.repaired) {
         text += "after --repair " + care.repair + ": " + std::to_string(care.repaired->triangles) +
                 " triangles; " + healthLine(*care.repaired) + "\n" + (verbose ? linesOf(*care.repaired) : "");
     } else if (care.turned > 0) {
-        text += "turned " + countText(care.turned, "triangle") + " to look outwards\n";
+        text += "turned " + countText(care.turned, "triangle") + " to face outwards\n";
     }
     return text;
 }
@@ -142,7 +143,7 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
         text += ", " + std::to_string(mesh.dropped_triangles) + " without area dropped";
     }
     if (result.unused_vertices > 0) {
-        text += ", " + countText(result.unused_vertices, "vertex", "vertices") + " of no triangle";
+        text += ", " + countText(result.unused_vertices, "vertex", "vertices") + " unused";
     }
     text += "\nbox " + boxText(mesh.bounds, mesh.unit);
     text += "\n" + careText(result.mesh.report, verbose) + shapeText(result.shape, mesh.unit);
@@ -181,22 +182,22 @@ std::string bakeText(const BakeResult& result, const std::string& output, std::s
 
 void fields(FieldVisitor& visit, const BakedMapReport& report) {
     fields(visit, report.map);
-    visit("coverage", report.coverage(), {"Share of the texels that hold a surface", {}, kShareRange});
+    visit("coverage", report.coverage(), {"Fraction of the texels that store a surface", {}, kShareRange});
 }
 
 void fields(FieldVisitor& visit, const PatchesReport& report) {
-    visit("budget", report.budget, {"Budget; null of --texel without --budget", "bytes of texels"});
+    visit("budget", report.budget, {"Budget; null for --texel without --budget", "bytes of texels"});
     visit("bytes", report.bytes, {"Size of the patches", "bytes of texels"});
-    visit("texel", report.texel, {"Least distance of two heights", "object units", kFromZero});
+    visit("texel", report.texel, {"Minimum distance of two heights", "object units", kFromZero});
     const auto search = [&](FieldVisitor& visit_search) {
         visit_search("max_error_percent", static_cast<float>(report.max_error.value_or(0.0)),
                      {"--max-error", "%", kFromZero});
         visit_search("wrong_percent", report.wrong_percent,
-                     {"Share of the points near the surface that are on the wrong side", "%", kPercentRange});
-        visit_search("tries", report.tries, {"Trials, in their order"});
+                     {"Points near the surface that are on the wrong side", "%", kPercentRange});
+        visit_search("tries", report.tries, {"Trials, in order"});
     };
     visit("search", groupIf(report.max_error.has_value(), search),
-          {"Search for the least budget; null without --max-error"});
+          {"Search for the smallest budget; null without --max-error"});
 }
 
 void fields(FieldVisitor& visit, const RepairReport& care) {
@@ -210,7 +211,7 @@ void fields(FieldVisitor& visit, const RepairReport& care) {
 }
 
 void fields(FieldVisitor& visit, const InputFile& input) {
-    visit("file", input.path, {"File as it was opened"});
+    visit("file", input.path, {"Path of the file, as opened"});
     visit("hash", input.hash, {.help = "XXH3-128 of its contents", .pattern = kHashPattern});
 }
 
@@ -220,9 +221,9 @@ void toolField(FieldVisitor& visit) {
 
 void folderFields(FieldVisitor& visit, const std::vector<std::string>& removed, double ms,
                   const std::vector<InputFile>& inputs, const std::vector<std::string>& warnings) {
-    visit("removed", removed, {"Containers that only the world from before named, and that are gone now"});
+    visit("removed", removed, {"Removed containers, which only the previous world referenced"});
     visit("ms", ms, {"Time of the whole run", "ms", kFromZero});
-    visit("inputs", inputs, {.help = "All files that it was made from", .items = kFromOne});
+    visit("inputs", inputs, {.help = "All input files", .items = kFromOne});
     visit("warnings", warnings, {"Warnings, one line each"});
 }
 
@@ -243,44 +244,45 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
         for (const MapReport& map : baked.report.maps) {
             maps.push_back(toString(map.spec));
         }
-        visit_setting("mesh", request.mesh, {"Mesh as given"});
-        visit_setting("output", report.output, {"--output as given"});
-        visit_setting("maps", maps, {"Baked maps, as --map takes them"});
+        visit_setting("mesh", request.mesh, {"Mesh, as on the command line"});
+        visit_setting("output", report.output, {"--output, as on the command line"});
+        visit_setting("maps", maps, {"Baked maps, in the syntax of --map"});
         visit_setting("resolution",
                       onlyIf(source == MapSource::kMaps || source == MapSource::kPaper, options.resolution),
                       {"--resolution; null where it has no effect", "texels"});
         visit_setting("budget", result.patches ? result.patches->budget : std::nullopt,
-                      {"Budget of the patches; null of named maps, and of --texel without --budget",
+                      {"Budget of the patches; null for named maps, and for --texel without --budget",
                        "bytes of texels"});
         visit_setting("texel", request.texel,
                       {"--texel; null without it", "object units", {0.0, 1e15, false}});
         visit_setting("quality", options.quality, {"--quality"});
         visit_setting("prefer", options.prefer, {"--prefer"});
-        visit_setting("threads", result.threads(), {"Threads used", {}, kFromOne});
+        visit_setting("threads", result.threads(), {"Worker threads", {}, kFromOne});
         visit_setting("compress", report.compress, {"zstd level; 0: none", {}, {0.0, 19.0}});
         visit_setting("holes", request.holes, {"--holes"});
         visit_setting("animated", request.animated, {"--animated"});
-        visit_setting("clips", request.clips, {"--clips, in their order"});
+        visit_setting("clips", request.clips, {"Values of --clips, in order"});
     };
     visit("settings", group(settings), {"Effective options"});
-    visit("patches", result.patches, {"Patches for a budget, a texel or an error; null of named maps"});
+    visit("patches", result.patches,
+          {"Patches limited by a budget, a texel or an error; null for named maps"});
     visit("shape", madeShapes(result.shape), {"Treatment of the parts of the mesh; null with --holes keep"});
     visit("wrong_percent", result.wrong ? std::optional(result.wrong->total()) : std::nullopt,
-          {"Share of 4000 points near the surface that are on the wrong side; null of named maps and with "
+          {"Points, out of 4000 near the surface, that are on the wrong side; null for named maps and with "
            "--no-check",
            "%", kPercentRange});
-    visit("verdict", result.verdict(), {"Summary; null unless the bake measured itself"});
+    visit("verdict", result.verdict(), {"Summary; null if the bake was not measured"});
     visit("parts",
           result.part_accuracy
               ? std::optional(PartsReport{*result.part_accuracy, result.parts, baked.collider})
               : std::nullopt,
-          {"Each part of the mesh judged by its own size; null if the bake did not measure itself or the "
+          {"Accuracy of each part of the mesh relative to its size; null if the bake was not measured or the "
            "mesh has one "
            "part"});
     visit("closed_holes", mesh.closed_holes, {"Holes of the mesh that were closed"});
     visit("cap_triangles", mesh.cap_triangles,
           {"Triangles added to close holes, for the rims of shells, and for the ground below terrains"});
-    visit("dropped_triangles", mesh.dropped_triangles, {"Triangles without area, which were left out"});
+    visit("dropped_triangles", mesh.dropped_triangles, {"Triangles without area, which were dropped"});
     visit("unused_vertices", result.unused_vertices, {"Vertices of the mesh file that no triangle uses"});
     const auto times = [&](FieldVisitor& visit_time) {
         const BakeReport& stages = baked.report;
@@ -289,19 +291,19 @@ void fields(FieldVisitor& visit, const BakeJson& report) {
             visit_time(name, value, {help, "ms", kFromZero});
         };
         ms("import", all.import_ms, "Import of the mesh");
-        ms("search", all.search_ms, "Search for the least budget");
+        ms("search", all.search_ms, "Search for the smallest budget");
         ms("build", stages.build_ms, "Acceleration structure");
         ms("trace", stages.trace_ms, "Rays");
         ms("encode", stages.encode_ms, "Texels");
         ms("fit", stages.fit_ms, "Planes and patches");
-        ms("check", all.check_ms, "Measuring the result");
+        ms("check", all.check_ms, "Measurement of the result");
         ms("write", all.write_ms, "Writing");
         ms("total", all.total_ms, "The whole bake");
     };
     visit("times_ms", group(times), {"Wall-clock times"});
     fields(visit, result.mesh.report);
     visit("warnings", baked.report.warnings, {"Warnings, one line each"});
-    // A wrapped mesh has lost the names of its files. The schema, which is made without maps, requires them.
+    // A wrapped mesh does not have the names of its files. The schema, which is made without maps, requires them.
     if (!result.inputs.empty() || baked.collider.maps.empty()) {
         visit("inputs", result.inputs,
               {.help = "All files that were read, the mesh first", .items = kFromOne});

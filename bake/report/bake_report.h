@@ -12,21 +12,21 @@
 
 namespace relief {
 
-/// For people: a few lines and a table. \param output  as on the command line
+/// Returns the report for people: a few lines and a table. \param output  as on the command line
 [[nodiscard]] std::string bakeText(const BakeResult& result, const std::string& output, std::size_t file_size,
                                    bool verbose);
-/// One line with its end: "shape: 2 solids, 1 sheet (0.01 m thick)"; empty where no shapes were made.
+/// Returns one line with a line feed: "shape: 2 solids, 1 sheet (0.01 m thick)"; empty if no shapes were made.
 [[nodiscard]] std::string shapeText(const ShapeReport& report, const std::string& unit);
-/// Nothing where no shapes were made.
+/// Returns the report, or nullopt if no shapes were made.
 [[nodiscard]] std::optional<ShapeReport> madeShapes(const ShapeReport& report);
 
-// --- The same as fields.
+// --- The same data as fields.
 
 struct BakedMapReport {
     ColliderMapReport map = {};
     MapReport baked = {};
 
-    /// Share of the texels that hold a surface.
+    /// Fraction of the texels that store a surface.
     [[nodiscard]] double coverage() const {
         return static_cast<double>(baked.covered) / static_cast<double>(baked.texels);
     }
@@ -41,12 +41,12 @@ void fields(FieldVisitor& visit, const RepairReport& care);
 
 void fields(FieldVisitor& visit, const InputFile& input);
 
-/// `relief bake --json`
+/// The report of `relief bake --json`.
 struct BakeJson {
     const BakeResult& result = kNone<BakeResult>;
     const ContainerInfo& info = kNone<ContainerInfo>;
     std::string output = {};     ///< as on the command line
-    std::uint32_t compress = 0;  ///< level of zstd
+    std::uint32_t compress = 0;  ///< zstd level
 
     [[nodiscard]] ColliderReport<BakedMapReport> collider() const {
         const Baked& baked = result.baked;
@@ -61,10 +61,10 @@ struct BakeJson {
 
 void fields(FieldVisitor& visit, const BakeJson& report);
 
-/// "tool", the program and its version.
+/// Visits "tool", the program and its version.
 void toolField(FieldVisitor& visit);
-/// The last fields of a bake into a folder.
-/// \param removed  containers
+/// Visits the last fields of a report of a bake into a folder.
+/// \param removed  removed containers
 void folderFields(FieldVisitor& visit, const std::vector<std::string>& removed, double ms,
                   const std::vector<InputFile>& inputs, const std::vector<std::string>& warnings);
 
